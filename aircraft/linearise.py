@@ -1,0 +1,156 @@
+"""Linear model about an equilibrium, by central differences on JSBSim itself, servos and propeller included.
+
+JSBSim's own linearisation bypasses servo lags and leaves the simulation unusable, so the rigid body is held still
+(``Fdm.frozen``), one quantity at a time is moved both ways, and the accelerations are read once all else has settled. A servo or
+propeller cannot be set directly; it is moved by holding its input off trim, and its own pole is read from how it returns.
+"""
+
+import math
+from dataclasses import replace
+
+import control
+import numpy as np
+import numpy.typing as npt
+
+from aircraft.errors import AircraftError
+from aircraft.fdm import Fdm
+from aircraft.state import body_velocity, course_rate, euler_rates, level
+from aircraft.trim import Trim
+
+BODY_STATES = ("airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude")
+"""Rigid-body states: [m/s, rad, rad, rad/s, rad/s, rad/s, rad, rad, m]. Position and yaw do not act back."""
+
+EXTRA_OUTPUTS = ("heading_rate", "climb_rate")
+"""Outputs beside the states: rate of the air-relative course [rad/s] and climb rate [m/s]."""
+
+_STEPS = {"airspeed": 0.05, "altitude": 5.0}
+_STEP = 0.002
+_INPUT_STEP = 0.01
+
+
+def linearise(fdm: Fdm, trim: Trim) -> control.StateSpace:
+    """Return the linear model about ``trim``, with named states, inputs and outputs.
+
+    Parameters
+    ----------
+    fdm : the aircraft; its state is changed
+    trim : the equilibrium, straight or turning
+
+    Returns
+    -------
+    control.StateSpace
+        States: ``BODY_STATES`` followed by the aircraft's driven states. Inputs: the aircraft's control inputs [-]. Outputs: every
+        state followed by ``EXTRA_OUTPUTS``. All are deviations from trim, in SI and radians.
+
+    Raises
+    ------
+    AircraftError : a driven state does not follow its input
+    """
+    with fdm.frozen():
+        return _Differences(fdm, trim).model()
+
+
+class _Differences:
+    """Everything is read settled, so moving a body state also moves a propeller that follows it; that part is taken out."""
+
+    def __init__(self, fdm: Fdm, trim: Trim) -> None:
+        self._fdm = fdm
+        self._spec = fdm.spec
+        self._trim = trim
+        self._driven_nodes = [fdm.node(s.position) for s in self._spec.driven_states]
+        self._scales = np.array([s.scale for s in self._spec.driven_states])
+        self._body = np.array([trim.airspeed, trim.alpha, trim.beta, *trim.rates_body, trim.roll, trim.pitch, trim.altitude])
+        self._inputs = np.array([trim.inputs[i.name] for i in self._spec.inputs])
+
+    def model(self) -> control.StateSpace:
+        n_body, n_driven, n_inputs = len(BODY_STATES), len(self._spec.driven_states), len(self._inputs)
+        body_steps = np.array([_STEPS.get(name, _STEP) for name in BODY_STATES])
+        by_body = np.column_stack([self._difference(body=j, step=step) for j, step in enumerate(body_steps)])
+        by_input = np.column_stack([self._difference(control_input=j, step=_INPUT_STEP) for j in range(n_inputs)])
+        driver = [[i.name for i in self._spec.inputs].index(s.input) for s in self._spec.driven_states]
+        n_read = len(by_body) - n_driven
+        driven_by_body, driven_by_input = by_body[n_read:], by_input[n_read:]
+        by_driven = np.zeros((n_read, n_driven))
+        poles = np.zeros(n_driven)
+        for i, j in enumerate(driver):
+            if driven_by_input[i, j] == 0.0:
+                state = self._spec.driven_states[i]
+                raise AircraftError(
+                    f"aircraft '{self._spec.name}': '{state.position}' does not follow input '{state.input}'; check its spec"
+                )
+            by_driven[:, i] = by_input[:n_read, j] / driven_by_input[i, j]
+            poles[i] = self._pole(i, j)
+        direct = by_input[:n_read].copy()
+        direct[:, driver] = 0.0
+        read_by_body = by_body[:n_read] - by_driven @ driven_by_body
+        a = np.block([
+            [read_by_body[:n_body], by_driven[:n_body]],
+            [-poles[:, None] * driven_by_body, np.diag(poles)],
+        ])  # fmt: skip
+        driven_forcing = np.zeros((n_driven, n_inputs))
+        for i, j in enumerate(driver):
+            driven_forcing[i, j] = -poles[i] * driven_by_input[i, j]
+        states = [*BODY_STATES, *(s.name for s in self._spec.driven_states)]
+        return control.ss(
+            a,
+            np.vstack([direct[:n_body], driven_forcing]),
+            np.vstack([np.eye(len(states)), np.hstack([read_by_body[n_body:], by_driven[n_body:]])]),
+            np.vstack([np.zeros((len(states), n_inputs)), direct[n_body:]]),
+            states=states,
+            inputs=[i.name for i in self._spec.inputs],
+            outputs=[*states, *EXTRA_OUTPUTS],
+            name=self._spec.name,
+        )
+
+    def _difference(self, *, body: int | None = None, control_input: int | None = None, step: float) -> npt.NDArray[np.float64]:
+        high, low = (self._read(body, control_input, sign * step) for sign in (1.0, -1.0))
+        return (high - low) / (2.0 * step)
+
+    def _read(self, body: int | None, control_input: int | None, step: float) -> npt.NDArray[np.float64]:
+        """Rates of the body states, extra outputs and driven states, with one quantity moved and everything settled."""
+        point, inputs = self._body.copy(), self._inputs.copy()
+        if body is not None:
+            point[body] += step
+        if control_input is not None:
+            inputs[control_input] += step
+        self._hold(point, inputs)
+        return np.concatenate([self._rates_and_extras(point), self._driven()])
+
+    def _hold(self, point: npt.NDArray[np.float64], inputs: npt.NDArray[np.float64]) -> None:
+        v, alpha, beta, p, q, r, roll, pitch, altitude = (float(x) for x in point)
+        self._fdm.command({i.name: float(u) for i, u in zip(self._spec.inputs, inputs, strict=True)})
+        velocity = body_velocity(v, alpha, beta)
+        self._fdm.place(
+            replace(self._trim.state(), altitude=altitude, roll=roll, pitch=pitch, velocity_body=velocity, rates_body=(p, q, r))
+        )
+        self._fdm.settle()
+
+    def _driven(self) -> npt.NDArray[np.float64]:
+        return np.array([node.get_double_value() for node in self._driven_nodes]) * self._scales
+
+    def _rates_and_extras(self, point: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        v, alpha, beta, p, q, r, roll, pitch, _ = (float(x) for x in point)
+        velocity = body_velocity(v, alpha, beta)
+        u, side, w = velocity
+        u_dot, side_dot, w_dot = self._fdm.acceleration_body()
+        v_dot = (u * u_dot + side * side_dot + w * w_dot) / v
+        alpha_dot = (u * w_dot - w * u_dot) / (u * u + w * w)
+        beta_dot = (side_dot - v_dot * math.sin(beta)) / (v * math.cos(beta))
+        roll_dot, pitch_dot, _ = euler_rates((p, q, r), roll, pitch)
+        climb_rate = -level(velocity, roll, pitch)[2]
+        # Against the earth the body's frame turns, which adds rates x velocity.
+        acceleration = (u_dot + q * w - r * side, side_dot + r * u - p * w, w_dot + p * side - q * u)
+        rates = [v_dot, alpha_dot, beta_dot, *self._fdm.angular_acceleration(), roll_dot, pitch_dot, climb_rate]
+        return np.array([*rates, course_rate(velocity, acceleration, roll, pitch), climb_rate])
+
+    def _pole(self, i: int, j: int) -> float:
+        """Continuous pole of driven state i from its way back to rest, after the first step (which averages old and new input)."""
+        self._hold(self._body, self._inputs)
+        rest = self._driven()[i]
+        self._read(None, j, _INPUT_STEP)
+        self._fdm.command({self._spec.inputs[j].name: float(self._inputs[j])})
+        self._fdm.step()
+        first = self._driven()[i] - rest
+        self._fdm.step()
+        second = self._driven()[i] - rest
+        return math.log(second / first) / self._fdm.time_step

@@ -1,0 +1,15 @@
+"""Conversion factors, all in one place. Everything outside JSBSim's own properties is SI and radians."""
+
+import math
+
+METRES_PER_FOOT = 0.3048
+"""International foot, exact by definition [m/ft]."""
+
+NEWTONS_PER_POUND = 4.4482216152605
+"""Pound-force, exact by definition [N/lbf]."""
+
+RAD_S_PER_RPM = math.pi / 30.0
+"""One revolution a minute [rad/s per rpm]."""
+
+KG_PER_SLUG = 14.593902937206364
+"""Slug: lbf s^2/ft [kg/slug]."""
