@@ -1,0 +1,159 @@
+"""The outer loop: from the vehicle's motion to commanded heading rate and airspeed."""
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from gnc.delta import LookAhead, relative_state, relative_velocity
+from gnc.keepout_guard import KeepoutGuard
+from gnc.laws import cascade_law, line_of_sight_law, lyapunov_law
+from gnc.oscillation import Oscillation
+from gnc.reference import ReferencePoint, ReferenceStart
+
+_ALONGSIDE = math.cos(0.3)
+"""Cosine of the largest course difference from the reference at which a keep-out guard steps back."""
+
+
+class Law(Enum):
+    """Which steering law flies."""
+
+    CASCADE = "cascade"
+    LYAPUNOV = "lyapunov"
+    LINE_OF_SIGHT = "line_of_sight"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GuidanceParameters:
+    """Parameters of the outer loop.
+
+    Attributes
+    ----------
+    law : steering law
+    look_ahead : of the delta formulation
+    gain : of the cascade and line-of-sight laws [1/s]
+    rate_max : largest contribution of h(phi) in the cascade law [rad/s]
+    k_1 : gain of the Lyapunov law [1/m^2]
+    heading_rate_max : omega_max; no command exceeds it [rad/s]
+    time_step : [s]
+    lag : of the vehicle's heading rate behind its command [s]; above 0 the law runs that much ahead of time
+    guard_distance : a keep-out guard steps back within this distance of the reference, on its course: the orbit is clear [m]
+    airspeed_gain : commanded airspeed per along-track error [1/s]; 0 switches trimming off
+    airspeed_trim_max : largest change of commanded airspeed [m/s]
+    """
+
+    law: Law
+    look_ahead: LookAhead
+    gain: float
+    rate_max: float
+    k_1: float
+    heading_rate_max: float
+    time_step: float
+    lag: float
+    guard_distance: float
+    airspeed_gain: float
+    airspeed_trim_max: float
+
+
+class Guidance:
+    """The outer loop of one flight, stepped at a fixed rate.
+
+    Preview: a vehicle that answers ``lag`` seconds late is steered by the law as it will stand then. The reference is known in
+    advance; the vehicle's motion until then follows from its heading rate, which goes from the measured value to the last command.
+
+    Parameters
+    ----------
+    parameters, oscillation, start, phase : of the loop and of its reference
+    guard : of the keep-out area on the way to the reference, or none
+
+    Attributes
+    ----------
+    reference : the reference point now
+    heading_rate_command : last command [rad/s]
+    airspeed_command : last command [m/s]
+    saturated : whether the last heading-rate command was cut at omega_max
+    """
+
+    __slots__ = (
+        "_ahead",
+        "_guard",
+        "_guard_squared",
+        "_lag",
+        "_parameters",
+        "_speed",
+        "_steps",
+        "airspeed_command",
+        "heading_rate_command",
+        "reference",
+        "saturated",
+    )
+
+    def __init__(
+        self,
+        parameters: GuidanceParameters,
+        oscillation: Oscillation,
+        start: ReferenceStart,
+        *,
+        phase: float,
+        guard: KeepoutGuard | None = None,
+    ) -> None:
+        self._parameters = parameters
+        self._speed = oscillation.speed
+        self.reference = ReferencePoint(oscillation, start, phase=phase, time_step=parameters.time_step)
+        self._ahead = ReferencePoint(oscillation, start, phase=phase, time_step=parameters.time_step)
+        lead = round(parameters.lag / parameters.time_step)
+        for _ in range(lead):
+            self._ahead.step()
+        self._lag = lead * parameters.time_step
+        self._guard = guard
+        self._guard_squared = parameters.guard_distance**2
+        self._steps = 0
+        self.heading_rate_command = 0.0
+        self.airspeed_command = oscillation.speed
+        self.saturated = False
+
+    def step(self, north: float, east: float, course: float, speed: float, heading_rate: float) -> None:
+        """Compute the commands from the vehicle's motion now, then move the reference on by one time step.
+
+        Parameters
+        ----------
+        north, east : position [m]
+        course : chi [rad]
+        speed : horizontal speed [m/s]
+        heading_rate : measured rate of the course [rad/s]
+        """
+        p = self._parameters
+        reference, ahead = self.reference, self._ahead
+        if p.airspeed_gain > 0.0:
+            along = (reference.north - north) * math.cos(reference.course) + (reference.east - east) * math.sin(reference.course)
+            trim = p.airspeed_gain * along
+            self.airspeed_command = self._speed + min(max(trim, -p.airspeed_trim_max), p.airspeed_trim_max)
+        lag = self._lag
+        if lag > 0.0:
+            # Heading rate linear in time from the measured value to the last command; its integrals over the lag.
+            last = self.heading_rate_command
+            middle = course + lag * (heading_rate / 3.0 + last / 6.0)
+            north += speed * lag * math.cos(middle)
+            east += speed * lag * math.sin(middle)
+            course += 0.5 * lag * (heading_rate + last)
+        to_north, to_east = ahead.north - north, ahead.east - east
+        command = self._steer(ahead, to_north, to_east, course, speed)
+        if self._guard is not None and not (
+            to_north * to_north + to_east * to_east < self._guard_squared and math.cos(course - ahead.course) > _ALONGSIDE
+        ):
+            command = self._guard.limit(command, self._steps * p.time_step + lag, north, east, course, speed)
+        limit = p.heading_rate_max
+        self.saturated = not -limit <= command <= limit
+        self.heading_rate_command = min(max(command, -limit), limit)
+        self._steps += 1
+        reference.step()
+        ahead.step()
+
+    def _steer(self, reference: ReferencePoint, to_north: float, to_east: float, course: float, speed: float) -> float:
+        p = self._parameters
+        if p.law is Law.LINE_OF_SIGHT:
+            return line_of_sight_law(to_north, to_east, course, p.gain)
+        state = relative_state(p.look_ahead, to_north, to_east, reference.course, course)
+        _, omega_rho = relative_velocity(p.look_ahead, state, self._speed, speed, reference.heading_rate)
+        if p.law is Law.CASCADE:
+            return cascade_law(state.phi, omega_rho, p.gain, p.rate_max)
+        return lyapunov_law(state, speed, omega_rho, p.k_1)

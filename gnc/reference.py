@@ -1,0 +1,105 @@
+"""The virtual reference point that oscillates about the centre of oscillation."""
+
+import math
+from dataclasses import dataclass
+
+from gnc.orbit import offset
+from gnc.oscillation import Oscillation
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReferenceStart:
+    """Where the reference starts so that its orbit is centred on the CO.
+
+    Attributes
+    ----------
+    north, east : [m]
+    course : chi_r [rad]
+    """
+
+    north: float
+    east: float
+    course: float
+
+
+def start_reference(
+    oscillation: Oscillation, *, phase: float, centre_north: float, centre_east: float, vessel_course: float
+) -> ReferenceStart:
+    """Return the start of the reference at phase phi_0 [rad] about a CO at ``centre_north``, ``centre_east`` [m].
+
+    The course is eta cos(phi_0) from the vessel's, equation (7). Differs from equation (3), which says A/omega_0 and so holds for
+    phi_0 = 0 only, and from starting on the CO: with another phase that orbit would not be centred on it.
+    """
+    along, right = (float(x) for x in offset(oscillation, phase / oscillation.omega_0))
+    sin_v, cos_v = math.sin(vessel_course), math.cos(vessel_course)
+    return ReferenceStart(
+        north=centre_north + along * cos_v - right * sin_v,
+        east=centre_east + along * sin_v + right * cos_v,
+        course=vessel_course + oscillation.eta * math.cos(phase),
+    )
+
+
+class ReferencePoint:
+    """The reference point, moved in equal time steps: equations (2), (3) and (4).
+
+    Its course is known in closed form; its position is integrated by Simpson's rule, good to 1e-9 m a step at 20 Hz. Time comes
+    from the step count.
+
+    Parameters
+    ----------
+    oscillation : its course oscillation
+    start : position and course at time 0
+    phase : phi_0 [rad]
+    time_step : [s]
+
+    Attributes
+    ----------
+    north, east : position [m]
+    course : chi_r [rad]
+    heading_rate : omega_r [rad/s]
+    """
+
+    __slots__ = (
+        "_amplitude",
+        "_base",
+        "_distance",
+        "_eta",
+        "_omega_0",
+        "_phase",
+        "_steps",
+        "_time_step",
+        "course",
+        "east",
+        "heading_rate",
+        "north",
+    )
+
+    def __init__(self, oscillation: Oscillation, start: ReferenceStart, *, phase: float, time_step: float) -> None:
+        self._eta = oscillation.eta
+        self._omega_0 = oscillation.omega_0
+        self._amplitude = oscillation.amplitude
+        self._phase = phase
+        self._time_step = time_step
+        self._distance = oscillation.speed * time_step / 6.0
+        self._base = start.course - oscillation.eta * math.cos(phase)
+        self._steps = 0
+        self.north = start.north
+        self.east = start.east
+        self.course = start.course
+        self.heading_rate = -self._amplitude * math.sin(phase)
+
+    def step(self, vessel_heading_rate: float = 0.0) -> None:
+        """Advance one time step while the vessel turns at ``vessel_heading_rate`` omega_V [rad/s]."""
+        cos, sin = math.cos, math.sin
+        first = self.course
+        turn = vessel_heading_rate * self._time_step
+        angle = self._omega_0 * (self._steps + 0.5) * self._time_step + self._phase
+        middle = self._base + 0.5 * turn + self._eta * cos(angle)
+        self._steps += 1
+        self._base += turn
+        angle = self._omega_0 * self._steps * self._time_step + self._phase
+        last = self._base + self._eta * cos(angle)
+        self.north += self._distance * (cos(first) + 4.0 * cos(middle) + cos(last))
+        self.east += self._distance * (sin(first) + 4.0 * sin(middle) + sin(last))
+        self.course = last
+        self.heading_rate = vessel_heading_rate - self._amplitude * sin(angle)
