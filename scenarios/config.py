@@ -1,0 +1,182 @@
+"""What a scenario file may say. Units are in the names; bounds are checked here and nowhere else."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+
+def _check_divides(name: str, rate: float, whole: float) -> None:
+    ratio = whole / rate
+    if abs(ratio - round(ratio)) > 1e-9:
+        raise ValueError(f"{name} is {rate:g} Hz; it must divide {whole:g} Hz, e.g. {whole / max(1, round(ratio)):g}")
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegative = Annotated[float, Field(ge=0.0)]
+
+
+class Sweep(_Section):
+    """What varies from flight to flight."""
+
+    nu: Annotated[tuple[Annotated[float, Field(ge=0.0, le=10.0)], ...], Field(min_length=1, max_length=1000)]
+    """Speed ratios, vessel over UAV [-]. Ratios of 1 and above are infeasible and become rows that say so."""
+
+
+class Vessel(_Section):
+    """The ship, at constant velocity; its speed is nu times that of the UAV."""
+
+    course_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 0.0
+    """Course, clockwise from north [deg]."""
+
+
+class Plume(_Section):
+    """The axis of the smoke plume: a half-line from the funnel."""
+
+    heading_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 180.0
+    """Direction chi_P, clockwise from the vessel's bow [deg]; 180 is straight astern."""
+    elevation_deg: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
+    """Elevation alpha_P above the horizon [deg]."""
+    source_height_m: Annotated[float, Field(ge=10.0, le=500.0)] = 60.0
+    """Height of the funnel's mouth above the sea, where the axis starts [m]."""
+
+
+class Keepout(_Section):
+    """The sphere about the funnel's mouth that the UAV must not enter."""
+
+    radius_m: Annotated[float, Field(gt=0.0, le=10_000.0)] = 200.0
+    """r_min [m]."""
+
+
+class Guidance(_Section):
+    """The paper's outer loop."""
+
+    law: Literal["cascade", "lyapunov", "line_of_sight"] = "cascade"
+    """Steering law: eq. (30), eq. (24), or the line-of-sight baseline."""
+    airspeed_mps: Annotated[float, Field(ge=5.0, le=100.0)] = 19.42
+    """V_r, speed of the reference and of the UAV [m/s]."""
+    bank_deg: Annotated[float, Field(gt=0.0, le=60.0)] = 45.0
+    """Bank whose coordinated turn sets omega_max = g tan(bank)/V_r [deg]."""
+    heading_rate_max_rad_s: Positive | None = None
+    """omega_max given directly [rad/s]; overrides bank_deg."""
+    reserve: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.015
+    """Fraction of omega_max that the reference leaves to feedback [-]; the paper leaves none."""
+    roll_rate_max_deg_s: Annotated[float, Field(gt=0.0, le=360.0)] = 40.0
+    """Roll rate that the reference may ask for [deg/s]."""
+    phase_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 0.0
+    """Oscillation phase phi_0 [deg]."""
+    placement: Literal["paper", "exact"] = "paper"
+    """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside."""
+    tracking_allowance_m: Annotated[float, Field(ge=0.0, le=100.0)] = 1.0
+    """Added to r_min in the placement: what the UAV may stray from the reference, which may touch r_min itself [m]."""
+    epsilon_per_m: Positive = 0.005
+    """epsilon of the look-ahead, eq. (15) [1/m]."""
+    look_ahead_m: Positive = 60.0
+    """R of the look-ahead, eq. (15) [m]; above 1/(4 epsilon)."""
+    gain_per_s: Positive = 1.5
+    """Slope of h(phi) in eq. (30), and gain of the line-of-sight law [1/s]."""
+    steering_max_rad_s: Positive = 0.4
+    """Largest |h(phi)| in eq. (30) [rad/s]."""
+    lyapunov_gain_per_m2: Positive = 0.001
+    """k_1 of eq. (24) [1/m2]."""
+    preview: bool = True
+    """Run the law ahead of time by the inner loop's measured lag."""
+    airspeed_trim: bool = True
+    """Trim the commanded airspeed by the along-track error."""
+    airspeed_gain_per_s: Positive = 0.15
+    """Commanded airspeed per along-track error [1/s]."""
+    airspeed_trim_max_mps: Positive = 1.0
+    """Largest change of commanded airspeed [m/s]."""
+    keepout_guard: bool = True
+    """Turn away from the keep-out area on the way to the reference, where the paper's law knows nothing of it."""
+    guard_margin_m: NonNegative = 5.0
+    """Distance the guard keeps beyond r_min [m]."""
+    guard_distance_m: Positive = 15.0
+    """The guard steps back once the UAV is this close to the reference and on its course; the orbit is clear of r_min [m]."""
+    rate_hz: Annotated[float, Field(ge=1.0, le=120.0)] = 20.0
+    """Guidance rate [Hz]; must divide the 120 Hz of the simulation."""
+
+    @model_validator(mode="after")
+    def _whole_steps(self) -> "Guidance":
+        _check_divides("rate_hz", self.rate_hz, 120.0)
+        return self
+
+
+class Start(_Section):
+    """Where flights begin: a seeded random place astern of the vessel, on any course."""
+
+    distance_m: tuple[Positive, Positive] = (400.0, 800.0)
+    """Nearest and farthest distance from the vessel [m]."""
+    spread_deg: Annotated[float, Field(ge=0.0, le=180.0)] = 30.0
+    """Largest bearing from straight astern, either side [deg]."""
+    course_deg: Annotated[float, Field(ge=-360.0, le=360.0)] | None = None
+    """Initial course [deg]; any if not given."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "Start":
+        if self.distance_m[0] > self.distance_m[1]:
+            raise ValueError(f"distance_m is {list(self.distance_m)}; its first value must not exceed its second")
+        return self
+
+
+class Flight(_Section):
+    """When a flight ends and what is recorded."""
+
+    crossings: Annotated[int, Field(ge=1, le=10_000)] = 30
+    """Crossings to fly after settling."""
+    duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 1500.0
+    """Longest flight [s]."""
+    settling_band_m: Positive = 5.0
+    """Settled from the moment the distance to the reference stays below this [m]."""
+    log_rate_hz: Annotated[float, Field(ge=0.1, le=120.0)] = 10.0
+    """Recording rate [Hz]; must divide the guidance rate."""
+
+
+class Criteria(_Section):
+    """What a flight must show to count as met."""
+
+    tracking_error_rms_m: Positive = 1.5
+    airspeed_error_rms_mps: Positive = 0.3
+    altitude_error_max_m: Positive = 1.5
+    crossing_interval_error: Positive = 0.01
+    """Relative difference of the mean crossing interval from pi/omega_0 [-]."""
+
+
+class Variant(_Section):
+    """A comparison: the same flights with some keys set otherwise."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
+    set: dict[str, object]
+
+
+class Comparison(_Section):
+    """Extra flights that show what a part of the guidance is worth. They are reported apart and have no part in the verdict."""
+
+    nu: tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...] = ()
+    variants: tuple[Variant, ...] = ()
+
+
+class Scenario(_Section):
+    """A whole scenario file."""
+
+    title: str
+    description: str = ""
+    aircraft: str = "x8"
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1
+    sweep: Sweep
+    vessel: Vessel = Vessel()
+    plume: Plume = Plume()
+    keepout: Keepout = Keepout()
+    guidance: Guidance = Guidance()
+    start: Start = Start()
+    flight: Flight = Flight()
+    criteria: Criteria = Criteria()
+    comparison: Comparison = Comparison()
+
+    @model_validator(mode="after")
+    def _rates(self) -> "Scenario":
+        _check_divides("flight.log_rate_hz", self.flight.log_rate_hz, self.guidance.rate_hz)
+        return self

@@ -1,0 +1,72 @@
+"""Where the aircraft's path cuts the plume's axis."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicHermiteSpline
+
+from scenarios.vessel import Vessel
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Crossing:
+    """One cut of the vertical plane through the plume's axis, on the plume's side of the vessel.
+
+    Attributes
+    ----------
+    time : [s]
+    axis_distance : along the axis from the plume's origin [m]
+    distance : three-dimensional, to the plume's origin [m]
+    angle : between the path in the vessel's frame and the axis, 90 degrees for a square cut [rad]
+    height : of the aircraft above the axis [m]
+    """
+
+    time: float
+    axis_distance: float
+    distance: float
+    angle: float
+    height: float
+
+
+def find_crossings(time: Array, position: Array, velocity: Array, vessel: Vessel) -> list[Crossing]:
+    """Return every crossing, in time.
+
+    The path between samples is the cubic through their positions and velocities; crossings are its roots, not samples.
+
+    Parameters
+    ----------
+    time : shape (n,) [s]
+    position : shape (n, 3), north, east and up from the plume's origin, which moves with the vessel [m]
+    velocity : shape (n, 3), its rate [m/s]
+    vessel : direction of the plume
+    """
+    axis_north, axis_east = vessel.plume_direction_ned
+    across = axis_north * position[:, 1] - axis_east * position[:, 0]
+    path = CubicHermiteSpline(time, position, velocity)
+    rate = path.derivative()
+    side = CubicHermiteSpline(time, across, axis_north * velocity[:, 1] - axis_east * velocity[:, 0])
+    crossings = []
+    for moment in side.roots(extrapolate=False):
+        if not math.isfinite(moment):
+            continue
+        north, east, up = (float(x) for x in path(moment))
+        along = axis_north * north + axis_east * east
+        if along <= 0.0:
+            continue
+        v_north, v_east, _ = (float(x) for x in rate(moment))
+        v_along = axis_north * v_north + axis_east * v_east
+        v_across = axis_north * v_east - axis_east * v_north
+        crossings.append(
+            Crossing(
+                time=float(moment),
+                axis_distance=along / math.cos(vessel.plume_elevation),
+                distance=math.sqrt(north * north + east * east + up * up),
+                angle=abs(math.atan2(abs(v_across), v_along)),
+                height=up - along * math.tan(vessel.plume_elevation),
+            )
+        )
+    return crossings

@@ -1,0 +1,104 @@
+"""Find a scenario file, apply overrides, and refuse what does not hold, in one line."""
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from scenarios.config import Scenario
+from scenarios.errors import InputError
+
+CATALOG = Path(__file__).parent / "catalog"
+
+
+def catalog() -> dict[str, Path]:
+    """Return the scenarios that come with the project, by name."""
+    return {path.stem: path for path in sorted(CATALOG.glob("*.toml"))}
+
+
+def load_scenario(name: str, overrides: Sequence[str] = ()) -> Scenario:
+    """Read a scenario by catalog name or file path.
+
+    Parameters
+    ----------
+    name : name in the catalog, or path of a TOML file
+    overrides : ``key=value`` with dotted keys and TOML values, e.g. ``guidance.preview=false``
+
+    Raises
+    ------
+    InputError : no such scenario, unreadable TOML, an unknown key, or a value out of range
+    """
+    known = catalog()
+    path = known.get(name, Path(name))
+    if not path.is_file():
+        raise InputError(f"unknown scenario '{name}'; give a TOML file or one of: {', '.join(known)}")
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not valid TOML: {error}; mend the file") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}; check the path and its permissions") from None
+    for override in overrides:
+        key, value = _parse_override(override)
+        _set(document, key, value)
+    return validate(document)
+
+
+def validate(document: Mapping[str, Any]) -> Scenario:
+    """Return the checked scenario.
+
+    Raises
+    ------
+    InputError : naming the key, its value and the limit
+    """
+    try:
+        return Scenario.model_validate(document)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        others = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
+        raise InputError(f"{_explain(key, first['type'], first['msg'], first.get('input'))}{others}") from None
+
+
+def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
+    """Return the scenario with dotted keys set to new values, checked again."""
+    document = scenario.model_dump()
+    for key, value in values.items():
+        _set(document, key, value)
+    return validate(document)
+
+
+def _explain(key: str, kind: str, message: str, value: object) -> str:
+    if kind == "extra_forbidden":
+        return f"unknown key '{key}'; check its spelling against scenarios/config.py or an example in scenarios/catalog"
+    if kind == "missing":
+        return f"key '{key}' is missing; add it to the scenario"
+    text = message.removeprefix("Value error, ")
+    where = f"{key}: " if key else ""
+    if kind == "value_error":
+        return f"{where}{text}"
+    return f"{where}value is {value!r}; {text[0].lower()}{text[1:]}"
+
+
+def _parse_override(override: str) -> tuple[str, object]:
+    key, equals, text = override.partition("=")
+    if not equals or not key.strip():
+        raise InputError(f"--set '{override}' is not of the form key=value, e.g. --set guidance.preview=false")
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text  # a bare word is a string
+    return key.strip(), value
+
+
+def _set(document: dict[str, Any], dotted: str, value: object) -> None:
+    *parents, last = dotted.split(".")
+    section = document
+    for parent in parents:
+        child = section.setdefault(parent, {})
+        if not isinstance(child, dict):
+            raise InputError(f"unknown key '{dotted}'; '{parent}' is a value, not a section")
+        section = child
+    section[last] = value

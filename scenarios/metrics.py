@@ -1,0 +1,175 @@
+"""From a flight's record to its row in the summary."""
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.closed_loop import COLUMNS, FlightRecord
+from scenarios.config import Criteria
+from scenarios.crossings import Crossing, find_crossings
+from scenarios.keepout import keepout_figures
+from scenarios.plan import FlightPlan
+
+Array = npt.NDArray[np.float64]
+Row = dict[str, Any]
+
+SUMMARY_COLUMNS = (
+    "flight_id", "outcome", "message", "criteria_met", "aircraft", "seed", "nu", "plume_heading_deg", "plume_elevation_deg",
+    "eta", "omega_0_rad_s", "oscillation_limit", "r_co_m", "keepout_radius_m", "keepout_violations", "keepout_time_s",
+    "keepout_depth_m", "min_distance_m", "crossing_count", "crossing_interval_mean_s", "crossing_interval_std_s",
+    "crossing_interval_predicted_s", "crossing_distance_mean_m", "crossing_distance_min_m", "crossing_angle_mean_deg",
+    "settling_time_s", "tracking_error_rms_m", "tracking_error_max_m", "airspeed_error_rms_mps", "airspeed_error_max_mps",
+    "airspeed_trim_rms_mps", "altitude_error_rms_m", "altitude_error_max_m", "heading_rate_error_rms_rad_s",
+    "heading_rate_command_max_rad_s", "heading_rate_max_rad_s", "bank_max_deg", "saturation_fraction", "duration_s",
+    "wall_time_s",
+)  # fmt: skip
+"""Columns of ``summary.csv``, in order. A figure that a flight does not have is empty."""
+
+
+def column(history: Array, name: str) -> Array:
+    """Return one column of a flight's time history."""
+    return history[:, COLUMNS.index(name)]
+
+
+def relative_motion(plan: FlightPlan, history: Array) -> tuple[Array, Array]:
+    """Return position and velocity from the plume's origin, each shape (n, 3): north, east, up [m, m/s]."""
+    time = column(history, "time_s")
+    v_north, v_east = plan.vessel.velocity_ned
+    position = np.column_stack([
+        column(history, "north_m") - v_north * time,
+        column(history, "east_m") - v_east * time,
+        column(history, "altitude_m") - plan.vessel.source_height,
+    ])  # fmt: skip
+    velocity = np.column_stack([
+        column(history, "velocity_north_mps") - v_north,
+        column(history, "velocity_east_mps") - v_east,
+        column(history, "climb_rate_mps"),
+    ])  # fmt: skip
+    return position, velocity
+
+
+def settling_index(distance: Array, band: float) -> int | None:
+    """Return the first sample from which ``distance`` stays below ``band``, or None."""
+    outside = np.nonzero(distance >= band)[0]
+    first = int(outside[-1]) + 1 if len(outside) else 0
+    return first if first < len(distance) else None
+
+
+def plan_row(plan: FlightPlan, aircraft: str) -> Row:
+    """Return the part of a row that is known before the flight."""
+    return {
+        "flight_id": plan.flight_id,
+        "aircraft": aircraft,
+        "seed": plan.seed,
+        "nu": plan.nu,
+        "plume_heading_deg": math.degrees(plan.vessel.plume_heading),
+        "plume_elevation_deg": math.degrees(plan.vessel.plume_elevation),
+        "eta": plan.oscillation.eta,
+        "omega_0_rad_s": plan.oscillation.omega_0,
+        "oscillation_limit": plan.oscillation.limit,
+        "r_co_m": plan.centre_distance,
+        "keepout_radius_m": plan.keepout_radius,
+        "crossing_interval_predicted_s": plan.oscillation.crossing_interval,
+        "heading_rate_max_rad_s": plan.guidance.heading_rate_max,
+    }
+
+
+def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Crossing]]:
+    """Measure a flight.
+
+    Keep-out and heading-rate commands count from the first second; tracking, airspeed, altitude and crossings from settling.
+
+    Returns
+    -------
+    row : the measured part of the flight's row
+    crossings : of the settled flight
+    """
+    history = record.history
+    time = column(history, "time_s")
+    position, velocity = relative_motion(plan, history)
+    keepout = keepout_figures(time, position, plan.keepout_radius)
+    to_reference = np.hypot(
+        column(history, "reference_north_m") - column(history, "north_m"),
+        column(history, "reference_east_m") - column(history, "east_m"),
+    )
+    row: Row = {
+        "outcome": record.outcome.value,
+        "message": record.message,
+        "keepout_violations": keepout.violations,
+        "keepout_time_s": keepout.time_inside,
+        "keepout_depth_m": keepout.depth,
+        "min_distance_m": keepout.distance_min,
+        "heading_rate_command_max_rad_s": float(np.max(np.abs(column(history, "heading_rate_command_rad_s")))),
+        "bank_max_deg": math.degrees(float(np.max(np.abs(column(history, "roll_rad"))))),
+        "saturation_fraction": record.saturation_fraction,
+        "duration_s": float(time[-1]),
+    }
+    first = settling_index(to_reference, plan.settling_band)
+    if first is None or first > len(time) - 2:
+        return row, []
+    settled = slice(first, None)
+    crossings = find_crossings(time[settled], position[settled], velocity[settled], plan.vessel)
+    airspeed_error = (column(history, "airspeed_mps") - column(history, "airspeed_command_mps"))[settled]
+    altitude_error = (column(history, "altitude_m") - plan.altitude)[settled]
+    heading_rate_error = (column(history, "heading_rate_rad_s") - column(history, "reference_heading_rate_rad_s"))[settled]
+    row |= {
+        "settling_time_s": float(time[first]),
+        "tracking_error_rms_m": _rms(to_reference[settled]),
+        "tracking_error_max_m": float(np.max(to_reference[settled])),
+        "airspeed_error_rms_mps": _rms(airspeed_error),
+        "airspeed_error_max_mps": float(np.max(np.abs(airspeed_error))),
+        "airspeed_trim_rms_mps": _rms((column(history, "airspeed_command_mps") - plan.oscillation.speed)[settled]),
+        "altitude_error_rms_m": _rms(altitude_error),
+        "altitude_error_max_m": float(np.max(np.abs(altitude_error))),
+        "heading_rate_error_rms_rad_s": _rms(heading_rate_error),
+        "crossing_count": len(crossings),
+    }
+    if crossings:
+        distances = [crossing.distance for crossing in crossings]
+        row |= {
+            "crossing_distance_mean_m": float(np.mean(distances)),
+            "crossing_distance_min_m": min(distances),
+            "crossing_angle_mean_deg": math.degrees(float(np.mean([crossing.angle for crossing in crossings]))),
+        }
+    if len(crossings) > 1:
+        intervals = np.diff([crossing.time for crossing in crossings])
+        row |= {
+            "crossing_interval_mean_s": float(np.mean(intervals)),
+            "crossing_interval_std_s": float(np.std(intervals)),
+        }
+    return row, crossings
+
+
+def unmet_criteria(row: Row, criteria: Criteria) -> list[str]:
+    """Return what a completed flight's row fails, each as a short sentence; empty when all is met."""
+    interval, predicted = row.get("crossing_interval_mean_s", math.nan), row["crossing_interval_predicted_s"]
+    checks = (
+        (row["keepout_violations"] == 0, f"entered the keep-out area {row['keepout_violations']} times"),
+        (
+            row.get("crossing_distance_min_m", -math.inf) >= row["keepout_radius_m"],
+            f"crossed at {row.get('crossing_distance_min_m', math.nan):.2f} m, inside {row['keepout_radius_m']:g} m",
+        ),
+        _at_most(row, "tracking_error_rms_m", criteria.tracking_error_rms_m, "m"),
+        _at_most(row, "airspeed_error_rms_mps", criteria.airspeed_error_rms_mps, "m/s"),
+        _at_most(row, "altitude_error_max_m", criteria.altitude_error_max_m, "m"),
+        (
+            abs(interval / predicted - 1.0) <= criteria.crossing_interval_error,
+            f"mean crossing interval {interval:.3f} s against {predicted:.3f} s",
+        ),
+        (
+            row["heading_rate_command_max_rad_s"] <= row["heading_rate_max_rad_s"] * (1.0 + 1e-12),
+            f"commanded {row['heading_rate_command_max_rad_s']:.4f} rad/s above omega_max",
+        ),
+    )
+    return [message for met, message in checks if not met]
+
+
+def _at_most(row: Row, name: str, limit: float, unit: str) -> tuple[bool, str]:
+    value = row.get(name, math.nan)
+    return value <= limit, f"{name} is {value:.3f} {unit} against {limit:g}"
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))

@@ -1,0 +1,29 @@
+"""A progress bar on standard error."""
+
+import contextlib
+from collections.abc import Iterator
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from scenarios.runner import Progress as Report
+
+
+@contextlib.contextmanager
+def progress_bar() -> Iterator[Report]:
+    """Yield a function to call with what is being done, the number of flights done, and their total."""
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+        auto_refresh=False,
+    )
+    task = bar.add_task("starting", total=None)
+    with bar:
+
+        def report(doing: str, done: int, total: int) -> None:
+            bar.update(task, description=doing, completed=done, total=total, refresh=True)
+
+        yield report

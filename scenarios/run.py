@@ -1,0 +1,121 @@
+"""Command line: ``python -m scenarios.run NAME|FILE.toml``. Nothing heavy is imported before it is needed."""
+
+import os
+import sys
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from scenarios.runner import RunResult
+
+MET, NOT_MET, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+
+def command(
+    name: Annotated[str | None, typer.Argument(metavar="NAME|FILE.toml", help="Scenario of the catalog, or a file.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Run directory; default runs/NAME-DATE-TIME.")] = None,
+    jobs: Annotated[int | None, typer.Option(min=1, max=256, help="Processes; default one per core.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed of the random starts.")] = None,
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a key, e.g. guidance.preview=false.")
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the run in --out.")] = False,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Leave out report.html and report.pdf.")] = False,
+    list_scenarios: Annotated[bool, typer.Option("--list", help="List the catalog and exit.")] = False,
+) -> None:
+    """Fly a scenario and report on it.
+
+    Exit status: 0 every flight completed and met its criteria, 1 some did not, 2 bad input, 130 interrupted.
+    """
+    from scenarios.errors import InputError
+
+    try:
+        status = _list() if list_scenarios else _run(name, out, jobs, seed, overrides or [], resume, no_report)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        status = BAD_INPUT
+    except KeyboardInterrupt:
+        print("interrupted before anything was flown", file=sys.stderr)
+        status = INTERRUPTED
+    raise typer.Exit(status)
+
+
+def _list() -> int:
+    import tomllib
+
+    from scenarios.load import catalog
+
+    for name, path in catalog().items():
+        print(f"{name:20} {tomllib.loads(path.read_text(encoding='utf-8'))['title']}")
+    return MET
+
+
+def _run(
+    name: str | None,
+    out: Path | None,
+    jobs: int | None,
+    seed: int | None,
+    overrides: list[str],
+    resume: bool,
+    no_report: bool,
+) -> int:
+    from scenarios.errors import InputError
+    from scenarios.load import catalog, load_scenario
+
+    if name is None:
+        raise InputError(f"no scenario given; name a TOML file or one of: {', '.join(catalog())}")
+    if resume and out is None:
+        raise InputError("--resume needs --out, the directory of the run to go on with")
+    if seed is not None:
+        overrides = [*overrides, f"seed={seed}"]
+    scenario = load_scenario(name, overrides)
+    stem = Path(name).stem
+    directory = out or Path("runs") / f"{stem}-{datetime.now():%Y%m%d-%H%M%S}"
+
+    from scenarios.progress import progress_bar
+    from scenarios.runner import run_scenario
+
+    with progress_bar() as progress:
+        result = run_scenario(scenario, stem, directory, jobs=jobs or os.cpu_count() or 1, resume=resume, progress=progress)
+    _say(result)
+    if result.interrupted:
+        options = " ".join(f"--set {item}" for item in overrides)
+        print(
+            f"interrupted; {len(result.rows)} of {result.planned} flights are kept. Go on with:"
+            f" python -m scenarios.run {name} {options + ' ' if options else ''}--out {directory} --resume",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
+    if not no_report:
+        from reports.build import build_reports
+
+        for path in build_reports(directory):
+            print(f"report: {path}")
+    return MET if result.met == result.planned else NOT_MET
+
+
+def _say(result: "RunResult") -> None:
+    completed = sum(row["outcome"] == "completed" for row in result.rows)
+    entries = sum(int(row.get("keepout_violations", 0)) for row in result.rows)
+    print(
+        f"{result.planned} flights planned, {len(result.rows)} done: {completed} completed, {result.met} met every criterion;"
+        f" {entries} entries into the keep-out area"
+    )
+    for row in result.rows:
+        if not row["criteria_met"]:
+            print(f"  {row['flight_id']}: {row['outcome']}: {row['message']}")
+    print(f"results: {result.directory}")
+
+
+def main() -> None:
+    """Entry point."""
+    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    app.command()(command)
+    app(prog_name="python -m scenarios.run")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,106 @@
+"""A run directory: what is in it, and writing it whole or not at all."""
+
+import json
+import os
+import uuid
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from scenarios.errors import InputError
+
+Row = dict[str, Any]
+
+
+class RunDirectory:
+    """Paths and files of one run.
+
+    Parameters
+    ----------
+    path : the directory; created by ``open_new``
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.manifest = path / "manifest.json"
+        self.innerloop = path / "innerloop.json"
+        self.model = path / "model"
+        self.flights = path / "flights"
+
+    def open_new(self) -> None:
+        """Create the directory.
+
+        Raises
+        ------
+        InputError : it holds something already, or cannot be written
+        """
+        if self.manifest.exists():
+            raise InputError(
+                f"output directory '{self.path}' holds another run; choose another --out, or continue it with --resume"
+            )
+        if self.path.is_dir() and any(self.path.iterdir()):
+            raise InputError(f"output directory '{self.path}' is not empty; choose another --out or empty it")
+        self._create()
+
+    def open_existing(self, config_hash: str) -> None:
+        """Open a directory that holds an unfinished or finished run of the same configuration.
+
+        Raises
+        ------
+        InputError : there is no run, its configuration differs, or it cannot be written
+        """
+        if not self.manifest.is_file():
+            raise InputError(f"'{self.path}' holds no run to resume; leave out --resume to start one")
+        try:
+            found = json.loads(self.manifest.read_text(encoding="utf-8")).get("config_hash")
+        except (json.JSONDecodeError, OSError):
+            raise InputError(f"'{self.manifest}' cannot be read; start a new run in another --out") from None
+        if found != config_hash:
+            raise InputError(
+                f"'{self.path}' was run with another configuration; resume it with the same scenario, --seed and --set values"
+            )
+        self._create()
+
+    def _create(self) -> None:
+        try:
+            self.flights.mkdir(parents=True, exist_ok=True)
+            probe = self.path / f".probe-{uuid.uuid4().hex}"
+            probe.touch()
+            probe.unlink()
+        except OSError as error:
+            raise InputError(f"output directory '{self.path}' cannot be written: {error.strerror}; choose another --out") from None
+
+    def write_json(self, path: Path, value: Mapping[str, Any]) -> None:
+        """Write a JSON file, whole or not at all."""
+        text = json.dumps(value, indent=1, allow_nan=False) + "\n"
+        write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+
+    def write_rows(self, name: str, rows: list[Row], columns: tuple[str, ...]) -> None:
+        """Write a table with exactly ``columns`` to ``name``, whole or not at all; figures that a row lacks are empty."""
+        frame = pd.DataFrame(rows, columns=list(columns))
+        write_whole(self.path / name, lambda part: frame.to_csv(part, index=False))
+
+    def read_rows(self, name: str) -> list[Row]:
+        """Return the rows of a table, or none where there is no such file."""
+        path = self.path / name
+        if not path.is_file():
+            return []
+        records = pd.read_csv(path, keep_default_na=False, na_values=[""]).to_dict("records")
+        return [{str(k): v for k, v in row.items() if not pd.isna(v)} for row in records]
+
+    def write_history(self, flight_id: str, history: pd.DataFrame) -> None:
+        """Write a flight's time history, whole or not at all."""
+        path = self.flights / f"{flight_id}.parquet"
+        write_whole(path, lambda part: history.to_parquet(part, index=False))
+
+
+def write_whole(path: Path, write: Callable[[Path], object]) -> None:
+    """Call ``write`` with a path beside ``path``, then move the result into place."""
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        write(part)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)

@@ -1,0 +1,205 @@
+"""Run a scenario: design the autopilot, fly every flight in parallel, keep what is done after each."""
+
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from aircraft.errors import AircraftError
+from aircraft.spec import find_spec
+from aircraft.trim import Trim
+from innerloop.jsbsim_system import write_root
+from innerloop.record import design_record
+from innerloop.responses import level_trim
+from innerloop.schedule import design_schedule
+from scenarios.closed_loop import Outcome
+from scenarios.config import Scenario
+from scenarios.errors import InputError
+from scenarios.flights import FlightRequest, FlightResult, flight_requests, fly_request, ignore_interrupt
+from scenarios.manifest import config_hash, provenance
+from scenarios.metrics import SUMMARY_COLUMNS, Row
+from scenarios.run_directory import RunDirectory
+
+CROSSING_COLUMNS = ("flight_id", "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
+
+Progress = Callable[[str, int, int], None]
+"""Called with what is being done, how many flights are done and how many there are."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunResult:
+    """How a run ended.
+
+    Attributes
+    ----------
+    directory : the run directory
+    rows : of the study's flights that are done
+    planned : number of the study's flights
+    interrupted : whether it was stopped before all flights were done
+    """
+
+    directory: Path
+    rows: list[Row]
+    planned: int
+    interrupted: bool
+
+    @property
+    def met(self) -> int:
+        """Number of flights that completed and met every criterion."""
+        return sum(bool(row["criteria_met"]) for row in self.rows)
+
+
+def run_scenario(scenario: Scenario, name: str, directory: Path, *, jobs: int, resume: bool, progress: Progress) -> RunResult:
+    """Fly a scenario into ``directory``.
+
+    Parameters
+    ----------
+    scenario, name : what to fly, and what it is called
+    directory : the run directory
+    jobs : number of processes
+    resume : go on with the unfinished run in ``directory``
+    progress : told what happens
+
+    Raises
+    ------
+    InputError : unknown aircraft, or a directory that cannot be used
+    """
+    try:
+        spec = find_spec(scenario.aircraft)
+    except AircraftError as error:
+        raise InputError(f"aircraft: {error}") from None
+    envelope = spec.envelope
+    airspeed = scenario.guidance.airspeed_mps
+    if not envelope.airspeed_min <= airspeed <= envelope.airspeed_max:
+        raise InputError(
+            f"guidance.airspeed_mps is {airspeed:g}; {spec.title} flies {envelope.airspeed_min:g} to {envelope.airspeed_max:g} m/s"
+        )
+    requests = flight_requests(scenario)
+    run = RunDirectory(directory)
+    digest = config_hash(scenario)
+    if resume:
+        run.open_existing(digest)
+    else:
+        run.open_new()
+    ledger = _Ledger(run, requests)
+    manifest: dict[str, Any] = {
+        "name": name,
+        "title": scenario.title,
+        "state": "running",
+        "config": scenario.model_dump(mode="json"),
+        "config_hash": digest,
+        "seeds": {request.flight_id: request.seed for request in requests},
+        "variants": {request.flight_id: request.variant for request in requests},
+        **provenance(),
+    }
+    run.write_json(run.manifest, manifest)
+    began = time.perf_counter()
+    progress("designing the autopilot", len(ledger.done), len(requests))
+    interrupted = False
+    try:
+        schedule = design_schedule(spec, altitude=scenario.plume.source_height_m)
+        write_root(schedule, run.model)
+        design = design_record(schedule, run.model)
+        run.write_json(run.innerloop, design)
+        # Commands are held for half a guidance step on average, on top of the inner loop's own lag.
+        lag = float(design["heading_rate_lag_s"]) + 0.5 / scenario.guidance.rate_hz
+        start = level_trim(spec, airspeed, scenario.plume.source_height_m)
+        manifest["guidance_lag_s"] = lag
+        _fly_all([r for r in requests if r.flight_id not in ledger.done], ledger, run.path, start, lag, jobs, progress)
+    except KeyboardInterrupt:
+        interrupted = True
+    except AircraftError as error:
+        for request in requests:
+            if request.flight_id not in ledger.done:
+                ledger.add(_failed(request, Outcome.TRIM_FAILED, str(error)))
+    rows = ledger.study_rows()
+    planned = sum(request.variant == "study" for request in requests)
+    counts = {outcome.value: sum(row["outcome"] == outcome.value for row in rows) for outcome in Outcome}
+    manifest |= {
+        "state": "interrupted" if interrupted else "complete",
+        "wall_time_s": time.perf_counter() - began,
+        "outcomes": counts,
+        "flights_planned": planned,
+        "flights_met_criteria": sum(bool(row["criteria_met"]) for row in rows),
+    }
+    run.write_json(run.manifest, manifest)
+    return RunResult(directory=directory, rows=rows, planned=planned, interrupted=interrupted)
+
+
+class _Ledger:
+    """What is done, on disk after every flight."""
+
+    def __init__(self, run: RunDirectory, requests: list[FlightRequest]) -> None:
+        self._run = run
+        self._order = {request.flight_id: i for i, request in enumerate(requests)}
+        self._study = {request.flight_id for request in requests if request.variant == "study"}
+        found = [*run.read_rows("summary.csv"), *run.read_rows("comparison.csv")]
+        self._rows = {row["flight_id"]: row for row in found if row["flight_id"] in self._order}
+        self._crossings = [row for row in run.read_rows("crossings.csv") if row["flight_id"] in self._rows]
+
+    @property
+    def done(self) -> set[str]:
+        return set(self._rows)
+
+    def study_rows(self) -> list[Row]:
+        return self._sorted(study=True)
+
+    def add(self, result: FlightResult) -> None:
+        self._rows[result.request.flight_id] = result.row
+        self._crossings += result.crossings
+        self._crossings.sort(key=lambda row: (self._order[row["flight_id"]], row["crossing"]))
+        # The summary last: a flight counts as done when it is in there, and its crossings are on disk by then.
+        self._run.write_rows("crossings.csv", self._crossings, CROSSING_COLUMNS)
+        if result.request.flight_id in self._study:
+            self._run.write_rows("summary.csv", self._sorted(study=True), SUMMARY_COLUMNS)
+        else:
+            self._run.write_rows("comparison.csv", self._sorted(study=False), SUMMARY_COLUMNS)
+
+    def _sorted(self, *, study: bool) -> list[Row]:
+        rows = [row for row in self._rows.values() if (row["flight_id"] in self._study) == study]
+        return sorted(rows, key=lambda row: self._order[row["flight_id"]])
+
+
+def _fly_all(
+    requests: list[FlightRequest], ledger: _Ledger, directory: Path, start: Trim, lag: float, jobs: int, progress: Progress
+) -> None:
+    total = len(requests) + len(ledger.done)
+    pool = ProcessPoolExecutor(max_workers=min(jobs, max(1, len(requests))), initializer=ignore_interrupt)
+    futures: dict[Future[FlightResult], FlightRequest] = {}
+    try:
+        for request in requests:
+            futures[pool.submit(fly_request, request, directory, start, lag)] = request
+        for future in as_completed(futures):
+            ledger.add(_result(future, futures[future]))
+            progress("flying", len(ledger.done), total)
+    except KeyboardInterrupt:
+        pool.shutdown(wait=True, cancel_futures=True)
+        for future, request in futures.items():
+            if future.done() and not future.cancelled() and request.flight_id not in ledger.done:
+                ledger.add(_result(future, request))
+        raise
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _result(future: Future[FlightResult], request: FlightRequest) -> FlightResult:
+    try:
+        return future.result()
+    except BrokenProcessPool:
+        return _failed(request, Outcome.FAILED, "the process that flew it died; run again with --resume and --jobs 1")
+
+
+def _failed(request: FlightRequest, outcome: Outcome, message: str) -> FlightResult:
+    row: Row = {
+        "flight_id": request.flight_id,
+        "aircraft": request.scenario.aircraft,
+        "seed": request.seed,
+        "nu": request.nu,
+        "outcome": outcome.value,
+        "message": message,
+        "criteria_met": False,
+    }
+    return FlightResult(request=request, row=row, crossings=[])

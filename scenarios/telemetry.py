@@ -1,0 +1,68 @@
+"""What guidance and record read from the aircraft, in SI, through cached property nodes."""
+
+from aircraft.fdm import Fdm
+from aircraft.local_frame import LocalFrame
+from aircraft.units import METRES_PER_FOOT
+from innerloop.jsbsim_system import HEADING_RATE
+
+SAMPLE_COLUMNS = (
+    "altitude_m",
+    "airspeed_mps",
+    "roll_rad",
+    "climb_rate_mps",
+    "pitch_rad",
+    "alpha_rad",
+    "sideslip_rad",
+    "elevator_rad",
+    "aileron_rad",
+    "throttle",
+)
+"""What ``Telemetry.sample`` returns, in order."""
+
+_SAMPLED = (
+    ("position/h-sl-ft", METRES_PER_FOOT),
+    ("velocities/vt-fps", METRES_PER_FOOT),
+    ("attitude/phi-rad", 1.0),
+    ("velocities/h-dot-fps", METRES_PER_FOOT),
+    ("attitude/theta-rad", 1.0),
+    ("aero/alpha-rad", 1.0),
+    ("aero/beta-rad", 1.0),
+    ("fcs/elevator-pos-rad", 1.0),
+    ("fcs/aileron-pos-rad", 1.0),
+    ("fcs/throttle-cmd-norm", 1.0),
+)
+
+
+class Telemetry:
+    """Reads one aircraft.
+
+    Parameters
+    ----------
+    fdm : the simulation
+    frame : local frame, with its origin at zero latitude and longitude
+    """
+
+    __slots__ = ("_east", "_east_scale", "_heading_rate", "_latitude", "_longitude", "_north", "_north_scale", "_sampled")
+
+    def __init__(self, fdm: Fdm, frame: LocalFrame) -> None:
+        self._latitude = fdm.node("position/lat-geod-rad").get_double_value
+        self._longitude = fdm.node("position/long-gc-rad").get_double_value
+        self._north = fdm.node("velocities/v-north-fps").get_double_value
+        self._east = fdm.node("velocities/v-east-fps").get_double_value
+        self._heading_rate = fdm.node(HEADING_RATE).get_double_value
+        self._north_scale, self._east_scale = frame.north_scale, frame.east_scale
+        self._sampled = [(fdm.node(name).get_double_value, scale) for name, scale in _SAMPLED]
+
+    def motion(self) -> tuple[float, float, float, float, float]:
+        """Return north, east [m], north and east velocity [m/s] and heading rate [rad/s]."""
+        return (
+            self._latitude() * self._north_scale,
+            self._longitude() * self._east_scale,
+            self._north() * METRES_PER_FOOT,
+            self._east() * METRES_PER_FOOT,
+            self._heading_rate(),
+        )
+
+    def sample(self) -> tuple[float, ...]:
+        """Return ``SAMPLE_COLUMNS``."""
+        return tuple([read() * scale for read, scale in self._sampled])
