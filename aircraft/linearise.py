@@ -2,7 +2,9 @@
 
 JSBSim's own linearisation bypasses servo lags and leaves the simulation unusable, so the rigid body is held still
 (``Fdm.frozen``), one quantity at a time is moved both ways, and the accelerations are read once all else has settled. A servo or
-propeller cannot be set directly; it is moved by holding its input off trim, and its own pole is read from how it returns.
+propeller cannot be set directly; it is moved by holding its input off trim, and its own pole is read from how it returns. What an
+input does at once, before servo or propeller has moved (a motor's torque on the airframe), is told apart by reading after one
+step as well.
 """
 
 import math
@@ -58,6 +60,8 @@ class _Differences:
         self._spec = fdm.spec
         self._trim = trim
         self._driven_nodes = [fdm.node(s.position) for s in self._spec.driven_states]
+        # Within a step JSBSim moves servos, then computes forces, then moves propellers.
+        self._moves_first = np.array([not s.position.startswith("propulsion/") for s in self._spec.driven_states])
         self._scales = np.array([s.scale for s in self._spec.driven_states])
         self._body = np.array([trim.airspeed, trim.alpha, trim.beta, *trim.rates_body, trim.roll, trim.pitch, trim.altitude])
         self._inputs = np.array([trim.inputs[i.name] for i in self._spec.inputs])
@@ -70,7 +74,8 @@ class _Differences:
         driver = [[i.name for i in self._spec.inputs].index(s.input) for s in self._spec.driven_states]
         n_read = len(by_body) - n_driven
         driven_by_body, driven_by_input = by_body[n_read:], by_input[n_read:]
-        by_driven = np.zeros((n_read, n_driven))
+        at_once = np.column_stack([self._first_step(j) for j in range(n_inputs)])
+        by_driven, direct = np.zeros((n_read, n_driven)), by_input[:n_read].copy()
         poles = np.zeros(n_driven)
         for i, j in enumerate(driver):
             if driven_by_input[i, j] == 0.0:
@@ -78,10 +83,11 @@ class _Differences:
                 raise AircraftError(
                     f"aircraft '{self._spec.name}': '{state.position}' does not follow input '{state.input}'; check its spec"
                 )
-            by_driven[:, i] = by_input[:n_read, j] / driven_by_input[i, j]
+            # Settled: driven * moved + direct. After one step: driven * moved by then + direct.
+            settled, first = by_input[:, j], at_once[:, j]
+            by_driven[:, i] = (settled - first)[:n_read] / (settled - first)[n_read + i]
+            direct[:, j] -= by_driven[:, i] * driven_by_input[i, j]
             poles[i] = self._pole(i, j)
-        direct = by_input[:n_read].copy()
-        direct[:, driver] = 0.0
         read_by_body = by_body[:n_read] - by_driven @ driven_by_body
         a = np.block([
             [read_by_body[:n_body], by_driven[:n_body]],
@@ -115,6 +121,18 @@ class _Differences:
             inputs[control_input] += step
         self._hold(point, inputs)
         return np.concatenate([self._rates_and_extras(point), self._driven()])
+
+    def _first_step(self, j: int) -> npt.NDArray[np.float64]:
+        """Difference by control input j of what is read one step after it is moved."""
+        reads = []
+        for sign in (1.0, -1.0):
+            self._hold(self._body, self._inputs)
+            self._fdm.command({self._spec.inputs[j].name: float(self._inputs[j]) + sign * _INPUT_STEP})
+            before = self._driven()
+            self._fdm.step()
+            acted = np.where(self._moves_first, self._driven(), before)
+            reads.append(np.concatenate([self._rates_and_extras(self._body), acted]))
+        return np.asarray((reads[0] - reads[1]) / (2.0 * _INPUT_STEP))
 
     def _hold(self, point: npt.NDArray[np.float64], inputs: npt.NDArray[np.float64]) -> None:
         v, alpha, beta, p, q, r, roll, pitch, altitude = (float(x) for x in point)

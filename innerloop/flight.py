@@ -6,7 +6,7 @@ from pathlib import Path
 from aircraft.fdm import Fdm
 from aircraft.spec import AircraftSpec
 from aircraft.state import RigidBodyState
-from innerloop.jsbsim_system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND
+from innerloop.jsbsim_system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND, RESET
 
 _SETTLE_STEPS = 240
 """Two seconds for servos, propeller and the autopilot's filters to stand still before release."""
@@ -33,7 +33,7 @@ class AutopilotedAircraft:
         self.command_heading_rate: Callable[[float], object] = self.fdm.writable_node(HEADING_RATE_COMMAND).set_double_value
 
     def release(self, state: RigidBodyState, *, airspeed: float, altitude: float) -> None:
-        """Start a flight from a straight and level equilibrium, commanded to stay in it.
+        """Start a flight from a straight and level equilibrium, commanded to stay in it, whatever was flown before.
 
         Parameters
         ----------
@@ -43,4 +43,6 @@ class AutopilotedAircraft:
         self.command_airspeed(airspeed)
         self.command_altitude(altitude)
         self.command_heading_rate(0.0)
+        self.fdm.write(RESET, -1.0)
         self.fdm.hold(state, _SETTLE_STEPS)
+        self.fdm.write(RESET, 0.0)

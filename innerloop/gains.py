@@ -15,6 +15,7 @@ import control
 import numpy as np
 import numpy.typing as npt
 
+from aircraft.linearise import BODY_STATES
 from innerloop.weights import DesignWeights
 
 LONGITUDINAL = ("airspeed", "climb_rate", "q", "pitch", "altitude")
@@ -68,8 +69,8 @@ def design_gains(model: control.StateSpace, airspeed: float, weights: DesignWeig
 def _quasi_static(model: control.StateSpace) -> control.StateSpace:
     """Replace every state that follows an input by its static gain."""
     labels: Sequence[str] = model.state_labels
-    rigid = [i for i, name in enumerate(labels) if name not in _driven(model)]
-    driven = [i for i, name in enumerate(labels) if name in _driven(model)]
+    rigid = [i for i, name in enumerate(labels) if name in BODY_STATES]
+    driven = [i for i, name in enumerate(labels) if name not in BODY_STATES]
     a, b, c, d = model.A, model.B, model.C, model.D
     inverse = -np.linalg.inv(a[np.ix_(driven, driven)])
     by_rigid, by_input = inverse @ a[np.ix_(driven, rigid)], inverse @ b[driven]
@@ -82,11 +83,6 @@ def _quasi_static(model: control.StateSpace) -> control.StateSpace:
         inputs=model.input_labels,
         outputs=model.output_labels,
     )
-
-
-def _driven(model: control.StateSpace) -> set[str]:
-    """Names of states that an input enters directly."""
-    return {name for name, row in zip(model.state_labels, model.B, strict=True) if np.any(row != 0.0)}
 
 
 def _pick(plant: control.StateSpace, states: Sequence[str], inputs: Sequence[str], outputs: Sequence[str]) -> tuple[Matrix, ...]:

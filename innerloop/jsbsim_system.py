@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from aircraft.spec import AircraftSpec
-from aircraft.units import KG_PER_SLUG, METRES_PER_FOOT, NEWTONS_PER_POUND
-from innerloop.controller import CONTROLS, bank_slope
+from aircraft.units import METRES_PER_FOOT
+from innerloop.controller import bank_slope
 from innerloop.gains import LATERAL, LONGITUDINAL
 from innerloop.jsbsim_xml import (
     clipped,
@@ -34,6 +34,8 @@ ALTITUDE_COMMAND = "autopilot/altitude-command-m"
 HEADING_RATE_COMMAND = "autopilot/heading-rate-command-rad_sec"
 HEADING_RATE = "autopilot/heading-rate-rad_sec"
 BANK_COMMAND = "autopilot/bank-command-rad"
+RESET = "autopilot/reset"
+"""Negative to hold every integrator at 0, otherwise 0."""
 
 _AIRSPEED = "autopilot/airspeed-mps"
 _CLIMB_RATE = "autopilot/climb-rate-mps"
@@ -63,6 +65,7 @@ def system_xml(schedule: Schedule) -> str:
             (AIRSPEED_COMMAND, schedule.airspeeds[len(schedule.airspeeds) // 2]),
             (ALTITUDE_COMMAND, schedule.altitude),
             (HEADING_RATE_COMMAND, 0.0),
+            (RESET, 0.0),
         )
     )
     body = "\n".join(f'<channel name="{name}">\n' + "\n".join(components) + "\n</channel>" for name, components in channels.items())
@@ -199,7 +202,7 @@ def _longitudinal(schedule: Schedule) -> list[str]:
                     times(number(weights.anti_windup_rate), minus(read(f"autopilot/{name}-command"), read(unlimited))),
                 ),
             ),
-            integrator(integral, growth),
+            integrator(integral, growth, RESET),
         ]
     return parts
 
@@ -247,8 +250,8 @@ def _lateral(schedule: Schedule) -> list[str]:
                 times(number(2.0 * damping * frequency), read(_MODEL_ACCELERATION)),
             ),
         ),
-        integrator(_MODEL_ACCELERATION, _MODEL_JERK),
-        integrator(_MODEL_RATE, _MODEL_ACCELERATION),
+        integrator(_MODEL_ACCELERATION, _MODEL_JERK, RESET),
+        integrator(_MODEL_RATE, _MODEL_ACCELERATION, RESET),
         function("autopilot/model-turn", times(read(_MODEL_RATE), read(_AIRSPEED), number(1.0 / STANDARD_GRAVITY))),
         function(
             "autopilot/model-bank-rad",
@@ -265,7 +268,7 @@ def _lateral(schedule: Schedule) -> list[str]:
                 times(number(weights.anti_windup_rate), minus(read(BANK_COMMAND), read("autopilot/bank-unlimited-rad"))),
             ),
         ),
-        integrator("autopilot/bank-integral", "autopilot/bank-integral-rate"),
+        integrator("autopilot/bank-integral", "autopilot/bank-integral-rate", RESET),
         function(
             "autopilot/aileron-command",
             clipped(
@@ -294,18 +297,3 @@ def _lateral(schedule: Schedule) -> list[str]:
             output=aileron.command,
         ),
     ]
-
-
-__all__ = [
-    "AIRSPEED_COMMAND",
-    "ALTITUDE_COMMAND",
-    "BANK_COMMAND",
-    "CONTROLS",
-    "HEADING_RATE",
-    "HEADING_RATE_COMMAND",
-    "KG_PER_SLUG",
-    "NEWTONS_PER_POUND",
-    "system_name",
-    "system_xml",
-    "write_root",
-]

@@ -65,6 +65,10 @@ def function(name: str, expression: str, output: str | None = None) -> str:
     return f'<fcs_function name="{name}"><function>{expression}</function>{extra}</fcs_function>'
 
 
-def integrator(name: str, source: str) -> str:
-    """Return a component that integrates property ``source`` over time by the trapezoidal rule."""
-    return f'<integrator name="{name}"><input>{source}</input><c1>1</c1></integrator>'
+def integrator(name: str, source: str, reset: str) -> str:
+    """Return a component that integrates property ``source`` by the trapezoidal rule, held at 0 while ``reset`` is negative.
+
+    JSBSim's own ``<integrator>`` can be held but not reset, so this is a ``<pid>`` with nothing but its integral.
+    """
+    gains = '<kp>0</kp><ki type="trap">1</ki><kd>0</kd>'
+    return f'<pid name="{name}"><input>{source}</input>{gains}<trigger>{reset}</trigger></pid>'

@@ -21,10 +21,10 @@ class DesignWeights:
     anti_windup_rate : how fast an integrator follows its saturated command [1/s]
     """
 
-    airspeed: float = 0.5
+    airspeed: float = 1.0
     pitch: float = 0.3
     altitude: float = 0.5
-    airspeed_integral: float = 0.5
+    airspeed_integral: float = 1.5
     altitude_integral: float = 1.0
     elevator: float = 0.15
     throttle: float = 0.15

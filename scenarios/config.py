@@ -12,7 +12,7 @@ def _check_divides(name: str, rate: float, whole: float) -> None:
 
 
 class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
 
 
 Positive = Annotated[float, Field(gt=0.0)]
@@ -139,10 +139,13 @@ class Criteria(_Section):
     """What a flight must show to count as met."""
 
     tracking_error_rms_m: Positive = 1.5
+    """Largest rms distance to the reference after settling [m]."""
     airspeed_error_rms_mps: Positive = 0.3
+    """Largest rms difference of airspeed from its command [m/s]."""
     altitude_error_max_m: Positive = 1.5
+    """Largest difference of altitude from that of the CO [m]."""
     crossing_interval_error: Positive = 0.01
-    """Relative difference of the mean crossing interval from pi/omega_0 [-]."""
+    """Largest relative difference of the mean crossing interval from pi/omega_0 [-]."""
 
 
 class Variant(_Section):

@@ -4,10 +4,13 @@ import hashlib
 import importlib.metadata
 import json
 import platform
+import re
 import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
+
+from pydantic import BaseModel
 
 from scenarios.config import Scenario
 
@@ -18,6 +21,29 @@ def config_hash(scenario: Scenario) -> str:
     """Return a hash of everything in the scenario that the result depends on."""
     text = json.dumps(scenario.model_dump(mode="json"), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def parameters(scenario: Scenario) -> list[dict[str, Any]]:
+    """Return every key of the scenario that has a number, a word or a switch, with its value, meaning and unit."""
+    listed = []
+    for section_name in type(scenario).model_fields:
+        section = getattr(scenario, section_name)
+        if not isinstance(section, BaseModel) or section_name in ("comparison", "sweep"):
+            continue
+        for key, field in type(section).model_fields.items():
+            meaning, unit = _split_unit(field.description or "")
+            value = getattr(section, key)
+            listed.append({"key": f"{section_name}.{key}", "value": value, "unit": unit, "meaning": meaning})
+    return listed
+
+
+def _split_unit(description: str) -> tuple[str, str]:
+    """Split "Meaning [unit]; more." into the meaning and the unit."""
+    found = re.search(r"\s*\[([^\]]+)\]", description)
+    if found is None:
+        return description, ""
+    meaning = description[: found.start()] + description[found.end() :]
+    return meaning, "" if found[1] == "-" else found[1]
 
 
 def provenance() -> dict[str, Any]:

@@ -151,9 +151,9 @@ def unmet_criteria(row: Row, criteria: Criteria) -> list[str]:
             row.get("crossing_distance_min_m", -math.inf) >= row["keepout_radius_m"],
             f"crossed at {row.get('crossing_distance_min_m', math.nan):.2f} m, inside {row['keepout_radius_m']:g} m",
         ),
-        _at_most(row, "tracking_error_rms_m", criteria.tracking_error_rms_m, "m"),
-        _at_most(row, "airspeed_error_rms_mps", criteria.airspeed_error_rms_mps, "m/s"),
-        _at_most(row, "altitude_error_max_m", criteria.altitude_error_max_m, "m"),
+        _at_most("rms tracking error", row.get("tracking_error_rms_m"), criteria.tracking_error_rms_m, "m"),
+        _at_most("rms airspeed error", row.get("airspeed_error_rms_mps"), criteria.airspeed_error_rms_mps, "m/s"),
+        _at_most("largest altitude error", row.get("altitude_error_max_m"), criteria.altitude_error_max_m, "m"),
         (
             abs(interval / predicted - 1.0) <= criteria.crossing_interval_error,
             f"mean crossing interval {interval:.3f} s against {predicted:.3f} s",
@@ -166,9 +166,10 @@ def unmet_criteria(row: Row, criteria: Criteria) -> list[str]:
     return [message for met, message in checks if not met]
 
 
-def _at_most(row: Row, name: str, limit: float, unit: str) -> tuple[bool, str]:
-    value = row.get(name, math.nan)
-    return value <= limit, f"{name} is {value:.3f} {unit} against {limit:g}"
+def _at_most(name: str, value: float | None, limit: float, unit: str) -> tuple[bool, str]:
+    if value is None:
+        return False, f"{name} is unknown"
+    return value <= limit, f"{name} {value:.2f} {unit} above {limit:g} {unit}"
 
 
 def _rms(values: Array) -> float:

@@ -19,7 +19,7 @@ from scenarios.closed_loop import Outcome
 from scenarios.config import Scenario
 from scenarios.errors import InputError
 from scenarios.flights import FlightRequest, FlightResult, flight_requests, fly_request, ignore_interrupt
-from scenarios.manifest import config_hash, provenance
+from scenarios.manifest import config_hash, parameters, provenance
 from scenarios.metrics import SUMMARY_COLUMNS, Row
 from scenarios.run_directory import RunDirectory
 
@@ -91,6 +91,7 @@ def run_scenario(scenario: Scenario, name: str, directory: Path, *, jobs: int, r
         "state": "running",
         "config": scenario.model_dump(mode="json"),
         "config_hash": digest,
+        "parameters": parameters(scenario),
         "seeds": {request.flight_id: request.seed for request in requests},
         "variants": {request.flight_id: request.variant for request in requests},
         **provenance(),

@@ -1,0 +1,88 @@
+"""``make bench``: what the autopilot and the guidance cost on top of JSBSim.
+
+Three loops over the same simulated time, in one process, in turn, again and again: JSBSim with the bare aircraft, JSBSim with the autopilot,
+and the full closed loop with guidance and record. The figures are medians over the rounds; ratios are taken within a round, where the
+machine's speed is the same.
+"""
+
+import statistics
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from aircraft.fdm import TIME_STEP, Fdm
+from aircraft.spec import X8
+from innerloop.flight import AutopilotedAircraft
+from innerloop.jsbsim_system import write_root
+from innerloop.responses import level_trim, measure_lag
+from innerloop.schedule import design_schedule
+from scenarios.closed_loop import fly
+from scenarios.load import load_scenario, with_values
+from scenarios.plan import plan_flight
+
+ROUNDS = 15
+FLOWN = 200.0
+"""Simulated time of each run [s]."""
+
+
+def main() -> None:
+    """Print the benchmark."""
+    with tempfile.TemporaryDirectory() as folder:
+        runs = _loops(Path(folder))
+        for run in runs.values():
+            run()
+        times: dict[str, list[float]] = {name: [] for name in runs}
+        for _ in range(ROUNDS):
+            for name, run in runs.items():
+                times[name].append(run())
+    _report(times)
+
+
+def _loops(folder: Path) -> dict[str, Callable[[], float]]:
+    scenario = load_scenario("sweep_nu", ["start.course_deg=0.0"])
+    airspeed, altitude = scenario.guidance.airspeed_mps, scenario.plume.source_height_m
+    root = write_root(design_schedule(X8, altitude=altitude), folder)
+    level = level_trim(X8, airspeed, altitude)
+    bare, autopiloted, guided = Fdm(X8), AutopilotedAircraft(X8, root), AutopilotedAircraft(X8, root)
+    lag = measure_lag(autopiloted, level)
+    # No flight ends before its time: no number of crossings is enough.
+    endless = with_values(scenario, {"flight.duration_max_s": FLOWN, "flight.crossings": 10_000})
+    plan = plan_flight(endless, flight_id="bench", nu=0.5, seed=1, lag=lag)
+    steps = round(FLOWN / TIME_STEP)
+
+    def fly_bare() -> float:
+        bare.command(dict(level.inputs))
+        bare.hold(level.state(), 240)
+        return _timed(lambda: bare.step(steps))
+
+    def fly_autopiloted() -> float:
+        autopiloted.release(level.state(), airspeed=airspeed, altitude=altitude)
+        return _timed(lambda: autopiloted.fdm.step(steps))
+
+    def fly_guided() -> float:
+        return _timed(lambda: fly(plan, guided, level))
+
+    return {"JSBSim": fly_bare, "JSBSim with autopilot": fly_autopiloted, "full closed loop": fly_guided}
+
+
+def _timed(run: Callable[[], object]) -> float:
+    began = time.perf_counter()
+    run()
+    return time.perf_counter() - began
+
+
+def _report(times: dict[str, list[float]]) -> None:
+    raw, autopiloted = times["JSBSim"], times["JSBSim with autopilot"]
+    print(f"{FLOWN:g} s of flight, {ROUNDS} interleaved rounds, medians")
+    print(f"{'':24}{'us/step':>9}{'s flown/s':>11}{'x JSBSim':>10}{'x autopilot':>13}")
+    for name, values in times.items():
+        median = statistics.median(values)
+        over_raw = statistics.median(a / b for a, b in zip(values, raw, strict=True))
+        over_autopilot = statistics.median(a / b for a, b in zip(values, autopiloted, strict=True))
+        step = 1e6 * median * TIME_STEP / FLOWN
+        print(f"{name:24}{step:9.2f}{FLOWN / median:11.0f}{over_raw:10.2f}{over_autopilot:13.2f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,62 @@
+"""Command line: ``python -m reports.build RUN_DIR`` rebuilds a run's reports from what is on disk."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+BAD_INPUT = 2
+
+
+def build_reports(directory: Path) -> list[Path]:
+    """Write ``report.html`` and ``report.pdf`` into a run directory and return their paths.
+
+    Raises
+    ------
+    ReportError : the directory holds no run that can be reported on, or cannot be written
+    """
+    from reports.content import content
+    from reports.errors import ReportError
+    from reports.html import write_html
+    from reports.pdf import write_pdf
+    from reports.run_data import read_run
+
+    report = content(read_run(directory))
+    paths = []
+    for name, write in (("report.html", write_html), ("report.pdf", write_pdf)):
+        part = directory / f".{name}.part"
+        try:
+            write(report, part)
+            part.replace(directory / name)
+        except OSError as error:
+            raise ReportError(f"'{directory / name}' cannot be written: {error.strerror}; check permissions and space") from None
+        finally:
+            part.unlink(missing_ok=True)
+        paths.append(directory / name)
+    return paths
+
+
+def command(
+    directory: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="A directory that scenarios.run wrote.")],
+) -> None:
+    """Rebuild report.html and report.pdf of a run, without flying anything."""
+    from reports.errors import ReportError
+
+    try:
+        for path in build_reports(directory):
+            print(f"report: {path}")
+    except ReportError as error:
+        print(f"error: {error}", file=sys.stderr)
+        raise typer.Exit(BAD_INPUT) from None
+
+
+def main() -> None:
+    """Entry point."""
+    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    app.command()(command)
+    app(prog_name="python -m reports.build")
+
+
+if __name__ == "__main__":
+    main()

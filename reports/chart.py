@@ -1,0 +1,107 @@
+"""What a figure shows, said once; ``matplotlib_charts`` and ``plotly_charts`` draw it the same."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+Style = Literal["solid", "dash", "dot", "points", "diamonds"]
+
+COLOURS = {
+    "blue": "#0072B2",
+    "vermillion": "#D55E00",
+    "green": "#009E73",
+    "orange": "#E69F00",
+    "sky": "#56B4E9",
+    "purple": "#CC79A7",
+    "black": "#222222",
+    "grey": "#8a8a8a",
+}
+"""Okabe and Ito's palette, which colour-blind readers can tell apart."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Line:
+    """One curve or set of points.
+
+    Attributes
+    ----------
+    x, y : shape (n,) each, in the units of the panel's axes
+    label : for the legend; the same label in several panels is one entry
+    colour : a key of ``COLOURS``
+    style : how it is drawn
+    error : half-height of error bars, shape (n,), or none
+    """
+
+    x: Array
+    y: Array
+    label: str
+    colour: str
+    style: Style = "solid"
+    error: Array | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Panel:
+    """One pair of axes.
+
+    Attributes
+    ----------
+    x_label, y_label : "Quantity [unit]"
+    lines : what is drawn, from back to front
+    title : above the panel
+    equal : one metre is as long both ways
+    log_x : logarithmic abscissa
+    x_range, y_range : limits, or by the data
+    """
+
+    x_label: str
+    y_label: str
+    lines: Sequence[Line]
+    title: str = ""
+    equal: bool = False
+    log_x: bool = False
+    x_range: tuple[float, float] | None = None
+    y_range: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chart:
+    """A figure of one or more panels.
+
+    Attributes
+    ----------
+    name : for file names and anchors
+    caption : what to see in it, in a sentence or two
+    panels : in reading order
+    columns : panels side by side
+    panel_height : of each row, relative to a full text width of 1
+    share_x : panels of a column share their abscissa
+    """
+
+    name: str
+    caption: str
+    panels: Sequence[Panel]
+    columns: int = 1
+    panel_height: float = 0.36
+    share_x: bool = False
+    row_heights: Sequence[float] = field(default_factory=tuple)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of panels."""
+        return -(-len(self.panels) // self.columns)
+
+
+def circle(radius: float, points: int = 181) -> tuple[Array, Array]:
+    """Return the outline of a circle about the origin."""
+    angle = np.linspace(0.0, 2.0 * np.pi, points)
+    return radius * np.cos(angle), radius * np.sin(angle)
+
+
+def constant(x: Array, value: float) -> Array:
+    """Return ``value`` at every x."""
+    return np.full(len(x), value)

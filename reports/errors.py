@@ -1,0 +1,5 @@
+"""Bad input to a report."""
+
+
+class ReportError(ValueError):
+    """A run directory cannot be reported on. The message is one line."""

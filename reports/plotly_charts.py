@@ -1,0 +1,84 @@
+"""Draw charts with Plotly, for the screen."""
+
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from reports.chart import COLOURS, Chart, Line, Panel
+
+WIDTH_PIXELS = 980
+"""Width that heights are made for; figures shrink with the window."""
+
+_TOP, _BOTTOM = 95, 55
+"""Room above the panels for mode bar, legend and titles, and below them for labels [px]."""
+
+_MODES: dict[str, dict[str, Any]] = {
+    "solid": {"mode": "lines", "line": {"dash": "solid", "width": 1.6}},
+    "dash": {"mode": "lines", "line": {"dash": "dash", "width": 1.6}},
+    "dot": {"mode": "lines", "line": {"dash": "dot", "width": 1.8}},
+    "points": {"mode": "markers", "marker": {"size": 7}},
+    "diamonds": {"mode": "markers", "marker": {"size": 7, "symbol": "diamond"}},
+}
+
+
+def draw(chart: Chart) -> go.Figure:
+    """Return the chart as a Plotly figure."""
+    height = round(WIDTH_PIXELS * chart.panel_height * chart.rows) + _TOP + _BOTTOM
+    inner = height - _TOP - _BOTTOM
+    titled = any(panel.title for panel in chart.panels)
+    gap = 14 if chart.share_x else 58 + 24 * titled
+    figure = make_subplots(
+        rows=chart.rows,
+        cols=chart.columns,
+        shared_xaxes=chart.share_x,
+        subplot_titles=[panel.title for panel in chart.panels] if titled else None,
+        row_heights=list(chart.row_heights) or None,
+        horizontal_spacing=0.09,
+        vertical_spacing=gap / inner if chart.rows > 1 else 0.0,
+    )
+    seen: set[str] = set()
+    for i, panel in enumerate(chart.panels):
+        row, column = i // chart.columns + 1, i % chart.columns + 1
+        for line in panel.lines:
+            figure.add_trace(_trace(line, show=line.label not in seen), row=row, col=column)
+            seen.add(line.label)
+        _dress(figure, panel, row, column, show_x=not chart.share_x or row == chart.rows)
+    figure.update_layout(
+        height=height,
+        margin={"l": 70, "r": 20, "t": _TOP, "b": _BOTTOM},
+        template="plotly_white",
+        font={"size": 13},
+        legend={"orientation": "h", "yanchor": "bottom", "y": 1.0 + (28 if titled else 8) / inner, "x": 0.0},
+        showlegend=len(seen) > 1,
+        hovermode="closest",
+    )
+    return figure
+
+
+def _trace(line: Line, *, show: bool) -> go.Scatter:
+    style = {key: dict(value) if isinstance(value, dict) else value for key, value in _MODES[line.style].items()}
+    style["line" if "line" in style else "marker"]["color"] = COLOURS[line.colour]
+    if line.error is not None:
+        style["error_y"] = {"type": "data", "array": line.error.astype(np.float32), "thickness": 1}
+    return go.Scatter(
+        x=line.x.astype(np.float32), y=line.y.astype(np.float32), name=line.label, legendgroup=line.label, showlegend=show, **style
+    )
+
+
+def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bool) -> None:
+    x_options: dict[str, Any] = {"title": panel.x_label if show_x else None}
+    y_options: dict[str, Any] = {"title": panel.y_label}
+    if panel.log_x:
+        x_options["type"] = "log"
+    if panel.x_range:
+        low, high = panel.x_range
+        x_options["range"] = [np.log10(low), np.log10(high)] if panel.log_x else [low, high]
+    if panel.y_range:
+        y_options["range"] = list(panel.y_range)
+    figure.update_xaxes(**x_options, row=row, col=column)
+    figure.update_yaxes(**y_options, row=row, col=column)
+    if panel.equal:
+        axis = next(figure.select_xaxes(row=row, col=column)).plotly_name.replace("axis", "")
+        figure.update_yaxes(scaleanchor=axis, scaleratio=1, row=row, col=column)

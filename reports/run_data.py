@@ -1,0 +1,80 @@
+"""A run directory as read from disk."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from reports.errors import ReportError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunData:
+    """What a run left behind.
+
+    Attributes
+    ----------
+    path : the run directory
+    manifest : its configuration and provenance
+    summary : a row per flight of the study
+    comparison : a row per flight of the comparisons, possibly none
+    crossings : a row per crossing
+    innerloop : the autopilot's design record, or none if the run ended before
+    """
+
+    path: Path
+    manifest: dict[str, Any]
+    summary: pd.DataFrame
+    comparison: pd.DataFrame
+    crossings: pd.DataFrame
+    innerloop: dict[str, Any] | None
+
+    def history(self, flight_id: str) -> pd.DataFrame | None:
+        """Return a flight's time history, or None if it has none."""
+        path = self.path / "flights" / f"{flight_id}.parquet"
+        return pd.read_parquet(path) if path.is_file() else None
+
+    def crossings_of(self, flight_id: str) -> pd.DataFrame:
+        """Return the crossings of a flight."""
+        return self.crossings[self.crossings["flight_id"] == flight_id]
+
+
+def read_run(path: Path) -> RunData:
+    """Read a run directory.
+
+    Raises
+    ------
+    ReportError : it is not one, is damaged, or holds no flight
+    """
+    try:
+        manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ReportError(f"'{path}' holds no run (no manifest.json); give the directory that scenarios.run named") from None
+    except (json.JSONDecodeError, UnicodeDecodeError, OSError) as error:
+        raise ReportError(f"'{path}': manifest.json cannot be read: {error}; run the scenario again") from None
+    if not (path / "summary.csv").is_file():
+        raise ReportError(f"'{path}' holds no finished flight (no summary.csv); continue the run with --resume")
+    innerloop = path / "innerloop.json"
+    try:
+        return RunData(
+            path=path,
+            manifest=manifest,
+            summary=_table(path / "summary.csv"),
+            comparison=_table(path / "comparison.csv"),
+            crossings=_table(path / "crossings.csv", columns=["flight_id", "time_s", "distance_m"]),
+            innerloop=json.loads(innerloop.read_text(encoding="utf-8")) if innerloop.is_file() else None,
+        )
+    except (ValueError, OSError) as error:
+        raise ReportError(f"'{path}': a table cannot be read: {error}; run the scenario again") from None
+
+
+def _table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
+    if not path.is_file():
+        return pd.DataFrame(columns=columns or ["flight_id"])
+    frame = pd.read_csv(path, keep_default_na=False, na_values=[""])
+    for name in ("message", "outcome"):
+        if name in frame:
+            frame[name] = frame[name].fillna("").astype(str)
+    return frame

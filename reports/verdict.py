@@ -1,0 +1,83 @@
+"""What a run shows, at a glance."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from reports.run_data import RunData
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """The answer, and the figures it rests on.
+
+    Attributes
+    ----------
+    safe : no flight entered the keep-out area and every crossing lay outside it
+    complete : every planned flight completed and met its criteria
+    headline, detail : in words
+    figures : name, value and limit of what was asked for
+    """
+
+    safe: bool
+    complete: bool
+    headline: str
+    detail: str
+    figures: list[tuple[str, str, str]]
+
+
+def verdict(run: RunData) -> Verdict:
+    """Judge a run by its summary."""
+    summary, manifest = run.summary, run.manifest
+    planned = int(manifest.get("flights_planned", len(summary)))
+    flown = summary[summary["min_distance_m"].notna()]
+    entries = int(flown["keepout_violations"].sum())
+    inside = int((flown["crossing_distance_min_m"] < flown["keepout_radius_m"]).sum())
+    met = int((summary["criteria_met"].astype(str) == "True").sum())
+    safe = entries == 0 and inside == 0 and len(flown) > 0
+    complete = met == planned
+    closest = float(flown["min_distance_m"].min()) if len(flown) else float("nan")
+    radius = float(manifest["config"]["keepout"]["radius_m"])
+    if not len(flown):
+        headline = "Nothing was flown"
+    elif safe:
+        headline = f"Safe: no flight entered the keep-out area of {radius:g} m"
+    else:
+        headline = f"Not safe: {entries} entries into the keep-out area of {radius:g} m"
+    detail = (
+        f"{len(summary)} of {planned} flights are in this report; {met} completed and met every criterion."
+        f" Closest approach of any flight, from its first second: {closest:.1f} m."
+    )
+    if manifest.get("state") != "complete":
+        detail += f" The run is {manifest.get('state', 'unfinished')}; continue it with --resume."
+    return Verdict(safe=safe, complete=complete, headline=headline, detail=detail, figures=_figures(run, flown))
+
+
+def _figures(run: RunData, flown: pd.DataFrame) -> list[tuple[str, str, str]]:
+    criteria = run.manifest["config"]["criteria"]
+    radius = float(run.manifest["config"]["keepout"]["radius_m"])
+    interval = flown["crossing_interval_mean_s"] / flown["crossing_interval_predicted_s"] - 1.0
+
+    def worst(values: "pd.Series[float]", pattern: str) -> str:
+        known = values.dropna()
+        return pattern.format(float(known.max())) if len(known) else "none"
+
+    crossings = int(flown["crossing_count"].sum()) if len(flown) else 0
+    minimum = flown["crossing_distance_min_m"].dropna()
+    command = flown["heading_rate_command_max_rad_s"] / flown["heading_rate_max_rad_s"]
+    closest = f"{float(minimum.min()):.1f} m" if len(minimum) else "none"
+    interval_limit = f"≤ {100 * criteria['crossing_interval_error']:g} %"
+    tracking_limit = f"≤ {criteria['tracking_error_rms_m']:g} m"
+    airspeed_limit = f"≤ {criteria['airspeed_error_rms_mps']:g} m/s"
+    altitude_limit = f"≤ {criteria['altitude_error_max_m']:g} m"
+    return [
+        ("Entries into the keep-out area", f"{int(flown['keepout_violations'].sum())}", "0"),
+        ("Plume crossings after settling", f"{crossings}", ""),
+        ("Closest crossing", closest, f"≥ {radius:g} m"),
+        ("Mean interval against π/ω₀, worst", worst(np.abs(interval) * 100.0, "{:.2f} %"), interval_limit),
+        ("Tracking error rms, worst", worst(flown["tracking_error_rms_m"], "{:.2f} m"), tracking_limit),
+        ("Airspeed error rms, worst", worst(flown["airspeed_error_rms_mps"], "{:.3f} m/s"), airspeed_limit),
+        ("Altitude error, worst", worst(flown["altitude_error_max_m"], "{:.2f} m"), altitude_limit),
+        ("Heading-rate command over ω_max, worst", worst(command, "{:.3f}"), "≤ 1"),
+    ]
