@@ -26,6 +26,7 @@ from innerloop.jsbsim_xml import (
     table_2d,
     times,
     total,
+    within,
 )
 from innerloop.schedule import BANKS_DEG, STANDARD_GRAVITY, Schedule
 
@@ -148,19 +149,10 @@ def _measurements(schedule: Schedule) -> list[str]:
 def _longitudinal(schedule: Schedule) -> list[str]:
     weights = schedule.weights
     airspeed_error, altitude_error = "autopilot/airspeed-error-mps", "autopilot/altitude-error-m"
+    altitude = times(read("position/h-sl-ft"), number(METRES_PER_FOOT))
     parts = [
-        function(
-            airspeed_error,
-            clipped(minus(read(_SCHEDULE), read(_AIRSPEED)), -weights.airspeed_error_max, weights.airspeed_error_max),
-        ),
-        function(
-            altitude_error,
-            clipped(
-                minus(read(ALTITUDE_COMMAND), times(read("position/h-sl-ft"), number(METRES_PER_FOOT))),
-                -weights.altitude_error_max,
-                weights.altitude_error_max,
-            ),
-        ),
+        *_limited_error(airspeed_error, minus(read(_SCHEDULE), read(_AIRSPEED)), weights.airspeed_error_max),
+        *_limited_error(altitude_error, minus(read(ALTITUDE_COMMAND), altitude), weights.altitude_error_max),
         function("autopilot/pitch-error-rad", minus(_by_bank(schedule, "pitch"), read("attitude/theta-rad"))),
         function("autopilot/pitch-rate-error", minus(_by_bank(schedule, "q"), read("velocities/q-rad_sec"))),
     ]
@@ -193,11 +185,11 @@ def _longitudinal(schedule: Schedule) -> list[str]:
                 total(
                     times(
                         _by_airspeed(schedule, [float(g.longitudinal_integral[row, 0]) for g in schedule.gains]),
-                        read(airspeed_error),
+                        read(f"{airspeed_error}-integrated"),
                     ),
                     times(
                         _by_airspeed(schedule, [float(g.longitudinal_integral[row, 1]) for g in schedule.gains]),
-                        read(altitude_error),
+                        read(f"{altitude_error}-integrated"),
                     ),
                     times(number(weights.anti_windup_rate), minus(read(f"autopilot/{name}-command"), read(unlimited))),
                 ),
@@ -205,6 +197,18 @@ def _longitudinal(schedule: Schedule) -> list[str]:
             integrator(integral, growth, RESET),
         ]
     return parts
+
+
+def _limited_error(name: str, error: str, limit: float) -> list[str]:
+    """Return components for an error kept within ``limit``, and for the error that is integrated: none beyond the limit.
+
+    A larger error asks for a steady climb or acceleration; integrated on the way there, it would overshoot by as much again.
+    """
+    return [
+        function(f"{name}-whole", error),
+        function(name, clipped(read(f"{name}-whole"), -limit, limit)),
+        function(f"{name}-integrated", times(read(f"{name}-whole"), within(read(f"{name}-whole"), limit))),
+    ]
 
 
 def _lateral(schedule: Schedule) -> list[str]:

@@ -43,6 +43,11 @@ def clipped(value: str, low: float, high: float) -> str:
     return operation("min", operation("max", value, number(low)), number(high))
 
 
+def within(value: str, limit: float) -> str:
+    """Return 1 while ``value`` lies within plus and minus ``limit``, otherwise 0."""
+    return operation("le", operation("abs", value), number(limit))
+
+
 def table_1d(at: str, rows: Sequence[float], values: Sequence[float]) -> str:
     """Return linear interpolation of ``values`` over property ``at``, constant past the ends."""
     data = "\n".join(f"{row:.9g} {value:.9g}" for row, value in zip(rows, values, strict=True))

@@ -16,7 +16,7 @@ class DesignWeights:
     heading_integral : of the time integral of the heading-rate error [rad]
     aileron : of the command [-]
     model_frequency, model_damping : the second-order response to a heading-rate command that the lateral loop follows [rad/s, -]
-    altitude_error_max : altitude error that still makes the elevator work harder [m]
+    altitude_error_max : altitude error that still makes the elevator work harder: a larger one is a steady climb, near 2 m/s for 1 m [m]
     airspeed_error_max : airspeed error that still makes the throttle work harder [m/s]
     anti_windup_rate : how fast an integrator follows its saturated command [1/s]
     """
@@ -34,6 +34,6 @@ class DesignWeights:
     aileron: float = 0.2
     model_frequency: float = 6.0
     model_damping: float = 0.9
-    altitude_error_max: float = 5.0
+    altitude_error_max: float = 1.0
     airspeed_error_max: float = 2.0
     anti_windup_rate: float = 2.0

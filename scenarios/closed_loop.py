@@ -1,7 +1,7 @@
 """The closed loop: JSBSim with its autopilot at 120 Hz, guidance at its own rate, and the record. It is closed here only."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -119,6 +119,7 @@ def fly(plan: FlightPlan, aircraft: AutopilotedAircraft, start: Trim) -> FlightR
 def _release(plan: FlightPlan, aircraft: AutopilotedAircraft, start: Trim, frame: LocalFrame) -> None:
     latitude, longitude = frame.to_geodetic(plan.start_north, plan.start_east)
     state = start.state(latitude, longitude, plan.start_course - start.course_offset())
+    state = replace(state, altitude=plan.altitude)
     aircraft.release(state, airspeed=start.airspeed, altitude=plan.altitude)
 
 

@@ -11,7 +11,10 @@ from scenarios.runner import Progress as Report
 
 @contextlib.contextmanager
 def progress_bar() -> Iterator[Report]:
-    """Yield a function to call with what is being done, the number of flights done, and their total."""
+    """Yield a function to call with what is being done, the number of flights done, and their total.
+
+    The bar appears at the first call: input that is refused before then leaves nothing but its message.
+    """
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -20,10 +23,14 @@ def progress_bar() -> Iterator[Report]:
         console=Console(stderr=True),
         auto_refresh=False,
     )
-    task = bar.add_task("starting", total=None)
-    with bar:
+    task = bar.add_task("")
 
-        def report(doing: str, done: int, total: int) -> None:
-            bar.update(task, description=doing, completed=done, total=total, refresh=True)
+    def report(doing: str, done: int, total: int) -> None:
+        bar.start()
+        bar.update(task, description=doing, completed=done, total=total, refresh=True)
 
+    try:
         yield report
+    finally:
+        if bar.live.is_started:
+            bar.stop()

@@ -92,8 +92,12 @@ def _run(
     if not no_report:
         from reports.build import build_reports
 
-        for path in build_reports(directory):
-            print(f"report: {path}")
+        try:
+            for path in build_reports(directory):
+                print(f"report: {path}")
+        except KeyboardInterrupt:
+            print(f"report interrupted; build it with: python -m reports.build {directory}", file=sys.stderr)
+            return INTERRUPTED
     return MET if result.met == result.planned else NOT_MET
 
 
