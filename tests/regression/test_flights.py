@@ -1,0 +1,144 @@
+"""Whole flights of the X8 in JSBSim: the numbers that the study stands on."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from aircraft.spec import X8
+from innerloop.jsbsim_system import write_root
+from innerloop.responses import level_trim, measure_lag
+from scenarios.flights import flight_requests, fly_request
+from scenarios.load import load_scenario
+
+SPEED = 19.42
+
+
+@pytest.fixture(scope="module")
+def run_directory(x8_schedule, tmp_path_factory):
+    directory = tmp_path_factory.mktemp("run")
+    (directory / "flights").mkdir()
+    write_root(x8_schedule, directory / "model")
+    return directory
+
+
+@pytest.fixture(scope="module")
+def start():
+    return level_trim(X8, SPEED, 60.0)
+
+
+@pytest.fixture
+def fly(run_directory, start, x8_aircraft):
+    lag = measure_lag(x8_aircraft, start) + 0.5 / 20.0
+
+    def run(*overrides, nu=0.5, scenario="sweep_nu"):
+        settings = load_scenario(scenario, [f"sweep.nu=[{nu}]", "comparison.variants=[]", *overrides])
+        result = fly_request(flight_requests(settings)[0], run_directory, start, lag)
+        history = run_directory / "flights" / f"{result.row['flight_id']}.parquet"
+        return result.row, pd.read_parquet(history) if history.is_file() else None
+
+    return run
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 0.85, 0.95])
+def test_crossings_stay_outside_r_min_and_nothing_ever_enters_it(fly, nu):
+    row, _ = fly(nu=nu)
+    assert row["outcome"] == "completed"
+    assert row["crossing_count"] >= 30
+    # Issue: crossing distance >= r_min at every crossing, no keep-out violation over the whole flight.
+    assert row["crossing_distance_min_m"] >= 200.0
+    assert row["keepout_violations"] == 0
+    assert row["min_distance_m"] >= 200.0
+    # Issue: interval within 1 % of pi/omega_0, tracking rms <= 1.5 m, airspeed rms <= 0.3 m/s, altitude <= 1.5 m, and no command
+    # above omega_max.
+    assert row["crossing_interval_mean_s"] == pytest.approx(row["crossing_interval_predicted_s"], rel=0.01)
+    assert row["tracking_error_rms_m"] <= 1.5
+    assert row["airspeed_error_rms_mps"] <= 0.3
+    assert row["altitude_error_max_m"] <= 1.5
+    assert row["heading_rate_command_max_rad_s"] <= 9.80665 / SPEED
+    assert row["criteria_met"]
+
+
+def test_the_papers_own_parameters_give_its_two_numbers(fly):
+    # Paper, Simulation 3: a crossing every 9.5 s at 214 m, r_min = 200 m. Issue: each within 2 %.
+    row, _ = fly(scenario="sim3")
+    assert row["crossing_interval_mean_s"] == pytest.approx(9.5, rel=0.02)
+    assert row["crossing_distance_mean_m"] == pytest.approx(214.0, rel=0.02)
+    assert row["keepout_violations"] == 0
+
+
+def test_the_sweeps_flight_at_half_speed_has_them_too(fly):
+    row, _ = fly(nu=0.5)
+    assert row["crossing_interval_mean_s"] == pytest.approx(9.5, rel=0.02)
+    assert row["crossing_distance_mean_m"] == pytest.approx(214.0, rel=0.02)
+
+
+def test_the_law_alone_flies_into_the_keep_out_area_where_the_guard_does_not(fly):
+    # The sweep's own start at nu = 0.15: 10 m inside without the guard.
+    without, _ = fly("guidance.keepout_guard=false", nu=0.15)
+    assert without["keepout_violations"] > 0
+    assert fly(nu=0.15)[0]["keepout_violations"] == 0
+
+
+@pytest.mark.parametrize("course", [-150, -60, 30, 120])
+def test_starting_ahead_of_the_vessel_the_guard_finds_a_way_round(fly, course):
+    row, _ = fly(f"start.course_deg={course}", "start.spread_deg=180", "start.distance_m=[300, 500]", "seed=4", nu=0.3)
+    assert row["outcome"] == "completed"
+    assert row["keepout_violations"] == 0
+
+
+def test_preview_and_airspeed_trim_each_take_away_error(fly):
+    def steady_error(*overrides):
+        _, history = fly(*overrides)
+        late = history[history["time_s"] > history["time_s"].iloc[-1] - 100.0]
+        off = np.hypot(late["reference_north_m"] - late["north_m"], late["reference_east_m"] - late["east_m"])
+        return math.sqrt(float(np.mean(off**2)))
+
+    both = steady_error()
+    no_trim = steady_error("guidance.airspeed_trim=false")
+    no_preview = steady_error("guidance.preview=false")
+    neither = steady_error("guidance.preview=false", "guidance.airspeed_trim=false")
+    # Measured 0.27, 0.35, 1.5 and 1.9 m; asserted is the order with room for another machine's rounding.
+    assert both < no_trim < no_preview < neither
+    assert both < 0.5
+
+
+def test_a_plume_that_rises_is_crossed_at_its_own_height(fly):
+    row, history = fly("plume.elevation_deg=10")
+    assert row["keepout_violations"] == 0
+    assert row["crossing_distance_min_m"] >= 200.0
+    # Equation (9): z_CO = r_CO sin(alpha_P) above the funnel at 60 m; altitude within the issue's 1.5 m.
+    assert history["altitude_m"].iloc[-1] == pytest.approx(60.0 + row["r_co_m"] * math.sin(math.radians(10.0)), abs=1.5)
+
+
+def test_the_compass_does_not_matter(fly):
+    # The same flight on another course differs by the earth's rotation and shape only. Starts are drawn in the vessel's frame but
+    # for the course, which is given here relative to the vessel's.
+    north, _ = fly("vessel.course_deg=0", "start.course_deg=20")
+    east, _ = fly("vessel.course_deg=110", "start.course_deg=130")
+    # Measured: 0.002 s and 0.02 m apart.
+    assert east["crossing_interval_mean_s"] == pytest.approx(north["crossing_interval_mean_s"], abs=0.01)
+    assert east["crossing_distance_mean_m"] == pytest.approx(north["crossing_distance_mean_m"], abs=0.1)
+
+
+def test_the_same_seed_flies_the_same_flight_to_the_last_bit(fly):
+    first, history = fly("flight.crossings=3")
+    second, again = fly("flight.crossings=3")
+    pd.testing.assert_frame_equal(history, again, check_exact=True)
+    assert {k: v for k, v in first.items() if k != "wall_time_s"} == {k: v for k, v in second.items() if k != "wall_time_s"}
+
+
+@pytest.mark.parametrize(
+    ("overrides", "nu", "outcome", "words"),
+    [
+        ([], 1.0, "infeasible", "must be below 1"),
+        (["guidance.look_ahead_m=20"], 0.5, "infeasible", "must exceed 1/(4 epsilon)"),
+        (["flight.duration_max_s=20"], 0.5, "not_settled", "0 of 30 crossings"),
+    ],
+)
+def test_a_flight_that_fails_is_a_row_with_its_reason(fly, overrides, nu, outcome, words):
+    row, _ = fly(*overrides, nu=nu)
+    assert row["outcome"] == outcome
+    assert words in row["message"]
+    assert not row["criteria_met"]

@@ -1,0 +1,138 @@
+"""Reports of a small run, built once for this file."""
+
+import json
+import re
+import shutil
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+from reports import matplotlib_charts, plotly_charts
+from reports.build import build_reports
+from reports.content import content
+from reports.errors import ReportError
+from reports.run_data import read_run
+from reports.verdict import verdict
+from scenarios.load import load_scenario
+from scenarios.runner import run_scenario
+
+OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0.5]"]
+
+
+@pytest.fixture(scope="module")
+def run_path(tmp_path_factory):
+    path = tmp_path_factory.mktemp("reports") / "run"
+    scenario = load_scenario("sweep_nu", OVERRIDES)
+    run_scenario(scenario, "sweep_nu", path, jobs=1, resume=False, progress=lambda *_: None)
+    return path
+
+
+@pytest.fixture(scope="module")
+def report(run_path):
+    return content(read_run(run_path))
+
+
+@pytest.fixture
+def copy(run_path, tmp_path):
+    return shutil.copytree(run_path, tmp_path / "copy")
+
+
+def charts_of(report):
+    flights = [chart for flight in report.flights for chart in flight.charts]
+    return [*report.sweep, report.comparison, *report.innerloop, *flights]
+
+
+def test_both_reports_are_built_from_disk_alone(copy):
+    html, pdf = build_reports(copy)
+    text = html.read_text(encoding="utf-8")
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert "Sweep of the speed ratio" in text
+    # Self-contained: nothing is loaded from anywhere.
+    assert not re.search(r"<(script|link|img)[^>]+(src|href)=", text)
+    for anchor in re.findall(r'href="#([a-z]+)"', text):
+        assert f'id="{anchor}"' in text
+    figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])
+    assert set(figures) == {"nu_0.50", "nu_0.90", "nu_1.00"}
+    assert figures["nu_1.00"] == []
+
+
+def test_every_axis_reads_quantity_and_unit(report):
+    for chart in charts_of(report):
+        for panel in chart.panels:
+            for label in (panel.x_label, panel.y_label):
+                assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)
+
+
+def test_every_chart_is_drawn_alike_on_screen_and_in_print(report):
+    for chart in charts_of(report):
+        screen = plotly_charts.draw(chart)
+        printed = matplotlib_charts.draw(chart)
+        lines = [line for panel in chart.panels for line in panel.lines]
+        assert len(screen.data) == len(lines), chart.name
+        drawn = sum(len(ax.lines) - 2 * len(ax.containers) for ax in printed.axes)
+        assert drawn == len(lines), chart.name
+    assert plt.get_fignums() == []
+
+
+def test_no_curve_is_empty_or_not_a_number_where_there_is_data(report):
+    for chart in charts_of(report):
+        for panel in chart.panels:
+            assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)
+
+
+def test_a_safe_run_is_called_safe_and_an_unsafe_one_is_not(run_path, copy):
+    assert verdict(read_run(run_path)).safe
+    summary = pd.read_csv(copy / "summary.csv")
+    summary.loc[0, "keepout_violations"] = 1
+    summary.to_csv(copy / "summary.csv", index=False)
+    judged = verdict(read_run(copy))
+    assert not judged.safe
+    assert "Not safe: 1 entries" in judged.headline
+
+
+def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
+    assert "must be below 1" in report.flights_table.rows[2][-1]
+    assert not report.verdict.complete
+    assert report.flights[2].charts == []
+
+
+def test_every_key_of_the_configuration_is_among_the_parameters(run_path, report):
+    config = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))["config"]
+    listed = {row[0] for row in report.parameters.rows}
+    for section, values in config.items():
+        if isinstance(values, dict) and section not in ("sweep", "comparison"):
+            for key in values:
+                assert f"{section}.{key}" in listed
+    for row in report.parameters.rows:
+        assert row[3], row[0]
+
+
+def test_an_interrupted_run_can_be_reported_on(copy):
+    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    for key in ("outcomes", "flights_planned", "flights_met_criteria", "wall_time_s"):
+        del manifest[key]
+    manifest["state"] = "running"
+    (copy / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    (copy / "innerloop.json").unlink()
+    (copy / "comparison.csv").unlink()
+    shutil.rmtree(copy / "flights")
+    html, pdf = build_reports(copy)
+    assert "continue it with --resume" in html.read_text(encoding="utf-8")
+    assert pdf.stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("damage", "words"),
+    [
+        (lambda path: (path / "manifest.json").unlink(), "no manifest.json"),
+        (lambda path: (path / "manifest.json").write_text("{", encoding="utf-8"), "cannot be read"),
+        (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
+    ],
+)
+def test_a_damaged_run_is_refused_in_one_line(copy, damage, words):
+    damage(copy)
+    with pytest.raises(ReportError, match=words) as refusal:
+        build_reports(copy)
+    assert "\n" not in str(refusal.value)

@@ -1,0 +1,130 @@
+"""The commands as a user types them, each in a process of its own."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SHORT = ["--set", "flight.crossings=2", "--set", "comparison.variants=[]", "--no-report"]
+
+
+def run(*arguments, module="scenarios.run", cwd=ROOT):
+    return subprocess.run(
+        [sys.executable, "-m", module, *map(str, arguments)],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )
+
+
+def assert_refused(result, *words):
+    assert result.returncode == 2
+    assert result.stderr.startswith("error: ")
+    assert result.stderr.count("\n") == 1
+    for word in words:
+        assert word in result.stderr
+
+
+def test_help_needs_no_heavy_import():
+    code = (
+        "import sys, scenarios.run, innerloop.design, reports.build;"
+        "heavy = {'numpy', 'scipy', 'pandas', 'control', 'jsbsim', 'matplotlib', 'plotly', 'pydantic', 'typst'};"
+        "sys.exit(', '.join(sorted(heavy & set(sys.modules))) or 0)"
+    )
+    found = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert found.stderr == ""
+    assert found.returncode == 0
+
+
+def test_help_and_list_answer():
+    assert "--resume" in run("--help").stdout
+    assert "sweep_nu" in run("--list").stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], ["no scenario given", "sweep_nu"]),
+        (["sweep_mu"], ["unknown scenario 'sweep_mu'"]),
+        (["sweep_nu", "--set", "keepout.radius=5"], ["unknown key 'keepout.radius'"]),
+        (["sweep_nu", "--set", "keepout.radius_m=-1"], ["keepout.radius_m", "-1", "greater than 0"]),
+        (["sweep_nu", "--set", "guidance.airspeed_mps=nan"], ["guidance.airspeed_mps", "nan"]),
+        (["sweep_nu", "--set", "guidance.airspeed_mps=60"], ["guidance.airspeed_mps is 60", "15 to 25 m/s"]),
+        (["sweep_nu", "--set", "aircraft=zeppelin"], ["unknown aircraft 'zeppelin'", "x8"]),
+        (["sweep_nu", "--resume"], ["--resume needs --out"]),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path):
+    assert_refused(run(*arguments, cwd=tmp_path), *words)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_directory_that_holds_another_run_is_left_alone(tmp_path):
+    (tmp_path / "manifest.json").write_text('{"config_hash": "other"}', encoding="utf-8")
+    assert_refused(run("sweep_nu", "--out", tmp_path, *SHORT), "holds another run", "--resume")
+    assert_refused(run("sweep_nu", "--out", tmp_path, "--resume", *SHORT), "another configuration")
+    assert [path.name for path in tmp_path.iterdir()] == ["manifest.json"]
+
+
+def test_a_report_of_nothing_is_refused(tmp_path):
+    assert_refused(run(tmp_path, module="reports.build"), "holds no run")
+
+
+def test_an_unknown_aircraft_cannot_be_designed_for(tmp_path):
+    assert_refused(run("zeppelin", "--out", tmp_path, module="innerloop.design"), "unknown aircraft 'zeppelin'")
+
+
+def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_path):
+    out = tmp_path / "run"
+    result = run("sweep_nu", "--out", out, *SHORT, "--set", "sweep.nu=[0.5, 1.0]", "--set", "criteria.tracking_error_rms_m=0.001")
+    assert result.returncode == 1
+    assert "must be below 1" in result.stdout
+    summary = pd.read_csv(out / "summary.csv")
+    assert list(summary["outcome"]) == ["completed", "infeasible"]
+    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+    assert manifest["outcomes"]["infeasible"] == 1
+
+
+def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tmp_path):
+    # Two crossings are too few for means over them.
+    settings = ["sweep_nu", *SHORT, "--jobs", "1", "--set", "criteria.crossing_interval_error=0.1"]
+    settings += ["--set", "criteria.tracking_error_rms_m=5.0"]
+    settings += ["--set", "sweep.nu=[0.2, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95]"]
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    assert run(*settings, "--out", whole).returncode == 0
+    process = subprocess.Popen(
+        [sys.executable, "-m", "scenarios.run", *settings, "--out", str(broken)],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    while not (broken / "summary.csv").is_file():
+        assert process.poll() is None
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)  # what a terminal does at Ctrl-C
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "Traceback" not in errors
+    assert "--resume" in errors
+    assert json.loads((broken / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
+    kept = pd.read_csv(broken / "summary.csv")
+    assert 1 <= len(kept) < 7
+    resumed = run(*settings, "--out", broken, "--resume")
+    assert resumed.returncode == 0, resumed.stderr
+    columns = [name for name in kept.columns if name != "wall_time_s"]
+    pd.testing.assert_frame_equal(
+        pd.read_csv(broken / "summary.csv")[columns], pd.read_csv(whole / "summary.csv")[columns], check_exact=True
+    )
+    assert (broken / "crossings.csv").read_bytes() == (whole / "crossings.csv").read_bytes()

@@ -1,0 +1,54 @@
+import pytest
+
+from scenarios.errors import InputError
+from scenarios.run_directory import RunDirectory, write_whole
+
+
+def test_an_interrupted_write_leaves_the_old_file(tmp_path):
+    path = tmp_path / "summary.csv"
+    path.write_text("old", encoding="utf-8")
+
+    def fails(part):
+        part.write_text("half", encoding="utf-8")
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_whole(path, fails)
+    assert path.read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_directory_that_holds_a_run_is_refused(tmp_path):
+    run = RunDirectory(tmp_path / "run")
+    run.open_new()
+    run.write_json(run.manifest, {"config_hash": "a"})
+    with pytest.raises(InputError, match="holds another run; choose another --out, or continue it with --resume"):
+        run.open_new()
+    run.open_existing("a")
+    with pytest.raises(InputError, match="another configuration"):
+        run.open_existing("b")
+
+
+def test_a_directory_with_other_things_in_it_is_refused(tmp_path):
+    (tmp_path / "thesis.tex").touch()
+    with pytest.raises(InputError, match="not empty"):
+        RunDirectory(tmp_path).open_new()
+
+
+def test_a_path_that_cannot_be_a_directory_is_refused(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="cannot be written"):
+        RunDirectory(tmp_path / "file" / "run").open_new()
+
+
+def test_resuming_needs_a_run(tmp_path):
+    with pytest.raises(InputError, match="holds no run to resume"):
+        RunDirectory(tmp_path).open_existing("a")
+
+
+def test_rows_survive_a_round_trip_and_missing_figures_stay_missing(tmp_path):
+    run = RunDirectory(tmp_path / "run")
+    run.open_new()
+    run.write_rows("summary.csv", [{"flight_id": "a", "nu": 0.1 + 0.2}, {"flight_id": "b"}], ("flight_id", "nu", "message"))
+    assert run.read_rows("summary.csv") == [{"flight_id": "a", "nu": 0.1 + 0.2}, {"flight_id": "b"}]
+    assert run.read_rows("nothing.csv") == []
