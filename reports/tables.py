@@ -189,4 +189,5 @@ def _outcome(row: "pd.Series[Any]") -> str:
     met = str(row["criteria_met"]) == "True"
     if met:
         return "met"
-    return f"{row['outcome']}: {message}" if message else str(row["outcome"]).replace("_", " ")
+    outcome = str(row["outcome"]).replace("_", " ")
+    return f"{outcome}: {message.split(';')[0]}" if message else outcome
