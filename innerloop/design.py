@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from reports.command_line import BAD_INPUT, run_command
+
 if TYPE_CHECKING:
     from innerloop.record import Record
-
-BAD_INPUT = 2
 
 
 def command(
@@ -135,9 +135,7 @@ def _steps(record: "Record") -> Any:
 
 def main() -> None:
     """Entry point."""
-    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    app.command()(command)
-    app(prog_name="python -m innerloop.design")
+    run_command(command, "python -m innerloop.design")
 
 
 if __name__ == "__main__":

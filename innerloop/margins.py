@@ -65,13 +65,7 @@ def open_loop(schedule: Schedule, index: int, breaks: Sequence[str]) -> control.
     schedule, index : the design and its airspeed
     breaks : names of controls or of measurements
     """
-    plant = schedule.models[index]
-    delays = [
-        control.ss(control.tf(*control.pade(DELAY, 2)), inputs=[f"{name}_delayed_in"], outputs=[name], name=f"{name}_delay")
-        for name in CONTROLS
-    ]
-    autopilot = linear_controller(schedule, index)
-    plant = control.ss(plant, inputs=plant.input_labels, outputs=plant.output_labels, name="aircraft")
+    aircraft, autopilot, delays = _blocks(schedule, index)
     connections: list[list[object]] = []
     inplist: list[str] = []
     outlist: list[str] = []
@@ -89,7 +83,7 @@ def open_loop(schedule: Schedule, index: int, breaks: Sequence[str]) -> control.
         else:
             connections.append([f"autopilot.{name}", f"aircraft.{name}"])
     return control.interconnect(
-        [plant, autopilot, *delays],
+        [aircraft, autopilot, *delays],
         connections=connections,
         inplist=inplist,
         outlist=outlist,
@@ -102,13 +96,7 @@ def open_loop(schedule: Schedule, index: int, breaks: Sequence[str]) -> control.
 
 def closed_loop(schedule: Schedule, index: int) -> control.StateSpace:
     """Return the closed loop from ``COMMANDS`` to every output of the aircraft and to ``CONTROLS``."""
-    plant = schedule.models[index]
-    plant = control.ss(plant, inputs=plant.input_labels, outputs=plant.output_labels, name="aircraft")
-    delays = [
-        control.ss(control.tf(*control.pade(DELAY, 2)), inputs=[f"{name}_delayed_in"], outputs=[name], name=f"{name}_delay")
-        for name in CONTROLS
-    ]
-    autopilot = linear_controller(schedule, index)
+    aircraft, autopilot, delays = _blocks(schedule, index)
     connections: list[list[object]] = [[f"autopilot.{name}", f"aircraft.{name}"] for name in MEASUREMENTS]
     for delay, name in zip(delays, CONTROLS, strict=True):
         connections += [
@@ -116,15 +104,24 @@ def closed_loop(schedule: Schedule, index: int) -> control.StateSpace:
             [f"{delay.name}.{name}_delayed_in", f"autopilot.{name}"],
         ]
     return control.interconnect(
-        [plant, autopilot, *delays],
+        [aircraft, autopilot, *delays],
         connections=connections,
         inplist=[f"autopilot.{name}" for name in COMMANDS],
-        outlist=[*(f"aircraft.{name}" for name in plant.output_labels), *(f"autopilot.{name}" for name in CONTROLS)],
+        outlist=[*(f"aircraft.{name}" for name in aircraft.output_labels), *(f"autopilot.{name}" for name in CONTROLS)],
         inputs=list(COMMANDS),
-        outputs=[*plant.output_labels, *(f"{name}_command" for name in CONTROLS)],
+        outputs=[*aircraft.output_labels, *(f"{name}_command" for name in CONTROLS)],
         warn_duplicate=False,
         check_unused=False,
     )
+
+
+def _blocks(schedule: Schedule, index: int) -> tuple[control.StateSpace, control.StateSpace, list[control.StateSpace]]:
+    """Return the aircraft, the autopilot, and a delay in front of each control."""
+    model = schedule.models[index]
+    aircraft = control.ss(model, inputs=model.input_labels, outputs=model.output_labels, name="aircraft")
+    delay = control.ss(control.tf(*control.pade(DELAY, 2)))
+    delays = [control.ss(delay, inputs=[f"{name}_delayed_in"], outputs=[name], name=f"{name}_delay") for name in CONTROLS]
+    return aircraft, linear_controller(schedule, index), delays
 
 
 def _margin(name: str, loop: control.StateSpace) -> Margin:

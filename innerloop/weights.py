@@ -16,7 +16,7 @@ class DesignWeights:
     heading_integral : of the time integral of the heading-rate error [rad]
     aileron : of the command [-]
     model_frequency, model_damping : the second-order response to a heading-rate command that the lateral loop follows [rad/s, -]
-    altitude_error_max : altitude error that still makes the elevator work harder: a larger one is a steady climb, near 2 m/s for 1 m [m]
+    altitude_error_max : altitude error that still makes the elevator work harder; 1 m is a climb near 2 m/s [m]
     airspeed_error_max : airspeed error that still makes the throttle work harder [m/s]
     anti_windup_rate : how fast an integrator follows its saturated command [1/s]
     """

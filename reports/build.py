@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-BAD_INPUT = 2
+from reports.command_line import BAD_INPUT, run_command
 
 
 def build_reports(directory: Path) -> list[Path]:
@@ -53,9 +53,7 @@ def command(
 
 def main() -> None:
     """Entry point."""
-    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    app.command()(command)
-    app(prog_name="python -m reports.build")
+    run_command(command, "python -m reports.build")
 
 
 if __name__ == "__main__":

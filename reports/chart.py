@@ -1,7 +1,7 @@
 """What a figure shows, said once; ``matplotlib_charts`` and ``plotly_charts`` draw it the same."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -88,7 +88,6 @@ class Chart:
     columns: int = 1
     panel_height: float = 0.36
     share_x: bool = False
-    row_heights: Sequence[float] = field(default_factory=tuple)
 
     @property
     def rows(self) -> int:

@@ -28,7 +28,6 @@ class _View:
     def __init__(self, run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> None:
         config = run.manifest["config"]
         self._h = history.iloc[:: max(1, math.ceil(len(history) / POINTS_MAX))]
-        self._row = row
         self._radius = float(row["keepout_radius_m"])
         course = math.radians(config["vessel"]["course_deg"])
         speed = float(row["nu"]) * float(config["guidance"]["airspeed_mps"])

@@ -47,7 +47,6 @@ def draw(chart: Chart) -> Figure:
             chart.columns,
             squeeze=False,
             sharex="col" if chart.share_x else "none",
-            height_ratios=list(chart.row_heights) or None,
         )
         handles: dict[str, Any] = {}
         for i, panel in enumerate(chart.panels):

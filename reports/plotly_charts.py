@@ -34,7 +34,6 @@ def draw(chart: Chart) -> go.Figure:
         cols=chart.columns,
         shared_xaxes=chart.share_x,
         subplot_titles=[panel.title for panel in chart.panels] if titled else None,
-        row_heights=list(chart.row_heights) or None,
         horizontal_spacing=0.09,
         vertical_spacing=gap / inner if chart.rows > 1 else 0.0,
     )

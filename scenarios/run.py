@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from reports.command_line import BAD_INPUT, INTERRUPTED, run_command
+
 if TYPE_CHECKING:
     from scenarios.runner import RunResult
 
-MET, NOT_MET, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+MET, NOT_MET = 0, 1
 
 
 def command(
@@ -116,9 +118,7 @@ def _say(result: "RunResult") -> None:
 
 def main() -> None:
     """Entry point."""
-    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    app.command()(command)
-    app(prog_name="python -m scenarios.run")
+    run_command(command, "python -m scenarios.run")
 
 
 if __name__ == "__main__":

@@ -62,6 +62,8 @@ def test_help_and_list_answer():
         (["sweep_nu", "--set", "guidance.airspeed_mps=60"], ["guidance.airspeed_mps is 60", "15 to 25 m/s"]),
         (["sweep_nu", "--set", "aircraft=zeppelin"], ["unknown aircraft 'zeppelin'", "x8"]),
         (["sweep_nu", "--resume"], ["--resume needs --out"]),
+        (["sweep_nu", "--jobs", "0"], ["--jobs", "greater than or equal to 1"]),
+        (["sweep_nu", "--sed", "5"], ["--sed", "--help"]),
     ],
 )
 def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path):

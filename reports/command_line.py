@@ -1,0 +1,27 @@
+"""How every command of the project meets its user: typer for the options, one line for an error."""
+
+import sys
+from collections.abc import Callable
+
+import typer
+
+BAD_INPUT, INTERRUPTED = 2, 130
+
+_USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
+"""What typer raises for bad options; of the family it exports this member only."""
+
+
+def run_command(command: Callable[..., None], name: str) -> None:
+    """Run ``command`` as a command line called ``name`` and exit with its status; bad options are one line and status 2."""
+    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    app.command()(command)
+    try:
+        status = app(prog_name=name, standalone_mode=False)
+    except _USAGE_ERROR as error:
+        message = str(getattr(error, "format_message", error.__str__)()).rstrip(".")
+        print(f"error: {message}; see {name} --help", file=sys.stderr)
+        status = BAD_INPUT
+    except typer.Abort:
+        print("interrupted", file=sys.stderr)
+        status = INTERRUPTED
+    sys.exit(status or 0)
