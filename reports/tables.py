@@ -190,4 +190,4 @@ def _outcome(row: "pd.Series[Any]") -> str:
     if met:
         return "met"
     outcome = str(row["outcome"]).replace("_", " ")
-    return f"{outcome}: {message.split(';', maxsplit=1)[0]}" if message else outcome
+    return f"{outcome}: {message}" if message else outcome
