@@ -43,6 +43,7 @@ def _design(aircraft: str, out: Path, altitude: float) -> None:
     from reports.innerloop_charts import innerloop_charts
     from reports.matplotlib_charts import draw
 
+    print(f"designing the autopilot of {spec.title}", file=sys.stderr)
     out.mkdir(parents=True, exist_ok=True)
     schedule = design_schedule(spec, altitude=altitude)
     write_root(schedule, out / "model")

@@ -22,7 +22,9 @@ def build_reports(directory: Path) -> list[Path]:
     from reports.pdf import write_pdf
     from reports.run_data import read_run
 
-    report = content(read_run(directory))
+    run = read_run(directory)
+    print("building the report", file=sys.stderr)
+    report = content(run)
     paths = []
     for name, write in (("report.html", write_html), ("report.pdf", write_pdf)):
         part = directory / f".{name}.part"

@@ -84,23 +84,32 @@ def _run(
         result = run_scenario(scenario, stem, directory, jobs=jobs or os.cpu_count() or 1, resume=resume, progress=progress)
     _say(result)
     if result.interrupted:
-        options = " ".join(f"--set {item}" for item in overrides)
+        options = " ".join(f"--set '{item}'" for item in overrides)
         print(
             f"interrupted; {len(result.rows)} of {result.planned} flights are kept. Go on with:"
             f" python -m scenarios.run {name} {options + ' ' if options else ''}--out {directory} --resume",
             file=sys.stderr,
         )
         return INTERRUPTED
-    if not no_report:
-        from reports.build import build_reports
+    status = MET if no_report else _report(directory)
+    return status or (MET if result.met == result.planned else NOT_MET)
 
-        try:
-            for path in build_reports(directory):
-                print(f"report: {path}")
-        except KeyboardInterrupt:
-            print(f"report interrupted; build it with: python -m reports.build {directory}", file=sys.stderr)
-            return INTERRUPTED
-    return MET if result.met == result.planned else NOT_MET
+
+def _report(directory: Path) -> int:
+    """Build the reports; return the exit status of that."""
+    from reports.build import build_reports
+    from reports.errors import ReportError
+
+    try:
+        for path in build_reports(directory):
+            print(f"report: {path}")
+    except ReportError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print(f"report interrupted; build it with: python -m reports.build {directory}", file=sys.stderr)
+        return INTERRUPTED
+    return MET
 
 
 def _say(result: "RunResult") -> None:
