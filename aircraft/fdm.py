@@ -50,7 +50,10 @@ class Fdm:
             self._exec = jsbsim.FGFDMExec(str(root))
             self._exec.set_debug_level(0)
             self._exec.set_dt(time_step)
-            loaded = self._exec.load_model(spec.model)
+            try:
+                loaded = self._exec.load_model(spec.model)
+            except jsbsim.BaseError:
+                loaded = False
         if not loaded:
             raise AircraftError(f"aircraft '{spec.name}': JSBSim refused {model_file}; run JSBSim on it to see why")
         self._exec.disable_output()
@@ -136,12 +139,12 @@ class Fdm:
         with self.frozen():
             self.step(steps)
 
-    def settle(self, tolerance: float = 1e-9, steps_max: int = 3600) -> None:
-        """Step until every driven state stands still, for use inside ``frozen``.
+    def settle(self, tolerance: float = 1e-9, steps_max: int = 1200) -> bool:
+        """Step, inside ``frozen``, until every driven state moves by less than ``tolerance`` of its size a step.
 
-        Raises
-        ------
-        AircraftError : a driven state still moves by more than ``tolerance`` of its size a step after ``steps_max`` steps
+        Returns
+        -------
+        bool : whether that was reached within ``steps_max`` steps
         """
         nodes = [self.node(state.position) for state in self.spec.driven_states]
         before = [node.get_double_value() for node in nodes]
@@ -149,9 +152,9 @@ class Fdm:
             self.run()
             after = [node.get_double_value() for node in nodes]
             if all(abs(a - b) <= tolerance * max(1.0, abs(a)) for a, b in zip(after, before, strict=True)):
-                return
+                return True
             before = after
-        raise AircraftError(f"aircraft '{self.spec.name}': servos and propeller do not settle in {steps_max} steps")
+        return False
 
     def velocity_body(self) -> tuple[float, float, float]:
         """Return forward, right and down velocity against the air [m/s]."""

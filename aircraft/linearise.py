@@ -141,7 +141,8 @@ class _Differences:
         self._fdm.place(
             replace(self._trim.state(), altitude=altitude, roll=roll, pitch=pitch, velocity_body=velocity, rates_body=(p, q, r))
         )
-        self._fdm.settle()
+        if not self._fdm.settle():
+            raise AircraftError(f"aircraft '{self._spec.name}': servos and propeller do not settle near the trim; check its spec")
 
     def _driven(self) -> npt.NDArray[np.float64]:
         return np.array([node.get_double_value() for node in self._driven_nodes]) * self._scales

@@ -24,7 +24,8 @@ _ALPHA_MAX = 0.5
 _BETA_MAX = 0.3
 _BANK_MAX = 1.2
 _START_ALPHA = 0.05
-_START_THROTTLE = 0.5
+_START_THROTTLES = (0.5, 0.95)
+"""Starts of the search. From too little throttle at high speed it can end where JSBSim's propeller barely turns."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,28 +96,23 @@ def trim(fdm: Fdm, *, airspeed: float, altitude: float, bank: float = 0.0, climb
     """
     if not (math.isfinite(airspeed) and airspeed > 0.0):
         raise TrimError(f"trim of '{fdm.spec.name}': airspeed is {airspeed} m/s; it must be finite and above 0")
+    for name, value, unit in (("altitude", altitude, "m"), ("bank", bank, "rad"), ("climb angle", climb_angle, "rad")):
+        if not math.isfinite(value):
+            raise TrimError(f"trim of '{fdm.spec.name}': {name} is {value} {unit}; it must be finite")
     problem = _TrimProblem(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle)
+    residual = math.inf
     with fdm.frozen():
-        start, lower, upper = problem.start_and_bounds()
-        solution = least_squares(
-            problem.residual,
-            start,
-            bounds=(lower, upper),
-            x_scale=0.1,
-            diff_step=[1e-5],
-            xtol=1e-12,
-            ftol=1e-14,
-            gtol=1e-14,
-            max_nfev=60,
-        )
-        residual = float(np.max(np.abs(problem.residual(solution.x))))
-        where = f"{airspeed:g} m/s, {altitude:g} m, bank {math.degrees(bank):g} deg, climb {math.degrees(climb_angle):g} deg"
-        if not (solution.success and residual < _TOLERANCE):
-            raise TrimError(
-                f"trim of '{fdm.spec.name}' at {where} did not converge: largest acceleration {residual:.2g} against a limit of"
-                f" {_TOLERANCE:g}; choose a condition inside the flight envelope"
-            )
-        return problem.result(solution.x, residual)
+        for throttle in _START_THROTTLES:
+            unknowns, converged = problem.solve(throttle)
+            left = float(np.max(np.abs(problem.residual(unknowns))))
+            if converged and fdm.settle() and left < _TOLERANCE:
+                return problem.result(unknowns, left)
+            residual = min(residual, left)
+    where = f"{airspeed:g} m/s, {altitude:g} m, bank {math.degrees(bank):g} deg, climb {math.degrees(climb_angle):g} deg"
+    raise TrimError(
+        f"trim of '{fdm.spec.name}' at {where} did not converge: largest acceleration {residual:.2g} against a limit of"
+        f" {_TOLERANCE:g}; choose a condition inside the flight envelope"
+    )
 
 
 class _TrimProblem:
@@ -130,14 +126,26 @@ class _TrimProblem:
         self._climb_angle = climb_angle
         self._straight = bank == 0.0
 
-    def start_and_bounds(self) -> tuple[list[float], list[float], list[float]]:
+    def solve(self, start_throttle: float) -> tuple[npt.NDArray[np.float64], bool]:
+        """Return the solver's last point and whether it calls it a solution."""
         inputs = self._fdm.spec.inputs
         third = 0.0 if self._straight else 9.81 * math.tan(self._bank) / self._airspeed
         third_max = _BANK_MAX if self._straight else 10.0
-        start = [_START_ALPHA, 0.0, third] + [_START_THROTTLE if i.name == "throttle" else 0.0 for i in inputs]
-        lower = [-_ALPHA_MAX, -_BETA_MAX, -third_max] + [i.lower for i in inputs]
-        upper = [_ALPHA_MAX, _BETA_MAX, third_max] + [i.upper for i in inputs]
-        return start, lower, upper
+        solution = least_squares(
+            self.residual,
+            [_START_ALPHA, 0.0, third] + [start_throttle if i.name == "throttle" else 0.0 for i in inputs],
+            bounds=(
+                [-_ALPHA_MAX, -_BETA_MAX, -third_max] + [i.lower for i in inputs],
+                [_ALPHA_MAX, _BETA_MAX, third_max] + [i.upper for i in inputs],
+            ),
+            x_scale=0.1,
+            diff_step=[1e-5],
+            xtol=1e-12,
+            ftol=1e-14,
+            gtol=1e-14,
+            max_nfev=60,
+        )
+        return solution.x, bool(solution.success)
 
     def residual(self, unknowns: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         fdm = self._fdm
