@@ -1,0 +1,130 @@
+"""What the tests of the guidance share: the paper's vehicle, Cartesian motion to check against, and kinematic flights.
+
+The paper does not print V_r and omega_max; 19.42 m/s and 0.503 rad/s reproduce its Sim. 3 (reference/paper-notes.md,
+"Parameters the paper does not print").
+"""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+from hypothesis import settings
+from hypothesis import strategies as st
+
+from gnc.delta import look_ahead, relative_state, relative_velocity
+from gnc.guidance import Guidance, GuidanceParameters, Law
+from gnc.oscillation import design_oscillation
+from gnc.reference import start_reference
+from gnc.unicycle import unicycle_move, unicycle_rates
+
+SPEED = 19.42
+HEADING_RATE_MAX = 0.503
+LOOK_AHEAD = look_ahead(0.005, 60.0)
+
+courses = st.floats(-math.pi, math.pi)
+
+
+def examples(count):
+    """Settings of a property: no deadline, for time is not what is tested, and the same examples on every machine."""
+    return settings(max_examples=count, deadline=None, derandomize=True)
+
+
+def paper_oscillation(nu, **changes):
+    return design_oscillation(**({"nu": nu, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX} | changes))
+
+
+def tracking_motion(steer, reference_heading_rate, *, reference_speed=SPEED, speed=SPEED):
+    """Return the right-hand side of the tracking problem in Cartesian coordinates: (1) and (13), nothing of the delta formulation.
+
+    The state is the reference's north, east and course, then the vehicle's, whose heading rate is ``steer(state, time)``.
+    """
+
+    def rates(time, state):
+        return np.array(
+            [
+                *unicycle_rates(reference_speed, state[2], reference_heading_rate(time)),
+                *unicycle_rates(speed, state[5], steer(state, time)),
+            ]
+        )
+
+    return rates
+
+
+def moved(rates, time, state, step):
+    """Return the state a small ``step`` away, by one classical Runge-Kutta step."""
+    state = np.asarray(state, dtype=float)
+    k_1 = rates(time, state)
+    k_2 = rates(time + 0.5 * step, state + 0.5 * step * k_1)
+    k_3 = rates(time + 0.5 * step, state + 0.5 * step * k_2)
+    k_4 = rates(time + step, state + step * k_3)
+    return state + step / 6.0 * (k_1 + 2.0 * k_2 + 2.0 * k_3 + k_4)
+
+
+def relative(state, parameters=LOOK_AHEAD):
+    """Return the relative state (19) of a Cartesian state."""
+    return relative_state(parameters, state[0] - state[3], state[1] - state[4], state[2], state[5])
+
+
+def delta_steering(law, reference_heading_rate, parameters=LOOK_AHEAD):
+    """Return ``steer`` for a law of the relative state and omega_rho."""
+
+    def steer(state, time):
+        there = relative(state, parameters)
+        _, omega_rho = relative_velocity(parameters, there, SPEED, SPEED, reference_heading_rate(time))
+        return law(there, omega_rho)
+
+    return steer
+
+
+def guidance_parameters(**changes):
+    return GuidanceParameters(
+        **(
+            {
+                "law": Law.CASCADE,
+                "look_ahead": LOOK_AHEAD,
+                "gain": 1.5,
+                "rate_max": 0.4,
+                "k_1": 0.001,
+                "heading_rate_max": HEADING_RATE_MAX,
+                "time_step": 0.05,
+                "lag": 0.0,
+                "guard_distance": 15.0,
+                "airspeed_gain": 0.0,
+                "airspeed_trim_max": 1.0,
+            }
+            | changes
+        )
+    )
+
+
+def make_guidance(parameters, oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0.0, guard=None):
+    start = start_reference(oscillation, phase=phase, centre_north=centre[0], centre_east=centre[1], vessel_course=vessel_course)
+    return Guidance(parameters, oscillation, start, phase=phase, guard=guard)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KinematicFlight:
+    """Histories, one entry per guidance step: position, commanded heading rate, distance to the reference."""
+
+    north: np.ndarray
+    east: np.ndarray
+    command: np.ndarray
+    distance: np.ndarray
+
+
+def fly(guidance, start, *, duration, delay=0.0, time_step=0.05):
+    """Fly a unicycle that answers the guidance's heading rate exactly, ``delay`` seconds late."""
+    north, east, course = start
+    pending = deque([0.0] * round(delay / time_step))
+    rate = 0.0
+    rows = []
+    for _ in range(round(duration / time_step)):
+        distance = math.hypot(guidance.reference.north - north, guidance.reference.east - east)
+        guidance.step(north, east, course, SPEED, rate)
+        rows.append((north, east, guidance.heading_rate_command, distance))
+        pending.append(guidance.heading_rate_command)
+        rate = pending.popleft()
+        north, east, course = unicycle_move(north, east, course, SPEED, rate, time_step)
+    columns = np.array(rows).T
+    return KinematicFlight(north=columns[0], east=columns[1], command=columns[2], distance=columns[3])

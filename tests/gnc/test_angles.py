@@ -1,0 +1,71 @@
+import math
+
+import pytest
+from gnc_cases import examples
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from gnc.angles import wrap
+
+# The last floating-point number below pi, and the first beyond -pi: where wrap functions go wrong.
+BELOW_HALF_TURN = math.nextafter(math.pi, 0.0)
+BEYOND_HALF_TURN = math.nextafter(-math.pi, -4.0)
+ULP = math.ulp(math.pi)
+
+angles = st.floats(-1e6, 1e6)
+
+
+@examples(500)
+@given(angle=angles)
+@example(angle=math.pi)
+@example(angle=-math.pi)
+@example(angle=BELOW_HALF_TURN)
+@example(angle=-BELOW_HALF_TURN)
+@example(angle=BEYOND_HALF_TURN)
+@example(angle=-BEYOND_HALF_TURN)
+@example(angle=3.0 * math.pi)
+@example(angle=-3.0 * math.pi)
+@example(angle=2.0 * math.pi)
+@example(angle=-2.0 * math.pi)
+@example(angle=1e300)
+def test_wrapped_angles_lie_within_half_a_turn(angle):
+    assert -math.pi <= wrap(angle) < math.pi
+
+
+@pytest.mark.parametrize("turns", [-3, -2, -1, 0, 1, 2])
+def test_half_a_turn_either_way_wraps_to_minus_half_a_turn(turns):
+    # The interval is [-pi, pi), as wrap's docstring says. Exact: odd multiples of pi are fmod'ed without rounding.
+    assert wrap((2 * turns + 1) * math.pi) == -math.pi
+
+
+@examples(300)
+@given(angle=st.floats(-1e3, 1e3), turns=st.integers(-50, 50))
+def test_wrapping_forgets_whole_turns(angle, turns):
+    far = angle + turns * 2.0 * math.pi
+    difference = math.remainder(wrap(far) - wrap(angle), 2.0 * math.pi)
+    # Rounding of the sums, of numbers below 1,400.
+    assert abs(difference) <= 4.0 * math.ulp(1400.0)
+
+
+@examples(300)
+@given(angle=angles)
+@example(angle=BEYOND_HALF_TURN)
+def test_wrapping_twice_is_wrapping_once(angle):
+    once = wrap(angle)
+    # On the circle, since the last number below pi and -pi are one rounding apart. The sum with pi rounds by at most an ulp of pi.
+    assert abs(math.remainder(wrap(once) - once, 2.0 * math.pi)) <= 2.0 * ULP
+
+
+@examples(300)
+@given(angle=st.floats(-math.pi, math.pi - 4.0 * ULP))
+def test_an_angle_within_half_a_turn_stays(angle):
+    # One rounding of the sum with pi.
+    assert wrap(angle) == pytest.approx(angle, rel=0.0, abs=ULP)
+
+
+@examples(300)
+@given(angle=st.floats(-1e3, 1e3))
+def test_a_wrapped_angle_points_the_same_way(angle):
+    # 160 turns of the rounding of 2 pi, 2.4e-16 each, and that of the sum.
+    assert math.cos(wrap(angle)) == pytest.approx(math.cos(angle), rel=0.0, abs=2e-13)
+    assert math.sin(wrap(angle)) == pytest.approx(math.sin(angle), rel=0.0, abs=2e-13)

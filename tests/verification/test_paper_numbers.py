@@ -1,0 +1,201 @@
+"""The numbers of the paper and of reference/paper-notes.md ("the notes"), each at the precision at which it is printed there."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from gnc.bessel import ETA_MAX, eta_for_speed_ratio, mean_speed_ratio
+from gnc.delta import RelativeState, look_ahead, relative_state
+from gnc.laws import lyapunov_law
+from gnc.orbit import f_x, half_widths, offset
+from gnc.oscillation import GRAVITY, design_oscillation, heading_rate_for_bank
+from gnc.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
+
+SPEED = 19.42
+HEADING_RATE_MAX = 0.503
+ASTERN = PlumeAxis(heading=math.pi)
+ABEAM = PlumeAxis(heading=0.5 * math.pi)
+
+
+def oscillation_at(nu, **changes):
+    return design_oscillation(**({"nu": nu, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX} | changes))
+
+
+@pytest.mark.parametrize(
+    ("nu", "eta", "interval", "d_x", "d_y"),
+    [
+        # The notes, "Facts to test against". Tolerances: half of the last digit printed there, in each column.
+        (0.10, 2.2187, 13.86, 34.35, 104.63),
+        (0.30, 1.8687, 11.67, 23.33, 89.32),
+        (0.50, 1.5211, 9.50, 13.95, 68.40),
+        (0.70, 1.1412, 7.13, 6.43, 43.37),
+        (0.90, 0.6406, 4.00, 1.23, 15.13),
+    ],
+)
+def test_the_table_of_orbits(nu, eta, interval, d_x, d_y):
+    oscillation = oscillation_at(nu)
+    assert oscillation.eta == pytest.approx(eta, abs=5.1e-5)
+    assert oscillation.crossing_interval == pytest.approx(interval, abs=5.1e-3)
+    assert half_widths(oscillation) == pytest.approx((d_x, d_y), abs=5.1e-3)
+
+
+def test_sim_3_crosses_every_9_5_seconds_214_metres_from_the_vessel():
+    oscillation = oscillation_at(0.5)
+    # Section V: every 9.5 s at 214 m with r_min = 200 m, printed to 0.1 s and 1 m.
+    assert oscillation.crossing_interval == pytest.approx(9.5, abs=0.05)
+    assert distance_by_paper(oscillation, ASTERN, 200.0) == pytest.approx(214.0, abs=0.5)
+    # The notes: 9.5006 s, 13.953 m and 68.395 m. Half of the last digit.
+    assert oscillation.crossing_interval == pytest.approx(9.5006, abs=5e-5)
+    assert half_widths(oscillation) == pytest.approx((13.953, 68.395), abs=5e-4)
+
+
+def test_the_two_numbers_of_sim_3_give_the_speed_and_heading_rate_that_the_paper_does_not_print():
+    # The notes, "Parameters the paper does not print"; half of the last digit of each.
+    omega_0 = math.pi / 9.5
+    assert omega_0 == pytest.approx(0.3307, abs=5e-5)
+    eta = eta_for_speed_ratio(0.5)
+    assert eta == pytest.approx(1.521144, abs=5e-7)
+    omega_max = eta * omega_0
+    assert omega_max == pytest.approx(0.503, abs=5e-4)
+    # The orbit scales with V_r at given omega_0, so 14 m along gives V_r: 19.49 m/s for 14.000 m. The notes say 19.4; 14 m has but
+    # two digits, and at the 19.42 m/s that they settle on the orbit is 13.953 m.
+    speed = brentq(lambda v: half_widths(oscillation_at(0.5, speed=v, heading_rate_max=omega_max))[0] - 14.0, 5.0, 50.0)
+    assert speed == pytest.approx(19.4, abs=0.1)
+    assert math.degrees(math.atan(0.503 * 19.4 / GRAVITY)) == pytest.approx(45.0, abs=0.5)
+    assert heading_rate_for_bank(math.radians(45.0), 19.4) == pytest.approx(0.503, abs=0.003)
+
+
+def test_the_first_zero_of_j_0():
+    # Section III.C: 2.4048; the notes, care 6: 2.404825557695773. Half of the last digit, and rounding.
+    assert pytest.approx(2.4048, abs=5e-5) == ETA_MAX
+    assert eta_for_speed_ratio(0.0) == pytest.approx(2.404825557695773, abs=1e-14)
+    assert mean_speed_ratio(2.404825557695773) == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.1, 0.3, 0.5, 0.7, 0.9])
+def test_the_quarter_period_advance_is_exactly_that_of_the_vessel(nu):
+    oscillation = oscillation_at(nu)
+    quarter = 0.25 * oscillation.period
+    advance, _ = quad(lambda t: SPEED * math.cos(oscillation.eta * math.cos(oscillation.omega_0 * t)), 0.0, quarter, epsabs=1e-12)
+    # The notes: exactly nu V_r T/4, by the Bessel integral. Tolerances of quadrature and rounding.
+    assert advance == pytest.approx(nu * SPEED * quarter, abs=1e-10)
+    assert SPEED * float(f_x(oscillation, quarter)) == pytest.approx(nu * SPEED * quarter, abs=1e-11)
+
+
+@pytest.mark.parametrize("nu", [0.1, 0.5, 0.9])
+def test_the_figure_of_eight_has_period_t_across_and_half_of_it_along(nu):
+    oscillation = oscillation_at(nu)
+    times = np.linspace(0.0, oscillation.period, 1024, endpoint=False)
+    along, across = (np.abs(np.fft.rfft(component)) for component in offset(oscillation, times))
+    # The notes. In the spectra of a period, the first harmonic is the largest across, the second along; rounding elsewhere.
+    assert np.argmax(across) == 1
+    assert np.argmax(along) == 2
+    assert np.max(across[::2]) < 1e-12 * across[1]
+    assert np.max(along[1::2]) < 1e-12 * along[2]
+
+
+@pytest.mark.parametrize("nu", [0.1, 0.5, 0.9])
+def test_the_half_widths_are_reached_at_the_times_of_equation_12(nu):
+    oscillation = oscillation_at(nu)
+    t_x = math.acos(math.acos(nu) / oscillation.eta) / oscillation.omega_0
+    t_y = 0.5 * math.pi / oscillation.omega_0
+    d_x, d_y = half_widths(oscillation)
+    # Below equation (12). Rounding.
+    assert abs(float(offset(oscillation, t_x)[0])) == pytest.approx(d_x, rel=1e-13)
+    assert abs(float(offset(oscillation, t_y)[1])) == pytest.approx(d_y, rel=1e-13)
+    # And there the reference moves as the vessel does along, or along only: cos[chi_r] = nu and sin[chi_r] = 0.
+    course = [oscillation.eta * math.cos(oscillation.omega_0 * t) for t in (t_x, t_y)]
+    assert math.cos(course[0]) == pytest.approx(nu, abs=1e-14)
+    assert math.sin(course[1]) == pytest.approx(0.0, abs=1e-15)
+
+
+def slack(nu, heading_deg):
+    """By how much equation (10) places the CO farther than necessary [m], at r_min = 200 m."""
+    oscillation, axis = oscillation_at(nu), PlumeAxis(heading=math.radians(heading_deg))
+    return distance_by_paper(oscillation, axis, 200.0) - distance_exact(oscillation, axis, 200.0)
+
+
+@pytest.mark.parametrize("nu", [0.01, 0.1, 0.5, 0.95])
+def test_equation_11_is_exactly_tight_for_a_plume_abeam(nu):
+    # The notes, care 4: 0 m. The exact distance is searched for to 1e-6 m.
+    assert slack(nu, 90.0) == pytest.approx(0.0, abs=1e-6)
+    assert slack(nu, -90.0) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_equation_11_is_conservative_by_up_to_ten_metres():
+    # The notes, care 4: 9.9 m at nu = 0.1 and 165 degrees. Half of the last digit.
+    assert slack(0.1, 165.0) == pytest.approx(9.9, abs=0.05)
+    # The notes call that the largest; searched for more finely the largest is 9.985 m, at nu = 0.14 and 163.5 degrees.
+    assert slack(0.14, 163.5) == pytest.approx(9.985, abs=5e-4)
+    slacks = [slack(nu, heading) for nu in np.linspace(0.02, 0.94, 24) for heading in np.linspace(90.0, 180.0, 31)]
+    # The search stops within 1e-6 m; a grid of 0.04 and 3 degrees misses the largest by less than 0.02 m.
+    assert min(slacks) >= -1e-6
+    assert max(slacks) == pytest.approx(9.985, abs=0.02)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 0.3, 0.8])
+@pytest.mark.parametrize("nu", [0.1, 0.5])
+def test_equation_10_keeps_a_sphere_with_a_margin_for_elevated_plumes(nu, elevation):
+    oscillation, axis = oscillation_at(nu), PlumeAxis(heading=0.5 * math.pi, elevation=elevation)
+    _, d_y = half_widths(oscillation)
+    distance = distance_by_paper(oscillation, axis, 200.0)
+    ahead, right, above = centre_of_oscillation(distance, axis)
+    along, across = offset(oscillation, np.linspace(0.0, oscillation.period, 4001))
+    closest = np.min(np.sqrt((ahead + along) ** 2 + (right + across) ** 2 + above**2))
+    # The notes, care 3: the margin left is sqrt(r_min^2 + d^2 sin^2 alpha_P) - r_min. Abeam the orbit's end is that point exactly,
+    # and one of the samples, at three quarters of the period. Rounding.
+    assert closest - 200.0 == pytest.approx(math.sqrt(200.0**2 + (d_y * math.sin(elevation)) ** 2) - 200.0, abs=1e-10)
+    # And the horizontal distance is r_CO cos alpha_P - d there, which a vertical cylinder of 200 m would not allow.
+    assert np.min(np.hypot(ahead + along, right + across)) == pytest.approx(distance * math.cos(elevation) - d_y, abs=1e-10)
+
+
+def test_the_bound_on_omega_0_grows_without_limit_as_the_vessel_gets_as_fast_as_the_uav():
+    # The notes, care 5: eta goes to 0. From J_0 = 1 - eta^2/4: eta = 2 sqrt(1 - nu), to a relative (1 - nu)/8.
+    for rest in (1e-2, 1e-4, 1e-6):
+        assert oscillation_at(1.0 - rest).omega_0 == pytest.approx(0.503 / (2.0 * math.sqrt(rest)), rel=0.2 * rest + 1e-9)
+
+
+def test_the_reference_respects_the_roll_rate_where_equation_8_does_not():
+    # The notes, care 5: eta omega_0^2 is g/V times the roll rate near level. At nu = 0.95 equation (8) alone asks for
+    # 0.503^2/0.45 rad/s^2, which is 64 deg/s of roll.
+    roll_rate = math.radians(40.0)
+    free, limited = oscillation_at(0.95), oscillation_at(0.95, roll_rate_max=roll_rate)
+    assert math.degrees(free.eta * free.omega_0**2 * SPEED / GRAVITY) == pytest.approx(64.0, abs=1.0)
+    assert limited.eta * limited.omega_0**2 * SPEED / GRAVITY == pytest.approx(roll_rate, rel=1e-13)
+
+
+def test_a_reference_started_on_the_centre_at_another_phase_would_fly_off_centre():
+    oscillation = oscillation_at(0.5)
+    along, across = offset(oscillation, np.linspace(0.0, oscillation.period, 4000, endpoint=False))
+    # The notes, care 2. From phi_0 = pi/2 on, seen from where it starts, the orbit goes from 0 to -2 d_y across.
+    start = 0.5 * math.pi / oscillation.omega_0
+    shifted = across - float(offset(oscillation, start)[1])
+    _, d_y = half_widths(oscillation)
+    # Both ends of the lobes are among the 4000 samples. Rounding.
+    assert (np.min(shifted), np.max(shifted)) == pytest.approx((-2.0 * d_y, 0.0), abs=1e-10)
+    assert np.mean(across) == pytest.approx(0.0, abs=1e-10)
+    assert np.mean(along) == pytest.approx(0.0, abs=1e-10)
+
+
+@pytest.mark.parametrize(("epsilon", "radius"), [(0.005, 60.0), (0.01, 30.0), (0.002, 200.0)])
+def test_the_length_of_z_has_the_lower_bound_of_the_notes(epsilon, radius):
+    parameters = look_ahead(epsilon, radius)
+    # The notes, care 8: rho >= delta - d >= R - 1/(4 epsilon). The bound is met at d = 1/(2 epsilon), the reference coming head-on.
+    shortest = radius - 0.25 / epsilon
+    distances = np.linspace(0.0, 2.0 / epsilon, 401)
+    rhos = [
+        relative_state(parameters, distance * math.cos(bearing), distance * math.sin(bearing), 0.0, 0.0).rho
+        for distance in distances
+        for bearing in np.linspace(-math.pi, math.pi, 25)
+    ]
+    # d = 1/(2 epsilon) and half a turn are among the samples. Rounding of 1 km.
+    assert min(rhos) == pytest.approx(shortest, abs=1e-10)
+
+
+def test_law_24_has_no_finite_command_on_the_opposite_course():
+    # The notes, care 7: tan(phi/2) is singular at pi; each tenth of the rest makes the command ten times larger, to 1 in 1e4.
+    commands = [lyapunov_law(RelativeState(60.0, 60.0, 0.0, math.pi - rest), SPEED, 0.0, 0.001) for rest in (1e-2, 1e-3, 1e-4)]
+    assert np.divide(commands[1:], commands[:-1]) == pytest.approx([10.0, 10.0], rel=1e-4)
