@@ -136,14 +136,15 @@ class Guidance:
             east += speed * lag * math.sin(middle)
             course += 0.5 * lag * (heading_rate + last)
         to_north, to_east = ahead.north - north, ahead.east - east
-        command = self._steer(ahead, to_north, to_east, course, speed)
+        wanted = self._steer(ahead, to_north, to_east, course, speed)
+        limit = p.heading_rate_max
+        command = min(max(wanted, -limit), limit)
+        self.saturated = command != wanted
         if self._guard is not None and not (
             to_north * to_north + to_east * to_east < self._guard_squared and math.cos(course - ahead.course) > _ALONGSIDE
         ):
             command = self._guard.limit(command, self._steps * p.time_step + lag, north, east, course, speed)
-        limit = p.heading_rate_max
-        self.saturated = not -limit <= command <= limit
-        self.heading_rate_command = min(max(command, -limit), limit)
+        self.heading_rate_command = command
         self._steps += 1
         reference.step()
         ahead.step()

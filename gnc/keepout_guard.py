@@ -5,6 +5,9 @@ vehicle would come if it flew the law's command for another moment and then turn
 side. While that keeps the distance the law is free; otherwise as much of the turn is mixed in as is needed. Since the turn away
 always stays possible, so does staying out (a backup-manoeuvre safety filter: Gurriet et al., "An Online Approach to Active Set
 Invariance", CDC 2018).
+
+It keeps the vehicle out and no more: it plans no way round. From astern every flight measured gets to the reference; from ahead of
+the vessel the law and the guard can hold each other in balance, and the flight never settles.
 """
 
 import math
@@ -12,7 +15,6 @@ import math
 from gnc.unicycle import unicycle_move
 
 _STEP = 0.25
-_STEPS_MAX = 40
 _MOMENT = 0.5
 _TURN_SHARE = 0.9
 _SHARES = (0.25, 0.5, 0.75)
@@ -30,7 +32,7 @@ class KeepoutGuard:
     speed : of the vehicle, for the distance beyond which there is nothing to check [m/s]
     """
 
-    __slots__ = ("_east", "_far_squared", "_north", "_radius", "_rate", "_velocity_east", "_velocity_north")
+    __slots__ = ("_east", "_far_squared", "_half_turn_steps", "_north", "_radius", "_rate", "_velocity_east", "_velocity_north")
 
     def __init__(
         self,
@@ -47,6 +49,7 @@ class KeepoutGuard:
         self._velocity_north, self._velocity_east = velocity_north, velocity_east
         self._radius = radius
         self._rate = _TURN_SHARE * heading_rate_max
+        self._half_turn_steps = math.ceil(math.pi / self._rate / _STEP)
         # A turn away takes at most half a turn; nothing farther than both can close in that time needs a look.
         closing = speed + math.hypot(velocity_north, velocity_east)
         self._far_squared = (radius + closing * math.pi / self._rate) ** 2
@@ -94,7 +97,7 @@ class KeepoutGuard:
         closest = x * x + y * y
         if closest >= start:
             return math.inf
-        for _ in range(_STEPS_MAX):
+        for _ in range(self._half_turn_steps):
             x += chord * math.cos(middle) - drift_north
             y += chord * math.sin(middle) - drift_east
             distance = x * x + y * y

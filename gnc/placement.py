@@ -11,7 +11,7 @@ from gnc.errors import InfeasibleError
 from gnc.orbit import half_widths, offset
 from gnc.oscillation import Oscillation
 
-_ORBIT_POINTS = 721
+_ORBIT_POINTS = 7201
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +50,8 @@ def distance_exact(oscillation: Oscillation, axis: PlumeAxis, distance_min: floa
     """Return the smallest r_CO [m] for which the whole orbit stays ``distance_min`` r_min [m] away from the plume's origin.
 
     For every point o of the orbit, |r_CO u + o| >= r_min bounds r_CO from below by the larger root of a quadratic; the result is
-    the largest bound. Differs from equation (10) because (11) overestimates the reach of all but an abeam plume, by up to 9.9 m.
+    the largest bound. Differs from equation (10) because (11) overestimates the reach of all but an abeam plume: by up to 10 m for
+    a level plume and r_min = 200 m.
 
     Raises
     ------
@@ -75,6 +76,8 @@ def distance_exact(oscillation: Oscillation, axis: PlumeAxis, distance_min: floa
 def _check(axis: PlumeAxis, distance_min: float) -> None:
     if not (math.isfinite(distance_min) and distance_min >= 0.0):
         raise InfeasibleError(f"keep-out radius is {distance_min:g} m; it must be finite and at least 0")
+    if not math.isfinite(axis.heading):
+        raise InfeasibleError(f"plume heading is {axis.heading:g} rad; it must be finite")
     if not abs(axis.elevation) < 0.5 * math.pi:
         raise InfeasibleError(
             f"plume elevation is {axis.elevation:g} rad; it must lie within -pi/2 and pi/2: a vertical plume cannot be crossed"

@@ -47,7 +47,7 @@ class Plume(_Section):
 class Keepout(_Section):
     """The sphere about the funnel's mouth that the UAV must not enter."""
 
-    radius_m: Annotated[float, Field(gt=0.0, le=10_000.0)] = 200.0
+    radius_m: Annotated[float, Field(ge=10.0, le=10_000.0)] = 200.0
     """r_min [m]."""
 
 
