@@ -33,7 +33,9 @@ def eta_for_speed_ratio(nu: float) -> float:
     InfeasibleError : ``nu`` is outside 0 to 1, where J_0 on [0, 2.4048] has no inverse
     """
     if not (math.isfinite(nu) and 0.0 <= nu <= 1.0):
-        raise InfeasibleError(f"speed ratio nu is {nu:g}; it must lie within 0 and 1: fly faster than the vessel")
+        raise InfeasibleError(
+            f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed from 0 up to that of the UAV"
+        )
     if nu == 1.0:
         return 0.0
     return float(brentq(lambda eta: mean_speed_ratio(eta) - nu, 0.0, 2.5, xtol=1e-15, rtol=1e-14))

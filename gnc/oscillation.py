@@ -73,11 +73,15 @@ def design_oscillation(
     ------
     InfeasibleError : nu of 1 or more, or nothing left of omega_max
     """
-    for name, value in (("speed", speed), ("heading_rate_max", heading_rate_max), ("roll_rate_max", roll_rate_max)):
+    for name, value, unit in (
+        ("speed", speed, "m/s"),
+        ("heading_rate_max", heading_rate_max, "rad/s"),
+        ("roll_rate_max", roll_rate_max, "rad/s"),
+    ):
         if not value > 0.0:
-            raise InfeasibleError(f"{name} is {value:g}; it must be above 0")
+            raise InfeasibleError(f"{name} is {value:g} {unit}; it must be above 0: give what the vehicle can fly")
     if not 0.0 <= reserve < 1.0:
-        raise InfeasibleError(f"reserve is {reserve:g} of omega_max; it must be at least 0 and below 1")
+        raise InfeasibleError(f"reserve is {reserve:g} of omega_max; it must be at least 0 and below 1: a tenth is plenty")
     if nu >= 1.0:
         raise InfeasibleError(
             f"speed ratio nu is {nu:g}; it must be below 1: at 1 the reference flies straight and never crosses the plume,"

@@ -77,8 +77,6 @@ def test_near_equal_speeds_eta_follows_the_series_of_j_0():
 
 @pytest.mark.parametrize("nu", [-0.01, 1.01, math.nan, math.inf, -math.inf])
 def test_speed_ratios_that_j_0_does_not_take_are_refused(nu):
-    with pytest.raises(
-        InfeasibleError, match=r"speed ratio nu is .*must lie within 0 and 1: fly faster than the vessel"
-    ) as refusal:
+    with pytest.raises(InfeasibleError, match=r"speed ratio nu is .*must lie within 0 and 1: give the vessel a speed") as refusal:
         eta_for_speed_ratio(nu)
     assert f"{nu:g}" in str(refusal.value)
