@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +19,8 @@ TIME_STEP = 1.0 / 120.0
 
 EARTH_RATE = 7.292115e-5
 """Rotation rate of the earth, as in JSBSim's default planet [rad/s]."""
+
+_PROPERTY_NAME = re.compile(r"[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*")
 
 _INTEGRATORS = tuple(
     f"simulation/integrator/{kind}/{motion}" for kind in ("rate", "position") for motion in ("rotational", "translational")
@@ -64,7 +67,8 @@ class Fdm:
 
     def node(self, name: str) -> jsbsim.FGPropertyNode:
         """Return the node of an existing property, for repeated access at the least cost."""
-        node = self._properties.get_node(name)
+        # A name that is not one ends the whole process in JSBSim's property tree.
+        node = self._properties.get_node(name) if _PROPERTY_NAME.fullmatch(name) else None
         if node is None:
             raise UnknownPropertyError(f"aircraft '{self.spec.name}' has no JSBSim property '{name}'; check its spelling")
         return node

@@ -99,6 +99,8 @@ def trim(fdm: Fdm, *, airspeed: float, altitude: float, bank: float = 0.0, climb
     for name, value, unit in (("altitude", altitude, "m"), ("bank", bank, "rad"), ("climb angle", climb_angle, "rad")):
         if not math.isfinite(value):
             raise TrimError(f"trim of '{fdm.spec.name}': {name} is {value} {unit}; it must be finite")
+    if not abs(bank) < 0.5 * math.pi:
+        raise TrimError(f"trim of '{fdm.spec.name}': bank is {math.degrees(bank):g} deg; it must lie within -90 and 90 deg")
     problem = _TrimProblem(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle)
     residual = math.inf
     with fdm.frozen():

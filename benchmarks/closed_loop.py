@@ -1,8 +1,8 @@
 """``make bench``: what the autopilot and the guidance cost on top of JSBSim.
 
-Three loops over the same simulated time, in one process, in turn, again and again: JSBSim with the bare aircraft, JSBSim with the autopilot,
-and the full closed loop with guidance and record. The figures are medians over the rounds; ratios are taken within a round, where the
-machine's speed is the same.
+Three loops over the same simulated time, in one process, in turn, again and again: JSBSim with the bare aircraft, JSBSim with
+the autopilot, and the full closed loop with guidance and record. The figures are medians over the rounds; ratios are taken within
+a round, where the machine's speed is the same.
 """
 
 import statistics
@@ -14,7 +14,7 @@ from pathlib import Path
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.spec import X8
 from innerloop.flight import AutopilotedAircraft
-from innerloop.jsbsim_system import write_root
+from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim, measure_lag
 from innerloop.schedule import design_schedule
 from scenarios.closed_loop import fly

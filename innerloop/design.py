@@ -37,7 +37,7 @@ def _design(aircraft: str, out: Path, altitude: float) -> None:
 
     spec = find_spec(aircraft)
 
-    from innerloop.jsbsim_system import write_root
+    from innerloop.jsbsim_root import write_root
     from innerloop.record import design_record
     from innerloop.schedule import design_schedule
     from reports.innerloop_charts import innerloop_charts

@@ -13,7 +13,7 @@ _SETTLE_STEPS = 240
 
 
 class AutopilotedAircraft:
-    """An aircraft and its autopilot, as ``innerloop.jsbsim_system.write_root`` wrote them.
+    """An aircraft and its autopilot, as ``innerloop.jsbsim_root.write_root`` wrote them.
 
     Parameters
     ----------

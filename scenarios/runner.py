@@ -11,7 +11,7 @@ from typing import Any
 from aircraft.errors import AircraftError
 from aircraft.spec import find_spec
 from aircraft.trim import Trim
-from innerloop.jsbsim_system import write_root
+from innerloop.jsbsim_root import write_root
 from innerloop.record import design_record
 from innerloop.responses import level_trim
 from innerloop.schedule import design_schedule

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from aircraft.spec import X8
-from innerloop.jsbsim_system import write_root
+from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim, measure_lag
 from scenarios.flights import flight_requests, fly_request
 from scenarios.load import load_scenario

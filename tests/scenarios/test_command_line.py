@@ -57,7 +57,7 @@ def test_help_and_list_answer():
         ([], ["no scenario given", "sweep_nu"]),
         (["sweep_mu"], ["unknown scenario 'sweep_mu'"]),
         (["sweep_nu", "--set", "keepout.radius=5"], ["unknown key 'keepout.radius'"]),
-        (["sweep_nu", "--set", "keepout.radius_m=-1"], ["keepout.radius_m", "-1", "greater than 0"]),
+        (["sweep_nu", "--set", "keepout.radius_m=-1"], ["keepout.radius_m", "-1", "greater than or equal to 10"]),
         (["sweep_nu", "--set", "guidance.airspeed_mps=nan"], ["guidance.airspeed_mps", "nan"]),
         (["sweep_nu", "--set", "guidance.airspeed_mps=60"], ["guidance.airspeed_mps is 60", "15 to 25 m/s"]),
         (["sweep_nu", "--set", "aircraft=zeppelin"], ["unknown aircraft 'zeppelin'", "x8"]),

@@ -39,7 +39,7 @@ def test_overrides_set_any_key(override, value):
     [
         ("keepout.radius=5", ["unknown key 'keepout.radius'"]),
         ("nonsense=5", ["unknown key 'nonsense'"]),
-        ("keepout.radius_m=-5", ["keepout.radius_m", "-5", "greater than 0"]),
+        ("keepout.radius_m=-5", ["keepout.radius_m", "-5", "greater than or equal to 10"]),
         ("keepout.radius_m=nan", ["keepout.radius_m", "nan", "finite"]),
         ("keepout.radius_m=inf", ["keepout.radius_m", "inf"]),
         ("keepout.radius_m=wide", ["keepout.radius_m", "'wide'", "number"]),
