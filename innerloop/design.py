@@ -83,7 +83,7 @@ def _trims(record: "Record") -> Any:
     rows = [
         [
             f"{t['airspeed_mps']:g}",
-            f"{math.degrees(t['bank_rad']):.1f}",
+            f"{round(math.degrees(t['bank_rad']), 1) + 0.0:.1f}",
             *(f"{t[name]:.4f}" for name in ("alpha_rad", "sideslip_rad", "pitch_rad", "elevator", "aileron", "throttle")),
         ]
         for t in record["trims"]

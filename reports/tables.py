@@ -45,7 +45,7 @@ def flight_table(frame: pd.DataFrame, first: str = "ν") -> Table:
         name = f"{row['nu']:.2f}" if first == "ν" else f"{variant_name(str(row['flight_id']))}, ν = {row['nu']:g}"
         rows.append([name, *(_number(row[key], pattern) for _, key, pattern in _FLIGHT_COLUMNS), _outcome(row)])
     head = [first, *(title for title, _, _ in _FLIGHT_COLUMNS), "Outcome"]
-    return Table(head=head, rows=rows, widths=[1.0 if first == "ν" else 2.4, *[1.0] * len(_FLIGHT_COLUMNS), 1.8])
+    return Table(head=head, rows=rows, widths=[1.0 if first == "ν" else 2.4, *[0.9] * len(_FLIGHT_COLUMNS), 2.6])
 
 
 def comparison_table(run: RunData) -> Table:
@@ -130,7 +130,7 @@ def trim_table(design: dict[str, Any]) -> Table:
     rows = [
         [
             f"{t['airspeed_mps']:g}",
-            f"{math.degrees(t['bank_rad']):.1f}",
+            f"{round(math.degrees(t['bank_rad']), 1) + 0.0:.1f}",
             f"{t['alpha_rad']:.4f}",
             f"{t['sideslip_rad']:.4f}",
             f"{t['pitch_rad']:.4f}",
