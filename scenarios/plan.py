@@ -106,7 +106,7 @@ def plan_flight(scenario: Scenario, *, flight_id: str, nu: float, seed: int, lag
         keepout_radius=scenario.keepout.radius_m,
         altitude=vessel.source_height + above,
         guidance=_guidance(scenario, lag),
-        guard=_guard(scenario, vessel) if g.keepout_guard else None,
+        guard=_guard(scenario, vessel, above),
         start_north=north,
         start_east=east,
         start_course=course,
@@ -140,14 +140,18 @@ def _guidance(scenario: Scenario, lag: float) -> GuidanceParameters:
     )
 
 
-def _guard(scenario: Scenario, vessel: Vessel) -> KeepoutGuard:
+def _guard(scenario: Scenario, vessel: Vessel, above: float) -> KeepoutGuard | None:
+    """Return the guard of the disc that the keep-out sphere cuts out at ``above`` [m] over its centre, if any."""
+    radius = scenario.keepout.radius_m + scenario.guidance.guard_margin_m
+    if not scenario.guidance.keepout_guard or radius <= abs(above):
+        return None
     velocity_north, velocity_east = vessel.velocity_ned
     return KeepoutGuard(
         north=0.0,
         east=0.0,
         velocity_north=velocity_north,
         velocity_east=velocity_east,
-        radius=scenario.keepout.radius_m + scenario.guidance.guard_margin_m,
+        radius=math.sqrt(radius**2 - above**2),
         heading_rate_max=heading_rate_max(scenario),
         speed=scenario.guidance.airspeed_mps,
     )
