@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def command(
     aircraft: Annotated[str, typer.Argument(metavar="AIRCRAFT", help="What to design for, e.g. x8.")],
     out: Annotated[Path | None, typer.Option(help="Directory for the design; default runs/design-AIRCRAFT.")] = None,
-    altitude: Annotated[float, typer.Option(min=10.0, max=5000.0, help="Design altitude [m].")] = 100.0,
+    altitude: Annotated[float, typer.Option(min=10.0, max=5000.0, help="Design altitude in metres.")] = 100.0,
 ) -> None:
     """Design the autopilot of an aircraft: trim, poles, margins, step responses; a JSBSim root that flies it."""
     from aircraft.errors import AircraftError

@@ -37,6 +37,7 @@ class Content:
 
     title: str
     description: str
+    changes: str
     verdict: Verdict
     sweep: list[Chart]
     flights_table: Table
@@ -63,6 +64,7 @@ def content(run: RunData) -> Content:
     return Content(
         title=run.manifest["title"],
         description=run.manifest["config"]["description"],
+        changes=", ".join(run.manifest["overrides"]),
         verdict=verdict(run),
         sweep=sweep_charts(run),
         flights_table=table,

@@ -36,7 +36,7 @@ class _View:
         self._plume = math.radians(config["plume"]["heading_deg"])
         self._elevation = math.radians(config["plume"]["elevation_deg"])
         self._source_height = float(config["plume"]["source_height_m"])
-        self._omega_max = float(row["heading_rate_max_rad_s"])
+        self._omega_max = float(row["heading_rate_limit_rad_s"])
         self._target_altitude = self._source_height + float(row["r_co_m"]) * math.sin(self._elevation)
         times = run.crossings_of(str(row["flight_id"]))["time_s"].to_numpy(dtype=np.float64)
         full_time = history["time_s"].to_numpy()
@@ -116,7 +116,7 @@ class _View:
         x = "Time [s]"
         return Chart(
             name="histories",
-            caption="Distance to the funnel, heading rate, bank, airspeed and altitude over time.",
+            caption="Distance to the funnel, heading rate, bank, airspeed and altitude over time. Dashed: r_min and ω_max.",
             panels=[
                 Panel(
                     x_label=x,
@@ -135,7 +135,7 @@ class _View:
                 ),
                 Panel(
                     x_label=x,
-                    y_label="Heading rate [rad/s]",
+                    y_label="Rate [rad/s]",
                     lines=[
                         level(self._omega_max, "limit"),
                         level(-self._omega_max, "limit"),
@@ -170,5 +170,5 @@ class _View:
                 ),
             ],
             share_x=True,
-            panel_height=0.145,
+            panel_height=0.15,
         )

@@ -40,7 +40,10 @@ def _data(report: Content, directory: Path) -> dict[str, Any]:
     return {
         "title": report.title,
         "description": report.description,
+        "changes": report.changes,
         "safe": report.verdict.safe,
+        "complete": report.verdict.complete,
+        "failures": report.verdict.failures,
         "headline": report.verdict.headline,
         "detail": report.verdict.detail,
         "figures": [list(figure) for figure in report.verdict.figures],

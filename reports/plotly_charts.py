@@ -80,4 +80,5 @@ def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bo
     figure.update_yaxes(**y_options, row=row, col=column)
     if panel.equal:
         axis = next(figure.select_xaxes(row=row, col=column)).plotly_name.replace("axis", "")
-        figure.update_yaxes(scaleanchor=axis, scaleratio=1, row=row, col=column)
+        figure.update_yaxes(scaleanchor=axis, scaleratio=1, constrain="domain", row=row, col=column)
+        figure.update_xaxes(constrain="domain", row=row, col=column)

@@ -54,6 +54,8 @@ def read_run(path: Path) -> RunData:
         raise ReportError(f"'{path}' holds no run (no manifest.json); give the directory that scenarios.run named") from None
     except (json.JSONDecodeError, UnicodeDecodeError, OSError) as error:
         raise ReportError(f"'{path}': manifest.json cannot be read: {error}; run the scenario again") from None
+    if not (isinstance(manifest, dict) and isinstance(manifest.get("config"), dict)):
+        raise ReportError(f"'{path}': manifest.json is not that of a run; run the scenario again in another --out")
     if not (path / "summary.csv").is_file():
         raise ReportError(f"'{path}' holds no finished flight (no summary.csv); continue the run with --resume")
     innerloop = path / "innerloop.json"

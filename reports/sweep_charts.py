@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from reports.chart import Array, Chart, Line, Panel, constant
+from reports.chart import Array, Chart, Line, Panel, Style, constant
 from reports.run_data import RunData
 
 _NU = "Speed ratio ν = V_vessel/V_r [-]"
@@ -72,6 +72,13 @@ def _error_line(run: RunData, row: "pd.Series[Any]", label: str, colour: str) ->
     return [Line(x=time[shown], y=error[shown], label=label, colour=colour)]
 
 
+def _reference(nu: Array, values: Array, label: str, colour: str, style: Style = "dash") -> Line:
+    """Return a line to compare points with; drawn to both sides of a single one."""
+    if len(nu) == 1:
+        nu, values = np.array([nu[0] - 0.05, nu[0] + 0.05]), np.array([values[0], values[0]])
+    return Line(x=nu, y=values, label=label, colour=colour, style=style)
+
+
 def _column(frame: pd.DataFrame, name: str) -> Array:
     return frame[name].to_numpy(dtype=np.float64)
 
@@ -88,7 +95,7 @@ def _interval(flown: pd.DataFrame, manifest: dict[str, Any]) -> Chart:
                 x_label=_NU,
                 y_label="Crossing interval [s]",
                 lines=[
-                    Line(x=nu, y=predicted, label="predicted, π/ω₀", colour="black"),
+                    _reference(nu, predicted, "predicted, π/ω₀", "black", "solid"),
                     Line(
                         x=nu, y=mean, label="flown, mean", colour="blue", style="points",
                         error=_column(flown, "crossing_interval_std_s"),
@@ -100,8 +107,8 @@ def _interval(flown: pd.DataFrame, manifest: dict[str, Any]) -> Chart:
                 y_label="Mean against prediction [%]",
                 lines=[
                     Line(x=nu, y=error, label="flown, mean", colour="blue", style="points"),
-                    Line(x=nu, y=constant(nu, limit), label="criterion", colour="vermillion", style="dash"),
-                    Line(x=nu, y=constant(nu, -limit), label="criterion", colour="vermillion", style="dash"),
+                    _reference(nu, constant(nu, limit), "criterion", "vermillion"),
+                    _reference(nu, constant(nu, -limit), "criterion", "vermillion"),
                 ],
             ),
         ],
@@ -121,8 +128,8 @@ def _distance(summary: pd.DataFrame) -> Chart:
                 x_label=_NU,
                 y_label="Distance from the funnel [m]",
                 lines=[
-                    Line(x=nu, y=_column(summary, "keepout_radius_m"), label="keep-out radius r_min", colour="vermillion"),
-                    Line(x=nu, y=_column(summary, "r_co_m"), label="centre of oscillation r_CO", colour="grey", style="dash"),
+                    _reference(nu, _column(summary, "keepout_radius_m"), "keep-out radius r_min", "vermillion", "solid"),
+                    _reference(nu, _column(summary, "r_co_m"), "centre of oscillation r_CO", "grey"),
                     Line(
                         x=nu, y=_column(summary, "crossing_distance_mean_m"), label="crossings, mean", colour="blue",
                         style="points",
@@ -152,7 +159,7 @@ def _tracking(flown: pd.DataFrame, manifest: dict[str, Any]) -> Chart:
             y_label=quantity,
             lines=[
                 Line(x=nu, y=_column(flown, name), label="flown", colour="blue", style="points"),
-                Line(x=nu, y=constant(nu, limit), label="criterion", colour="vermillion", style="dash"),
+                _reference(nu, constant(nu, limit), "criterion", "vermillion"),
             ],
             y_range=(0.0, 1.15 * max(limit, float(np.max(_column(flown, name), initial=0.0)))),
         )
@@ -183,10 +190,10 @@ def _command(summary: pd.DataFrame) -> Chart:
                 y_label="Heading rate [rad/s]",
                 lines=[
                     Line(
-                        x=nu, y=_column(summary, "heading_rate_command_max_rad_s"), label="largest command", colour="blue",
+                        x=nu, y=_column(summary, "heading_rate_command_max_rad_s"), label="largest command", colour="orange",
                         style="points",
                     ),
-                    Line(x=nu, y=_column(summary, "heading_rate_max_rad_s"), label="ω_max", colour="vermillion", style="dash"),
+                    _reference(nu, _column(summary, "heading_rate_limit_rad_s"), "ω_max", "vermillion"),
                 ],
             ),
             Panel(

@@ -61,7 +61,7 @@ def parameter_table(run: RunData) -> Table:
     """Return every parameter of the run with its unit and meaning, and what follows from them."""
     rows = [[p["key"], _value(p["value"]), p["unit"], p["meaning"]] for p in run.manifest["parameters"]]
     summary = run.summary
-    known = summary["heading_rate_max_rad_s"].dropna()
+    known = summary["heading_rate_limit_rad_s"].dropna()
     if len(known):
         rows.append(["ω_max", f"{known.iloc[0]:.4f}", "rad/s", "Largest heading-rate command: g tan(bank)/V_r, or as given."])
     if "guidance_lag_s" in run.manifest:

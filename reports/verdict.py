@@ -17,6 +17,7 @@ class Verdict:
     safe : no flight entered the keep-out area and every crossing lay outside it
     complete : every planned flight completed and met its criteria
     headline, detail : in words
+    failures : a line per flight that is not as asked
     figures : name, value and limit of what was asked for
     """
 
@@ -24,6 +25,7 @@ class Verdict:
     complete: bool
     headline: str
     detail: str
+    failures: list[str]
     figures: list[tuple[str, str, str]]
 
 
@@ -41,17 +43,20 @@ def verdict(run: RunData) -> Verdict:
     radius = float(manifest["config"]["keepout"]["radius_m"])
     if not len(flown):
         headline = "Nothing was flown"
-    elif safe:
-        headline = f"Safe: no flight entered the keep-out area of {radius:g} m"
+    elif not safe:
+        headline = f"Not safe: {entries} entries into the keep-out area of {radius:g} m, {inside} flights crossed inside it"
+    elif complete:
+        headline = f"Safe: no flight entered the keep-out area of {radius:g} m, and every flight met its criteria"
     else:
-        headline = f"Not safe: {entries} entries into the keep-out area of {radius:g} m"
-    detail = (
-        f"{len(summary)} of {planned} flights are in this report; {met} completed and met every criterion."
-        f" Closest approach of any flight, from its first second: {closest:.1f} m."
-    )
+        headline = f"No flight entered the keep-out area of {radius:g} m, but {planned - met} of {planned} fell short"
+    unmet = summary[summary["criteria_met"].astype(str) != "True"]
+    failures = [f"ν = {row['nu']:g}: {row['outcome'].replace('_', ' ')}, {row['message']}" for _, row in unmet.iterrows()]
+    detail = f"{len(summary)} of {planned} flights are in this report; {met} completed and met every criterion."
+    if len(flown):
+        detail += f" Closest approach of any flight, from its first second: {closest:.1f} m."
     if manifest.get("state") != "complete":
         detail += f" The run is {manifest.get('state', 'unfinished')}; continue it with --resume."
-    return Verdict(safe=safe, complete=complete, headline=headline, detail=detail, figures=_figures(run, flown))
+    return Verdict(safe=safe, complete=complete, headline=headline, detail=detail, failures=failures, figures=_figures(run, flown))
 
 
 def _figures(run: RunData, flown: pd.DataFrame) -> list[tuple[str, str, str]]:
@@ -65,7 +70,7 @@ def _figures(run: RunData, flown: pd.DataFrame) -> list[tuple[str, str, str]]:
 
     crossings = int(flown["crossing_count"].sum()) if len(flown) else 0
     minimum = flown["crossing_distance_min_m"].dropna()
-    command = flown["heading_rate_command_max_rad_s"] / flown["heading_rate_max_rad_s"]
+    command = flown["heading_rate_command_max_rad_s"] / flown["heading_rate_limit_rad_s"]
     closest = f"{float(minimum.min()):.1f} m" if len(minimum) else "none"
     interval_limit = f"≤ {100 * criteria['crossing_interval_error']:g} %"
     tracking_limit = f"≤ {criteria['tracking_error_rms_m']:g} m"

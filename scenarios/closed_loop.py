@@ -111,7 +111,7 @@ def fly(plan: FlightPlan, aircraft: AutopilotedAircraft, start: Trim) -> FlightR
     if outcome is Outcome.NOT_SETTLED:
         message = (
             f"{counter.count} of {plan.crossings} crossings flown after settling within {plan.duration_max:g} s;"
-            " allow more time (flight.duration_max_s) or start closer"
+            " allow more time (flight.duration_max_s), start closer, or see whether the guard holds it off (guidance.keepout_guard)"
         )
     return FlightRecord(outcome=outcome, message=message, history=np.array(rows), saturation_fraction=saturated / max(1, step))
 

@@ -8,7 +8,9 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 def _check_divides(name: str, rate: float, whole: float) -> None:
     ratio = whole / rate
     if abs(ratio - round(ratio)) > 1e-9:
-        raise ValueError(f"{name} is {rate:g} Hz; it must divide {whole:g} Hz, e.g. {whole / max(1, round(ratio)):g}")
+        fitting = [n for n in range(1, int(whole) + 1) if whole % n == 0.0]
+        nearest = min(fitting, key=lambda n: abs(n - rate))
+        raise ValueError(f"{name} is {rate:g} Hz; it must divide {whole:g} Hz, e.g. {nearest}")
 
 
 class _Section(BaseModel):
@@ -125,14 +127,14 @@ class Start(_Section):
 class Flight(_Section):
     """When a flight ends and what is recorded."""
 
-    crossings: Annotated[int, Field(ge=1, le=10_000)] = 30
+    crossings: Annotated[int, Field(ge=2, le=10_000)] = 30
     """Crossings to fly after settling."""
     duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 1500.0
     """Longest flight [s]."""
     settling_band_m: Positive = 5.0
     """Settled from the moment the distance to the reference stays below this [m]."""
-    log_rate_hz: Annotated[float, Field(ge=0.1, le=120.0)] = 10.0
-    """Recording rate [Hz]; must divide the guidance rate."""
+    log_rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 10.0
+    """Recording rate [Hz], at least 5 so that keep-out figures are true to centimetres; must divide the guidance rate."""
 
 
 class Criteria(_Section):
@@ -182,4 +184,7 @@ class Scenario(_Section):
     @model_validator(mode="after")
     def _rates(self) -> "Scenario":
         _check_divides("flight.log_rate_hz", self.flight.log_rate_hz, self.guidance.rate_hz)
+        nearest, radius = self.start.distance_m[0], self.keepout.radius_m
+        if nearest <= radius:
+            raise ValueError(f"start.distance_m begins at {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m")
         return self

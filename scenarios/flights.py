@@ -62,7 +62,7 @@ def flight_requests(scenario: Scenario) -> list[FlightRequest]:
     requests = [_request(scenario, "study", nu) for nu in dict.fromkeys(scenario.sweep.nu)]
     for variant in scenario.comparison.variants:
         changed = with_values(scenario, variant.set)
-        requests += [_request(changed, variant.name, nu) for nu in scenario.comparison.nu]
+        requests += [_request(changed, variant.name, nu) for nu in scenario.comparison.nu if nu in scenario.sweep.nu]
     return requests
 
 
@@ -119,9 +119,12 @@ def _fly(request: FlightRequest, plan: FlightPlan, run: RunDirectory, start: Tri
         unmet = unmet_criteria({**plan_row(plan, request.scenario.aircraft), **figures}, request.scenario.criteria)
         figures["criteria_met"] = not unmet
         figures["message"] = "; ".join(unmet)
+    elif figures["keepout_violations"]:
+        figures["message"] = f"entered the keep-out area {figures['keepout_violations']} times; {figures['message']}"
     rows: list[dict[str, Any]] = [
         {
             "flight_id": request.flight_id,
+            "variant": request.variant,
             "nu": plan.nu,
             "crossing": i,
             "time_s": crossing.time,

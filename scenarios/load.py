@@ -33,7 +33,12 @@ def load_scenario(name: str, overrides: Sequence[str] = ()) -> Scenario:
     known = catalog()
     path = known.get(name, Path(name))
     if not path.is_file():
-        raise InputError(f"unknown scenario '{name}'; give a TOML file or one of: {', '.join(known)}")
+        what = (
+            f"no scenario file '{name}'; check the path"
+            if name.endswith(".toml")
+            else f"unknown scenario '{name}'; give a TOML file"
+        )
+        raise InputError(f"{what} or name one of: {', '.join(known)}")
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
@@ -58,7 +63,8 @@ def validate(document: Mapping[str, Any]) -> Scenario:
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
-        others = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
+        more = len({entry["loc"] for entry in error.errors()}) - 1
+        others = f" (and {more} more keys)" if more else ""
         raise InputError(f"{_explain(key, first['type'], first['msg'], first.get('input'))}{others}") from None
 
 

@@ -1,6 +1,7 @@
 """Command line: ``python -m scenarios.run NAME|FILE.toml``. Nothing heavy is imported before it is needed."""
 
 import os
+import shlex
 import sys
 from datetime import datetime
 from pathlib import Path
@@ -81,13 +82,21 @@ def _run(
     from scenarios.runner import run_scenario
 
     with progress_bar() as progress:
-        result = run_scenario(scenario, stem, directory, jobs=jobs or os.cpu_count() or 1, resume=resume, progress=progress)
+        result = run_scenario(
+            scenario,
+            stem,
+            directory,
+            jobs=jobs or os.cpu_count() or 1,
+            resume=resume,
+            progress=progress,
+            overrides=overrides,
+        )
     _say(result)
     if result.interrupted:
-        options = " ".join(f"--set '{item}'" for item in overrides)
+        options = "".join(f"--set {shlex.quote(item)} " for item in overrides)
+        again = f"{shlex.quote(name)} {options}--out {shlex.quote(str(directory))} --resume"
         print(
-            f"interrupted; {len(result.rows)} of {result.planned} flights are kept. Go on with:"
-            f" python -m scenarios.run {name} {options + ' ' if options else ''}--out {directory} --resume",
+            f"interrupted; {len(result.rows)} of {result.planned} flights are kept. Go on with: python -m scenarios.run {again}",
             file=sys.stderr,
         )
         return INTERRUPTED

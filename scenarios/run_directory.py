@@ -41,7 +41,7 @@ class RunDirectory:
                 f"output directory '{self.path}' holds another run; choose another --out, or continue it with --resume"
             )
         if self.path.is_dir() and any(self.path.iterdir()):
-            raise InputError(f"output directory '{self.path}' is not empty; choose another --out or empty it")
+            raise InputError(f"output directory '{self.path}' is not empty; choose another --out")
         self._create()
 
     def open_existing(self, config_hash: str) -> None:
@@ -54,8 +54,8 @@ class RunDirectory:
         if not self.manifest.is_file():
             raise InputError(f"'{self.path}' holds no run to resume; leave out --resume to start one")
         try:
-            found = json.loads(self.manifest.read_text(encoding="utf-8")).get("config_hash")
-        except (json.JSONDecodeError, OSError):
+            found = json.loads(self.manifest.read_text(encoding="utf-8"))["config_hash"]
+        except (ValueError, KeyError, TypeError, OSError):
             raise InputError(f"'{self.manifest}' cannot be read; start a new run in another --out") from None
         if found != config_hash:
             raise InputError(

@@ -1,7 +1,8 @@
 """Run a scenario: design the autopilot, fly every flight in parallel, keep what is done after each."""
 
+import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import Any
 from aircraft.errors import AircraftError
 from aircraft.spec import find_spec
 from aircraft.trim import Trim
+from gnc.oscillation import GRAVITY
 from innerloop.jsbsim_root import write_root
 from innerloop.record import design_record
 from innerloop.responses import level_trim
@@ -21,9 +23,10 @@ from scenarios.errors import InputError
 from scenarios.flights import FlightRequest, FlightResult, flight_requests, fly_request, ignore_interrupt
 from scenarios.manifest import config_hash, parameters, provenance
 from scenarios.metrics import SUMMARY_COLUMNS, Row
+from scenarios.plan import heading_rate_max
 from scenarios.run_directory import RunDirectory
 
-CROSSING_COLUMNS = ("flight_id", "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
+CROSSING_COLUMNS = ("flight_id", "variant", "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
 
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, how many flights are done and how many there are."""
@@ -52,7 +55,16 @@ class RunResult:
         return sum(bool(row["criteria_met"]) for row in self.rows)
 
 
-def run_scenario(scenario: Scenario, name: str, directory: Path, *, jobs: int, resume: bool, progress: Progress) -> RunResult:
+def run_scenario(
+    scenario: Scenario,
+    name: str,
+    directory: Path,
+    *,
+    jobs: int,
+    resume: bool,
+    progress: Progress,
+    overrides: Sequence[str] = (),
+) -> RunResult:
     """Fly a scenario into ``directory``.
 
     Parameters
@@ -62,6 +74,7 @@ def run_scenario(scenario: Scenario, name: str, directory: Path, *, jobs: int, r
     jobs : number of processes
     resume : go on with the unfinished run in ``directory``
     progress : told what happens
+    overrides : how the scenario differs from the one of that name, for the record
 
     Raises
     ------
@@ -77,6 +90,12 @@ def run_scenario(scenario: Scenario, name: str, directory: Path, *, jobs: int, r
         raise InputError(
             f"guidance.airspeed_mps is {airspeed:g}; {spec.title} flies {envelope.airspeed_min:g} to {envelope.airspeed_max:g} m/s"
         )
+    bank = math.atan(heading_rate_max(scenario) * airspeed / GRAVITY)
+    if bank > envelope.bank_max:
+        raise InputError(
+            f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {spec.title} stops at"
+            f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or guidance.heading_rate_max_rad_s"
+        )
     requests = flight_requests(scenario)
     run = RunDirectory(directory)
     digest = config_hash(scenario)
@@ -88,6 +107,7 @@ def run_scenario(scenario: Scenario, name: str, directory: Path, *, jobs: int, r
     manifest: dict[str, Any] = {
         "name": name,
         "title": scenario.title,
+        "overrides": list(overrides),
         "state": "running",
         "config": scenario.model_dump(mode="json"),
         "config_hash": digest,
@@ -138,8 +158,8 @@ class _Ledger:
         self._order = {request.flight_id: i for i, request in enumerate(requests)}
         self._study = {request.flight_id for request in requests if request.variant == "study"}
         found = [*run.read_rows("summary.csv"), *run.read_rows("comparison.csv")]
-        self._rows = {row["flight_id"]: row for row in found if row["flight_id"] in self._order}
-        self._crossings = [row for row in run.read_rows("crossings.csv") if row["flight_id"] in self._rows]
+        self._rows = {row["flight_id"]: row for row in found if row.get("flight_id") in self._order}
+        self._crossings = [row for row in run.read_rows("crossings.csv") if row.get("flight_id") in self._rows]
 
     @property
     def done(self) -> set[str]:

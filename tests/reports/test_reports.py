@@ -18,7 +18,9 @@ from reports.verdict import verdict
 from scenarios.load import load_scenario
 from scenarios.runner import run_scenario
 
-OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0.5]"]
+# Three crossings are too few for the study's own criteria.
+CRITERIA = ["criteria.tracking_error_rms_m=5.0", "criteria.crossing_interval_error=0.1"]
+OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0.5]", *CRITERIA]
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +97,8 @@ def test_a_safe_run_is_called_safe_and_an_unsafe_one_is_not(run_path, copy):
 def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
     assert "must be below 1" in report.flights_table.rows[2][-1]
     assert not report.verdict.complete
+    assert report.verdict.headline.endswith("but 1 of 3 fell short")
+    assert "must be below 1" in report.verdict.failures[0]
     assert report.flights[2].charts == []
 
 
@@ -128,7 +132,12 @@ def test_an_interrupted_run_can_be_reported_on(copy):
     [
         (lambda path: (path / "manifest.json").unlink(), "no manifest.json"),
         (lambda path: (path / "manifest.json").write_text("{", encoding="utf-8"), "cannot be read"),
+        (lambda path: (path / "manifest.json").write_text("{}", encoding="utf-8"), "not that of a run"),
+        (lambda path: (path / "manifest.json").write_text("[1]", encoding="utf-8"), "not that of a run"),
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
+        (lambda path: (path / "summary.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),
+        (lambda path: (path / "crossings.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),
+        (lambda path: (path / "flights" / "nu_0.50.parquet").write_text("x", encoding="utf-8"), "is damaged"),
     ],
 )
 def test_a_damaged_run_is_refused_in_one_line(copy, damage, words):

@@ -16,7 +16,7 @@ def test_settling_is_the_first_moment_from_which_the_distance_stays_below_the_ba
 GOOD = {
     "keepout_violations": 0, "keepout_radius_m": 200.0, "crossing_distance_min_m": 200.0, "tracking_error_rms_m": 1.5,
     "airspeed_error_rms_mps": 0.3, "altitude_error_max_m": 1.5, "crossing_interval_mean_s": 10.0,
-    "crossing_interval_predicted_s": 10.0, "heading_rate_command_max_rad_s": 0.5, "heading_rate_max_rad_s": 0.5,
+    "crossing_interval_predicted_s": 10.0, "heading_rate_command_max_rad_s": 0.5, "heading_rate_limit_rad_s": 0.5,
 }  # fmt: skip
 
 
