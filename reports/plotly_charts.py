@@ -79,6 +79,19 @@ def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bo
     figure.update_xaxes(**x_options, row=row, col=column)
     figure.update_yaxes(**y_options, row=row, col=column)
     if panel.equal:
+        x_range, y_range = _equal_ranges(panel)
+        figure.update_xaxes(range=x_range, row=row, col=column)
+        figure.update_yaxes(range=y_range, row=row, col=column)
         axis = next(figure.select_xaxes(row=row, col=column)).plotly_name.replace("axis", "")
         figure.update_yaxes(scaleanchor=axis, scaleratio=1, constrain="domain", row=row, col=column)
         figure.update_xaxes(constrain="domain", row=row, col=column)
+
+
+def _equal_ranges(panel: Panel) -> tuple[list[float], list[float]]:
+    """Return ranges that hold every curve with a little to spare, and are not much narrower one way than the other."""
+    x, y = (np.concatenate(curves) for curves in zip(*((line.x, line.y) for line in panel.lines), strict=True))
+    (x_middle, x_half), (y_middle, y_half) = (
+        (float(np.nanmin(v) + np.nanmax(v)) / 2.0, 0.54 * float(np.nanmax(v) - np.nanmin(v))) for v in (x, y)
+    )
+    x_half, y_half = max(x_half, 0.4 * y_half), max(y_half, 0.4 * x_half)
+    return [x_middle - x_half, x_middle + x_half], [y_middle - y_half, y_middle + y_half]

@@ -78,5 +78,5 @@ def _table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
     frame = pd.read_csv(path, keep_default_na=False, na_values=[""])
     for name in ("message", "outcome"):
         if name in frame:
-            frame[name] = frame[name].fillna("").astype(str)
+            frame[name] = ["" if pd.isna(value) else str(value) for value in frame[name]]
     return frame
