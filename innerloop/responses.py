@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
 import control
 import numpy as np
@@ -120,11 +119,6 @@ def measure_lag(aircraft: AutopilotedAircraft, start: Trim, *, frequency: float 
 def level_trim(spec: AircraftSpec, airspeed: float, altitude: float) -> Trim:
     """Return the straight and level equilibrium of the bare aircraft at ``airspeed`` [m/s] and ``altitude`` [m]."""
     return trim(Fdm(spec), airspeed=airspeed, altitude=altitude)
-
-
-def autopiloted(schedule: Schedule, root: Path) -> AutopilotedAircraft:
-    """Return the aircraft of a schedule, flying under the autopilot written to ``root``."""
-    return AutopilotedAircraft(schedule.spec, root)
 
 
 def _record(fdm: Fdm, duration: float) -> tuple[Array, Array]:

@@ -186,8 +186,7 @@ def _value(value: Any) -> str:
 
 def _outcome(row: "pd.Series[Any]") -> str:
     message = str(row["message"])
-    met = str(row["criteria_met"]) == "True"
-    if met:
+    if row["criteria_met"]:
         return "met"
     outcome = str(row["outcome"]).replace("_", " ")
     return f"{outcome}: {message}" if message else outcome

@@ -36,7 +36,7 @@ def verdict(run: RunData) -> Verdict:
     flown = summary[summary["min_distance_m"].notna()]
     entries = int(flown["keepout_violations"].sum())
     inside = int((flown["crossing_distance_min_m"] < flown["keepout_radius_m"]).sum())
-    met = int((summary["criteria_met"].astype(str) == "True").sum())
+    met = int(summary["criteria_met"].sum())
     safe = entries == 0 and inside == 0 and len(flown) > 0
     complete = met == planned
     closest = float(flown["min_distance_m"].min()) if len(flown) else float("nan")
@@ -49,7 +49,7 @@ def verdict(run: RunData) -> Verdict:
         headline = f"Safe: no flight entered the keep-out area of {radius:g} m, and every flight met its criteria"
     else:
         headline = f"No flight entered the keep-out area of {radius:g} m, but {planned - met} of {planned} fell short"
-    unmet = summary[summary["criteria_met"].astype(str) != "True"]
+    unmet = summary[~summary["criteria_met"]]
     failures = [f"ν = {row['nu']:g}: {row['outcome'].replace('_', ' ')}, {row['message']}" for _, row in unmet.iterrows()]
     detail = f"{len(summary)} of {planned} flights are in this report; {met} completed and met every criterion."
     if len(flown):

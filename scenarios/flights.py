@@ -85,15 +85,15 @@ def fly_request(request: FlightRequest, directory: Path, start: Trim, lag: float
     """
     began = time.perf_counter()
     run = RunDirectory(directory)
-    row: Row = {
-        "flight_id": request.flight_id, "aircraft": request.scenario.aircraft, "seed": request.seed, "nu": request.nu,
-        "keepout_radius_m": request.scenario.keepout.radius_m,
-    }  # fmt: skip
+    row = _request_row(request)
     crossings: list[Row] = []
     try:
         plan = plan_flight(request.scenario, flight_id=request.flight_id, nu=request.nu, seed=request.seed, lag=lag)
-        row |= plan_row(plan, request.scenario.aircraft)
+        row |= plan_row(plan)
         figures, crossings = _fly(request, plan, run, start)
+        if figures["outcome"] == Outcome.COMPLETED.value:
+            unmet = unmet_criteria(row | figures, request.scenario.criteria)
+            figures |= {"criteria_met": not unmet, "message": "; ".join(unmet)}
         row |= figures
     except InfeasibleError as error:
         row |= {"outcome": Outcome.INFEASIBLE.value, "message": str(error)}
@@ -110,16 +110,29 @@ def fly_request(request: FlightRequest, directory: Path, start: Trim, lag: float
     return FlightResult(request=request, row=row, crossings=crossings)
 
 
+def failed(request: FlightRequest, outcome: Outcome, message: str) -> FlightResult:
+    """Return the result of a flight that was never begun, or whose process died."""
+    row = {**_request_row(request), "outcome": outcome.value, "message": message, "criteria_met": False}
+    return FlightResult(request=request, row=row, crossings=[])
+
+
+def _request_row(request: FlightRequest) -> Row:
+    """Return the part of a row that is known before the flight is planned."""
+    return {
+        "flight_id": request.flight_id,
+        "aircraft": request.scenario.aircraft,
+        "seed": request.seed,
+        "nu": request.nu,
+        "keepout_radius_m": request.scenario.keepout.radius_m,
+    }
+
+
 def _fly(request: FlightRequest, plan: FlightPlan, run: RunDirectory, start: Trim) -> tuple[Row, list[Row]]:
     aircraft = AutopilotedAircraft(find_spec(request.scenario.aircraft), run.model)
     record = fly(plan, aircraft, start)
     run.write_history(request.flight_id, pd.DataFrame(record.history, columns=list(COLUMNS)))
     figures, crossings = flight_figures(plan, record)
-    if record.outcome is Outcome.COMPLETED:
-        unmet = unmet_criteria({**plan_row(plan, request.scenario.aircraft), **figures}, request.scenario.criteria)
-        figures["criteria_met"] = not unmet
-        figures["message"] = "; ".join(unmet)
-    elif figures["keepout_violations"]:
+    if record.outcome is not Outcome.COMPLETED and figures["keepout_violations"]:
         figures["message"] = f"entered the keep-out area {figures['keepout_violations']} times; {figures['message']}"
     rows: list[dict[str, Any]] = [
         {

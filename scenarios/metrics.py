@@ -58,20 +58,15 @@ def settling_index(distance: Array, band: float) -> int | None:
     return first if first < len(distance) else None
 
 
-def plan_row(plan: FlightPlan, aircraft: str) -> Row:
-    """Return the part of a row that is known before the flight."""
+def plan_row(plan: FlightPlan) -> Row:
+    """Return the part of a row that is known once the flight is planned."""
     return {
-        "flight_id": plan.flight_id,
-        "aircraft": aircraft,
-        "seed": plan.seed,
-        "nu": plan.nu,
         "plume_heading_deg": math.degrees(plan.vessel.plume_heading),
         "plume_elevation_deg": math.degrees(plan.vessel.plume_elevation),
         "eta": plan.oscillation.eta,
         "omega_0_rad_s": plan.oscillation.omega_0,
         "oscillation_limit": plan.oscillation.limit,
         "r_co_m": plan.centre_distance,
-        "keepout_radius_m": plan.keepout_radius,
         "crossing_interval_predicted_s": plan.oscillation.crossing_interval,
         "heading_rate_limit_rad_s": plan.guidance.heading_rate_max,
     }

@@ -12,7 +12,7 @@ from typing import Any
 from aircraft.errors import AircraftError
 from aircraft.spec import find_spec
 from aircraft.trim import Trim
-from gnc.oscillation import GRAVITY
+from gnc.oscillation import bank_for_heading_rate
 from innerloop.jsbsim_root import write_root
 from innerloop.record import design_record
 from innerloop.responses import level_trim
@@ -20,7 +20,7 @@ from innerloop.schedule import design_schedule
 from scenarios.closed_loop import Outcome
 from scenarios.config import Scenario
 from scenarios.errors import InputError
-from scenarios.flights import FlightRequest, FlightResult, flight_requests, fly_request, ignore_interrupt
+from scenarios.flights import FlightRequest, FlightResult, failed, flight_requests, fly_request, ignore_interrupt
 from scenarios.manifest import config_hash, parameters, provenance
 from scenarios.metrics import SUMMARY_COLUMNS, Row
 from scenarios.plan import heading_rate_max
@@ -90,7 +90,7 @@ def run_scenario(
         raise InputError(
             f"guidance.airspeed_mps is {airspeed:g}; {spec.title} flies {envelope.airspeed_min:g} to {envelope.airspeed_max:g} m/s"
         )
-    bank = math.atan(heading_rate_max(scenario) * airspeed / GRAVITY)
+    bank = bank_for_heading_rate(heading_rate_max(scenario), airspeed)
     if bank > envelope.bank_max:
         raise InputError(
             f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {spec.title} stops at"
@@ -135,19 +135,22 @@ def run_scenario(
     except AircraftError as error:
         for request in requests:
             if request.flight_id not in ledger.done:
-                ledger.add(_failed(request, Outcome.TRIM_FAILED, str(error)))
-    rows = ledger.study_rows()
-    planned = sum(request.variant == "study" for request in requests)
-    counts = {outcome.value: sum(row["outcome"] == outcome.value for row in rows) for outcome in Outcome}
+                ledger.add(failed(request, Outcome.TRIM_FAILED, str(error)))
+    result = RunResult(
+        directory=directory,
+        rows=ledger.study_rows(),
+        planned=sum(request.variant == "study" for request in requests),
+        interrupted=interrupted,
+    )
     manifest |= {
         "state": "interrupted" if interrupted else "complete",
         "wall_time_s": time.perf_counter() - began,
-        "outcomes": counts,
-        "flights_planned": planned,
-        "flights_met_criteria": sum(bool(row["criteria_met"]) for row in rows),
+        "outcomes": {outcome.value: sum(row["outcome"] == outcome.value for row in result.rows) for outcome in Outcome},
+        "flights_planned": result.planned,
+        "flights_met_criteria": result.met,
     }
     run.write_json(run.manifest, manifest)
-    return RunResult(directory=directory, rows=rows, planned=planned, interrupted=interrupted)
+    return result
 
 
 class _Ledger:
@@ -210,17 +213,4 @@ def _result(future: Future[FlightResult], request: FlightRequest) -> FlightResul
     try:
         return future.result()
     except BrokenProcessPool:
-        return _failed(request, Outcome.FAILED, "the process that flew it died; run again with --resume and --jobs 1")
-
-
-def _failed(request: FlightRequest, outcome: Outcome, message: str) -> FlightResult:
-    row: Row = {
-        "flight_id": request.flight_id,
-        "aircraft": request.scenario.aircraft,
-        "seed": request.seed,
-        "nu": request.nu,
-        "outcome": outcome.value,
-        "message": message,
-        "criteria_met": False,
-    }
-    return FlightResult(request=request, row=row, crossings=[])
+        return failed(request, Outcome.FAILED, "the process that flew it died; run again with --resume and --jobs 1")

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from gnc.bessel import eta_for_speed_ratio
 from gnc.errors import InfeasibleError
-from gnc.oscillation import GRAVITY, design_oscillation, heading_rate_for_bank
+from gnc.oscillation import GRAVITY, bank_for_heading_rate, design_oscillation, heading_rate_for_bank
 
 ROLL_RATE_MAX = math.radians(40.0)
 
@@ -124,3 +124,10 @@ def test_the_design_takes_its_inputs_by_name():
     # House style 5: keyword-only, so that a speed is not taken for a rate.
     with pytest.raises(TypeError):
         design_oscillation(0.5, SPEED, HEADING_RATE_MAX)
+
+
+@pytest.mark.parametrize("bank_deg", [0.0, 20.0, 45.0, 60.0])
+def test_bank_and_heading_rate_of_a_coordinated_turn_are_each_others_inverse(bank_deg):
+    bank = math.radians(bank_deg)
+    # tan and atan, each to a rounding.
+    assert bank_for_heading_rate(heading_rate_for_bank(bank, 19.42), 19.42) == pytest.approx(bank, abs=1e-15)

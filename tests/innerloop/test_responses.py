@@ -8,7 +8,7 @@ import pytest
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.spec import X8
 from innerloop.flight import AutopilotedAircraft
-from innerloop.responses import CHANNELS, Response, autopiloted, flown_step, level_trim, measure_lag, predicted_step
+from innerloop.responses import CHANNELS, Response, flown_step, level_trim, measure_lag, predicted_step
 
 MIDDLE = 2
 INSIDE = [1, 2, 3]  # design airspeeds within the envelope: 17, 20 and 23 m/s
@@ -109,9 +109,9 @@ def test_a_predicted_step_starts_at_rest_and_scales_with_its_size(x8_schedule):
         np.testing.assert_allclose(np.asarray(three.channels[name]), -3.0 * np.asarray(one.channels[name]), atol=1e-9)  # linear
 
 
-def test_level_trim_and_autopiloted_give_what_their_names_say(x8_schedule, x8_root):
+def test_level_trim_and_an_autopiloted_aircraft_are_what_their_names_say(x8_schedule, x8_root):
     found = level_trim(X8, 20.0, 100.0)
     assert (found.airspeed, found.altitude, found.yaw_rate, found.climb_angle) == (20.0, 100.0, 0.0, 0.0)
-    aircraft = autopiloted(x8_schedule, x8_root)
+    aircraft = AutopilotedAircraft(x8_schedule.spec, x8_root)
     assert isinstance(aircraft, AutopilotedAircraft)
     assert isinstance(aircraft.fdm, Fdm)
