@@ -1,5 +1,6 @@
 """The outer loop: from the vehicle's motion to commanded heading rate and airspeed."""
 
+import copy
 import math
 from dataclasses import dataclass
 from enum import Enum
@@ -7,8 +8,7 @@ from enum import Enum
 from gnc.delta import LookAhead, relative_state, relative_velocity
 from gnc.keepout_guard import KeepoutGuard
 from gnc.laws import cascade_law, line_of_sight_law, lyapunov_law
-from gnc.oscillation import Oscillation
-from gnc.reference import ReferencePoint, ReferenceStart
+from gnc.reference import Reference
 
 _ALONGSIDE = math.cos(0.3)
 """Cosine of the largest course difference from the reference at which a keep-out guard steps back."""
@@ -33,7 +33,7 @@ class GuidanceParameters:
     gain : of the cascade and line-of-sight laws [1/s]
     rate_max : largest contribution of h(phi) in the cascade law [rad/s]
     k_1 : gain of the Lyapunov law [1/m^2]
-    heading_rate_max : omega_max; no command exceeds it [rad/s]
+    heading_rate_max : omega_max; no command exceeds it; infinite for a vehicle that can fly anything [rad/s]
     time_step : [s]
     lag : of the vehicle's heading rate behind its command [s]; above 0 the law runs that much ahead of time
     guard_distance : a keep-out guard steps back within this distance of the reference, on its course: the orbit is clear [m]
@@ -62,12 +62,14 @@ class Guidance:
 
     Parameters
     ----------
-    parameters, oscillation, start, phase : of the loop and of its reference
+    parameters : of the loop
+    reference : at time 0; it is copied
     guard : of the keep-out area on the way to the reference, or none
 
     Attributes
     ----------
     reference : the reference point now
+    heading_rate_wanted : what the law asked for last, before omega_max and guard had their say [rad/s]
     heading_rate_command : last command [rad/s]
     airspeed_command : last command [m/s]
     saturated : whether the last heading-rate command was cut at omega_max
@@ -83,23 +85,16 @@ class Guidance:
         "_steps",
         "airspeed_command",
         "heading_rate_command",
+        "heading_rate_wanted",
         "reference",
         "saturated",
     )
 
-    def __init__(
-        self,
-        parameters: GuidanceParameters,
-        oscillation: Oscillation,
-        start: ReferenceStart,
-        *,
-        phase: float,
-        guard: KeepoutGuard | None = None,
-    ) -> None:
+    def __init__(self, parameters: GuidanceParameters, reference: Reference, *, guard: KeepoutGuard | None = None) -> None:
         self._parameters = parameters
-        self._speed = oscillation.speed
-        self.reference = ReferencePoint(oscillation, start, phase=phase, time_step=parameters.time_step)
-        self._ahead = ReferencePoint(oscillation, start, phase=phase, time_step=parameters.time_step)
+        self._speed = reference.speed
+        self.reference = copy.copy(reference)
+        self._ahead = copy.copy(reference)
         lead = round(parameters.lag / parameters.time_step)
         for _ in range(lead):
             self._ahead.step()
@@ -107,8 +102,8 @@ class Guidance:
         self._guard = guard
         self._guard_squared = parameters.guard_distance**2
         self._steps = 0
-        self.heading_rate_command = 0.0
-        self.airspeed_command = oscillation.speed
+        self.heading_rate_wanted = self.heading_rate_command = 0.0
+        self.airspeed_command = reference.speed
         self.saturated = False
 
     def step(self, north: float, east: float, course: float, speed: float, heading_rate: float) -> None:
@@ -144,12 +139,13 @@ class Guidance:
             to_north * to_north + to_east * to_east < self._guard_squared and math.cos(course - ahead.course) > _ALONGSIDE
         ):
             command = self._guard.limit(command, self._steps * p.time_step + lag, north, east, course, speed)
+        self.heading_rate_wanted = wanted
         self.heading_rate_command = command
         self._steps += 1
         reference.step()
         ahead.step()
 
-    def _steer(self, reference: ReferencePoint, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def _steer(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
         p = self._parameters
         if p.law is Law.LINE_OF_SIGHT:
             return line_of_sight_law(to_north, to_east, course, p.gain)

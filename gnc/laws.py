@@ -3,6 +3,7 @@
 import math
 
 from gnc.angles import wrap
+from gnc.cascade import h
 from gnc.delta import RelativeState
 
 
@@ -20,7 +21,7 @@ def lyapunov_law(state: RelativeState, speed: float, omega_rho: float, k_1: floa
 
 
 def cascade_law(phi: float, omega_rho: float, gain: float, rate_max: float) -> float:
-    """Return omega [rad/s] by the cascade law, equation (30), with h(phi) = gain phi kept within ``rate_max``.
+    """Return omega [rad/s] by the cascade law, equation (30), with ``gnc.cascade.h``: gain phi kept within ``rate_max``.
 
     Parameters
     ----------
@@ -29,7 +30,7 @@ def cascade_law(phi: float, omega_rho: float, gain: float, rate_max: float) -> f
     gain : [1/s], above 0
     rate_max : largest |h| [rad/s], above 0: what h may take of omega_max
     """
-    return -min(max(gain * phi, -rate_max), rate_max) + omega_rho
+    return -h(phi, gain, rate_max) + omega_rho
 
 
 def line_of_sight_law(to_reference_north: float, to_reference_east: float, course: float, gain: float) -> float:

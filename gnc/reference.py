@@ -1,15 +1,37 @@
-"""The virtual reference point that oscillates about the centre of oscillation."""
+"""The virtual reference point: oscillating about the centre of oscillation, or circling."""
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 from gnc.orbit import offset
 from gnc.oscillation import Oscillation
 
 
+class Reference(Protocol):
+    """A point of constant speed to be tracked, moved in equal time steps: equation (13).
+
+    Attributes
+    ----------
+    north, east : position [m]
+    course : chi_r [rad]
+    heading_rate : omega_r [rad/s]
+    speed : V_r [m/s]
+    """
+
+    north: float
+    east: float
+    course: float
+    heading_rate: float
+    speed: float
+
+    def step(self) -> None:
+        """Advance one time step."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReferenceStart:
-    """Where the reference starts so that its orbit is centred on the CO.
+    """Where a reference starts.
 
     Attributes
     ----------
@@ -25,7 +47,7 @@ class ReferenceStart:
 def start_reference(
     oscillation: Oscillation, *, phase: float, centre_north: float, centre_east: float, vessel_course: float
 ) -> ReferenceStart:
-    """Return the start of the reference at phase phi_0 [rad] about a CO at ``centre_north``, ``centre_east`` [m].
+    """Return the start of a reference at phase phi_0 [rad] whose orbit is centred on a CO at ``centre_north``, ``centre_east`` [m].
 
     The course is eta cos(phi_0) from the vessel's, equation (7). Differs from equation (3), which says A/omega_0 and so holds for
     phi_0 = 0 only, and from starting on the CO: with another phase that orbit would not be centred on it.
@@ -57,6 +79,7 @@ class ReferencePoint:
     north, east : position [m]
     course : chi_r [rad]
     heading_rate : omega_r [rad/s]
+    speed : V_r [m/s]
     """
 
     __slots__ = (
@@ -72,6 +95,7 @@ class ReferencePoint:
         "east",
         "heading_rate",
         "north",
+        "speed",
     )
 
     def __init__(self, oscillation: Oscillation, start: ReferenceStart, *, phase: float, time_step: float) -> None:
@@ -80,6 +104,7 @@ class ReferencePoint:
         self._amplitude = oscillation.amplitude
         self._phase = phase
         self._time_step = time_step
+        self.speed = oscillation.speed
         self._distance = oscillation.speed * time_step / 6.0
         self._base = start.course - oscillation.eta * math.cos(phase)
         self._steps = 0
@@ -103,3 +128,54 @@ class ReferencePoint:
         self.east += self._distance * (sin(first) + 4.0 * sin(middle) + sin(last))
         self.course = last
         self.heading_rate = vessel_heading_rate - self._amplitude * sin(angle)
+
+
+class CirclingReference:
+    """A reference that turns steadily, that of the paper's Simulation 1: equation (13) with a constant omega_r.
+
+    Its motion is known in closed form; time comes from the step count.
+
+    Parameters
+    ----------
+    start : position and course at time 0
+    speed : V_r [m/s]
+    heading_rate : omega_r [rad/s], positive to the right, not 0
+    time_step : [s]
+
+    Attributes
+    ----------
+    north, east : position [m]
+    course : chi_r [rad]
+    heading_rate, speed : omega_r [rad/s] and V_r [m/s]
+    """
+
+    __slots__ = (
+        "_centre_east",
+        "_centre_north",
+        "_course",
+        "_radius",
+        "_steps",
+        "_turn",
+        "course",
+        "east",
+        "heading_rate",
+        "north",
+        "speed",
+    )
+
+    def __init__(self, start: ReferenceStart, *, speed: float, heading_rate: float, time_step: float) -> None:
+        self.speed, self.heading_rate = speed, heading_rate
+        self.north, self.east, self.course = start.north, start.east, start.course
+        self._course = start.course
+        self._turn = heading_rate * time_step
+        self._radius = speed / heading_rate
+        self._centre_north = start.north - self._radius * math.sin(start.course)
+        self._centre_east = start.east + self._radius * math.cos(start.course)
+        self._steps = 0
+
+    def step(self) -> None:
+        """Advance one time step."""
+        self._steps += 1
+        self.course = self._course + self._steps * self._turn
+        self.north = self._centre_north + self._radius * math.sin(self.course)
+        self.east = self._centre_east - self._radius * math.cos(self.course)

@@ -2,6 +2,10 @@
 
 import math
 
+_HALF_SPAN = 0.5 * math.sqrt(0.6)
+_GAUSS = ((0.5 - _HALF_SPAN, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + _HALF_SPAN, 5.0 / 18.0))
+"""Nodes and weights of the three-point rule on 0 to 1."""
+
 
 def unicycle_rates(speed: float, course: float, heading_rate: float) -> tuple[float, float, float]:
     """Return north rate, east rate [m/s] and course rate [rad/s]: equation (1), and (13) for a reference.
@@ -28,3 +32,32 @@ def unicycle_move(
         chord *= math.sin(half_turn) / half_turn
     middle = course + half_turn
     return north + chord * math.cos(middle), east + chord * math.sin(middle), course + 2.0 * half_turn
+
+
+def lagged_move(
+    north: float, east: float, course: float, heading_rate: float, speed: float, command: float, lag: float, duration: float
+) -> tuple[float, float, float, float]:
+    """Return position [m], course [rad] and heading rate [rad/s] after ``duration`` [s] of following a commanded heading rate.
+
+    Equation (1) with a first-order lag between command and heading rate. Course and heading rate are in closed form; position is
+    Gauss and Legendre's quadrature at three nodes, good to 1e-9 m for steps of 0.05 s.
+
+    Parameters
+    ----------
+    north, east, course, heading_rate : at the start [m, m, rad, rad/s]
+    speed : v [m/s]
+    command : omega commanded throughout [rad/s]
+    lag : time constant of the heading rate [s], above 0
+    duration : [s]
+    """
+    gap = heading_rate - command
+    along = across = 0.0
+    for node, weight in _GAUSS:
+        t = node * duration
+        there = course + command * t - gap * lag * math.expm1(-t / lag)
+        along += weight * math.cos(there)
+        across += weight * math.sin(there)
+    decay = math.expm1(-duration / lag)
+    distance = speed * duration
+    turned = command * duration - gap * lag * decay
+    return north + distance * along, east + distance * across, course + turned, command + gap * (1.0 + decay)

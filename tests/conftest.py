@@ -1,15 +1,21 @@
-"""Fixtures that several test packages share: the X8, bare and under an autopilot that is designed once per session."""
+"""Fixtures that several test packages share: the X8, bare and under an autopilot that is designed once per session.
 
-from pathlib import Path
+They import what they need when they are used: tests/gnc runs where neither JSBSim nor python-control is installed.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
 
-from aircraft.fdm import Fdm
-from aircraft.spec import X8
-from innerloop.flight import AutopilotedAircraft
-from innerloop.jsbsim_root import write_root
-from innerloop.schedule import Schedule, design_schedule
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from aircraft.fdm import Fdm
+    from innerloop.flight import AutopilotedAircraft
+    from innerloop.schedule import Schedule
 
 # No deadline, for time is not what is tested, and the same examples on every machine.
 settings.register_profile("reproducible", deadline=None, derandomize=True)
@@ -19,22 +25,33 @@ settings.load_profile("reproducible")
 @pytest.fixture(scope="session")
 def x8_schedule() -> Schedule:
     """The X8's autopilot at its default altitude and weights; two seconds of work."""
+    from aircraft.spec import X8
+    from innerloop.schedule import design_schedule
+
     return design_schedule(X8)
 
 
 @pytest.fixture(scope="session")
 def x8_root(x8_schedule: Schedule, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A JSBSim root that flies the X8 under its autopilot."""
+    from innerloop.jsbsim_root import write_root
+
     return write_root(x8_schedule, tmp_path_factory.mktemp("x8_root"))
 
 
 @pytest.fixture
 def x8_aircraft(x8_root: Path) -> AutopilotedAircraft:
     """An X8 under its autopilot, as fresh from the factory."""
+    from aircraft.spec import X8
+    from innerloop.flight import AutopilotedAircraft
+
     return AutopilotedAircraft(X8, x8_root)
 
 
 @pytest.fixture
 def x8_fdm() -> Fdm:
     """A bare X8."""
+    from aircraft.fdm import Fdm
+    from aircraft.spec import X8
+
     return Fdm(X8)

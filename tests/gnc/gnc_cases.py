@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from gnc.delta import look_ahead, relative_state, relative_velocity
 from gnc.guidance import Guidance, GuidanceParameters, Law
 from gnc.oscillation import design_oscillation
-from gnc.reference import start_reference
+from gnc.reference import ReferencePoint, start_reference
 from gnc.unicycle import unicycle_move, unicycle_rates
 
 SPEED = 19.42
@@ -32,6 +32,19 @@ def examples(count):
 
 def paper_oscillation(nu, **changes):
     return design_oscillation(**({"nu": nu, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX} | changes))
+
+
+OSCILLATION = paper_oscillation(0.5)
+
+
+def oscillating(time):
+    """omega_r [rad/s] of equation (2), about a vessel on a straight course."""
+    return -OSCILLATION.amplitude * math.sin(OSCILLATION.omega_0 * time)
+
+
+def circling(time):
+    """omega_r [rad/s] of the paper's Sim. 1, a circle."""
+    return 0.2
 
 
 def tracking_motion(steer, reference_heading_rate, *, reference_speed=SPEED, speed=SPEED):
@@ -64,6 +77,14 @@ def moved(rates, time, state, step):
 def relative(state, parameters=LOOK_AHEAD):
     """Return the relative state (19) of a Cartesian state."""
     return relative_state(parameters, state[0] - state[3], state[1] - state[4], state[2], state[5])
+
+
+@st.composite
+def tracking_starts(draw, *, phi_max=math.pi, reach=300.0):
+    """The reference at the origin, the vehicle up to ``reach`` [m] about it, phi no more than ``phi_max`` [rad] to either side."""
+    north, east, reference_course = draw(st.floats(-reach, reach)), draw(st.floats(-reach, reach)), draw(courses)
+    z_course = -relative([0.0, 0.0, reference_course, north, east, 0.0]).phi
+    return [0.0, 0.0, reference_course, north, east, z_course + draw(st.floats(-phi_max, phi_max))]
 
 
 def delta_steering(law, reference_heading_rate, parameters=LOOK_AHEAD):
@@ -100,7 +121,8 @@ def guidance_parameters(**changes):
 
 def make_guidance(parameters, oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0.0, guard=None):
     start = start_reference(oscillation, phase=phase, centre_north=centre[0], centre_east=centre[1], vessel_course=vessel_course)
-    return Guidance(parameters, oscillation, start, phase=phase, guard=guard)
+    reference = ReferencePoint(oscillation, start, phase=phase, time_step=parameters.time_step)
+    return Guidance(parameters, reference, guard=guard)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

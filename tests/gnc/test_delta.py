@@ -115,14 +115,21 @@ def test_z_never_gets_shorter_than_the_look_ahead_allows(epsilon, excess, north,
     parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
     rho = relative_state(parameters, north, east, reference_course, 0.0).rho
     shortest = parameters.radius - 1.0 / (4.0 * epsilon)
-    # paper-notes, care 8: rho >= delta - d >= R - 1/(4 epsilon). Rounding of delta.
+    # Section IV.B: rho >= delta - d >= R - 1/(4 epsilon). Rounding of delta.
     assert rho >= shortest - 1e-14 * delta_length(parameters, north**2 + east**2)
 
 
-def test_the_shortest_z_is_met_by_a_reference_that_comes_head_on():
-    # delta - d is least at d = 1/(2 epsilon) = 100 m, and rho is that when d points against the reference's course: 60 - 50 = 10 m.
-    state = relative_state(LOOK_AHEAD, -100.0, 0.0, 0.0, 0.0)
-    assert state.rho == pytest.approx(10.0, rel=1e-14)
+@examples(200)
+@given(epsilon=st.floats(1e-4, 1.0), excess=st.floats(1.001, 100.0), reference_course=courses)
+@example(epsilon=0.005, excess=1.2, reference_course=0.0)
+def test_the_shortest_z_is_met_by_a_vehicle_right_ahead_of_the_reference(epsilon, excess, reference_course):
+    # delta - d is least at d = 1/(2 epsilon), and rho is that when d points against the reference's course: at epsilon = 0.005 and
+    # R = 60 m, d = 100 m and rho = 60 - 50 = 10 m.
+    parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
+    d = 0.5 / epsilon
+    rho = relative_state(parameters, -d * math.cos(reference_course), -d * math.sin(reference_course), reference_course, 0.0).rho
+    # Rounding of delta, up to a thousand times rho along z; across it the angle's, 5e-16 of d, which rho hardly feels.
+    assert rho == pytest.approx(parameters.radius - 0.25 / epsilon, rel=1e-12)
 
 
 def test_the_look_ahead_grows_with_the_square_of_distance():

@@ -10,17 +10,20 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 MAP = (ROOT / "gnc" / "EQUATIONS.md").read_text(encoding="utf-8")
-EQUATIONS, _, DIFFERENCES = MAP.partition("## Where the code differs from the paper")
+EQUATIONS, _, AFTER = MAP.partition("## Where the code differs from the paper")
+DIFFERENCES, _, AFTER = AFTER.partition("## Slips in the printed text")
+SLIPS, _, _ = AFTER.partition("## Why trajectories are bounded")
 ROWS = {
     int(cells[0].strip("()")): cells[1:]
     for cells in ([cell.strip() for cell in line.strip("|").split("|")] for line in EQUATIONS.splitlines() if line.startswith("|"))
     if len(cells) == 4 and re.fullmatch(r"\(\d+\)", cells[0])
 }
 FUNCTIONS = sorted({name for cells in ROWS.values() for name in re.findall(r"`(gnc[\w.]+)`", cells[1])})
-TESTS = sorted({test for cells in ROWS.values() for test in re.findall(r"`([^`]+::[^`]+)`", cells[2])})
+TEST = re.compile(r"`([^`]+::[^`]+)`")
+TESTS = sorted(set(TEST.findall(MAP)))
 
-# "equation (8)", "equations (2), (3) and (4)", "equation (1), and (13)"; also "law (24)" and a bare "(11)".
-CITATION = re.compile(r"\((\d{1,2})\)")
+# "equation (8)", "equations (2), (3) and (4)", "equation (1), and (13)"; also "law (24)", a bare "(11)", and "(31a)".
+CITATION = re.compile(r"\((\d{1,2})[ab]?\)")
 
 
 def resolve(name):
@@ -36,19 +39,47 @@ def docstrings():
                 yield path.name, ast.get_docstring(node) or ""
 
 
-def test_each_equation_from_1_to_30_has_one_row():
+def names_used(file, function):
+    """Return the names that a test uses, and those that the helpers use which it uses, in its file and in gnc_cases.py."""
+    trees = [ast.parse((ROOT / path).read_text(encoding="utf-8")) for path in ("tests/gnc/gnc_cases.py", file)]
+    bodies = {node.name: node for tree in trees for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    bodies |= {
+        target.id: node
+        for tree in trees
+        for node in tree.body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
+    used, waiting = set(), [function]
+    while waiting:
+        nodes = list(ast.walk(bodies[waiting.pop()]))
+        fresh = {node.id for node in nodes if isinstance(node, ast.Name)} | {n.attr for n in nodes if isinstance(n, ast.Attribute)}
+        waiting += [name for name in fresh - used if name in bodies]
+        used |= fresh
+    return used
+
+
+def test_each_equation_has_one_row():
     numbers = re.findall(r"^\| \((\d+)\) \|(?:[^|]*\|){3}$", EQUATIONS, flags=re.MULTILINE)
-    # Sections III and IV of the paper number their equations (1) to (35); the map says that the last five come later.
-    assert [int(number) for number in numbers] == list(range(1, 31))
-    assert "(31) to (35)" in MAP
+    # Sections III and IV of the paper number their equations (1) to (35).
+    assert [int(number) for number in numbers] == list(range(1, 36))
 
 
-@pytest.mark.parametrize("number", range(1, 31))
+@pytest.mark.parametrize("number", range(1, 36))
 def test_each_row_says_what_where_and_how_tested(number):
     what, where, tested = ROWS[number]
     assert what
     assert re.search(r"`gnc\.\w+\.\w+`", where) or where.startswith("proof step, verified by")
     assert re.search(r"`tests/[\w/]+\.py::test_\w+`", tested)
+
+
+@pytest.mark.parametrize("number", range(1, 36))
+def test_each_row_s_tests_use_its_functions(number):
+    _, where, tested = ROWS[number]
+    functions = {name.rpartition(".")[2] for name in re.findall(r"`(gnc[\w.]+)`", where)}
+    used = [names_used(*test.split("::")) for test in TEST.findall(tested)]
+    assert functions <= set().union(*used)
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
@@ -76,6 +107,13 @@ def test_every_place_where_gnc_says_that_it_differs_is_in_the_list_of_difference
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ClassDef | ast.FunctionDef) and "differs " in (ast.get_docstring(node) or "").lower():
                 assert f"`gnc.{path.stem}.{node.name}`" in DIFFERENCES
+
+
+def test_each_slip_says_where_what_and_why():
+    rows = [line.strip("|").split("|") for line in SLIPS.splitlines() if line.startswith("| ")][1:]
+    # Among them what this section was written for: the factor of (32).
+    assert any(row[0].strip() == "(32)" for row in rows)
+    assert all(len(row) == 4 and all(cell.strip() for cell in row) for row in rows)
 
 
 @pytest.mark.parametrize("name", sorted(set(re.findall(r"`(gnc\.\w+\.\w+)`", MAP))))

@@ -6,7 +6,8 @@ from gnc_cases import SPEED, paper_oscillation
 from scipy.integrate import solve_ivp
 
 from gnc.orbit import offset
-from gnc.reference import ReferencePoint, start_reference
+from gnc.reference import CirclingReference, ReferencePoint, ReferenceStart, start_reference
+from gnc.unicycle import unicycle_move
 
 TIME_STEP = 0.05
 CENTRE = (-214.0, 35.0)
@@ -145,3 +146,31 @@ def test_the_reference_starts_on_the_centre_with_phase_zero_only():
     along = (off.north - CENTRE[0]) * math.cos(COURSE) + (off.east - CENTRE[1]) * math.sin(COURSE)
     assert right == pytest.approx(68.40, abs=0.005)
     assert along == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("heading_rate", [0.15, -0.4])
+def test_a_circling_reference_is_a_unicycle_that_turns_steadily(heading_rate):
+    start = ReferenceStart(north=12.0, east=-7.0, course=COURSE)
+    reference = CirclingReference(start, speed=SPEED, heading_rate=heading_rate, time_step=TIME_STEP)
+    state = (start.north, start.east, start.course)
+    assert (reference.north, reference.east, reference.course) == state
+    for _ in range(8000):
+        reference.step()
+        state = unicycle_move(*state, SPEED, heading_rate, TIME_STEP)
+        assert (reference.heading_rate, reference.speed) == (heading_rate, SPEED)
+    # Equation (13) integrated step by step, against the closed form: 8,000 roundings of a radius up to 130 m.
+    assert (reference.north, reference.east) == pytest.approx(state[:2], rel=0.0, abs=1e-8)
+    assert reference.course == pytest.approx(state[2], rel=0.0, abs=1e-9)
+
+
+def test_a_circling_reference_comes_round():
+    # One turn of 2 pi/omega_r = 41.9 s: 838 steps of 0.05 s and a bit; at 1,000 steps a turn it is back where it was.
+    start = ReferenceStart(north=12.0, east=-7.0, course=COURSE)
+    reference = CirclingReference(start, speed=SPEED, heading_rate=0.15, time_step=2.0 * math.pi / 0.15 / 1000)
+    farthest = 0.0
+    for _ in range(1000):
+        reference.step()
+        farthest = max(farthest, math.hypot(reference.north - start.north, reference.east - start.east))
+    assert (reference.north, reference.east) == pytest.approx((start.north, start.east), rel=0.0, abs=1e-9)
+    # The circle's diameter, 2 V_r/omega_r; a turn of 1,000 steps has a sample at its far side.
+    assert farthest == pytest.approx(2.0 * SPEED / 0.15, rel=1e-9)

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from gnc.unicycle import unicycle_move, unicycle_rates
+from gnc.unicycle import lagged_move, unicycle_move, unicycle_rates
 
 speeds = st.floats(1.0, 40.0)
 heading_rates = st.floats(-1.0, 1.0)
@@ -69,3 +69,29 @@ def test_the_straight_line_is_the_limit_of_the_arc():
     line = unicycle_move(0.0, 0.0, 0.3, 20.0, 1.9998e-6, 1.0)
     # The courses differ by 2e-10 rad over 20 m.
     assert np.subtract(arc, line) == pytest.approx([0.0, 0.0, 0.0], abs=5e-9)
+
+
+@pytest.mark.parametrize("lag", [0.05, 0.3, 2.0])
+def test_a_lagged_move_equals_the_integral_of_a_first_order_lag(lag):
+    north, east, course, rate, command, speed = 5.0, -7.0, 2.5, -0.4, 0.5, 19.42
+
+    def rates(_, state):
+        return [*unicycle_rates(speed, state[2], state[3])[:2], state[3], (command - state[3]) / lag]
+
+    duration, steps = 2.0, 40
+    state = (north, east, course, rate)
+    for _ in range(steps):
+        state = lagged_move(*state, speed, command, lag, duration / steps)
+    solution = solve_ivp(rates, (0.0, duration), [north, east, course, rate], rtol=1e-12, atol=1e-12)
+    # Quadrature of 1e-9 m a step, by its docstring, over 40 steps; course and rate are in closed form, integration 1e-12.
+    assert state[:2] == pytest.approx(solution.y[:2, -1], rel=0.0, abs=4e-8)
+    assert state[2:] == pytest.approx(solution.y[2:, -1], rel=0.0, abs=1e-10)
+
+
+@examples(100)
+@given(course=courses, heading_rate=heading_rates, speed=speeds, duration=st.floats(0.001, 0.05))
+def test_a_lagged_move_at_its_commanded_rate_is_a_move_without_lag(course, heading_rate, speed, duration):
+    # Nothing to lag behind. Quadrature of 1e-9 m, as above.
+    moved = lagged_move(1.0, 2.0, course, heading_rate, speed, heading_rate, 0.3, duration)
+    assert moved[:3] == pytest.approx(unicycle_move(1.0, 2.0, course, speed, heading_rate, duration), rel=0.0, abs=1e-9)
+    assert moved[3] == heading_rate
