@@ -18,6 +18,7 @@ from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim, measure_lag
 from innerloop.schedule import design_schedule
 from scenarios.closed_loop import fly
+from scenarios.flights import SixDof, guidance_lag, place_vehicle
 from scenarios.load import load_scenario, with_values
 from scenarios.plan import plan_flight
 
@@ -44,11 +45,11 @@ def _loops(folder: Path) -> dict[str, Callable[[], float]]:
     airspeed, altitude = scenario.guidance.airspeed_mps, scenario.plume.source_height_m
     root = write_root(design_schedule(X8, altitude=altitude), folder)
     level = level_trim(X8, airspeed, altitude)
-    bare, autopiloted, guided = Fdm(X8), AutopilotedAircraft(X8, root), AutopilotedAircraft(X8, root)
-    lag = measure_lag(autopiloted, level)
+    bare, autopiloted = Fdm(X8), AutopilotedAircraft(X8, root)
+    six_dof = SixDof(start=level, lag=measure_lag(autopiloted, level))
     # No flight ends before its time: no number of crossings is enough.
     endless = with_values(scenario, {"flight.duration_max_s": FLOWN, "flight.crossings": 10_000})
-    plan = plan_flight(endless, flight_id="bench", nu=0.5, seed=1, lag=lag)
+    plan = plan_flight(endless, flight_id="bench", nu=0.5, seed=1, lag=guidance_lag(endless, six_dof))
     steps = round(FLOWN / TIME_STEP)
 
     def fly_bare() -> float:
@@ -61,7 +62,8 @@ def _loops(folder: Path) -> dict[str, Callable[[], float]]:
         return _timed(lambda: autopiloted.fdm.step(steps))
 
     def fly_guided() -> float:
-        return _timed(lambda: fly(plan, guided, level))
+        vehicle = place_vehicle(endless, plan, root, six_dof)
+        return _timed(lambda: fly(plan, vehicle))
 
     return {"JSBSim": fly_bare, "JSBSim with autopilot": fly_autopiloted, "full closed loop": fly_guided}
 

@@ -54,7 +54,7 @@ class Panel:
     lines : what is drawn, from back to front
     title : above the panel
     equal : one metre is as long both ways
-    log_x : logarithmic abscissa
+    log_x, log_y : logarithmic abscissa, ordinate
     x_range, y_range : limits, or by the data
     """
 
@@ -64,6 +64,7 @@ class Panel:
     title: str = ""
     equal: bool = False
     log_x: bool = False
+    log_y: bool = False
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
 

@@ -1,81 +1,30 @@
-"""A report's content, the same for screen and print."""
+"""Which content a run's report has."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
 
-from reports.chart import Chart
-from reports.flight_charts import flight_charts
-from reports.innerloop_charts import innerloop_charts
+from reports.blocks import Content
+from reports.convergence_content import convergence_content
+from reports.errors import ReportError
+from reports.paper_content import paper_content
 from reports.run_data import RunData
-from reports.sweep_charts import comparison_chart, sweep_charts
-from reports.tables import (
-    Table,
-    comparison_table,
-    flight_table,
-    margin_table,
-    oscillation_table,
-    parameter_table,
-    provenance_table,
-    step_table,
-    trim_table,
-)
-from reports.verdict import Verdict, verdict
+from reports.sweep_content import sweep_content
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FlightContent:
-    """One flight: its id, speed ratio, outcome in words, and figures."""
-
-    flight_id: str
-    nu: float
-    outcome: str
-    charts: list[Chart]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Content:
-    """A whole report."""
-
-    title: str
-    description: str
-    changes: str
-    verdict: Verdict
-    sweep: list[Chart]
-    flights_table: Table
-    comparison: Chart | None
-    comparison_table: Table | None
-    flights: list[FlightContent]
-    innerloop: list[Chart]
-    margins: Table | None
-    steps: Table | None
-    trims: Table | None
-    oscillation: Table
-    parameters: Table
-    provenance: Table
+KINDS: dict[str, Callable[[RunData], Content]] = {
+    "flights": sweep_content,
+    "paper": paper_content,
+    "convergence": convergence_content,
+}
+"""A study's kind, as its manifest names it, and what makes the content of its report."""
 
 
 def content(run: RunData) -> Content:
-    """Return everything that a report of ``run`` shows."""
-    table = flight_table(run.summary)
-    design = run.innerloop
-    flights = [
-        FlightContent(flight_id=str(row["flight_id"]), nu=float(row["nu"]), outcome=cells[-1], charts=flight_charts(run, row))
-        for (_, row), cells in zip(run.summary.iterrows(), table.rows, strict=True)
-    ]
-    return Content(
-        title=run.manifest["title"],
-        description=run.manifest["config"]["description"],
-        changes=", ".join(run.manifest["overrides"]),
-        verdict=verdict(run),
-        sweep=sweep_charts(run),
-        flights_table=table,
-        comparison=comparison_chart(run),
-        comparison_table=comparison_table(run) if len(run.comparison) else None,
-        flights=flights,
-        innerloop=innerloop_charts(design) if design else [],
-        margins=margin_table(design) if design else None,
-        steps=step_table(design) if design else None,
-        trims=trim_table(design) if design else None,
-        oscillation=oscillation_table(run),
-        parameters=parameter_table(run),
-        provenance=provenance_table(run),
-    )
+    """Return everything that a report of ``run`` shows.
+
+    Raises
+    ------
+    ReportError : the manifest names a kind of study that has no report
+    """
+    study = run.manifest.get("study", "flights")
+    if study not in KINDS:
+        raise ReportError(f"'{run.path}': study is '{study}', which has no report; those that have one: {', '.join(KINDS)}")
+    return KINDS[study](run)

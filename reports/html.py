@@ -7,8 +7,8 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from plotly.offline import get_plotlyjs
 
+from reports.blocks import Content, FlightPicker
 from reports.chart import Chart
-from reports.content import Content
 from reports.plotly_charts import draw
 
 
@@ -17,14 +17,18 @@ def write_html(report: Content, path: Path) -> None:
     environment = Environment(
         loader=PackageLoader("reports"), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    flights = {flight.flight_id: [_figure(chart) for chart in flight.charts] for flight in report.flights}
     page = environment.get_template("report.html.j2").render(
         report=report,
         plotly=get_plotlyjs(),
+        kind=lambda block: type(block).__name__,
         figure=lambda chart: _for_script(_figure(chart)),
-        flights=_for_script(flights),
+        flights=_flights,
     )
     path.write_text(page, encoding="utf-8")
+
+
+def _flights(picker: FlightPicker) -> str:
+    return _for_script({flight.flight_id: [_figure(chart) for chart in flight.charts] for flight in picker.flights})
 
 
 def _figure(chart: Chart) -> dict[str, Any]:

@@ -78,6 +78,8 @@ def _dress(ax: Any, panel: Panel, *, last_row: bool) -> None:
         ax.set_title(panel.title)
     if panel.log_x:
         ax.set_xscale("log")
+    if panel.log_y:
+        ax.set_yscale("log")
     if panel.x_range:
         ax.set_xlim(*panel.x_range)
     if panel.y_range:

@@ -8,12 +8,13 @@ from typing import Any
 
 import typst
 
+from reports.blocks import Block, Content, FlightContent, FlightPicker, Section
 from reports.chart import Chart
-from reports.content import Content
 from reports.matplotlib_charts import draw
-from reports.tables import Table
 
 TEMPLATE = Path(__file__).parent / "templates" / "report.typ"
+
+Data = dict[str, Any]
 
 
 def write_pdf(report: Content, path: Path) -> None:
@@ -26,43 +27,34 @@ def write_pdf(report: Content, path: Path) -> None:
         path.write_bytes(typst.compile(str(directory / "report.typ")))
 
 
-def _data(report: Content, directory: Path) -> dict[str, Any]:
-    def image(chart: Chart | None, name: str = "") -> dict[str, str] | None:
-        if chart is None:
-            return None
-        file = f"{name or chart.name}.svg"
-        draw(chart).savefig(directory / file, dpi=200)
-        return {"file": file, "caption": chart.caption}
-
-    def table(t: Table | None) -> dict[str, Any] | None:
-        return None if t is None else asdict(t)
-
+def _data(report: Content, directory: Path) -> Data:
+    pickers = [block for section in report.sections for block in section.blocks if isinstance(block, FlightPicker)]
+    sections = [_section(section, directory) for section in report.sections]
     return {
         "title": report.title,
         "description": report.description,
         "changes": report.changes,
-        "safe": report.verdict.safe,
-        "complete": report.verdict.complete,
-        "failures": report.verdict.failures,
-        "headline": report.verdict.headline,
-        "detail": report.verdict.detail,
-        "figures": [list(figure) for figure in report.verdict.figures],
-        "sweep": [image(chart) for chart in report.sweep],
-        "flights_table": table(report.flights_table),
-        "comparison": image(report.comparison),
-        "comparison_table": table(report.comparison_table),
-        "flights": [
-            {
-                "name": f"ν = {flight.nu:.2f}: {flight.outcome}",
-                "charts": [image(chart, f"{flight.flight_id}-{chart.name}") for chart in flight.charts],
-            }
-            for flight in report.flights
-        ],
-        "innerloop": [image(chart) for chart in report.innerloop],
-        "margins": table(report.margins),
-        "steps": table(report.steps),
-        "trims": table(report.trims),
-        "oscillation": table(report.oscillation),
-        "parameters": table(report.parameters),
-        "provenance": table(report.provenance),
+        "verdict": asdict(report.verdict),
+        "sections": [section for section in sections if section["blocks"]],
+        "flights": [_flight(flight, directory) for picker in pickers for flight in picker.flights],
     }
+
+
+def _section(section: Section, directory: Path) -> Data:
+    """Return a section without its picker, whose flights have pages of their own."""
+    blocks = [_block(block, directory) for block in section.blocks if not isinstance(block, FlightPicker)]
+    return {"title": section.title, "blocks": blocks}
+
+
+def _block(block: Block, directory: Path) -> Data:
+    return {"kind": type(block).__name__, **(_image(block, directory) if isinstance(block, Chart) else asdict(block))}
+
+
+def _flight(flight: FlightContent, directory: Path) -> Data:
+    return {"title": flight.title, "charts": [_image(chart, directory, f"{flight.flight_id}-") for chart in flight.charts]}
+
+
+def _image(chart: Chart, directory: Path, prefix: str = "") -> Data:
+    file = f"{prefix}{chart.name}.svg"
+    draw(chart).savefig(directory / file, dpi=200)
+    return {"file": file, "caption": chart.caption}

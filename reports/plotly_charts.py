@@ -1,5 +1,6 @@
 """Draw charts with Plotly, for the screen."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -71,11 +72,13 @@ def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bo
     y_options: dict[str, Any] = {"title": panel.y_label}
     if panel.log_x:
         x_options["type"] = "log"
+    if panel.log_y:
+        # Ticks at powers of ten alone: figures in between would crowd an axis of many decades.
+        y_options |= {"type": "log", "dtick": 1}
     if panel.x_range:
-        low, high = panel.x_range
-        x_options["range"] = [np.log10(low), np.log10(high)] if panel.log_x else [low, high]
+        x_options["range"] = _limits(panel.x_range, log=panel.log_x)
     if panel.y_range:
-        y_options["range"] = list(panel.y_range)
+        y_options["range"] = _limits(panel.y_range, log=panel.log_y)
     figure.update_xaxes(**x_options, row=row, col=column)
     figure.update_yaxes(**y_options, row=row, col=column)
     if panel.equal:
@@ -85,6 +88,11 @@ def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bo
         axis = next(figure.select_xaxes(row=row, col=column)).plotly_name.replace("axis", "")
         figure.update_yaxes(scaleanchor=axis, scaleratio=1, constrain="domain", row=row, col=column)
         figure.update_xaxes(constrain="domain", row=row, col=column)
+
+
+def _limits(limits: tuple[float, float], *, log: bool) -> list[float]:
+    """Return limits of an axis as Plotly wants them: of a logarithmic one, their powers of ten."""
+    return [math.log10(limit) for limit in limits] if log else list(limits)
 
 
 def _equal_ranges(panel: Panel) -> tuple[list[float], list[float]]:

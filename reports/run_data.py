@@ -18,7 +18,7 @@ class RunData:
     ----------
     path : the run directory
     manifest : its configuration and provenance
-    summary : a row per flight of the study
+    summary : a row per flight of the study, or per trajectory and law
     comparison : a row per flight of the comparisons, possibly none
     crossings : a row per crossing
     innerloop : the autopilot's design record, or none if the run ended before
@@ -36,6 +36,11 @@ class RunData:
         path = self.path / "flights" / f"{flight_id}.parquet"
         return pd.read_parquet(path) if path.is_file() else None
 
+    def trajectory(self, law: str, number: int) -> pd.DataFrame | None:
+        """Return the time history of a trajectory of a convergence study, or None if it was not kept."""
+        path = self.path / "trajectories" / f"{law}_{number:05d}.parquet"
+        return pd.read_parquet(path) if path.is_file() else None
+
     def crossings_of(self, flight_id: str) -> pd.DataFrame:
         """Return the crossings of a flight."""
         return self.crossings[self.crossings["flight_id"] == flight_id]
@@ -46,7 +51,7 @@ def read_run(path: Path) -> RunData:
 
     Raises
     ------
-    ReportError : it is not one, is damaged, or holds no flight
+    ReportError : it is not one, is damaged, or holds nothing finished
     """
     try:
         manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
@@ -57,7 +62,7 @@ def read_run(path: Path) -> RunData:
     if not (isinstance(manifest, dict) and isinstance(manifest.get("config"), dict)):
         raise ReportError(f"'{path}': manifest.json is not that of a run; run the scenario again in another --out")
     if not (path / "summary.csv").is_file():
-        raise ReportError(f"'{path}' holds no finished flight (no summary.csv); continue the run with --resume")
+        raise ReportError(f"'{path}' holds nothing finished (no summary.csv); continue the run with --resume")
     innerloop = path / "innerloop.json"
     try:
         return RunData(

@@ -15,7 +15,12 @@ VARIANT_COLOURS = ("vermillion", "orange", "sky", "purple", "green", "grey")
 def sweep_charts(run: RunData) -> list[Chart]:
     """Return the figures over the speed ratio, for the flights that have something to show."""
     flown = run.summary[run.summary["crossing_interval_mean_s"].notna()]
-    charts = [_interval(flown, run.manifest), _distance(run.summary), _tracking(flown, run.manifest), _command(run.summary)]
+    charts = [
+        _interval(flown, run.manifest),
+        _distance(run.summary),
+        _tracking(flown, run.manifest),
+        _command(run.summary, run.manifest),
+    ]
     return [chart for chart in charts if any(len(line.x) for panel in chart.panels for line in panel.lines)]
 
 
@@ -178,12 +183,17 @@ def _tracking(flown: pd.DataFrame, manifest: dict[str, Any]) -> Chart:
     )
 
 
-def _command(summary: pd.DataFrame) -> Chart:
+def _command(summary: pd.DataFrame, manifest: dict[str, Any]) -> Chart:
     nu = _column(summary, "nu")
+    kinematic = manifest["config"].get("fidelity") == "kinematic"
+    about_bank = (
+        " The kinematic vehicle has no bank: shown is that of a coordinated turn."
+        if kinematic
+        else " The X8 has no rudder: it slips in turns and needs two to three degrees more bank than a coordinated turn."
+    )
     return Chart(
         name="command",
-        caption="Largest commanded heading rate against ω_max, largest bank flown, and settling time. The X8 has no rudder:"
-        " it slips in turns and needs two to three degrees more bank than a coordinated turn.",
+        caption="Largest commanded heading rate against ω_max, largest bank, and settling time." + about_bank,
         panels=[
             Panel(
                 x_label=_NU,

@@ -1,36 +1,14 @@
-"""What a run shows, at a glance."""
-
-from dataclasses import dataclass
+"""What a sweep shows, at a glance."""
 
 import numpy as np
 import pandas as pd
 
+from reports.blocks import Verdict
 from reports.run_data import RunData
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Verdict:
-    """The answer, and the figures it rests on.
-
-    Attributes
-    ----------
-    safe : no flight entered the keep-out area and every crossing lay outside it
-    complete : every planned flight completed and met its criteria
-    headline, detail : in words
-    failures : a line per flight that is not as asked
-    figures : name, value and limit of what was asked for
-    """
-
-    safe: bool
-    complete: bool
-    headline: str
-    detail: str
-    failures: list[str]
-    figures: list[tuple[str, str, str]]
-
-
 def verdict(run: RunData) -> Verdict:
-    """Judge a run by its summary."""
+    """Judge a run by its summary: safe if no flight entered the keep-out area and every crossing lay outside it."""
     summary, manifest = run.summary, run.manifest
     planned = int(manifest.get("flights_planned", len(summary)))
     flown = summary[summary["min_distance_m"].notna()]

@@ -1,5 +1,6 @@
 """What a scenario file may say. Units are in the names; bounds are checked here and nowhere else."""
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -13,7 +14,9 @@ def _check_divides(name: str, rate: float, whole: float) -> None:
         raise ValueError(f"{name} is {rate:g} Hz; it must divide {whole:g} Hz, e.g. {nearest}")
 
 
-class _Section(BaseModel):
+class Section(BaseModel):
+    """Frozen; unknown keys and numbers that are not finite are refused."""
+
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
 
 
@@ -21,21 +24,21 @@ Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 
 
-class Sweep(_Section):
+class Sweep(Section):
     """What varies from flight to flight."""
 
     nu: Annotated[tuple[Annotated[float, Field(ge=0.0, le=10.0)], ...], Field(min_length=1, max_length=1000)]
     """Speed ratios, vessel over UAV [-]. Ratios of 1 and above are infeasible and become rows that say so."""
 
 
-class Vessel(_Section):
+class Vessel(Section):
     """The ship, at constant velocity; its speed is nu times that of the UAV."""
 
     course_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 0.0
     """Course, clockwise from north [deg]."""
 
 
-class Plume(_Section):
+class Plume(Section):
     """The axis of the smoke plume: a half-line from the funnel."""
 
     heading_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 180.0
@@ -46,14 +49,30 @@ class Plume(_Section):
     """Height of the funnel's mouth above the sea, where the axis starts [m]."""
 
 
-class Keepout(_Section):
+class Keepout(Section):
     """The sphere about the funnel's mouth that the UAV must not enter."""
 
     radius_m: Annotated[float, Field(ge=10.0, le=10_000.0)] = 200.0
     """r_min [m]."""
 
 
-class Guidance(_Section):
+class Kinematic(Section):
+    """The paper's vehicle, eq. (1), flown where fidelity is kinematic."""
+
+    heading_rate_lag_s: NonNegative = 0.0
+    """Time constant of the heading rate behind its command; 0 for eq. (1) as it stands [s]."""
+
+
+class Reference(Section):
+    """What the reference point does."""
+
+    path: Literal["oscillation", "circle"] = "oscillation"
+    """Oscillate about a centre in the plume, eq. (2), or circle without a vessel, as in the paper's Sims. 1 and 2."""
+    radius_m: Positive = 130.0
+    """Radius of the circle, flown to the right [m]."""
+
+
+class Guidance(Section):
     """The paper's outer loop."""
 
     law: Literal["cascade", "lyapunov", "line_of_sight"] = "cascade"
@@ -74,6 +93,8 @@ class Guidance(_Section):
     """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside."""
     tracking_allowance_m: Annotated[float, Field(ge=0.0, le=100.0)] = 1.0
     """Added to r_min in the placement: what the UAV may stray from the reference, which may touch r_min itself [m]."""
+    tuning: Literal["given", "bounded"] = "given"
+    """Look-ahead and steering_max as given, or those that converge fastest while no state asks for more than omega_max."""
     epsilon_per_m: Positive = 0.005
     """epsilon of the look-ahead, eq. (15) [1/m]."""
     look_ahead_m: Positive = 60.0
@@ -84,6 +105,8 @@ class Guidance(_Section):
     """Largest |h(phi)| in eq. (30) [rad/s]."""
     lyapunov_gain_per_m2: Positive = 0.001
     """k_1 of eq. (24) [1/m2]."""
+    command_limit: bool = True
+    """Cut commands at omega_max. Only a kinematic vehicle can do without: it turns as fast as it is told."""
     preview: bool = True
     """Run the law ahead of time by the inner loop's measured lag."""
     airspeed_trim: bool = True
@@ -107,8 +130,8 @@ class Guidance(_Section):
         return self
 
 
-class Start(_Section):
-    """Where flights begin: a seeded random place astern of the vessel, on any course."""
+class Start(Section):
+    """Where flights begin: a seeded random place astern of the vessel, on any course, or a given one."""
 
     distance_m: tuple[Positive, Positive] = (400.0, 800.0)
     """Nearest and farthest distance from the vessel [m]."""
@@ -116,6 +139,8 @@ class Start(_Section):
     """Largest bearing from straight astern, either side [deg]."""
     course_deg: Annotated[float, Field(ge=-360.0, le=360.0)] | None = None
     """Initial course [deg]; any if not given."""
+    place_m: tuple[float, float] | None = None
+    """Place ahead and right of the vessel or, on a circle, of the reference's start; random if not given [m]."""
 
     @model_validator(mode="after")
     def _ordered(self) -> "Start":
@@ -124,7 +149,7 @@ class Start(_Section):
         return self
 
 
-class Flight(_Section):
+class Flight(Section):
     """When a flight ends and what is recorded."""
 
     crossings: Annotated[int, Field(ge=2, le=10_000)] = 30
@@ -137,7 +162,7 @@ class Flight(_Section):
     """Recording rate [Hz], at least 5 so that keep-out figures are true to centimetres; must divide the guidance rate."""
 
 
-class Criteria(_Section):
+class Criteria(Section):
     """What a flight must show to count as met."""
 
     tracking_error_rms_m: Positive = 1.5
@@ -148,33 +173,55 @@ class Criteria(_Section):
     """Largest difference of altitude from that of the CO [m]."""
     crossing_interval_error: Positive = 0.01
     """Largest relative difference of the mean crossing interval from pi/omega_0 [-]."""
+    tracking_error_end_m: Positive | None = None
+    """Largest distance to the reference at the end [m]."""
+    law_within_heading_rate_max: bool = False
+    """Whether the law itself must ask for no more than omega_max, before commands are cut."""
 
 
-class Variant(_Section):
+class Variant(Section):
     """A comparison: the same flights with some keys set otherwise."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     set: dict[str, object]
 
 
-class Comparison(_Section):
+class Comparison(Section):
     """Extra flights that show what a part of the guidance is worth. They are reported apart and have no part in the verdict."""
 
     nu: tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...] = ()
     variants: tuple[Variant, ...] = ()
 
 
-class Scenario(_Section):
+class Case(Section):
+    """One flight of a study of cases, with some keys set otherwise; flown with each vehicle that ``fidelity`` names."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
+    set: dict[str, object] = {}
+    set_kinematic: dict[str, object] = {}
+    """More keys, for the kinematic vehicle alone."""
+    comparison: bool = False
+    """Reported apart, with no part in the verdict."""
+
+
+class Scenario(Section):
     """A whole scenario file."""
 
+    study: Literal["flights", "paper"] = "flights"
+    """A flight for each of sweep.nu, or the cases that are the paper's simulations."""
     title: str
     description: str = ""
     aircraft: str = "x8"
+    fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
+    """The aircraft in six degrees of freedom, the paper's kinematic vehicle, or (cases only) one after the other."""
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1
-    sweep: Sweep
+    sweep: Sweep = Sweep(nu=(0.5,))
+    cases: tuple[Case, ...] = ()
     vessel: Vessel = Vessel()
     plume: Plume = Plume()
     keepout: Keepout = Keepout()
+    kinematic: Kinematic = Kinematic()
+    reference: Reference = Reference()
     guidance: Guidance = Guidance()
     start: Start = Start()
     flight: Flight = Flight()
@@ -184,7 +231,33 @@ class Scenario(_Section):
     @model_validator(mode="after")
     def _rates(self) -> "Scenario":
         _check_divides("flight.log_rate_hz", self.flight.log_rate_hz, self.guidance.rate_hz)
-        nearest, radius = self.start.distance_m[0], self.keepout.radius_m
+        return self
+
+    @model_validator(mode="after")
+    def _starts_outside(self) -> "Scenario":
+        radius = self.keepout.radius_m
+        if self.reference.path == "circle":
+            return self
+        if self.start.place_m is None:
+            nearest, where = self.start.distance_m[0], "start.distance_m begins at"
+        else:
+            nearest, where = math.hypot(*self.start.place_m), "start.place_m lies at"
         if nearest <= radius:
-            raise ValueError(f"start.distance_m begins at {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m")
+            raise ValueError(f"{where} {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m")
+        return self
+
+    @model_validator(mode="after")
+    def _study(self) -> "Scenario":
+        if (self.study == "paper") != bool(self.cases):
+            raise ValueError(f"study is '{self.study}' with {len(self.cases)} cases; 'paper' has cases, 'flights' has none")
+        if self.study == "flights" and "sweep" not in self.model_fields_set:
+            raise ValueError("key 'sweep' is missing; add it to the scenario")
+        if self.study == "flights" and self.fidelity == "both":
+            raise ValueError("fidelity is 'both'; that is for studies of cases: give 'six_dof' or 'kinematic'")
+        if self.study == "flights" and self.reference.path == "circle":
+            raise ValueError("reference.path is 'circle'; that is for studies of cases, see scenarios/catalog/paper.toml")
+        if self.fidelity == "six_dof" and not self.guidance.command_limit:
+            raise ValueError(
+                "guidance.command_limit is false; the aircraft cannot turn as fast as it is told: set fidelity=kinematic"
+            )
         return self

@@ -3,12 +3,15 @@
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from scenarios.config import Scenario
+from scenarios.convergence_config import ConvergenceScenario
 from scenarios.errors import InputError
+
+Study = TypeVar("Study", Scenario, ConvergenceScenario)
 
 CATALOG = Path(__file__).parent / "catalog"
 
@@ -19,7 +22,20 @@ def catalog() -> dict[str, Path]:
 
 
 def load_scenario(name: str, overrides: Sequence[str] = ()) -> Scenario:
-    """Read a scenario by catalog name or file path.
+    """Read a scenario of flights, as ``load_study`` does.
+
+    Raises
+    ------
+    InputError : as there, or the file is a study of another kind
+    """
+    study = load_study(name, overrides)
+    if not isinstance(study, Scenario):
+        raise InputError(f"'{name}' is a study of {study.study}; give a scenario of flights")
+    return study
+
+
+def load_study(name: str, overrides: Sequence[str] = ()) -> Scenario | ConvergenceScenario:
+    """Read a study by catalog name or file path.
 
     Parameters
     ----------
@@ -48,18 +64,15 @@ def load_scenario(name: str, overrides: Sequence[str] = ()) -> Scenario:
     for override in overrides:
         key, value = _parse_override(override)
         _set(document, key, value)
-    return validate(document)
+    if document.get("study") == "convergence":
+        return _validate(document, ConvergenceScenario)
+    return _validate(document, Scenario)
 
 
-def validate(document: Mapping[str, Any]) -> Scenario:
-    """Return the checked scenario.
-
-    Raises
-    ------
-    InputError : naming the key, its value and the limit
-    """
+def _validate(document: Mapping[str, Any], kind: type[Study]) -> Study:
+    """Return the checked scenario, or raise an InputError that names the key, its value and the limit."""
     try:
-        return Scenario.model_validate(document)
+        return kind.model_validate(document)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
@@ -73,7 +86,7 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
     document = scenario.model_dump()
     for key, value in values.items():
         _set(document, key, value)
-    return validate(document)
+    return _validate(document, Scenario)
 
 
 def _explain(key: str, kind: str, message: str, value: object) -> str:
@@ -94,7 +107,11 @@ def _parse_override(override: str) -> tuple[str, object]:
         raise InputError(f"--set '{override}' is not of the form key=value, e.g. --set guidance.preview=false")
     try:
         value = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except tomllib.TOMLDecodeError as error:
+        if text.strip().startswith(("[", "{")):
+            raise InputError(
+                f"--set '{override}' is not valid TOML: {error}; words in a list are quoted: 'key=[\"word\"]'"
+            ) from None
         value = text  # a bare word is a string
     return key.strip(), value
 

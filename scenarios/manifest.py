@@ -12,18 +12,16 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from scenarios.config import Scenario
-
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pandas", "pyarrow", "matplotlib", "plotly", "pydantic", "typst")
 
 
-def config_hash(scenario: Scenario) -> str:
+def config_hash(scenario: BaseModel) -> str:
     """Return a hash of everything in the scenario that the result depends on."""
     text = json.dumps(scenario.model_dump(mode="json"), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def parameters(scenario: Scenario) -> list[dict[str, Any]]:
+def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
     """Return every key of the scenario that has a number, a word or a switch, with its value, meaning and unit."""
     listed = []
     for section_name in type(scenario).model_fields:

@@ -10,21 +10,22 @@ from scenarios.closed_loop import COLUMNS, FlightRecord
 from scenarios.config import Criteria
 from scenarios.crossings import Crossing, find_crossings
 from scenarios.keepout import keepout_figures
-from scenarios.plan import FlightPlan
+from scenarios.plan import FlightPlan, Mission
+from scenarios.vessel import Vessel
 
 Array = npt.NDArray[np.float64]
 Row = dict[str, Any]
 
 SUMMARY_COLUMNS = (
-    "flight_id", "outcome", "message", "criteria_met", "aircraft", "seed", "nu", "plume_heading_deg", "plume_elevation_deg",
-    "eta", "omega_0_rad_s", "oscillation_limit", "r_co_m", "keepout_radius_m", "keepout_violations", "keepout_time_s",
-    "keepout_depth_m", "min_distance_m", "crossing_count", "crossing_interval_mean_s", "crossing_interval_std_s",
+    "flight_id", "outcome", "message", "criteria_met", "aircraft", "fidelity", "seed", "nu", "plume_heading_deg",
+    "plume_elevation_deg", "eta", "omega_0_rad_s", "oscillation_limit", "r_co_m", "keepout_radius_m", "keepout_violations",
+    "keepout_time_s", "keepout_depth_m", "min_distance_m", "crossing_count", "crossing_interval_mean_s", "crossing_interval_std_s",
     "crossing_interval_predicted_s", "crossing_distance_mean_m", "crossing_distance_min_m", "crossing_angle_mean_deg",
-    "settling_time_s", "tracking_error_rms_m", "tracking_error_max_m", "airspeed_error_rms_mps", "airspeed_error_max_mps",
-    "airspeed_trim_rms_mps", "altitude_error_rms_m", "altitude_error_max_m", "heading_rate_error_rms_rad_s",
-    "heading_rate_command_max_rad_s", "heading_rate_limit_rad_s", "heading_rate_flown_max_rad_s",
-    "bank_max_deg", "saturation_fraction", "duration_s",
-    "wall_time_s",
+    "settling_time_s", "tracking_error_rms_m", "tracking_error_max_m", "tracking_error_end_m", "airspeed_error_rms_mps",
+    "airspeed_error_max_mps", "airspeed_trim_rms_mps", "altitude_error_rms_m", "altitude_error_max_m",
+    "heading_rate_error_rms_rad_s", "heading_rate_wanted_max_rad_s", "heading_rate_command_max_rad_s",
+    "heading_rate_limit_rad_s", "heading_rate_bound_rad_s", "heading_rate_flown_max_rad_s", "epsilon_per_m", "look_ahead_m",
+    "steering_max_rad_s", "bank_max_deg", "saturation_fraction", "duration_s", "wall_time_s",
 )  # fmt: skip
 """Columns of ``summary.csv``, in order. A figure that a flight does not have is empty."""
 
@@ -34,14 +35,14 @@ def column(history: Array, name: str) -> Array:
     return history[:, COLUMNS.index(name)]
 
 
-def relative_motion(plan: FlightPlan, history: Array) -> tuple[Array, Array]:
+def relative_motion(vessel: Vessel, history: Array) -> tuple[Array, Array]:
     """Return position and velocity from the plume's origin, each shape (n, 3): north, east, up [m, m/s]."""
     time = column(history, "time_s")
-    v_north, v_east = plan.vessel.velocity_ned
+    v_north, v_east = vessel.velocity_ned
     position = np.column_stack([
         column(history, "north_m") - v_north * time,
         column(history, "east_m") - v_east * time,
-        column(history, "altitude_m") - plan.vessel.source_height,
+        column(history, "altitude_m") - vessel.source_height,
     ])  # fmt: skip
     velocity = np.column_stack([
         column(history, "velocity_north_mps") - v_north,
@@ -60,15 +61,26 @@ def settling_index(distance: Array, band: float) -> int | None:
 
 def plan_row(plan: FlightPlan) -> Row:
     """Return the part of a row that is known once the flight is planned."""
-    return {
-        "plume_heading_deg": math.degrees(plan.vessel.plume_heading),
-        "plume_elevation_deg": math.degrees(plan.vessel.plume_elevation),
-        "eta": plan.oscillation.eta,
-        "omega_0_rad_s": plan.oscillation.omega_0,
-        "oscillation_limit": plan.oscillation.limit,
-        "r_co_m": plan.centre_distance,
-        "crossing_interval_predicted_s": plan.oscillation.crossing_interval,
-        "heading_rate_limit_rad_s": plan.guidance.heading_rate_max,
+    row: Row = {
+        "heading_rate_limit_rad_s": plan.heading_rate_max,
+        "heading_rate_bound_rad_s": plan.heading_rate_bound if math.isfinite(plan.heading_rate_bound) else math.nan,
+        "epsilon_per_m": plan.guidance.look_ahead.epsilon,
+        "look_ahead_m": plan.guidance.look_ahead.radius,
+        "steering_max_rad_s": plan.guidance.rate_max,
+    }
+    mission = plan.mission
+    if mission is None:
+        return row
+    return row | {
+        "nu": mission.nu,
+        "plume_heading_deg": math.degrees(mission.vessel.plume_heading),
+        "plume_elevation_deg": math.degrees(mission.vessel.plume_elevation),
+        "eta": mission.oscillation.eta,
+        "omega_0_rad_s": mission.oscillation.omega_0,
+        "oscillation_limit": mission.oscillation.limit,
+        "r_co_m": mission.centre_distance,
+        "keepout_radius_m": mission.keepout_radius,
+        "crossing_interval_predicted_s": mission.oscillation.crossing_interval,
     }
 
 
@@ -84,8 +96,6 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     """
     history = record.history
     time = column(history, "time_s")
-    position, velocity = relative_motion(plan, history)
-    keepout = keepout_figures(time, position, plan.keepout_radius)
     to_reference = np.hypot(
         column(history, "reference_north_m") - column(history, "north_m"),
         column(history, "reference_east_m") - column(history, "east_m"),
@@ -93,10 +103,8 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     row: Row = {
         "outcome": record.outcome.value,
         "message": record.message,
-        "keepout_violations": keepout.violations,
-        "keepout_time_s": keepout.time_inside,
-        "keepout_depth_m": keepout.depth,
-        "min_distance_m": keepout.distance_min,
+        "tracking_error_end_m": float(to_reference[-1]),
+        "heading_rate_wanted_max_rad_s": record.heading_rate_wanted_max,
         "heading_rate_command_max_rad_s": float(np.max(np.abs(column(history, "heading_rate_command_rad_s")))),
         "heading_rate_flown_max_rad_s": float(np.max(np.abs(column(history, "heading_rate_rad_s")))),
         "bank_max_deg": math.degrees(float(np.max(np.abs(column(history, "roll_rad"))))),
@@ -104,25 +112,48 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
         "duration_s": float(time[-1]),
     }
     first = settling_index(to_reference, plan.settling_band)
-    if first is None or first > len(time) - 2:
+    settled = slice(first, None) if first is not None and first <= len(time) - 2 else None
+    if settled is not None:
+        row |= _settled_figures(plan, history[settled], to_reference[settled])
+    if plan.mission is None:
         return row, []
-    settled = slice(first, None)
-    crossings = find_crossings(time[settled], position[settled], velocity[settled], plan.vessel)
-    airspeed_error = (column(history, "airspeed_mps") - column(history, "airspeed_command_mps"))[settled]
-    altitude_error = (column(history, "altitude_m") - plan.altitude)[settled]
-    heading_rate_error = (column(history, "heading_rate_rad_s") - column(history, "reference_heading_rate_rad_s"))[settled]
-    row |= {
-        "settling_time_s": float(time[first]),
-        "tracking_error_rms_m": _rms(to_reference[settled]),
-        "tracking_error_max_m": float(np.max(to_reference[settled])),
+    figures, crossings = _mission_figures(plan.mission, history, settled)
+    return row | figures, crossings
+
+
+def _settled_figures(plan: FlightPlan, history: Array, to_reference: Array) -> Row:
+    """Measure what a flight does once it has settled."""
+    airspeed_error = column(history, "airspeed_mps") - column(history, "airspeed_command_mps")
+    altitude_error = column(history, "altitude_m") - plan.altitude
+    heading_rate_error = column(history, "heading_rate_rad_s") - column(history, "reference_heading_rate_rad_s")
+    return {
+        "settling_time_s": float(column(history, "time_s")[0]),
+        "tracking_error_rms_m": _rms(to_reference),
+        "tracking_error_max_m": float(np.max(to_reference)),
         "airspeed_error_rms_mps": _rms(airspeed_error),
         "airspeed_error_max_mps": float(np.max(np.abs(airspeed_error))),
-        "airspeed_trim_rms_mps": _rms((column(history, "airspeed_command_mps") - plan.oscillation.speed)[settled]),
+        "airspeed_trim_rms_mps": _rms(column(history, "airspeed_command_mps") - plan.reference.speed),
         "altitude_error_rms_m": _rms(altitude_error),
         "altitude_error_max_m": float(np.max(np.abs(altitude_error))),
         "heading_rate_error_rms_rad_s": _rms(heading_rate_error),
-        "crossing_count": len(crossings),
     }
+
+
+def _mission_figures(mission: Mission, history: Array, settled: slice | None) -> tuple[Row, list[Crossing]]:
+    """Measure the keep-out area over the whole flight, and the crossings once it has settled."""
+    time = column(history, "time_s")
+    position, velocity = relative_motion(mission.vessel, history)
+    keepout = keepout_figures(time, position, mission.keepout_radius)
+    row: Row = {
+        "keepout_violations": keepout.violations,
+        "keepout_time_s": keepout.time_inside,
+        "keepout_depth_m": keepout.depth,
+        "min_distance_m": keepout.distance_min,
+    }
+    if settled is None:
+        return row, []
+    crossings = find_crossings(time[settled], position[settled], velocity[settled], mission.vessel)
+    row["crossing_count"] = len(crossings)
     if crossings:
         distances = [crossing.distance for crossing in crossings]
         row |= {
@@ -141,26 +172,39 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
 
 def unmet_criteria(row: Row, criteria: Criteria) -> list[str]:
     """Return what a completed flight's row fails, each as a short sentence; empty when all is met."""
+    limit = row["heading_rate_limit_rad_s"] * (1.0 + 1e-12)
+    checks = [
+        _at_most("rms tracking error", row.get("tracking_error_rms_m"), criteria.tracking_error_rms_m, "m"),
+        _at_most("rms airspeed error", row.get("airspeed_error_rms_mps"), criteria.airspeed_error_rms_mps, "m/s"),
+        _at_most("largest altitude error", row.get("altitude_error_max_m"), criteria.altitude_error_max_m, "m"),
+        (
+            row["heading_rate_command_max_rad_s"] <= limit,
+            f"commanded {row['heading_rate_command_max_rad_s']:.4f} rad/s above omega_max",
+        ),
+    ]
+    if "keepout_violations" in row:
+        checks = [*_mission_checks(row, criteria), *checks]
+    if criteria.tracking_error_end_m is not None:
+        checks.append(_at_most("tracking error at the end", row.get("tracking_error_end_m"), criteria.tracking_error_end_m, "m"))
+    if criteria.law_within_heading_rate_max:
+        wanted = row["heading_rate_wanted_max_rad_s"]
+        checks.append((wanted <= limit, f"the law asked for {wanted:.4f} rad/s, above omega_max"))
+    return [message for met, message in checks if not met]
+
+
+def _mission_checks(row: Row, criteria: Criteria) -> list[tuple[bool, str]]:
     interval, predicted = row.get("crossing_interval_mean_s", math.nan), row["crossing_interval_predicted_s"]
-    checks = (
+    return [
         (row["keepout_violations"] == 0, f"entered the keep-out area {row['keepout_violations']} times"),
         (
             row.get("crossing_distance_min_m", -math.inf) >= row["keepout_radius_m"],
             f"crossed at {row.get('crossing_distance_min_m', math.nan):.2f} m, inside {row['keepout_radius_m']:g} m",
         ),
-        _at_most("rms tracking error", row.get("tracking_error_rms_m"), criteria.tracking_error_rms_m, "m"),
-        _at_most("rms airspeed error", row.get("airspeed_error_rms_mps"), criteria.airspeed_error_rms_mps, "m/s"),
-        _at_most("largest altitude error", row.get("altitude_error_max_m"), criteria.altitude_error_max_m, "m"),
         (
             abs(interval / predicted - 1.0) <= criteria.crossing_interval_error,
             f"mean crossing interval {interval:.3f} s against {predicted:.3f} s",
         ),
-        (
-            row["heading_rate_command_max_rad_s"] <= row["heading_rate_limit_rad_s"] * (1.0 + 1e-12),
-            f"commanded {row['heading_rate_command_max_rad_s']:.4f} rad/s above omega_max",
-        ),
-    )
-    return [message for met, message in checks if not met]
+    ]
 
 
 def _at_most(name: str, value: float | None, limit: float, unit: str) -> tuple[bool, str]:

@@ -5,52 +5,68 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gnc.delta import look_ahead
+from gnc.errors import InfeasibleError
 from gnc.guidance import GuidanceParameters, Law
 from gnc.keepout_guard import KeepoutGuard
 from gnc.oscillation import Oscillation, design_oscillation, heading_rate_for_bank
 from gnc.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
-from gnc.reference import ReferenceStart, start_reference
+from gnc.reference import CirclingReference, Reference, ReferencePoint, ReferenceStart, start_reference
 from scenarios.config import Scenario
+from scenarios.steering import plan_steering
 from scenarios.vessel import Vessel
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Mission:
+    """What a flight is for: plume crossings, outside a keep-out area.
+
+    Attributes
+    ----------
+    nu : speed ratio [-]
+    vessel : ship and plume
+    oscillation : of the reference point
+    centre_distance : r_CO [m]
+    keepout_radius : r_min [m]
+    guard : of the keep-out area on the way to the reference, or none
+    crossings : to be flown after settling
+    """
+
+    nu: float
+    vessel: Vessel
+    oscillation: Oscillation
+    centre_distance: float
+    keepout_radius: float
+    guard: KeepoutGuard | None
+    crossings: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FlightPlan:
-    """One flight.
+    """One flight: a reference to track, from a start.
 
     Attributes
     ----------
     flight_id : unique in the run
-    nu : speed ratio [-]
-    seed : of this flight's start
-    vessel : ship and plume
-    oscillation, reference, phase : of the reference point
-    centre_distance : r_CO [m]
-    keepout_radius : r_min [m]
-    altitude : commanded, that of the CO [m]
+    mission : or none, where there is a reference to track and nothing else
+    reference : at time 0
     guidance : parameters of the outer loop
-    guard : of the keep-out area on the way to the reference, or none
+    heading_rate_max : omega_max, whether commands are cut at it or not [rad/s]
+    heading_rate_bound : on what the law asks for in any state; infinite if there is none [rad/s]
+    altitude : commanded [m]
     start_north, start_east, start_course : of the UAV [m, m, rad]
-    crossings, duration_max, settling_band, log_interval : when to stop and what to record; the last in guidance steps
+    duration_max, settling_band, log_interval : when to stop and what to record; the last in guidance steps
     """
 
     flight_id: str
-    nu: float
-    seed: int
-    vessel: Vessel
-    oscillation: Oscillation
-    reference: ReferenceStart
-    phase: float
-    centre_distance: float
-    keepout_radius: float
-    altitude: float
+    mission: Mission | None
+    reference: Reference
     guidance: GuidanceParameters
-    guard: KeepoutGuard | None
+    heading_rate_max: float
+    heading_rate_bound: float
+    altitude: float
     start_north: float
     start_east: float
     start_course: float
-    crossings: int
     duration_max: float
     settling_band: float
     log_interval: int
@@ -61,59 +77,41 @@ def plan_flight(scenario: Scenario, *, flight_id: str, nu: float, seed: int, lag
 
     Parameters
     ----------
-    scenario, flight_id, nu : the flight
+    scenario, flight_id, nu : the flight; a circle has no use for nu
     seed : of its random start
-    lag : of the inner loop's heading rate [s]
+    lag : of the vehicle's heading rate [s]
 
     Raises
     ------
     InfeasibleError : the flight has no solution
     """
-    g = scenario.guidance
-    speed = g.airspeed_mps
-    axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
-    oscillation = design_oscillation(
-        nu=nu,
-        speed=speed,
-        heading_rate_max=heading_rate_max(scenario),
-        reserve=g.reserve,
-        roll_rate_max=math.radians(g.roll_rate_max_deg_s),
-    )
-    vessel = Vessel(
-        speed=nu * speed,
-        course=math.radians(scenario.vessel.course_deg),
-        plume_heading=axis.heading,
-        plume_elevation=axis.elevation,
-        source_height=scenario.plume.source_height_m,
-    )
-    rule = distance_by_paper if g.placement == "paper" else distance_exact
-    distance = rule(oscillation, axis, scenario.keepout.radius_m + g.tracking_allowance_m)
-    ahead, right, above = centre_of_oscillation(distance, axis)
-    centre_north, centre_east = vessel.place_ned(ahead, right)
-    phase = math.radians(g.phase_deg)
-    north, east, course = _random_start(scenario, vessel, seed)
+    time_step = 1.0 / scenario.guidance.rate_hz
+    if scenario.reference.path == "circle":
+        mission, altitude = None, scenario.plume.source_height_m
+        reference: Reference = _circle(scenario, time_step)
+        heading_rate = reference.heading_rate
+        vessel = Vessel(speed=0.0, course=0.0, plume_heading=math.pi, plume_elevation=0.0, source_height=altitude)
+    else:
+        mission, centre = _mission(scenario, nu)
+        vessel, heading_rate = mission.vessel, mission.oscillation.amplitude
+        altitude = vessel.source_height + centre[2]
+        reference = _oscillating(scenario, mission, centre, time_step)
+    guidance, bound = _guidance(scenario, heading_rate, lag)
+    north, east, course = _start(scenario, vessel, seed)
     return FlightPlan(
         flight_id=flight_id,
-        nu=nu,
-        seed=seed,
-        vessel=vessel,
-        oscillation=oscillation,
-        reference=start_reference(
-            oscillation, phase=phase, centre_north=centre_north, centre_east=centre_east, vessel_course=vessel.course
-        ),
-        phase=phase,
-        centre_distance=distance,
-        keepout_radius=scenario.keepout.radius_m,
-        altitude=vessel.source_height + above,
-        guidance=_guidance(scenario, lag),
-        guard=_guard(scenario, vessel, above),
+        mission=mission,
+        reference=reference,
+        guidance=guidance,
+        heading_rate_max=heading_rate_max(scenario),
+        heading_rate_bound=bound,
+        altitude=altitude,
         start_north=north,
         start_east=east,
         start_course=course,
-        crossings=scenario.flight.crossings,
         duration_max=scenario.flight.duration_max_s,
         settling_band=scenario.flight.settling_band_m,
-        log_interval=round(g.rate_hz / scenario.flight.log_rate_hz),
+        log_interval=round(scenario.guidance.rate_hz / scenario.flight.log_rate_hz),
     )
 
 
@@ -123,21 +121,78 @@ def heading_rate_max(scenario: Scenario) -> float:
     return g.heading_rate_max_rad_s or heading_rate_for_bank(math.radians(g.bank_deg), g.airspeed_mps)
 
 
-def _guidance(scenario: Scenario, lag: float) -> GuidanceParameters:
+def _mission(scenario: Scenario, nu: float) -> tuple[Mission, tuple[float, float, float]]:
+    """Return the mission, and its CO ahead of, right of and above the plume's origin [m]."""
     g = scenario.guidance
-    return GuidanceParameters(
-        law=Law(g.law),
-        look_ahead=look_ahead(g.epsilon_per_m, g.look_ahead_m),
-        gain=g.gain_per_s,
-        rate_max=g.steering_max_rad_s,
-        k_1=g.lyapunov_gain_per_m2,
+    axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
+    oscillation = design_oscillation(
+        nu=nu,
+        speed=g.airspeed_mps,
         heading_rate_max=heading_rate_max(scenario),
+        reserve=g.reserve,
+        roll_rate_max=math.radians(g.roll_rate_max_deg_s),
+    )
+    vessel = Vessel(
+        speed=nu * g.airspeed_mps,
+        course=math.radians(scenario.vessel.course_deg),
+        plume_heading=axis.heading,
+        plume_elevation=axis.elevation,
+        source_height=scenario.plume.source_height_m,
+    )
+    rule = distance_by_paper if g.placement == "paper" else distance_exact
+    distance = rule(oscillation, axis, scenario.keepout.radius_m + g.tracking_allowance_m)
+    centre = centre_of_oscillation(distance, axis)
+    mission = Mission(
+        nu=nu,
+        vessel=vessel,
+        oscillation=oscillation,
+        centre_distance=distance,
+        keepout_radius=scenario.keepout.radius_m,
+        guard=_guard(scenario, vessel, centre[2]),
+        crossings=scenario.flight.crossings,
+    )
+    return mission, centre
+
+
+def _oscillating(scenario: Scenario, mission: Mission, centre: tuple[float, float, float], time_step: float) -> ReferencePoint:
+    phase = math.radians(scenario.guidance.phase_deg)
+    north, east = mission.vessel.place_ned(centre[0], centre[1])
+    start = start_reference(
+        mission.oscillation, phase=phase, centre_north=north, centre_east=east, vessel_course=mission.vessel.course
+    )
+    return ReferencePoint(mission.oscillation, start, phase=phase, time_step=time_step)
+
+
+def _circle(scenario: Scenario, time_step: float) -> CirclingReference:
+    speed, radius = scenario.guidance.airspeed_mps, scenario.reference.radius_m
+    least = speed / heading_rate_max(scenario)
+    if radius < least:
+        raise InfeasibleError(
+            f"reference.radius_m is {radius:g} m; at {speed:g} m/s and omega_max = {speed / least:.3f} rad/s it must be at least"
+            f" {least:.1f} m: widen the circle or raise omega_max"
+        )
+    start = ReferenceStart(north=0.0, east=0.0, course=0.0)
+    return CirclingReference(start, speed=speed, heading_rate=speed / radius, time_step=time_step)
+
+
+def _guidance(scenario: Scenario, reference_heading_rate: float, lag: float) -> tuple[GuidanceParameters, float]:
+    """Return the parameters of the outer loop, and the bound on what its law asks for [rad/s]."""
+    g = scenario.guidance
+    steering = plan_steering(scenario, heading_rate_max(scenario), reference_heading_rate)
+    parameters = GuidanceParameters(
+        law=Law(g.law),
+        look_ahead=steering.look_ahead,
+        gain=g.gain_per_s,
+        rate_max=steering.steering_max,
+        k_1=g.lyapunov_gain_per_m2,
+        heading_rate_max=heading_rate_max(scenario) if g.command_limit else math.inf,
         time_step=1.0 / g.rate_hz,
         lag=lag if g.preview else 0.0,
         guard_distance=g.guard_distance_m,
         airspeed_gain=g.airspeed_gain_per_s if g.airspeed_trim else 0.0,
         airspeed_trim_max=g.airspeed_trim_max_mps,
     )
+    return parameters, steering.bound
 
 
 def _guard(scenario: Scenario, vessel: Vessel, above: float) -> KeepoutGuard | None:
@@ -157,7 +212,8 @@ def _guard(scenario: Scenario, vessel: Vessel, above: float) -> KeepoutGuard | N
     )
 
 
-def _random_start(scenario: Scenario, vessel: Vessel, seed: int) -> tuple[float, float, float]:
+def _start(scenario: Scenario, vessel: Vessel, seed: int) -> tuple[float, float, float]:
+    """Return north, east [m] and course [rad] of the UAV's start: given, or drawn in the vessel's frame."""
     generator = np.random.default_rng(seed)
     distance = generator.uniform(*scenario.start.distance_m)
     spread = math.radians(scenario.start.spread_deg)
@@ -165,5 +221,6 @@ def _random_start(scenario: Scenario, vessel: Vessel, seed: int) -> tuple[float,
     course = generator.uniform(-math.pi, math.pi)
     if scenario.start.course_deg is not None:
         course = math.radians(scenario.start.course_deg)
-    north, east = vessel.place_ned(distance * math.cos(bearing), distance * math.sin(bearing))
+    place = scenario.start.place_m or (distance * math.cos(bearing), distance * math.sin(bearing))
+    north, east = vessel.place_ned(*place)
     return north, east, course

@@ -5,13 +5,14 @@ import shlex
 import sys
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from reports.command_line import BAD_INPUT, INTERRUPTED, run_command
 
 if TYPE_CHECKING:
+    from scenarios.convergence_run import ConvergenceResult
     from scenarios.runner import RunResult
 
 MET, NOT_MET = 0, 1
@@ -31,7 +32,8 @@ def command(
 ) -> None:
     """Fly a scenario and report on it.
 
-    Exit status: 0 every flight completed and met its criteria, 1 some did not, 2 bad input, 130 interrupted.
+    Exit status: 0 every flight completed and met its criteria (or every trajectory converged), 1 some did not, 2 bad input, 130
+    interrupted.
     """
     from scenarios.errors import InputError
 
@@ -65,8 +67,9 @@ def _run(
     resume: bool,
     no_report: bool,
 ) -> int:
+    from scenarios.config import Scenario
     from scenarios.errors import InputError
-    from scenarios.load import catalog, load_scenario
+    from scenarios.load import catalog, load_study
 
     if name is None:
         raise InputError(f"no scenario given; name a TOML file or one of: {', '.join(catalog())}")
@@ -74,34 +77,38 @@ def _run(
         raise InputError("--resume needs --out, the directory of the run to go on with")
     if seed is not None:
         overrides = [*overrides, f"seed={seed}"]
-    scenario = load_scenario(name, overrides)
+    study = load_study(name, overrides)
     stem = Path(name).stem
     directory = out or Path("runs") / f"{stem}-{datetime.now():%Y%m%d-%H%M%S}"
 
     from scenarios.progress import progress_bar
-    from scenarios.runner import run_scenario
 
+    result: RunResult | ConvergenceResult
     with progress_bar() as progress:
-        result = run_scenario(
-            scenario,
-            stem,
-            directory,
-            jobs=jobs or os.cpu_count() or 1,
-            resume=resume,
-            progress=progress,
-            overrides=overrides,
-        )
-    _say(result)
+        options: dict[str, Any] = {
+            "jobs": jobs or os.cpu_count() or 1,
+            "resume": resume,
+            "progress": progress,
+            "overrides": overrides,
+        }
+        if isinstance(study, Scenario):
+            from scenarios.runner import run_scenario
+
+            result = run_scenario(study, stem, directory, **options)
+        else:
+            from scenarios.convergence_run import run_study
+
+            result = run_study(study, stem, directory, **options)
+    for line in result.lines():
+        print(line)
+    print(f"results: {result.directory}")
     if result.interrupted:
-        options = "".join(f"--set {shlex.quote(item)} " for item in overrides)
-        again = f"{shlex.quote(name)} {options}--out {shlex.quote(str(directory))} --resume"
-        print(
-            f"interrupted; {len(result.rows)} of {result.planned} flights are kept. Go on with: python -m scenarios.run {again}",
-            file=sys.stderr,
-        )
+        again = "".join(f"--set {shlex.quote(item)} " for item in overrides)
+        again = f"{shlex.quote(name)} {again}--out {shlex.quote(str(directory))} --resume"
+        print(f"interrupted; what is done is kept. Go on with: python -m scenarios.run {again}", file=sys.stderr)
         return INTERRUPTED
     status = MET if no_report else _report(directory)
-    return status or (MET if result.met == result.planned else NOT_MET)
+    return status or (MET if result.all_met else NOT_MET)
 
 
 def _report(directory: Path) -> int:
@@ -119,19 +126,6 @@ def _report(directory: Path) -> int:
         print(f"report interrupted; build it with: python -m reports.build {directory}", file=sys.stderr)
         return INTERRUPTED
     return MET
-
-
-def _say(result: "RunResult") -> None:
-    completed = sum(row["outcome"] == "completed" for row in result.rows)
-    entries = sum(int(row.get("keepout_violations", 0)) for row in result.rows)
-    print(
-        f"{result.planned} flights planned, {len(result.rows)} done: {completed} completed, {result.met} met every criterion;"
-        f" {entries} entries into the keep-out area"
-    )
-    for row in result.rows:
-        if not row["criteria_met"]:
-            print(f"  {row['flight_id']}: {row['outcome']}: {row['message']}")
-    print(f"results: {result.directory}")
 
 
 def main() -> None:

@@ -26,8 +26,10 @@ class RunDirectory:
         self.path = path
         self.manifest = path / "manifest.json"
         self.innerloop = path / "innerloop.json"
+        self.bounds = path / "bounds.json"
         self.model = path / "model"
         self.flights = path / "flights"
+        self.trajectories = path / "trajectories"
 
     def open_new(self) -> None:
         """Create the directory.
@@ -65,7 +67,7 @@ class RunDirectory:
 
     def _create(self) -> None:
         try:
-            self.flights.mkdir(parents=True, exist_ok=True)
+            self.path.mkdir(parents=True, exist_ok=True)
             probe = self.path / f".probe-{uuid.uuid4().hex}"
             probe.touch()
             probe.unlink()
@@ -79,8 +81,17 @@ class RunDirectory:
 
     def write_rows(self, name: str, rows: list[Row], columns: tuple[str, ...]) -> None:
         """Write a table with exactly ``columns`` to ``name``, whole or not at all; figures that a row lacks are empty."""
-        frame = pd.DataFrame(rows, columns=list(columns))
-        write_whole(self.path / name, lambda part: frame.to_csv(part, index=False))
+        self.write_frame(name, pd.DataFrame(rows, columns=list(columns)))
+
+    def write_frame(self, name: str, frame: pd.DataFrame) -> None:
+        """Write a table to ``name``, a CSV or Parquet file by its ending, whole or not at all."""
+        write = frame.to_parquet if name.endswith(".parquet") else frame.to_csv
+        write_whole(self.path / name, lambda part: write(part, index=False))
+
+    def read_frame(self, name: str) -> pd.DataFrame | None:
+        """Return the table of a Parquet file, or none where there is no such file."""
+        path = self.path / name
+        return pd.read_parquet(path) if path.is_file() else None
 
     def read_rows(self, name: str) -> list[Row]:
         """Return the rows of a table, or none where there is no such file."""
@@ -92,8 +103,8 @@ class RunDirectory:
 
     def write_history(self, flight_id: str, history: pd.DataFrame) -> None:
         """Write a flight's time history, whole or not at all."""
-        path = self.flights / f"{flight_id}.parquet"
-        write_whole(path, lambda part: history.to_parquet(part, index=False))
+        self.flights.mkdir(exist_ok=True)
+        self.write_frame(f"{self.flights.name}/{flight_id}.parquet", history)
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:

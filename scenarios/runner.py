@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from aircraft.errors import AircraftError
-from aircraft.spec import find_spec
-from aircraft.trim import Trim
+from aircraft.spec import AircraftSpec, find_spec
 from gnc.oscillation import bank_for_heading_rate
 from innerloop.jsbsim_root import write_root
 from innerloop.record import design_record
@@ -20,7 +19,17 @@ from innerloop.schedule import design_schedule
 from scenarios.closed_loop import Outcome
 from scenarios.config import Scenario
 from scenarios.errors import InputError
-from scenarios.flights import FlightRequest, FlightResult, failed, flight_requests, fly_request, ignore_interrupt
+from scenarios.flights import (
+    STUDY,
+    FlightRequest,
+    FlightResult,
+    SixDof,
+    failed,
+    flight_requests,
+    fly_request,
+    guidance_lag,
+    ignore_interrupt,
+)
 from scenarios.manifest import config_hash, parameters, provenance
 from scenarios.metrics import SUMMARY_COLUMNS, Row
 from scenarios.plan import heading_rate_max
@@ -54,6 +63,21 @@ class RunResult:
         """Number of flights that completed and met every criterion."""
         return sum(bool(row["criteria_met"]) for row in self.rows)
 
+    @property
+    def all_met(self) -> bool:
+        """Whether every planned flight did."""
+        return self.met == self.planned
+
+    def lines(self) -> list[str]:
+        """Return what happened, in lines of text."""
+        completed = sum(row["outcome"] == Outcome.COMPLETED.value for row in self.rows)
+        entries = sum(int(row.get("keepout_violations", 0)) for row in self.rows)
+        return [
+            f"{self.planned} flights planned, {len(self.rows)} done: {completed} completed, {self.met} met every criterion;"
+            f" {entries} entries into the keep-out area",
+            *(f"  {row['flight_id']}: {row['outcome']}: {row['message']}" for row in self.rows if not row["criteria_met"]),
+        ]
+
 
 def run_scenario(
     scenario: Scenario,
@@ -80,23 +104,8 @@ def run_scenario(
     ------
     InputError : unknown aircraft, or a directory that cannot be used
     """
-    try:
-        spec = find_spec(scenario.aircraft)
-    except AircraftError as error:
-        raise InputError(f"aircraft: {error}") from None
-    envelope = spec.envelope
-    airspeed = scenario.guidance.airspeed_mps
-    if not envelope.airspeed_min <= airspeed <= envelope.airspeed_max:
-        raise InputError(
-            f"guidance.airspeed_mps is {airspeed:g}; {spec.title} flies {envelope.airspeed_min:g} to {envelope.airspeed_max:g} m/s"
-        )
-    bank = bank_for_heading_rate(heading_rate_max(scenario), airspeed)
-    if bank > envelope.bank_max:
-        raise InputError(
-            f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {spec.title} stops at"
-            f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or guidance.heading_rate_max_rad_s"
-        )
     requests = flight_requests(scenario)
+    spec = _check_aircraft(requests)
     run = RunDirectory(directory)
     digest = config_hash(scenario)
     if resume:
@@ -105,6 +114,7 @@ def run_scenario(
         run.open_new()
     ledger = _Ledger(run, requests)
     manifest: dict[str, Any] = {
+        "study": scenario.study,
         "name": name,
         "title": scenario.title,
         "overrides": list(overrides),
@@ -118,28 +128,29 @@ def run_scenario(
     }
     run.write_json(run.manifest, manifest)
     began = time.perf_counter()
-    progress("designing the autopilot", len(ledger.done), len(requests))
+    progress("designing the autopilot" if spec else "flying", len(ledger.done), len(requests))
     interrupted = False
     try:
-        schedule = design_schedule(spec, altitude=scenario.plume.source_height_m)
-        write_root(schedule, run.model)
-        design = design_record(schedule, run.model)
-        run.write_json(run.innerloop, design)
-        # Commands are held for half a guidance step on average, on top of the inner loop's own lag.
-        lag = float(design["heading_rate_lag_s"]) + 0.5 / scenario.guidance.rate_hz
-        start = level_trim(spec, airspeed, scenario.plume.source_height_m)
-        manifest["guidance_lag_s"] = lag
-        _fly_all([r for r in requests if r.flight_id not in ledger.done], ledger, run.path, start, lag, jobs, progress)
+        six_dof = None
+        try:
+            six_dof = _design(spec, scenario, run) if spec else None
+        except AircraftError as error:
+            for request in requests:
+                if request.scenario.fidelity == "six_dof" and request.flight_id not in ledger.done:
+                    ledger.add(failed(request, Outcome.TRIM_FAILED, str(error)))
+        manifest["guidance_lag_s"] = guidance_lag(scenario, six_dof)
+        _fly_all([r for r in requests if r.flight_id not in ledger.done], ledger, run.path, six_dof, jobs, progress)
+        if scenario.study == "paper":
+            from scenarios.bounds_record import bounds_record
+
+            progress("bounding commands", len(ledger.done), len(requests))
+            run.write_json(run.bounds, bounds_record(scenario, requests))
     except KeyboardInterrupt:
         interrupted = True
-    except AircraftError as error:
-        for request in requests:
-            if request.flight_id not in ledger.done:
-                ledger.add(failed(request, Outcome.TRIM_FAILED, str(error)))
     result = RunResult(
         directory=directory,
         rows=ledger.study_rows(),
-        planned=sum(request.variant == "study" for request in requests),
+        planned=sum(request.variant == STUDY for request in requests),
         interrupted=interrupted,
     )
     manifest |= {
@@ -153,13 +164,55 @@ def run_scenario(
     return result
 
 
+def _check_aircraft(requests: list[FlightRequest]) -> AircraftSpec | None:
+    """Return the aircraft of the flights in six degrees of freedom, if there are any, having checked that it can fly them.
+
+    Raises
+    ------
+    InputError : unknown aircraft, an airspeed or bank it cannot fly, or flights that differ in what the autopilot is designed for
+    """
+    flown = [request.scenario for request in requests if request.scenario.fidelity == "six_dof"]
+    designs = {(s.aircraft, s.guidance.airspeed_mps, s.plume.source_height_m) for s in flown}
+    if not designs:
+        return None
+    if len(designs) > 1:
+        raise InputError("flights differ in aircraft, guidance.airspeed_mps or plume.source_height_m; give each a run of its own")
+    scenario = flown[0]
+    try:
+        spec = find_spec(scenario.aircraft)
+    except AircraftError as error:
+        raise InputError(f"aircraft: {error}") from None
+    envelope, airspeed = spec.envelope, scenario.guidance.airspeed_mps
+    if not envelope.airspeed_min <= airspeed <= envelope.airspeed_max:
+        raise InputError(
+            f"guidance.airspeed_mps is {airspeed:g}; {spec.title} flies {envelope.airspeed_min:g} to {envelope.airspeed_max:g} m/s"
+        )
+    bank = max(bank_for_heading_rate(heading_rate_max(s), airspeed) for s in flown)
+    if bank > envelope.bank_max:
+        raise InputError(
+            f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {spec.title} stops at"
+            f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or guidance.heading_rate_max_rad_s"
+        )
+    return spec
+
+
+def _design(spec: AircraftSpec, scenario: Scenario, run: RunDirectory) -> SixDof:
+    """Design the autopilot into the run directory, and return what flights need of it."""
+    schedule = design_schedule(spec, altitude=scenario.plume.source_height_m)
+    write_root(schedule, run.model)
+    design = design_record(schedule, run.model)
+    run.write_json(run.innerloop, design)
+    start = level_trim(spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m)
+    return SixDof(start=start, lag=float(design["heading_rate_lag_s"]))
+
+
 class _Ledger:
     """What is done, on disk after every flight."""
 
     def __init__(self, run: RunDirectory, requests: list[FlightRequest]) -> None:
         self._run = run
         self._order = {request.flight_id: i for i, request in enumerate(requests)}
-        self._study = {request.flight_id for request in requests if request.variant == "study"}
+        self._study = {request.flight_id for request in requests if request.variant == STUDY}
         found = [*run.read_rows("summary.csv"), *run.read_rows("comparison.csv")]
         self._rows = {row["flight_id"]: row for row in found if row.get("flight_id") in self._order}
         self._crossings = [row for row in run.read_rows("crossings.csv") if row.get("flight_id") in self._rows]
@@ -188,14 +241,15 @@ class _Ledger:
 
 
 def _fly_all(
-    requests: list[FlightRequest], ledger: _Ledger, directory: Path, start: Trim, lag: float, jobs: int, progress: Progress
+    requests: list[FlightRequest], ledger: _Ledger, directory: Path, six_dof: SixDof | None, jobs: int, progress: Progress
 ) -> None:
     total = len(requests) + len(ledger.done)
     pool = ProcessPoolExecutor(max_workers=min(jobs, max(1, len(requests))), initializer=ignore_interrupt)
     futures: dict[Future[FlightResult], FlightRequest] = {}
     try:
         for request in requests:
-            futures[pool.submit(fly_request, request, directory, start, lag)] = request
+            needed = six_dof if request.scenario.fidelity == "six_dof" else None
+            futures[pool.submit(fly_request, request, directory, needed)] = request
         for future in as_completed(futures):
             ledger.add(_result(future, futures[future]))
             progress("flying", len(ledger.done), total)

@@ -5,20 +5,6 @@ from aircraft.local_frame import LocalFrame
 from aircraft.units import METRES_PER_FOOT
 from innerloop.jsbsim_system import HEADING_RATE
 
-SAMPLE_COLUMNS = (
-    "altitude_m",
-    "airspeed_mps",
-    "roll_rad",
-    "climb_rate_mps",
-    "pitch_rad",
-    "alpha_rad",
-    "sideslip_rad",
-    "elevator_rad",
-    "aileron_rad",
-    "throttle",
-)
-"""What ``Telemetry.sample`` returns, in order."""
-
 _SAMPLED = (
     ("position/h-sl-ft", METRES_PER_FOOT),
     ("velocities/vt-fps", METRES_PER_FOOT),

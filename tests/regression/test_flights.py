@@ -9,7 +9,7 @@ import pytest
 from aircraft.spec import X8
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim, measure_lag
-from scenarios.flights import flight_requests, fly_request
+from scenarios.flights import SixDof, flight_requests, fly_request
 from scenarios.load import load_scenario
 
 SPEED = 19.42
@@ -30,11 +30,11 @@ def start():
 
 @pytest.fixture
 def fly(run_directory, start, x8_aircraft):
-    lag = measure_lag(x8_aircraft, start) + 0.5 / 20.0
+    six_dof = SixDof(start=start, lag=measure_lag(x8_aircraft, start))
 
     def run(*overrides, nu=0.5, scenario="sweep_nu"):
         settings = load_scenario(scenario, [f"sweep.nu=[{nu}]", "comparison.variants=[]", *overrides])
-        result = fly_request(flight_requests(settings)[0], run_directory, start, lag)
+        result = fly_request(flight_requests(settings)[0], run_directory, six_dof)
         history = run_directory / "flights" / f"{result.row['flight_id']}.parquet"
         return result.row, pd.read_parquet(history) if history.is_file() else None
 

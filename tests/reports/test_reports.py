@@ -10,7 +10,9 @@ import pandas as pd
 import pytest
 
 from reports import matplotlib_charts, plotly_charts
+from reports.blocks import FlightPicker, Table
 from reports.build import build_reports
+from reports.chart import Chart
 from reports.content import content
 from reports.errors import ReportError
 from reports.run_data import read_run
@@ -41,9 +43,19 @@ def copy(run_path, tmp_path):
     return shutil.copytree(run_path, tmp_path / "copy")
 
 
+def blocks_of(report, kind, anchor=None):
+    """Return the blocks of a kind, of the whole report or of one section."""
+    sections = [s for s in report.sections if anchor in (None, s.anchor)]
+    return [block for section in sections for block in section.blocks if isinstance(block, kind)]
+
+
+def flights_of(report):
+    (picker,) = blocks_of(report, FlightPicker)
+    return picker.flights
+
+
 def charts_of(report):
-    flights = [chart for flight in report.flights for chart in flight.charts]
-    return [*report.sweep, report.comparison, *report.innerloop, *flights]
+    return [*blocks_of(report, Chart), *(chart for flight in flights_of(report) for chart in flight.charts)]
 
 
 def test_both_reports_are_built_from_disk_alone(copy):
@@ -58,6 +70,26 @@ def test_both_reports_are_built_from_disk_alone(copy):
     figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])
     assert set(figures) == {"nu_0.50", "nu_0.90", "nu_1.00"}
     assert figures["nu_1.00"] == []
+
+
+def test_the_sweep_shows_everything_in_its_place(report):
+    assert [section.anchor for section in report.sections] == [
+        "sweep", "comparison", "flights", "innerloop", "parameters", "provenance",
+    ]  # fmt: skip
+    names = {section.anchor: [c.name for c in blocks_of(report, Chart, section.anchor)] for section in report.sections}
+    assert names["sweep"] == ["interval", "distance", "tracking", "command"]
+    assert names["comparison"] == ["comparison"]
+    assert names["innerloop"] == ["responses", "margins", "loops", "poles"]
+    tables = {section.anchor: len(blocks_of(report, Table, section.anchor)) for section in report.sections}
+    assert tables == {"sweep": 1, "comparison": 1, "flights": 0, "innerloop": 3, "parameters": 2, "provenance": 1}
+    assert all([chart.name for chart in flight.charts] == ["tracks", "histories"] for flight in flights_of(report)[:2])
+
+
+def test_names_that_become_anchors_and_files_are_unique(report):
+    anchors = ["summary", *(section.anchor for section in report.sections)]
+    names = [chart.name for chart in blocks_of(report, Chart)]
+    assert len(set(anchors)) == len(anchors)
+    assert len(set(names)) == len(names)
 
 
 def test_every_axis_reads_quantity_and_unit(report):
@@ -95,21 +127,24 @@ def test_a_safe_run_is_called_safe_and_an_unsafe_one_is_not(run_path, copy):
 
 
 def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
-    assert "must be below 1" in report.flights_table.rows[2][-1]
+    (table,) = blocks_of(report, Table, "sweep")
+    assert "must be below 1" in table.rows[2][-1]
     assert not report.verdict.complete
     assert report.verdict.headline.endswith("but 1 of 3 fell short")
     assert "must be below 1" in report.verdict.failures[0]
-    assert report.flights[2].charts == []
+    assert "must be below 1" in flights_of(report)[2].title
+    assert flights_of(report)[2].charts == []
 
 
 def test_every_key_of_the_configuration_is_among_the_parameters(run_path, report):
     config = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))["config"]
-    listed = {row[0] for row in report.parameters.rows}
+    _, parameters = blocks_of(report, Table, "parameters")
+    listed = {row[0] for row in parameters.rows}
     for section, values in config.items():
         if isinstance(values, dict) and section not in ("sweep", "comparison"):
             for key in values:
                 assert f"{section}.{key}" in listed
-    for row in report.parameters.rows:
+    for row in parameters.rows:
         assert row[3], row[0]
 
 
@@ -127,6 +162,21 @@ def test_an_interrupted_run_can_be_reported_on(copy):
     assert pdf.stat().st_size > 10_000
 
 
+def with_study(path, study):
+    manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
+    (path / "manifest.json").write_text(json.dumps({**manifest, "study": study}), encoding="utf-8")
+
+
+def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, report):
+    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    titles = []
+    for study in ({}, {"study": "flights"}):
+        rest = {key: value for key, value in manifest.items() if key != "study"}
+        (copy / "manifest.json").write_text(json.dumps({**rest, **study}), encoding="utf-8")
+        titles.append([section.title for section in content(read_run(copy)).sections])
+    assert titles[0] == titles[1] == [section.title for section in report.sections]
+
+
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
@@ -134,6 +184,8 @@ def test_an_interrupted_run_can_be_reported_on(copy):
         (lambda path: (path / "manifest.json").write_text("{", encoding="utf-8"), "cannot be read"),
         (lambda path: (path / "manifest.json").write_text("{}", encoding="utf-8"), "not that of a run"),
         (lambda path: (path / "manifest.json").write_text("[1]", encoding="utf-8"), "not that of a run"),
+        (lambda path: with_study(path, "opera"), "study is 'opera', which has no report; those that have one: flights"),
+        (lambda path: with_study(path, ["flights"]), "is damaged"),
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
         (lambda path: (path / "summary.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),
         (lambda path: (path / "crossings.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),

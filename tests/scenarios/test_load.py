@@ -1,14 +1,14 @@
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.load import catalog, load_scenario, with_values
+from scenarios.load import catalog, load_scenario, load_study, with_values
 
 
 def test_every_scenario_of_the_catalog_is_valid():
     names = list(catalog())
     assert "sweep_nu" in names
     for name in names:
-        assert load_scenario(name).title
+        assert load_study(name).title
 
 
 def test_the_sweep_is_the_one_that_was_asked_for():
@@ -53,6 +53,12 @@ def test_overrides_set_any_key(override, value):
         ("flight.crossings=2.5", ["flight.crossings", "2.5"]),
         ("seed=-1", ["seed", "-1"]),
         ("guidance.preview", ["not of the form key=value"]),
+        ("sweep.nu=[half]", ["sweep.nu=[half]", "not valid TOML", "quoted"]),
+        ("fidelity=both", ["fidelity is 'both'", "give 'six_dof' or 'kinematic'"]),
+        ("reference.path=circle", ["reference.path is 'circle'", "scenarios/catalog/paper.toml"]),
+        ("guidance.command_limit=false", ["command_limit is false", "set fidelity=kinematic"]),
+        ("start.place_m=[-100, 0]", ["start.place_m lies at 100 m", "must exceed keepout.radius_m, 200 m"]),
+        ("study=paper", ["study is 'paper' with 0 cases"]),
     ],
 )
 def test_bad_values_are_refused_in_one_line_that_names_them(override, words):

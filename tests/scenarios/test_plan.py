@@ -38,7 +38,7 @@ def test_starts_depend_on_the_seed_and_nu_alone():
 def test_the_altitude_is_that_of_the_centre_of_oscillation():
     # Equation (9): z_CO = r_CO sin(alpha_P), above the funnel at 60 m.
     flight = plan("plume.elevation_deg=10")
-    assert flight.altitude == pytest.approx(60.0 + flight.centre_distance * math.sin(math.radians(10.0)), abs=1e-9)
+    assert flight.altitude == pytest.approx(60.0 + flight.mission.centre_distance * math.sin(math.radians(10.0)), abs=1e-9)
 
 
 def test_omega_max_is_the_coordinated_turn_at_the_bank_asked_for():
@@ -51,7 +51,7 @@ def test_preview_and_airspeed_trim_can_be_switched_off():
     assert plan("guidance.preview=false").guidance.lag == 0.0
     assert plan().guidance.lag == 0.3
     assert plan("guidance.airspeed_trim=false").guidance.airspeed_gain == 0.0
-    assert plan("guidance.keepout_guard=false").guard is None
+    assert plan("guidance.keepout_guard=false").mission.guard is None
 
 
 @pytest.mark.parametrize(

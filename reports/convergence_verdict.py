@@ -1,0 +1,85 @@
+"""What a convergence study shows, at a glance."""
+
+import math
+
+import pandas as pd
+
+from reports.blocks import Verdict
+from reports.convergence_data import ConvergenceData, Law, failed, predicted
+from reports.convergence_tables import reason
+from reports.tables import number
+
+FAILURES_NAMED = 10
+"""Counter-examples that the verdict names, at most."""
+
+
+def convergence_verdict(data: ConvergenceData) -> Verdict:
+    """Judge a study by the laws that the theory is about: safe if every trajectory under them converged."""
+    rows, manifest = data.proven(), data.run.manifest
+    state = manifest.get("state", "unfinished")
+    counter_examples = failed(rows)
+    complete = state == "complete" and len(rows) == data.planned
+    if not len(rows):
+        headline = "Nothing was flown under a law that the theory is about"
+    elif len(counter_examples):
+        headline = f"{len(counter_examples):,} of {len(rows):,} trajectories did not converge"
+    elif complete:
+        headline = f"All {len(rows):,} trajectories converged"
+    else:
+        headline = f"All {len(rows):,} trajectories so far converged; {data.planned:,} are planned"
+    named = [
+        f"{_law(data, str(row['law'])).name}, trajectory {row['trajectory']}: {reason(row)}"
+        for _, row in counter_examples.head(FAILURES_NAMED).iterrows()
+    ]
+    if len(counter_examples) > FAILURES_NAMED:
+        named.append(f"and {len(counter_examples) - FAILURES_NAMED:,} more, in counterexamples.csv")
+    detail = _detail(data)
+    if state != "complete":
+        detail += f" The run is {state}; continue it with --resume."
+    return Verdict(
+        safe=len(rows) > 0 and not len(counter_examples),
+        complete=complete,
+        headline=headline,
+        detail=detail,
+        failures=named,
+        figures=_figures(data),
+    )
+
+
+def share(part: int, whole: int) -> str:
+    """Return a part of a whole in percent, rounded down: 100 % are all."""
+    return f"{math.floor(10_000.0 * part / whole) / 100.0:g} %" if whole else "none flown"
+
+
+def _law(data: ConvergenceData, key: str) -> Law:
+    return next(law for law in data.laws if law.key == key)
+
+
+def _detail(data: ConvergenceData) -> str:
+    proven = [law.name.lower() for law in data.laws if law.proven]
+    states = data.rows["trajectory"].nunique()
+    detail = f"{states:,} random initial states, each flown with {' and '.join(proven)}." if proven else ""
+    for law in data.laws:
+        if not law.proven:
+            rows = data.of(law)
+            detail += (
+                " The theory says nothing of cut commands, so they have no part in this:"
+                f" under {law.name.lower()}, {len(rows) - len(failed(rows)):,} of {len(rows):,} converged."
+            )
+    return detail.strip()
+
+
+def _figures(data: ConvergenceData) -> list[tuple[str, str, str]]:
+    shares, slowest = [], []
+    for law in data.laws:
+        rows = data.of(law)
+        shares.append((f"{law.name}: converged", share(len(rows) - len(failed(rows)), len(rows)), "100 %" if law.proven else ""))
+        slowest.append((f"{law.name}: slowest to settle", number(rows["settling_time_s"].max(), "{:,.0f} s"), ""))
+    farthest = ("Farthest start", number(data.rows["start_distance_m"].max(), "{:,.0f} m"), "")
+    return [*shares, farthest, *slowest, _predicted(data.proven())]
+
+
+def _predicted(rows: pd.DataFrame) -> tuple[str, str, str]:
+    known = predicted(rows)
+    ratio = (known["settling_time_s"] / known["settling_time_predicted_s"]).median()
+    return ("Settling over predicted, median", number(ratio, "{:.2f}"), "")

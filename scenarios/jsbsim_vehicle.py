@@ -1,0 +1,71 @@
+"""The aircraft in six degrees of freedom: JSBSim with the autopilot, both at 120 Hz in C++."""
+
+import math
+from dataclasses import replace
+
+from aircraft.local_frame import LocalFrame
+from aircraft.trim import Trim
+from innerloop.flight import AutopilotedAircraft
+from scenarios.telemetry import Telemetry
+
+_BANK_LIMIT = 1.4
+_AIRSPEED_LIMITS = (8.0, 45.0)
+_ALTITUDE_MIN = 1.0
+
+
+class JsbsimVehicle:
+    """An aircraft released from straight and level flight.
+
+    Parameters
+    ----------
+    aircraft : with its autopilot; whatever it flew before is over
+    start : straight and level equilibrium
+    north, east, altitude : where it is released [m]
+    course : of its velocity over the ground [rad]
+    time_step : of the guidance, a multiple of the simulation's [s]
+    """
+
+    __slots__ = ("_command_airspeed", "_command_heading_rate", "_run", "_runs", "motion", "sample")
+
+    def __init__(
+        self,
+        aircraft: AutopilotedAircraft,
+        start: Trim,
+        *,
+        north: float,
+        east: float,
+        altitude: float,
+        course: float,
+        time_step: float,
+    ) -> None:
+        frame = LocalFrame(altitude=altitude)
+        latitude, longitude = frame.to_geodetic(north, east)
+        state = replace(start.state(latitude, longitude, course - start.course_offset()), altitude=altitude)
+        aircraft.release(state, airspeed=start.airspeed, altitude=altitude)
+        telemetry = Telemetry(aircraft.fdm, frame)
+        self.motion = telemetry.motion
+        self.sample = telemetry.sample
+        self._command_airspeed = aircraft.command_airspeed
+        self._command_heading_rate = aircraft.command_heading_rate
+        self._run = aircraft.fdm.run
+        self._runs = range(round(time_step / aircraft.fdm.time_step))
+
+    def advance(self, heading_rate: float, airspeed: float) -> None:
+        """Fly one guidance step with these commands [rad/s, m/s]."""
+        self._command_heading_rate(heading_rate)
+        self._command_airspeed(airspeed)
+        run = self._run
+        for _ in self._runs:
+            run()
+
+    def fault(self, sample: tuple[float, ...]) -> str:
+        """Return why the aircraft is out of control, or nothing. A value that is not a number is never within its limits."""
+        altitude, airspeed, roll = sample[:3]
+        low, high = _AIRSPEED_LIMITS
+        if not abs(roll) < _BANK_LIMIT:
+            return f"bank reached {math.degrees(roll):.0f} deg against a limit of {math.degrees(_BANK_LIMIT):.0f}"
+        if not low < airspeed < high:
+            return f"airspeed reached {airspeed:.1f} m/s outside {low:g} to {high:g}"
+        if not altitude > _ALTITUDE_MIN:
+            return f"altitude fell to {altitude:.1f} m"
+        return ""

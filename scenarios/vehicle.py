@@ -1,0 +1,33 @@
+"""What flies in the closed loop, seen from the guidance: six degrees of freedom in JSBSim, or the paper's kinematics."""
+
+from typing import Protocol
+
+SAMPLE_COLUMNS = (
+    "altitude_m",
+    "airspeed_mps",
+    "roll_rad",
+    "climb_rate_mps",
+    "pitch_rad",
+    "alpha_rad",
+    "sideslip_rad",
+    "elevator_rad",
+    "aileron_rad",
+    "throttle",
+)
+"""What a vehicle's ``sample`` returns, in order; not a number where it has no such thing."""
+
+
+class Vehicle(Protocol):
+    """A vehicle under way, stepped at the rate of the guidance."""
+
+    def motion(self) -> tuple[float, float, float, float, float]:
+        """Return north, east [m], north and east velocity [m/s] and heading rate [rad/s]."""
+
+    def sample(self) -> tuple[float, ...]:
+        """Return ``SAMPLE_COLUMNS``."""
+
+    def advance(self, heading_rate: float, airspeed: float) -> None:
+        """Fly one guidance step with these commands [rad/s, m/s]."""
+
+    def fault(self, sample: tuple[float, ...]) -> str:
+        """Return why a vehicle with this ``sample`` is out of control, or nothing."""

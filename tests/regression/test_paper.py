@@ -1,0 +1,177 @@
+"""The paper's three simulations (section V), on its kinematic vehicle and on the X8: the study ``paper``, flown once for this file.
+
+The paper prints neither gains nor starts; tested are the numbers it publishes and what it says of each figure.
+"""
+
+import json
+import math
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reports.build import build_reports
+from reports.content import content
+from reports.run_data import read_run
+from scenarios.load import load_scenario
+from scenarios.runner import run_scenario
+
+BOTH = pytest.mark.parametrize("fidelity", ["kinematic", "six_dof"])
+
+
+@pytest.fixture(scope="module")
+def directory(tmp_path_factory):
+    path = tmp_path_factory.mktemp("paper") / "run"
+    result = run_scenario(load_scenario("paper"), "paper", path, jobs=1, resume=False, progress=lambda *_: None)
+    assert result.planned == len(result.rows) == 6
+    return path
+
+
+@pytest.fixture(scope="module")
+def rows(directory):
+    frames = [pd.read_csv(directory / name) for name in ("summary.csv", "comparison.csv")]
+    return {row["flight_id"]: row for frame in frames for _, row in frame.iterrows()}
+
+
+@pytest.fixture
+def history(directory):
+    return lambda flight_id: pd.read_parquet(directory / "flights" / f"{flight_id}.parquet")
+
+
+def distance(history):
+    return np.hypot(history["reference_north_m"] - history["north_m"], history["reference_east_m"] - history["east_m"]).to_numpy()
+
+
+def test_every_flight_of_the_verdict_met_its_criteria(rows):
+    assert {name for name, row in rows.items() if row["criteria_met"]} == {
+        f"{case}_{fidelity}" for case in ("sim1", "sim2_delta", "sim3") for fidelity in ("kinematic", "six_dof")
+    }
+
+
+@pytest.mark.parametrize(("fidelity", "share"), [("kinematic", 0.005), ("six_dof", 0.02)])
+def test_sim_3_crosses_every_9_5_s_at_214_m_and_never_enters_the_keep_out_area(rows, fidelity, share):
+    # Section V, to the issue's 0.5 % kinematic and 2 % in six degrees of freedom. Figure 9: never inside 200 m.
+    row = rows[f"sim3_{fidelity}"]
+    assert row["crossing_interval_mean_s"] == pytest.approx(9.5, rel=share)
+    assert row["crossing_distance_mean_m"] == pytest.approx(214.0, rel=share)
+    assert row["keepout_violations"] == 0
+    assert row["min_distance_m"] >= 200.0
+
+
+def test_both_vehicles_start_from_the_same_places(history):
+    for case in ("sim1", "sim2_delta", "sim2_los", "sim3"):
+        starts = [history(f"{case}_{fidelity}").iloc[0] for fidelity in ("kinematic", "six_dof")]
+        # Placed on JSBSim's globe and read back: 1e-6 m; the course by the aircraft's trim, 1e-6 rad.
+        for name in ("north_m", "east_m", "course_rad"):
+            turns = math.remainder(starts[0][name] - starts[1][name], 2.0 * math.pi) if name == "course_rad" else 0.0
+            assert starts[1][name] == pytest.approx(starts[0][name], rel=0.0, abs=1e-3) or abs(turns) < 1e-5
+
+
+@pytest.mark.parametrize("case", ["sim1", "sim2_delta"])
+def test_sims_1_and_2_end_on_the_reference(rows, case):
+    # Issue: below 0.1 m at the end, kinematic. The X8 gets there too: on a circle nothing changes any more.
+    assert rows[f"{case}_kinematic"]["tracking_error_end_m"] < 0.1
+    assert rows[f"{case}_six_dof"]["tracking_error_end_m"] < 0.1
+
+
+@BOTH
+def test_sim_1_is_figures_4_and_5(history, fidelity):
+    flown = history(f"sim1_{fidelity}")
+    phi, phi_r, d = np.abs(flown["phi_rad"].to_numpy()), np.abs(flown["phi_r_rad"].to_numpy()), distance(flown)
+    # The headings are opposite at first; phi goes to zero before phi_r and the distance do.
+    assert phi[0] > 1.5
+    assert np.nonzero(phi > 0.05)[0][-1] < np.nonzero(phi_r > 0.05)[0][-1]
+    # Equation (35): while |phi| <= |phi_r| the distance does not rise, before it does. With the X8 the relation is that of its
+    # actual course, which slips by its airspeed error, 0.05 m/s: over a sample of 0.1 s that is 5 mm.
+    rises = np.diff(d)
+    inside = np.maximum(phi[:-1], phi[1:]) <= np.minimum(phi_r[:-1], phi_r[1:])
+    assert np.max(rises[inside]) <= (1e-9 if fidelity == "kinematic" else 5e-3)
+    assert np.sum(rises[~inside & (rises > 0.0)]) > 10.0
+
+
+def test_sim_1_has_saddle_points_where_phi_and_phi_r_vanish_together(history):
+    flown = history("sim1_kinematic")
+    settled = flown[flown["time_s"] > 60.0]
+    phi, phi_r, d = settled["phi_rad"].to_numpy(), settled["phi_r_rad"].to_numpy(), distance(settled)
+    zeros = np.nonzero(phi_r[:-1] * phi_r[1:] < 0.0)[0]
+    # Figure 5: a row of them. phi is gone by 60 s; the distance falls before and after, and its slope vanishes in between:
+    # V_1-dot = -V (rho + delta)(1 - cos phi_r), equation (33).
+    assert np.max(np.abs(phi)) < 1e-3
+    assert len(zeros) >= 5
+    slope = np.gradient(d, settled["time_s"].to_numpy())
+    for i in zeros[:5]:
+        assert abs(slope[i]) < 0.05 * np.max(np.abs(slope[max(0, i - 80) : i + 80]))
+
+
+@BOTH
+def test_sim_2_the_delta_law_stays_within_omega_max_and_the_line_of_sight_does_not(rows, fidelity):
+    # Figure 7. What the laws ask for, before any limit.
+    delta, line_of_sight = rows[f"sim2_delta_{fidelity}"], rows[f"sim2_los_{fidelity}"]
+    assert delta["heading_rate_wanted_max_rad_s"] <= 0.503
+    assert delta["heading_rate_wanted_max_rad_s"] <= delta["heading_rate_bound_rad_s"] <= 0.503
+    assert line_of_sight["heading_rate_wanted_max_rad_s"] > 2.0 * 0.503
+
+
+def test_sim_2_the_line_of_sight_is_near_sooner_but_never_on_the_reference(history, rows):
+    # Section V: "despite the fast convergence of UAV 1".
+    near = {name: np.nonzero(distance(history(f"sim2_{name}_kinematic")) > 30.0)[0][-1] for name in ("los", "delta")}
+    assert near["los"] < near["delta"]
+    assert rows["sim2_los_kinematic"]["tracking_error_end_m"] > 10.0
+
+
+def test_bounds_stand_beside_the_worst_states_found(directory):
+    record = json.loads((directory / "bounds.json").read_text(encoding="utf-8"))
+    assert record["samples"] >= 1_000_000
+    for row in record["flown"]:
+        # Never exceeded, and tight: see docs/actuation_bounds.md.
+        assert row["largest_found_rad_s"] <= row["bound_rad_s"] <= 1.05 * row["largest_found_rad_s"]
+        if row["tuning"] == "bounded":
+            assert row["bound_rad_s"] <= row["heading_rate_max_rad_s"]
+    by_reserve = {row["reserve"]: row for row in record["guaranteed"]}
+    # A reference that spends all of omega_max leaves no bound; every reserve that does has a price that falls.
+    assert "more of omega_max in reserve" in by_reserve[0.0]["message"]
+    times = [row["convergence_time_s"] for row in record["guaranteed"] if "convergence_time_s" in row]
+    assert times == sorted(times, reverse=True)
+
+
+def test_its_report_has_every_figure_for_both_vehicles_and_every_published_number(directory):
+    html, pdf = build_reports(directory)
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert "Reproduced" in html.read_text(encoding="utf-8")
+    report = content(read_run(directory))
+    blocks = [block for section in report.sections for block in section.blocks]
+    charts = {block.name: block for block in blocks if hasattr(block, "panels")}
+    # Figures 3 to 9 of the paper, each on the kinematic vehicle and on the aircraft.
+    for number in range(3, 10):
+        assert len(charts[f"fig{number}"].panels) == 2
+        for panel in charts[f"fig{number}"].panels:
+            assert re.fullmatch(r".+ \[[^\]]+\]", panel.x_label)
+            assert all(np.isfinite(line.y).all() and len(line.y) for line in panel.lines)
+    numbers = next(block for block in blocks if hasattr(block, "rows")).rows
+    printed = {row[2] for row in numbers}
+    assert {"9.5 s", "214 m", "> 200 m"} <= printed
+
+
+def test_saddle_points_are_marked_where_the_relative_courses_meet(directory):
+    from reports.paper_charts import coincidences, find_flight
+
+    flown = find_flight(read_run(directory), "sim1_kinematic")
+    times = coincidences(flown)
+    assert len(times) >= 6
+    for name in ("phi_rad", "phi_r_rad"):
+        assert np.isfinite(np.interp(times, flown.time, flown.column(name))).all()
+    gap = np.interp(times, flown.time, flown.column("phi_r_rad") - flown.column("phi_rad"))
+    # Roots of a piecewise linear curve, to rounding.
+    assert np.max(np.abs(gap)) < 1e-12
+
+
+def test_the_kinematic_half_flies_alone(tmp_path):
+    scenario = load_scenario("paper", ["fidelity=kinematic"])
+    result = run_scenario(scenario, "paper", tmp_path / "run", jobs=1, resume=False, progress=lambda *_: None)
+    assert [row["flight_id"] for row in result.rows] == ["sim1_kinematic", "sim2_delta_kinematic", "sim3_kinematic"]
+    assert result.all_met
+    # Nothing of the aircraft was designed or loaded for it.
+    assert not (tmp_path / "run" / "innerloop.json").exists()
+    html, _ = build_reports(tmp_path / "run")
+    assert "kinematic vehicle" in html.read_text(encoding="utf-8")

@@ -1,0 +1,98 @@
+"""Every kind of block, on the screen and in print."""
+
+import re
+
+import numpy as np
+import pytest
+
+from reports.blocks import Content, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
+from reports.chart import Chart, Line, Panel
+from reports.html import write_html
+from reports.pdf import write_pdf
+
+
+def a_chart(name):
+    x = np.array([1.0, 2.0])
+    line = Line(x=x, y=x, label="curve", colour="blue")
+    return Chart(name=name, caption=f"Caption of {name}.", panels=[Panel(x_label="Time [s]", y_label="Distance [m]", lines=[line])])
+
+
+def a_report(blocks):
+    return Content(
+        title="Title",
+        description="Description.",
+        changes="",
+        verdict=Verdict(safe=True, complete=True, headline="Good", detail="", failures=[], figures=[("Tile", "1", "")]),
+        sections=[
+            Section(anchor="first", title="The first section", nav_title="First", blocks=blocks),
+            Section(anchor="second", title="Second section", blocks=[Text("Second text.")]),
+        ],
+    )
+
+
+def html_of(blocks, tmp_path):
+    write_html(a_report(blocks), tmp_path / "report.html")
+    text = (tmp_path / "report.html").read_text(encoding="utf-8")
+    return text[text.index("<h1>") :]
+
+
+def test_the_navigation_names_every_section_once(tmp_path):
+    text = html_of([Text("First text.")], tmp_path)
+    nav = re.search(r"<nav>(.*?)</nav>", text)[1]
+    assert re.findall(r'<a href="#(\w+)">(.*?)</a>', nav) == [
+        ("summary", "Summary"), ("first", "First"), ("second", "Second section"),
+    ]  # fmt: skip
+    assert re.findall(r'<section id="(\w+)">', text) == ["summary", "first", "second"]
+
+
+def test_blocks_appear_in_their_order_with_their_text_escaped(tmp_path):
+    table = Table(head=["Head"], rows=[["cell"]], widths=[1.0])
+    text = html_of([Text("a < b"), table, Heading("Middle"), a_chart("last")], tmp_path)
+    places = [text.index(part) for part in ("<p>a &lt; b</p>", "<td", "<h3>Middle</h3>", 'data-figure="fig-last"')]
+    assert places == sorted(places)
+
+
+@pytest.mark.parametrize(("left_columns", "lefts"), [(0, 0), (1, 2), (2, 4)])
+def test_so_many_columns_are_left_aligned_as_a_table_says(left_columns, lefts, tmp_path):
+    table = Table(head=["a", "b"], rows=[["1", "2"]], widths=[1.0, 1.0], left_columns=left_columns)
+    assert html_of([table], tmp_path).count('class="left"') == lefts
+
+
+def test_prose_and_a_missing_head_are_a_tables_own_matter(tmp_path):
+    text = html_of([Table(head=["", ""], rows=[["1", "2"]], widths=[1.0, 1.0], prose=True)], tmp_path)
+    assert '<div class="prose">' in text
+    assert "<thead>" not in text
+    text = html_of([Table(head=["", "", "b"], rows=[["1", "2", "3"]], widths=[1.0] * 3)], tmp_path)
+    assert '<div class="prose">' not in text
+    assert "<thead>" in text
+
+
+def test_a_picker_offers_flights_by_their_labels_and_a_report_without_one_has_no_picker(tmp_path):
+    flights = [FlightContent(flight_id=i, label=f"label {i}", title=f"Page {i}", charts=[]) for i in ("a", "b")]
+    text = html_of([FlightPicker(flights=flights)], tmp_path)
+    assert re.findall(r'<option value="(\w)">(.*?)</option>', text) == [("a", "label a"), ("b", "label b")]
+    assert "<option" not in html_of([Text("none")], tmp_path)
+
+
+def test_every_block_is_printed_and_each_flight_has_a_page(tmp_path):
+    flights = [FlightContent(flight_id=i, label=i, title=f"Page {i}", charts=[a_chart("same")] * (i == "a")) for i in ("a", "b")]
+    table = Table(head=["Head"], rows=[["cell"]] * 200, widths=[1.0], breakable=True)
+    write_pdf(
+        a_report([Text("Text."), Heading("Heading"), a_chart("one"), FlightPicker(flights=flights)]), tmp_path / "flights.pdf"
+    )
+    write_pdf(a_report([Text("Text.")]), tmp_path / "text.pdf")
+    write_pdf(a_report([table]), tmp_path / "table.pdf")
+    assert pages(tmp_path / "text.pdf") == 1
+    assert pages(tmp_path / "flights.pdf") == 3
+    assert headings(tmp_path / "flights.pdf") == {"The first section", "Heading", "Second section", "Page a", "Page b"}
+    assert pages(tmp_path / "table.pdf") > 3
+
+
+def pages(path):
+    """Return the number of a PDF's pages."""
+    return int(re.search(rb"/Type/Pages/Count (\d+)", path.read_bytes())[1])
+
+
+def headings(path):
+    """Return the titles of a PDF's outline, in any order."""
+    return {title.decode() for title in re.findall(rb"/Title\((.*?)\)/Dest", path.read_bytes())}
