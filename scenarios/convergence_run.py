@@ -4,7 +4,6 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
@@ -15,7 +14,7 @@ from gnc.errors import InfeasibleError
 from scenarios.convergence import COLUMNS, Progress, counterexamples, run_convergence, trajectory_of
 from scenarios.convergence_config import ConvergenceScenario
 from scenarios.errors import InputError
-from scenarios.manifest import config_hash, parameters, provenance
+from scenarios.manifest import opening_manifest
 from scenarios.run_directory import RunDirectory
 
 _DONE = "done.parquet"
@@ -102,25 +101,13 @@ def run_study(
     except InfeasibleError as error:
         raise InputError(f"guidance: {error}") from None
     run = RunDirectory(directory)
-    digest = config_hash(scenario)
-    if resume:
-        run.open_existing(digest)
-    else:
-        run.open_new()
+    manifest = opening_manifest(scenario, name, overrides)
+    run.open(manifest["config_hash"], resume=resume)
     planned = ensemble.trajectories * len(g.laws)
-    manifest: dict[str, Any] = {
-        "study": scenario.study,
-        "name": name,
-        "title": scenario.title,
-        "overrides": list(overrides),
-        "state": "running",
-        "config": scenario.model_dump(mode="json"),
-        "config_hash": digest,
-        "parameters": parameters(scenario),
+    manifest |= {
         "trajectories_planned": planned,
         "converged_distance_m": DISTANCE_CONVERGED,
         "converged_phi_rad": PHI_CONVERGED,
-        **provenance(),
     }
     run.write_json(run.manifest, manifest)
     began = time.perf_counter()

@@ -7,12 +7,35 @@ import platform
 import re
 import shutil
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
 
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pandas", "pyarrow", "matplotlib", "plotly", "pydantic", "typst")
+
+
+def opening_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -> dict[str, Any]:
+    """Return what a manifest holds before anything has been flown.
+
+    Parameters
+    ----------
+    scenario, name : what will be flown, and what it is called
+    overrides : how the scenario differs from the one of that name
+    """
+    config = scenario.model_dump(mode="json")
+    return {
+        "study": config["study"],
+        "name": name,
+        "title": config["title"],
+        "overrides": list(overrides),
+        "state": "running",
+        "config": config,
+        "config_hash": config_hash(scenario),
+        "parameters": parameters(scenario),
+        **provenance(),
+    }
 
 
 def config_hash(scenario: BaseModel) -> str:

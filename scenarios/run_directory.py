@@ -31,6 +31,13 @@ class RunDirectory:
         self.flights = path / "flights"
         self.trajectories = path / "trajectories"
 
+    def open(self, config_hash: str, *, resume: bool) -> None:
+        """Open the directory for a new run, or to go on with one of this configuration; see ``open_new`` and ``open_existing``."""
+        if resume:
+            self.open_existing(config_hash)
+        else:
+            self.open_new()
+
     def open_new(self) -> None:
         """Create the directory.
 

@@ -7,7 +7,6 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from aircraft.errors import AircraftError
 from aircraft.spec import AircraftSpec, find_spec
@@ -30,7 +29,7 @@ from scenarios.flights import (
     guidance_lag,
     ignore_interrupt,
 )
-from scenarios.manifest import config_hash, parameters, provenance
+from scenarios.manifest import opening_manifest
 from scenarios.metrics import SUMMARY_COLUMNS, Row
 from scenarios.plan import heading_rate_max
 from scenarios.run_directory import RunDirectory
@@ -107,24 +106,12 @@ def run_scenario(
     requests = flight_requests(scenario)
     spec = _check_aircraft(requests)
     run = RunDirectory(directory)
-    digest = config_hash(scenario)
-    if resume:
-        run.open_existing(digest)
-    else:
-        run.open_new()
+    manifest = opening_manifest(scenario, name, overrides)
+    run.open(manifest["config_hash"], resume=resume)
     ledger = _Ledger(run, requests)
-    manifest: dict[str, Any] = {
-        "study": scenario.study,
-        "name": name,
-        "title": scenario.title,
-        "overrides": list(overrides),
-        "state": "running",
-        "config": scenario.model_dump(mode="json"),
-        "config_hash": digest,
-        "parameters": parameters(scenario),
+    manifest |= {
         "seeds": {request.flight_id: request.seed for request in requests},
         "variants": {request.flight_id: request.variant for request in requests},
-        **provenance(),
     }
     run.write_json(run.manifest, manifest)
     began = time.perf_counter()
