@@ -2,7 +2,7 @@
 
 from reports.blocks import Block, Content, Heading, Section, Text
 from reports.convergence_charts import HISTORIES_PER_LAW, history_chart, settling_charts
-from reports.convergence_data import CONVERGED, REFERENCES, ConvergenceData, failed, read_convergence
+from reports.convergence_data import REFERENCES, ConvergenceData, failed, read_convergence
 from reports.convergence_tables import FAILED_ROWS, failed_table, settling_table
 from reports.convergence_verdict import convergence_verdict
 from reports.run_data import RunData
@@ -35,9 +35,7 @@ def _question(data: ConvergenceData) -> list[Block]:
         return []
     states = rows.drop_duplicates("trajectory")
     counts = (f"{(states['reference'] == reference).sum():,} are {REFERENCES[reference][0]}" for reference in data.references)
-    ended = rows[rows["outcome"] == CONVERGED]
-    distance, phi = ended["distance_final_m"].max(), ended["phi_final_rad"].abs().max()
-    within = f" Those that converged ended within {distance:.3g} m and {phi:.3g} rad." if len(ended) else ""
+    distance, phi = (data.run.manifest[key] for key in ("converged_distance_m", "converged_phi_rad"))
     band = data.run.manifest["config"]["ensemble"]["settling_band_m"]
     return [
         Heading("What was drawn"),
@@ -48,9 +46,9 @@ def _question(data: ConvergenceData) -> list[Block]:
         ),
         Heading("What converged means"),
         Text(
-            "A trajectory has converged once the distance to its reference is next to nothing, and so is φ, the angle from the"
-            f" vector z, along which the law steers, to the vehicle's course.{within} A trajectory is settled from the moment from"
-            f" which its distance stays below {band:g} m."
+            f"A trajectory has converged once it is within {distance:g} m of its reference and φ, the angle from the vector z,"
+            f" along which the law steers, to the vehicle's course, is within {phi:g} rad: from there on both stay small. It is"
+            f" settled from the moment from which its distance stays below {band:g} m."
         ),
         Heading("What the theory says"),
         Text(
@@ -60,6 +58,15 @@ def _question(data: ConvergenceData) -> list[Block]:
             " says nothing: they are shown, and have no part in the verdict. Trajectories can refute the theory, not prove it."
         ),
     ]
+
+
+_LIMIT_CYCLE = (
+    "A circle that spends nearly all of ω_max leaves almost nothing to steer with. With cut commands there is then, beside the"
+    " reference, a limit cycle some hundred metres off: the command is cut most of each turn, φ swings far out and back once a"
+    " turn, and on average the vehicle turns with the reference without coming nearer. Equation (31b), on which the proof for"
+    " law (30) rests, does not hold for cut commands. A reserve of a few per cent of ω_max takes the cycle away; oscillations,"
+    " at their peak only briefly, have converged without."
+)
 
 
 def _settling(data: ConvergenceData) -> list[Block]:
@@ -80,6 +87,8 @@ def _failed(data: ConvergenceData) -> list[Block]:
     caption = f"Distance to the reference over time, of up to {HISTORIES_PER_LAW} trajectories per law that did not converge."
     chart = history_chart(data, "counterexamples", caption, converged=False)
     blocks: list[Block] = [chart] if chart else []
+    if any(len(failed(data.of(law))) for law in data.laws if not law.proven):
+        blocks.insert(0, Text(_LIMIT_CYCLE))
     for law in data.laws:
         count = len(failed(data.of(law)))
         if count:

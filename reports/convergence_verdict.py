@@ -14,13 +14,18 @@ FAILURES_NAMED = 10
 
 
 def convergence_verdict(data: ConvergenceData) -> Verdict:
-    """Judge a study by the laws that the theory is about: safe if every trajectory under them converged."""
+    """Judge a study by the laws that the theory is about, if it flew any: safe if every trajectory under them converged."""
     rows, manifest = data.proven(), data.run.manifest
+    proven = data.planned > 0
     state = manifest.get("state", "unfinished")
     counter_examples = failed(rows)
     complete = state == "complete" and len(rows) == data.planned
-    if not len(rows):
-        headline = "Nothing was flown under a law that the theory is about"
+    if not proven:
+        missed = len(failed(data.rows))
+        complete = state == "complete" and not missed
+        headline = f"{len(data.rows) - missed:,} of {len(data.rows):,} trajectories converged, under laws that no theory covers"
+    elif not len(rows):
+        headline = "Nothing was flown yet"
     elif len(counter_examples):
         headline = f"{len(counter_examples):,} of {len(rows):,} trajectories did not converge"
     elif complete:
@@ -37,7 +42,7 @@ def convergence_verdict(data: ConvergenceData) -> Verdict:
     if state != "complete":
         detail += f" The run is {state}; continue it with --resume."
     return Verdict(
-        safe=len(rows) > 0 and not len(counter_examples),
+        safe=not proven or (len(rows) > 0 and not len(counter_examples)),
         complete=complete,
         headline=headline,
         detail=detail,
@@ -76,7 +81,7 @@ def _figures(data: ConvergenceData) -> list[tuple[str, str, str]]:
         shares.append((f"{law.name}: converged", share(len(rows) - len(failed(rows)), len(rows)), "100 %" if law.proven else ""))
         slowest.append((f"{law.name}: slowest to settle", number(rows["settling_time_s"].max(), "{:,.0f} s"), ""))
     farthest = ("Farthest start", number(data.rows["start_distance_m"].max(), "{:,.0f} m"), "")
-    return [*shares, farthest, *slowest, _predicted(data.proven())]
+    return [*shares, farthest, *slowest, _predicted(data.proven() if data.planned else data.rows)]
 
 
 def _predicted(rows: pd.DataFrame) -> tuple[str, str, str]:

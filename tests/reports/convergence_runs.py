@@ -116,6 +116,8 @@ def manifest(planned, seed, state):
     return {
         "name": "convergence",
         "study": "convergence",
+        "converged_distance_m": 0.02,
+        "converged_phi_rad": 2e-4,
         "title": "Global convergence, measured",
         "config": {
             "study": "convergence",
