@@ -58,7 +58,7 @@ def sim_1_charts(run: RunData) -> list[Chart]:
     """Return figures 3, 4 and 5: a circular reference, opposite initial headings."""
     return [
         _side_by_side(
-            run, ["sim1"], _figure_3, name="fig3", equal=True, panel_height=0.5, labels=("East [m]", "North [m]"),
+            run, ["sim1"], _figure_3, name="fig3", equal=True, panel_height=0.55, labels=("East [m]", "North [m]"),
             caption="To put beside the paper's figure 3: the circular reference and the UAV. Diamonds: where each is at the start.",
         ),
         _side_by_side(
@@ -79,7 +79,7 @@ def sim_2_charts(run: RunData) -> list[Chart]:
     cases = ["sim2_los", "sim2_delta"]
     return [
         _side_by_side(
-            run, cases, _figure_6, name="fig6", equal=True, panel_height=0.5, labels=("East [m]", "North [m]"),
+            run, cases, _figure_6, name="fig6", equal=True, panel_height=0.42, labels=("East [m]", "North [m]"),
             caption="Figure 6: both UAVs start in front of the reference and fly the other way. UAV 1 steers by the line of sight,"
             " UAV 2 by the δ formulation. Diamonds: starts.",
         ),
@@ -195,8 +195,8 @@ def _common_ranges(lines: list[Line]) -> tuple[tuple[float, float], tuple[float,
 def _figure_3(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
     return [
-        Line(x=flown.column("reference_east_m"), y=flown.column("reference_north_m"), label="reference", colour="orange"),
         Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour="blue"),
+        _reference(flown),
         _starts([flown]),
     ]
 
@@ -229,8 +229,7 @@ def _figure_6(flights: dict[str, Flown]) -> list[Line]:
         Line(x=flown.column("east_m"), y=flown.column("north_m"), label=_UAVS[case][0], colour=_UAVS[case][1])
         for case, flown in flights.items()
     ]
-    reference = Line(x=first.column("reference_east_m"), y=first.column("reference_north_m"), label="reference", colour="orange")
-    return [reference, *tracks, _starts(list(flights.values()))]
+    return [*tracks, _reference(first), _starts(list(flights.values()))]
 
 
 def _figure_7(flights: dict[str, Flown]) -> list[Line]:
@@ -245,6 +244,12 @@ def _figure_7(flights: dict[str, Flown]) -> list[Line]:
 
 def _distances(flights: dict[str, Flown]) -> list[Line]:
     return [Line(x=flown.time, y=flown.distance, label=_UAVS[case][0], colour=_UAVS[case][1]) for case, flown in flights.items()]
+
+
+def _reference(flown: Flown) -> Line:
+    """Return the circle of the reference, to be drawn over the tracks that come to lie on it."""
+    east, north = flown.column("reference_east_m"), flown.column("reference_north_m")
+    return Line(x=east, y=north, label="reference", colour="orange", style="dash")
 
 
 def _starts(flights: list[Flown]) -> Line:

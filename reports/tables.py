@@ -49,7 +49,7 @@ def _vehicle(run: RunData) -> list[list[str]]:
     elif config.get("fidelity", "six_dof") == "six_dof":
         rows.append(["Aircraft", str(config.get("aircraft", "unknown"))])
     if config.get("fidelity") in ("kinematic", "both"):
-        rows.append(["Kinematic vehicle", "Equation (1) of the paper, integrated exactly over each step of the guidance."])
+        rows.append(["Kinematic vehicle", "Equation (1) of the paper: constant speed, steered by its heading rate."])
     return rows
 
 
