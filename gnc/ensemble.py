@@ -1,7 +1,6 @@
-"""Fly thousands of vehicles after their references at once, each at its own time and step size.
+"""Fly thousands of vehicles after their references at once, each at its own time.
 
-Dormand and Prince's pair of orders 5 and 4 ("A family of embedded Runge-Kutta formulae", J. Comp. Appl. Math. 6, 1980), with step
-size and acceptance per trajectory; a trajectory that finishes leaves its place to the next.
+Step size and acceptance are each trajectory's own; trajectories that finish give their place to the next.
 """
 
 from collections.abc import Callable
@@ -11,6 +10,7 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
+from gnc.dormand_prince import dormand_prince_step
 from gnc.ensemble_motion import MOTIONS, Array, Motion, Steering, Vehicle
 from gnc.errors import InfeasibleError
 from gnc.turning_reference import TurningReferences
@@ -20,17 +20,6 @@ DISTANCE_CONVERGED = 0.02
 PHI_CONVERGED = 2e-4
 """|phi| within which a vehicle is on its reference [rad]."""
 
-_NODES = (0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0)
-_STAGES = (
-    (),
-    (1 / 5,),
-    (3 / 40, 9 / 40),
-    (44 / 45, -56 / 15, 32 / 9),
-    (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729),
-    (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656),
-    (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84),
-)
-_ERROR = (71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40)
 _SAFETY, _SHRINK_MAX, _GROW_MAX = 0.9, 0.2, 5.0
 
 
@@ -205,7 +194,7 @@ class _Flight:
         now = self._now
         remaining = now.limit - now.time
         step = np.minimum(now.step, remaining)
-        state, rates, error = self._try(step)
+        state, rates, error = dormand_prince_step(self._motion.rates, now.time, now.state, now.rates, step)
         norm = self._error_norm(state, error)
         finite = np.isfinite(norm)
         accepted = norm <= 1.0
@@ -223,16 +212,6 @@ class _Flight:
             now.rates = np.where(accepted, rates, now.rates)
         self._watch(step, accepted)
         self._retire(finite)
-
-    def _try(self, step: Array) -> tuple[Array, Array, Array]:
-        """Return state and rates after a step, and the error of the state."""
-        now = self._now
-        slopes = [now.rates]
-        state = now.state
-        for node, weights in zip(_NODES[1:], _STAGES[1:], strict=True):
-            state = now.state + step * _weighted(weights, slopes)
-            slopes.append(self._motion.rates(now.time + node * step, state))
-        return state, slopes[-1], step * _weighted(_ERROR, slopes)
 
     def _error_norm(self, state: Array, error: Array) -> Array:
         """Return the error against its tolerance; NaN where a state is not finite."""
@@ -332,11 +311,3 @@ class _Fields:
         """Write ``other`` over the trajectories of ``index``."""
         for field in fields(self):
             getattr(self, field.name)[..., index] = getattr(other, field.name)
-
-
-def _weighted(weights: tuple[float, ...], slopes: list[Array]) -> Array:
-    total: Array = weights[0] * slopes[0]
-    for weight, slope in zip(weights[1:], slopes[1:], strict=True):
-        if weight != 0.0:
-            total = total + weight * slope
-    return total
