@@ -15,6 +15,9 @@ VEHICLES = {"kinematic": "kinematic vehicle, eq. (1)", "six_dof": "aircraft, six
 
 _POINTS_MAX = 1500
 
+_PHI_GONE = 0.02
+"""|phi| below which a coincidence of phi and phi_r counts as one at zero [rad]."""
+
 
 @dataclass(frozen=True, slots=True)
 class Flown:
@@ -64,12 +67,13 @@ def sim_1_charts(run: RunData) -> list[Chart]:
         _side_by_side(
             run, ["sim1"], _figure_4, name="fig4", labels=("Time [s]", "Angle [rad]"),
             caption="Figure 4: φ, course of the UAV against that of z, goes to zero first; then φ_r follows as the unforced system"
-            " does. Diamonds: φ_r = φ.",
+            " does.",
         ),
         _side_by_side(
             run, ["sim1"], _figure_5, name="fig5", labels=("Time [s]", "Distance to the reference [m]"),
-            caption="Figure 5: from |φ| ≤ |φ_r| on the distance no longer rises. Diamonds: φ_r = φ, where the rate of V₁ vanishes,"
-            " eq. (35): a peak or trough while φ is not zero, a saddle point once it is.",
+            caption="Figure 5: while |φ| ≤ |φ_r| the distance does not rise. Where φ_r = φ the rate of V₁ vanishes, eq. (35): a"
+            " peak or a trough of the distance while φ is not zero, a saddle point once it is. The aircraft closes in there too, for it"
+            " trims its airspeed.",
         ),
     ]  # fmt: skip
 
@@ -203,20 +207,30 @@ def _figure_3(flights: dict[str, Flown]) -> list[Line]:
 
 def _figure_4(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
-    times = coincidences(flown)
     return [
         Line(x=flown.time, y=flown.column("phi_rad"), label="φ", colour="blue"),
         Line(x=flown.time, y=flown.column("phi_r_rad"), label="φ_r", colour="orange"),
-        _diamonds(times, np.interp(times, flown.time, flown.column("phi_r_rad")), "φ_r = φ"),
+        *_coincidence_marks(flown, flown.column("phi_r_rad")),
     ]
 
 
 def _figure_5(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
+    return [Line(x=flown.time, y=flown.distance, label="distance d", colour="blue"), *_coincidence_marks(flown, flown.distance)]
+
+
+def _coincidence_marks(flown: Flown, curve: Array) -> list[Line]:
+    """Return marks on a curve over time where phi_r = phi: saddle points of the distance apart from its peaks and troughs."""
     times = coincidences(flown)
+    saddle = np.abs(np.interp(times, flown.time, flown.column("phi_rad"))) < _PHI_GONE
+    marks = (
+        (saddle, "φ_r = φ = 0, a saddle point of d", "vermillion"),
+        (~saddle, "φ_r = φ ≠ 0, a peak or trough of d", "green"),
+    )
     return [
-        Line(x=flown.time, y=flown.distance, label="distance d", colour="blue"),
-        _diamonds(times, np.interp(times, flown.time, flown.distance), "φ_r = φ"),
+        Line(x=times[which], y=np.interp(times[which], flown.time, curve), label=label, colour=colour, style="diamonds")
+        for which, label, colour in marks
+        if which.any()
     ]
 
 
