@@ -72,8 +72,8 @@ def sim_1_charts(run: RunData) -> list[Chart]:
         _side_by_side(
             run, ["sim1"], _figure_5, name="fig5", labels=("Time [s]", "Distance to the reference [m]"),
             caption="Figure 5: while |φ| ≤ |φ_r| the distance does not rise. Where φ_r = φ the rate of V₁ vanishes, eq. (35): a"
-            " peak or a trough of the distance while φ is not zero, a saddle point once it is. The aircraft closes in there too, for it"
-            " trims its airspeed.",
+            " peak or a trough of the distance while φ is not zero, a saddle point once it is. The aircraft closes in there too,"
+            " for it trims its airspeed.",
         ),
     ]  # fmt: skip
 

@@ -125,6 +125,12 @@ class Guidance(Section):
     """Guidance rate [Hz]; must divide the 120 Hz of the simulation."""
 
     @model_validator(mode="after")
+    def _bounded_law(self) -> "Guidance":
+        if self.tuning == "bounded" and self.law != "cascade":
+            raise ValueError(f"tuning is 'bounded' with law '{self.law}', which has no bound; set law to 'cascade'")
+        return self
+
+    @model_validator(mode="after")
     def _whole_steps(self) -> "Guidance":
         _check_divides("rate_hz", self.rate_hz, 120.0)
         return self
