@@ -99,12 +99,12 @@ def fly_ensemble(
 ) -> EnsembleResult:
     """Fly until each vehicle is on its reference, or its time is up.
 
-    A vehicle is on its reference once d and phi are within ``DISTANCE_CONVERGED`` and ``PHI_CONVERGED``, from where d stays small
-    for good. Under the Lyapunov law V_2 never rises, which lets d reach sqrt(d_0^2 + phi_0^2/k_1), 0.021 m at k_1 = 0.001. Under
-    the cascade law the rate of d^2 is at most rho V phi^2 and phi decays exponentially, so that d^2 gains at most
-    rho V phi_0^2/(2 gain), (0.004 m)^2 at 1.5 1/s. The cut command is not cut there if the reference leaves a margin:
-    |omega - omega_r| is at most V (phi_r + phi)/R + 2 phi_r |omega_r| + gain phi, with phi_r about d/R, which is 0.001 rad/s at
-    V = 19.42 m/s and R = 60 m.
+    A vehicle is on its reference once d and phi are within ``DISTANCE_CONVERGED`` and ``PHI_CONVERGED``. From there d stays small
+    for good under both laws of the paper. Under the Lyapunov law V_2 never rises, which lets d reach sqrt(d_0^2 + phi_0^2/k_1),
+    0.021 m at k_1 = 0.001. Under the cascade law the rate of d^2 is at most rho V phi^2 and phi decays exponentially, so that d^2
+    gains at most rho V phi_0^2/(2 gain), (0.004 m)^2 at 1.5 1/s and R = 60 m. With cut commands that holds if the reference leaves
+    a margin of 0.001 rad/s, for then nothing is cut: |omega - omega_r| is at most V (phi_r + phi)/R + 2 phi_r |omega_r| + gain phi,
+    with phi_r about d/R. Of cut commands about a reference that spends all of omega_max nothing is claimed but that it was reached.
 
     Parameters
     ----------

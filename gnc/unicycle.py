@@ -5,6 +5,8 @@ import math
 _HALF_SPAN = 0.5 * math.sqrt(0.6)
 _GAUSS = ((0.5 - _HALF_SPAN, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + _HALF_SPAN, 5.0 / 18.0))
 """Nodes and weights of the three-point rule on 0 to 1."""
+_PIECES_MAX = 200
+"""Pieces of a move at most; a lag for which these are too long is over before it moves the vehicle."""
 
 
 def unicycle_rates(speed: float, course: float, heading_rate: float) -> tuple[float, float, float]:
@@ -40,7 +42,7 @@ def lagged_move(
     """Return position [m], course [rad] and heading rate [rad/s] after ``duration`` [s] of following a commanded heading rate.
 
     Equation (1) with a first-order lag between command and heading rate. Course and heading rate are in closed form; position is
-    Gauss and Legendre's quadrature at three nodes, good to 1e-9 m for steps of 0.05 s.
+    Gauss and Legendre's quadrature at three nodes, over pieces no longer than half the lag or 0.1 s.
 
     Parameters
     ----------
@@ -51,13 +53,16 @@ def lagged_move(
     duration : [s]
     """
     gap = heading_rate - command
+    pieces = min(math.ceil(duration / min(0.5 * lag, 0.1)), _PIECES_MAX)
+    piece = duration / pieces
     along = across = 0.0
-    for node, weight in _GAUSS:
-        t = node * duration
-        there = course + command * t - gap * lag * math.expm1(-t / lag)
-        along += weight * math.cos(there)
-        across += weight * math.sin(there)
+    for i in range(pieces):
+        for node, weight in _GAUSS:
+            t = (i + node) * piece
+            there = course + command * t - gap * lag * math.expm1(-t / lag)
+            along += weight * math.cos(there)
+            across += weight * math.sin(there)
     decay = math.expm1(-duration / lag)
-    distance = speed * duration
+    distance = speed * piece
     turned = command * duration - gap * lag * decay
     return north + distance * along, east + distance * across, course + turned, command + gap * (1.0 + decay)

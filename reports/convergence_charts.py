@@ -154,7 +154,7 @@ def _over_distance(data: ConvergenceData, laws: Sequence[Law]) -> Chart:
     return Chart(
         name="distance",
         caption=f"Settling time over the distance at the start, of those that settled, in up to {DISTANCE_BINS} bins of distance."
-        " The prediction, by the motion averaged over the reference's turns, is the median too.",
+        " The prediction, by the motion averaged over the reference's turns, is drawn by its median.",
         panels=[replace(panel, y_range=limits) for panel in panels],
         columns=len(panels),
         panel_height=PANEL_HEIGHT,

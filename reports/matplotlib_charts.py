@@ -85,4 +85,4 @@ def _dress(ax: Any, panel: Panel, *, last_row: bool) -> None:
     if panel.y_range:
         ax.set_ylim(*panel.y_range)
     if panel.equal:
-        ax.set_aspect("equal", adjustable="datalim")
+        ax.set_aspect("equal", adjustable="box" if panel.x_range and panel.y_range else "datalim")

@@ -101,9 +101,13 @@ def sim_2_charts(run: RunData) -> list[Chart]:
 
 
 def sim_3_charts(run: RunData) -> list[Chart]:
-    """Return figures 8 and 9: the smoke plume of a vessel at half the UAV's speed."""
+    """Return figures 8 and 9, of the smoke plume; none of flights without a vessel."""
+    flights = run.summary[run.summary["flight_id"].astype(str).str.startswith("sim3_")]
+    if flights["nu"].isna().any():
+        return []
     speed = float(run.manifest["config"]["guidance"]["airspeed_mps"])
     course = math.radians(run.manifest["config"]["vessel"]["course_deg"])
+    source_height = float(run.manifest["config"]["plume"]["source_height_m"])
 
     def figure_8(flights: dict[str, Flown]) -> list[Line]:
         flown = flights["sim3"]
@@ -121,7 +125,8 @@ def sim_3_charts(run: RunData) -> list[Chart]:
     def figure_9(flights: dict[str, Flown]) -> list[Line]:
         flown = flights["sim3"]
         way = float(flown.row["nu"]) * speed * flown.time
-        distance = np.hypot(flown.column("north_m") - way * math.cos(course), flown.column("east_m") - way * math.sin(course))
+        ahead = flown.column("north_m") - way * math.cos(course), flown.column("east_m") - way * math.sin(course)
+        distance = np.sqrt(ahead[0] ** 2 + ahead[1] ** 2 + (flown.column("altitude_m") - source_height) ** 2)
         crossings = run.crossings_of(str(flown.row["flight_id"]))
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
@@ -134,13 +139,13 @@ def sim_3_charts(run: RunData) -> list[Chart]:
     return [
         _side_by_side(
             run, ["sim3"], figure_8, name="fig8", equal=True, labels=("East [m]", "North [m]"), shown_after=100.0, columns=1,
-            panel_height=0.25,
+            panel_height=0.2,
             caption="Figure 8: over the ground. The UAV starts at a random place behind the vessel. Diamonds: plume crossings"
             " after settling, of which the first hundred seconds are shown.",
         ),
         _side_by_side(
             run, ["sim3"], figure_9, name="fig9", labels=("Time [s]", "Distance to the vessel [m]"), shown_after=math.inf,
-            caption="Figure 9: distance between vessel and UAV, never inside the keep-out area.",
+            caption="Figure 9: distance between the vessel, at its funnel, and the UAV; dashed the radius of the keep-out area.",
         ),
     ]  # fmt: skip
 
@@ -176,9 +181,7 @@ def _side_by_side(
     settled = [float(f.row["settling_time_s"]) for flights in pairs.values() for f in flights.values()]
     until = max((time for time in settled if not math.isnan(time)), default=math.inf) + shown_after
     drawn = {VEHICLES[key]: lines({c: flown.until(until) for c, flown in flights.items()}) for key, flights in pairs.items()}
-    x_range, y_range = (
-        _common_ranges([line for curves in drawn.values() for line in curves]) if drawn and not equal else (None, None)
-    )
+    x_range, y_range = _common_ranges([line for curves in drawn.values() for line in curves]) if drawn else (None, None)
     panels = [
         Panel(
             x_label=labels[0], y_label=labels[1], title=title[0].upper() + title[1:], equal=equal, lines=curves,
@@ -192,8 +195,8 @@ def _side_by_side(
 def _common_ranges(lines: list[Line]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return ranges that hold every curve, so that panels side by side compare at a glance."""
     x, y = (np.concatenate(curves) for curves in zip(*((line.x, line.y) for line in lines), strict=True))
-    spare = 0.05 * float(np.ptp(y))
-    return (float(np.min(x)), float(np.max(x))), (float(np.min(y)) - spare, float(np.max(y)) + spare)
+    across, up = 0.02 * float(np.ptp(x)), 0.05 * float(np.ptp(y))
+    return (float(np.min(x)) - across, float(np.max(x)) + across), (float(np.min(y)) - up, float(np.max(y)) + up)
 
 
 def _figure_3(flights: dict[str, Flown]) -> list[Line]:

@@ -29,7 +29,7 @@ def draw(chart: Chart) -> go.Figure:
     height = round(WIDTH_PIXELS * chart.panel_height * chart.rows) + _TOP + _BOTTOM
     inner = height - _TOP - _BOTTOM
     titled = any(panel.title for panel in chart.panels)
-    gap = 14 if chart.share_x else 58 + 24 * titled
+    gap = 14 if chart.share_x else 62 + 30 * titled
     figure = make_subplots(
         rows=chart.rows,
         cols=chart.columns,
@@ -82,7 +82,8 @@ def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bo
     figure.update_xaxes(**x_options, row=row, col=column)
     figure.update_yaxes(**y_options, row=row, col=column)
     if panel.equal:
-        x_range, y_range = _equal_ranges(panel)
+        free_x, free_y = _equal_ranges(panel)
+        x_range, y_range = list(panel.x_range or free_x), list(panel.y_range or free_y)
         figure.update_xaxes(range=x_range, row=row, col=column)
         figure.update_yaxes(range=y_range, row=row, col=column)
         axis = next(figure.select_xaxes(row=row, col=column)).plotly_name.replace("axis", "")

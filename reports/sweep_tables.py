@@ -66,9 +66,27 @@ def sweep_parameter_table(run: RunData) -> Table:
     if "guidance_lag_s" in run.manifest:
         rows.append([
             "guidance lag", f"{run.manifest['guidance_lag_s']:.3f}", "s",
-            "Measured lag of the flown heading rate behind its command, and half a guidance step; the preview's lead.",
+            "Lag of the heading rate behind its command (measured of an aircraft, given of a kinematic vehicle) and half a step of"
+            " the guidance: the preview's lead.",
         ])  # fmt: skip
+    if run.manifest["config"]["guidance"]["tuning"] == "bounded":
+        for name, key, pattern, unit in (
+            ("ε as searched", "epsilon_per_m", "{:.5f}", "1/m"),
+            ("R as searched", "look_ahead_m", "{:.1f}", "m"),
+            ("steering_max as searched", "steering_max_rad_s", "{:.4f}", "rad/s"),
+            ("bound on what the law asks for", "heading_rate_bound_rad_s", "{:.5f}", "rad/s"),
+        ):
+            rows.append([name, _range(run.summary[key], pattern), unit, "Over the flights; docs/actuation_bounds.md."])
     return parameter_table(run, rows)
+
+
+def _range(values: "pd.Series[float]", pattern: str) -> str:
+    """Return the least and the largest value, or the only one."""
+    known = values.dropna()
+    if not len(known):
+        return "–"
+    ends = [pattern.format(known.min()), pattern.format(known.max())]
+    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 def _outcome(row: "pd.Series[Any]") -> str:

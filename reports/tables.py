@@ -11,7 +11,7 @@ from reports.run_data import RunData
 
 def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
     """Return every parameter of the run with its unit and meaning, and rows for what follows from them."""
-    rows = [[p["key"], _value(p["value"]), p["unit"], p["meaning"]] for p in run.manifest["parameters"]]
+    rows = [[p["key"], _value(p["value"], p["key"]), p["unit"], p["meaning"]] for p in run.manifest["parameters"]]
     return Table(
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
         rows=[*rows, *derived],
@@ -49,8 +49,20 @@ def _vehicle(run: RunData) -> list[list[str]]:
     elif config.get("fidelity", "six_dof") == "six_dof":
         rows.append(["Aircraft", str(config.get("aircraft", "unknown"))])
     if config.get("fidelity") in ("kinematic", "both"):
-        rows.append(["Kinematic vehicle", "Equation (1) of the paper: constant speed, steered by its heading rate."])
+        rows.append(
+            [
+                "Kinematic vehicle",
+                "Equation (1) of the paper: it has the commanded speed at once, and is steered by its heading rate.",
+            ]
+        )
     return rows
+
+
+def length(metres: float) -> str:
+    """Return a distance in the unit that suits its size."""
+    if metres >= 0.1:
+        return f"{metres:.2f} m"
+    return f"{1000.0 * metres:.1f} mm" if metres >= 1e-4 else "< 0.1 mm"
 
 
 def number(value: Any, pattern: str) -> str:
@@ -58,9 +70,10 @@ def number(value: Any, pattern: str) -> str:
     return "–" if value is None or pd.isna(value) else pattern.format(float(value))
 
 
-def _value(value: Any) -> str:
+def _value(value: Any, key: str = "") -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list):
-        return (", " if any(isinstance(v, str) for v in value) else " to ").join(_value(v) for v in value)
+        # Of all lists the starting distances alone are a range.
+        return (" to " if key == "start.distance_m" else ", ").join(_value(v) for v in value)
     return "not set" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

@@ -10,7 +10,7 @@ from reports.run_data import RunData
 def verdict(run: RunData) -> Verdict:
     """Judge a run by its summary: safe if no flight entered the keep-out area and every crossing lay outside it."""
     summary, manifest = run.summary, run.manifest
-    planned = int(manifest.get("flights_planned", len(summary)))
+    planned = int(manifest["flights_planned"])
     flown = summary[summary["min_distance_m"].notna()]
     entries = int(flown["keepout_violations"].sum())
     inside = int((flown["crossing_distance_min_m"] < flown["keepout_radius_m"]).sum())
@@ -32,6 +32,8 @@ def verdict(run: RunData) -> Verdict:
     detail = f"{len(summary)} of {planned} flights are in this report; {met} completed and met every criterion."
     if len(flown):
         detail += f" Closest approach of any flight, from its first second: {closest:.1f} m."
+    if manifest["config"].get("fidelity") == "kinematic":
+        detail += " Flown with the paper's kinematic vehicle, not with an aircraft."
     if manifest.get("state") != "complete":
         detail += f" The run is {manifest.get('state', 'unfinished')}; continue it with --resume."
     return Verdict(safe=safe, complete=complete, headline=headline, detail=detail, failures=failures, figures=_figures(run, flown))
@@ -54,7 +56,13 @@ def _figures(run: RunData, flown: pd.DataFrame) -> list[tuple[str, str, str]]:
     tracking_limit = f"≤ {criteria['tracking_error_rms_m']:g} m"
     airspeed_limit = f"≤ {criteria['airspeed_error_rms_mps']:g} m/s"
     altitude_limit = f"≤ {criteria['altitude_error_max_m']:g} m"
+    asked = []
+    if run.manifest["config"]["guidance"].get("tuning") == "bounded":
+        wanted = flown["heading_rate_wanted_max_rad_s"] / flown["heading_rate_limit_rad_s"]
+        bound = flown["heading_rate_bound_rad_s"] / flown["heading_rate_limit_rad_s"]
+        asked = [("The law asks for, over ω_max, worst", worst(wanted, "{:.3f}"), worst(bound, "≤ {:.4f} in any state"))]
     return [
+        *asked,
         ("Entries into the keep-out area", f"{int(flown['keepout_violations'].sum())}", "0"),
         ("Plume crossings after settling", f"{crossings}", ""),
         ("Closest crossing", closest, f"≥ {radius:g} m"),

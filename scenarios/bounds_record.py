@@ -5,40 +5,51 @@ from typing import Any
 
 import numpy as np
 
-from gnc.adversary import largest_heading_rate
-from gnc.bounds import fastest_within
-from gnc.delta import LookAhead
+from gnc.adversary import tightness
 from gnc.errors import InfeasibleError
-from gnc.oscillation import design_oscillation
-from scenarios.config import Scenario
 from scenarios.flights import FlightRequest
+from scenarios.load import with_values
 from scenarios.metrics import Row
-from scenarios.plan import heading_rate_max, plan_flight
-from scenarios.steering import largest_speed
+from scenarios.plan import heading_rate_max, plan_flight, plan_oscillation
+from scenarios.steering import farthest_start, largest_speed, search_steering
 
 _SAMPLES = 1_000_000
 _RESERVES = (0.0, 0.015, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6)
 
 
-def bounds_record(scenario: Scenario, requests: list[FlightRequest]) -> dict[str, Any]:
-    """Return the bounds of a study's flights under law (30), and those of guaranteed flights over the reserve kept.
+def bounds_record(requests: list[FlightRequest], seed: int) -> dict[str, Any]:
+    """Return the bounds of a study's flights under law (30), and what they would cost over the reserve kept.
+
+    Parameters
+    ----------
+    requests : the study's flights
+    seed : of the search for the worst states
 
     Returns
     -------
+    guaranteed_for : speed, omega_max, and the distances between which convergence is estimated
     flown : a row per distinct steering: its parameters, the bound, the largest command that a search over states finds
-    guaranteed : a row per reserve at the scenario's first speed ratio: the parameters that converge fastest while no state asks for
+    guaranteed : for the last flight with a vessel a row per reserve: the parameters that converge fastest while no state asks for
         more than omega_max, or why there are none
     """
+    missions = [request for request in requests if not math.isnan(request.nu)]
+    last = missions[-1].scenario if missions else None
     return {
         "samples": _SAMPLES,
-        "flown": _flown(scenario, requests),
-        "guaranteed": [_guaranteed(scenario, reserve) for reserve in _RESERVES],
+        "guaranteed_for": last
+        and {
+            "speed_mps": largest_speed(last),
+            "heading_rate_max_rad_s": heading_rate_max(last),
+            "distance_from_m": farthest_start(last),
+            "distance_to_m": last.flight.settling_band_m,
+        },
+        "flown": _flown(requests, np.random.default_rng(seed)),
+        "guaranteed": [_guaranteed(missions[-1], reserve) for reserve in _RESERVES] if missions else [],
     }
 
 
-def _flown(scenario: Scenario, requests: list[FlightRequest]) -> list[Row]:
+def _flown(requests: list[FlightRequest], generator: np.random.Generator) -> list[Row]:
     rows: dict[tuple[float, ...], Row] = {}
-    generator = np.random.default_rng(scenario.seed)
     for request in requests:
         settings = request.scenario
         try:
@@ -47,17 +58,16 @@ def _flown(scenario: Scenario, requests: list[FlightRequest]) -> list[Row]:
             continue
         if not math.isfinite(plan.heading_rate_bound):
             continue
-        g = plan.guidance
-        largest = plan.mission.oscillation.amplitude if plan.mission else abs(plan.reference.heading_rate)
-        speed = largest_speed(settings)
-        key = (speed, largest, *g.look_ahead, g.gain, g.rate_max)
+        g, speed = plan.guidance, largest_speed(settings)
+        turn = plan.mission.oscillation.amplitude if plan.mission else abs(plan.reference.heading_rate)
+        key = (speed, turn, *g.look_ahead, g.gain, g.rate_max)
         if key in rows:
             rows[key]["flights"].append(request.flight_id)
             continue
-        found = largest_heading_rate(
-            LookAhead(*g.look_ahead),
+        found = tightness(
+            g.look_ahead,
             speed=speed,
-            reference_heading_rate_max=largest,
+            reference_heading_rate_max=turn,
             gain=g.gain,
             steering_max=g.rate_max,
             samples=_SAMPLES,
@@ -67,31 +77,24 @@ def _flown(scenario: Scenario, requests: list[FlightRequest]) -> list[Row]:
             "flights": [request.flight_id],
             "tuning": settings.guidance.tuning,
             "speed_mps": speed,
-            "reference_heading_rate_max_rad_s": largest,
+            "reference_heading_rate_max_rad_s": turn,
             "heading_rate_max_rad_s": plan.heading_rate_max,
             "epsilon_per_m": g.look_ahead.epsilon,
             "look_ahead_m": g.look_ahead.radius,
             "steering_max_rad_s": g.rate_max,
-            "bound_rad_s": plan.heading_rate_bound,
-            "largest_found_rad_s": found,
+            "bound_rad_s": found.bound,
+            "largest_found_rad_s": found.largest,
         }
     return list(rows.values())
 
 
-def _guaranteed(scenario: Scenario, reserve: float) -> Row:
-    g, nu = scenario.guidance, scenario.sweep.nu[0]
-    omega_max = heading_rate_max(scenario)
-    oscillation = design_oscillation(nu=nu, speed=g.airspeed_mps, heading_rate_max=omega_max, reserve=reserve)
-    row: Row = {"nu": nu, "reserve": reserve, "crossing_interval_s": oscillation.crossing_interval}
+def _guaranteed(request: FlightRequest, reserve: float) -> Row:
+    row: Row = {"nu": request.nu, "reserve": reserve}
     try:
-        found = fastest_within(
-            speed=g.airspeed_mps,
-            heading_rate_max=omega_max,
-            reference_heading_rate_max=oscillation.amplitude,
-            distance_from=scenario.start.distance_m[1],
-            distance_to=scenario.flight.settling_band_m,
-            gain=g.gain_per_s,
-        )
+        scenario = with_values(request.scenario, {"guidance.reserve": reserve})
+        oscillation = plan_oscillation(scenario, request.nu)
+        row["crossing_interval_s"] = oscillation.crossing_interval
+        found = search_steering(scenario, heading_rate_max(scenario), oscillation.amplitude)
     except InfeasibleError as error:
         return row | {"message": str(error)}
     return row | {

@@ -57,14 +57,18 @@ class Keepout(Section):
 
 
 class Kinematic(Section):
-    """The paper's vehicle, eq. (1), flown where fidelity is kinematic."""
+    """The paper's vehicle, eq. (1). Of no effect on the aircraft in six degrees of freedom."""
 
     heading_rate_lag_s: NonNegative = 0.0
     """Time constant of the heading rate behind its command; 0 for eq. (1) as it stands [s]."""
 
 
 class Reference(Section):
-    """What the reference point does."""
+    """What the reference point does.
+
+    On a circle there is no vessel: vessel, plume (but for its height), keepout and what shapes the oscillation have no effect, and
+    no crossings are counted.
+    """
 
     path: Literal["oscillation", "circle"] = "oscillation"
     """Oscillate about a centre in the plume, eq. (2), or circle without a vessel, as in the paper's Sims. 1 and 2."""
@@ -95,14 +99,16 @@ class Guidance(Section):
     """Added to r_min in the placement: what the UAV may stray from the reference, which may touch r_min itself [m]."""
     tuning: Literal["given", "bounded"] = "given"
     """Look-ahead and steering_max as given, or those that converge fastest while no state asks for more than omega_max."""
+    bound_speed_margin_mps: NonNegative = 0.5
+    """The bound on commands holds while the aircraft's speed exceeds the largest commanded airspeed by no more than this [m/s]."""
     epsilon_per_m: Positive = 0.005
-    """epsilon of the look-ahead, eq. (15) [1/m]."""
+    """epsilon of the look-ahead, eq. (15) [1/m]; of no effect with bounded tuning."""
     look_ahead_m: Positive = 60.0
-    """R of the look-ahead, eq. (15) [m]; above 1/(4 epsilon)."""
+    """R of the look-ahead, eq. (15) [m]; above 1/(4 epsilon); of no effect with bounded tuning."""
     gain_per_s: Positive = 1.5
     """Slope of h(phi) in eq. (30), and gain of the line-of-sight law [1/s]."""
     steering_max_rad_s: Positive = 0.4
-    """Largest |h(phi)| in eq. (30) [rad/s]."""
+    """Largest |h(phi)| in eq. (30) [rad/s]; of no effect with bounded tuning."""
     lyapunov_gain_per_m2: Positive = 0.001
     """k_1 of eq. (24) [1/m2]."""
     command_limit: bool = True
@@ -181,6 +187,10 @@ class Criteria(Section):
     """Largest relative difference of the mean crossing interval from pi/omega_0 [-]."""
     tracking_error_end_m: Positive | None = None
     """Largest distance to the reference at the end [m]."""
+    crossing_interval_s: tuple[Positive, Positive] | None = None
+    """Least and largest mean crossing interval [s]."""
+    crossing_distance_m: tuple[Positive, Positive] | None = None
+    """Least and largest mean crossing distance from the vessel [m]."""
     law_within_heading_rate_max: bool = False
     """Whether the law itself must ask for no more than omega_max, before commands are cut."""
 
@@ -256,6 +266,8 @@ class Scenario(Section):
     def _study(self) -> "Scenario":
         if (self.study == "paper") != bool(self.cases):
             raise ValueError(f"study is '{self.study}' with {len(self.cases)} cases; 'paper' has cases, 'flights' has none")
+        if len({case.name for case in self.cases}) < len(self.cases):
+            raise ValueError(f"cases are named {', '.join(case.name for case in self.cases)}; give each a name of its own")
         if self.study == "flights" and "sweep" not in self.model_fields_set:
             raise ValueError("key 'sweep' is missing; add it to the scenario")
         if self.study == "flights" and self.fidelity == "both":

@@ -226,7 +226,7 @@ def _blocks(law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_
 
 def _fly_all(blocks: Sequence[_Block], jobs: int) -> Iterator[list[dict[str, Any]]]:
     """Yield the rows of each block as it is done; when interrupted, end the processes at once."""
-    if jobs == 1:
+    if jobs == 1 or not blocks:
         yield from map(_fly_block, blocks)
         return
     others = set(multiprocessing.active_children())

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from scenarios.config import Positive, Section
 
@@ -43,6 +43,12 @@ class EnsembleGuidance(Section):
     """Largest |h(phi)| in eq. (30) [rad/s]."""
     lyapunov_gain_per_m2: Positive = 0.001
     """k_1 of eq. (24) [1/m2]; V_2 is formed with k_2 = 1/k_1."""
+
+    @model_validator(mode="after")
+    def _each_law_once(self) -> "EnsembleGuidance":
+        if len(set(self.laws)) < len(self.laws):
+            raise ValueError(f"laws is {list(self.laws)}; name each law once")
+        return self
 
 
 class ConvergenceScenario(Section):

@@ -40,26 +40,29 @@ class ConvergenceResult:
     planned : trajectories, times laws
     done : those that were flown
     converged : of law and kind of reference, the number that converged and the number flown
+    judged : laws that the verdict is about: those of the theory or, if there are none, all
     interrupted : whether it was stopped before all were flown
     """
 
     directory: Path
     planned: int
     done: int
-    converged: dict[str, tuple[int, int]]
+    converged: dict[tuple[str, str], tuple[int, int]]
+    judged: tuple[str, ...]
     interrupted: bool
 
     @property
     def all_met(self) -> bool:
-        """Whether every trajectory was flown and converged."""
-        return self.done == self.planned and all(converged == flown for converged, flown in self.converged.values())
+        """Whether every trajectory was flown and, under the laws that the verdict is about, converged."""
+        judged = [counts for (law, _), counts in self.converged.items() if law in self.judged]
+        return self.done == self.planned and all(converged == flown for converged, flown in judged)
 
     def lines(self) -> list[str]:
         """Return what happened, in lines of text."""
         total = sum(converged for converged, _ in self.converged.values())
         return [
             f"{self.planned} trajectories planned, {self.done} done: {total} converged",
-            *(f"  {what}: {converged} of {flown} converged" for what, (converged, flown) in self.converged.items()),
+            *(f"  {law}, {kind}: {converged} of {flown} converged" for (law, kind), (converged, flown) in self.converged.items()),
         ]
 
 
@@ -128,30 +131,24 @@ def run_study(
         ):
             frame = table
             run.write_frame(_DONE, frame)
+        progress("keeping time histories", planned, planned)
+        _keep_histories(run, frame if frame is not None else _empty(), vehicle, scenario)
     except KeyboardInterrupt:
         interrupted = True
     if frame is None:
-        frame = pd.DataFrame(columns=list(COLUMNS))
+        frame = _empty()
     run.write_frame("summary.csv", frame)
-    failed = counterexamples(frame)
-    run.write_frame("counterexamples.csv", failed)
-    if not interrupted:
-        progress("keeping time histories", planned, planned)
-        run.trajectories.mkdir(exist_ok=True)
-        kept = pd.concat([frame[frame["trajectory"] < ensemble.samples], failed.head(_KEPT_MAX)])
-        kept["duration_s"] = kept["duration_s"].clip(upper=_HISTORY_MAX)
-        for _, row in kept.drop_duplicates(["trajectory", "law"]).iterrows():
-            history = trajectory_of(row, vehicle=vehicle, settling_band=ensemble.settling_band_m, step_max=_HISTORY_STEP)
-            run.write_frame(f"{run.trajectories.name}/{row['law']}_{row['trajectory']:05d}.parquet", history)
+    run.write_frame("counterexamples.csv", counterexamples(frame))
     groups = frame.groupby(["law", "reference"], sort=False)["outcome"]
     result = ConvergenceResult(
         directory=directory,
         planned=planned,
         done=len(frame),
         converged={
-            f"{law}, {reference}": (int((outcomes == Outcome.CONVERGED.value).sum()), len(outcomes))
+            (str(law), str(reference)): (int((outcomes == Outcome.CONVERGED.value).sum()), len(outcomes))
             for (law, reference), outcomes in groups
         },
+        judged=tuple(law for law in g.laws if law != "cascade_cut") or g.laws,
         interrupted=interrupted,
     )
     manifest |= {
@@ -161,3 +158,17 @@ def run_study(
     }
     run.write_json(run.manifest, manifest)
     return result
+
+
+def _empty() -> pd.DataFrame:
+    return pd.DataFrame(columns=list(COLUMNS))
+
+
+def _keep_histories(run: RunDirectory, frame: pd.DataFrame, vehicle: Vehicle, scenario: ConvergenceScenario) -> None:
+    """Write the time histories of the first trajectories and of the counter-examples."""
+    run.trajectories.mkdir(exist_ok=True)
+    kept = pd.concat([frame[frame["trajectory"] < scenario.ensemble.samples], counterexamples(frame).head(_KEPT_MAX)])
+    kept["duration_s"] = kept["duration_s"].clip(upper=_HISTORY_MAX)
+    for _, row in kept.drop_duplicates(["trajectory", "law"]).iterrows():
+        history = trajectory_of(row, vehicle=vehicle, settling_band=scenario.ensemble.settling_band_m, step_max=_HISTORY_STEP)
+        run.write_frame(f"{run.trajectories.name}/{row['law']}_{row['trajectory']:05d}.parquet", history)

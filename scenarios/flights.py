@@ -17,6 +17,7 @@ from gnc.errors import InfeasibleError
 from innerloop.flight import AutopilotedAircraft
 from scenarios.closed_loop import Outcome, fly
 from scenarios.config import Case, Scenario
+from scenarios.errors import InputError
 from scenarios.history import flight_history
 from scenarios.jsbsim_vehicle import JsbsimVehicle
 from scenarios.kinematic_vehicle import KinematicVehicle
@@ -100,7 +101,14 @@ def _case_requests(scenario: Scenario, case: Case) -> list[FlightRequest]:
     requests = []
     for fidelity in ("kinematic", "six_dof") if scenario.fidelity == "both" else (scenario.fidelity,):
         values = case.set | (case.set_kinematic if fidelity == "kinematic" else {})
-        changed = with_values(scenario, {**values, "fidelity": fidelity})
+        if "fidelity" in values:
+            raise InputError(f"case '{case.name}' sets fidelity; set it for the whole scenario, or to 'both'")
+        try:
+            changed = with_values(scenario, {**values, "fidelity": fidelity})
+        except InputError as error:
+            raise InputError(f"case '{case.name}': {error}") from None
+        if len(changed.sweep.nu) > 1:
+            raise InputError(f"case '{case.name}' has {len(changed.sweep.nu)} speed ratios in sweep.nu; give it one")
         nu = changed.sweep.nu[0]
         requests.append(
             FlightRequest(
@@ -187,11 +195,11 @@ def place_vehicle(scenario: Scenario, plan: FlightPlan, model: Path, six_dof: Si
     scenario : whose fidelity chooses the vehicle
     plan : the flight
     model : JSBSim root of the aircraft with its autopilot
-    six_dof : what the aircraft needs; without it the vehicle is kinematic
+    six_dof : what the aircraft needs, if it is to fly
     """
     where = {"north": plan.start_north, "east": plan.start_east, "altitude": plan.altitude, "course": plan.start_course}
     time_step = plan.guidance.time_step
-    if six_dof is None:
+    if scenario.fidelity == "kinematic" or six_dof is None:
         lag = scenario.kinematic.heading_rate_lag_s
         return KinematicVehicle(**where, speed=plan.reference.speed, time_step=time_step, lag=lag)
     aircraft = AutopilotedAircraft(find_spec(scenario.aircraft), model)

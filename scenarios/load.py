@@ -64,8 +64,12 @@ def load_study(name: str, overrides: Sequence[str] = ()) -> Scenario | Convergen
     for override in overrides:
         key, value = _parse_override(override)
         _set(document, key, value)
-    if document.get("study") == "convergence":
+        _take_from_cases(document, key)
+    study = document.get("study", "flights")
+    if study == "convergence":
         return _validate(document, ConvergenceScenario)
+    if study not in ("flights", "paper"):
+        raise InputError(f"study is {study!r}; it must be 'flights', 'paper' or 'convergence'")
     return _validate(document, Scenario)
 
 
@@ -78,7 +82,8 @@ def _validate(document: Mapping[str, Any], kind: type[Study]) -> Study:
         key = ".".join(str(part) for part in first["loc"])
         more = len({entry["loc"] for entry in error.errors()}) - 1
         others = f" (and {more} more keys)" if more else ""
-        raise InputError(f"{_explain(key, first['type'], first['msg'], first.get('input'))}{others}") from None
+        keys = "scenarios/config.py" if kind is Scenario else "scenarios/convergence_config.py"
+        raise InputError(f"{_explain(key, first['type'], first['msg'], first.get('input'), keys)}{others}") from None
 
 
 def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
@@ -89,16 +94,27 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
     return _validate(document, Scenario)
 
 
-def _explain(key: str, kind: str, message: str, value: object) -> str:
+def _explain(key: str, kind: str, message: str, value: object, keys: str) -> str:
     if kind == "extra_forbidden":
-        return f"unknown key '{key}'; check its spelling against scenarios/config.py or an example in scenarios/catalog"
+        return f"unknown key '{key}'; check its spelling against {keys} or an example in scenarios/catalog"
     if kind == "missing":
         return f"key '{key}' is missing; add it to the scenario"
     text = message.removeprefix("Value error, ")
     where = f"{key}: " if key else ""
     if kind == "value_error":
         return f"{where}{text}"
+    if kind == "tuple_type":
+        return f"{where}value is {value!r}; give a list in brackets, e.g. [0.5]"
     return f"{where}value is {value!r}; {text[0].lower()}{text[1:]}"
+
+
+def _take_from_cases(document: dict[str, Any], key: str) -> None:
+    """Let an override have its way in every case: none sets that key otherwise."""
+    cases = document.get("cases", [])
+    for case in cases if isinstance(cases, list) else []:
+        for values in (case.get("set"), case.get("set_kinematic")) if isinstance(case, dict) else ():
+            if isinstance(values, dict):
+                values.pop(key, None)
 
 
 def _parse_override(override: str) -> tuple[str, object]:

@@ -25,7 +25,7 @@ SUMMARY_COLUMNS = (
     "airspeed_error_max_mps", "airspeed_trim_rms_mps", "altitude_error_rms_m", "altitude_error_max_m",
     "heading_rate_error_rms_rad_s", "heading_rate_wanted_max_rad_s", "heading_rate_command_max_rad_s",
     "heading_rate_limit_rad_s", "heading_rate_bound_rad_s", "heading_rate_flown_max_rad_s", "epsilon_per_m", "look_ahead_m",
-    "steering_max_rad_s", "bank_max_deg", "saturation_fraction", "duration_s", "wall_time_s",
+    "steering_max_rad_s", "speed_max_mps", "bank_max_deg", "saturation_fraction", "duration_s", "wall_time_s",
 )  # fmt: skip
 """Columns of ``summary.csv``, in order. A figure that a flight does not have is empty."""
 
@@ -107,6 +107,7 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
         "heading_rate_wanted_max_rad_s": record.heading_rate_wanted_max,
         "heading_rate_command_max_rad_s": float(np.max(np.abs(column(history, "heading_rate_command_rad_s")))),
         "heading_rate_flown_max_rad_s": float(np.max(np.abs(column(history, "heading_rate_rad_s")))),
+        "speed_max_mps": float(np.max(np.hypot(column(history, "velocity_north_mps"), column(history, "velocity_east_mps")))),
         "bank_max_deg": math.degrees(float(np.max(np.abs(column(history, "roll_rad"))))),
         "saturation_fraction": record.saturation_fraction,
         "duration_s": float(time[-1]),
@@ -179,7 +180,7 @@ def unmet_criteria(row: Row, criteria: Criteria) -> list[str]:
         _at_most("largest altitude error", row.get("altitude_error_max_m"), criteria.altitude_error_max_m, "m"),
         (
             row["heading_rate_command_max_rad_s"] <= limit,
-            f"commanded {row['heading_rate_command_max_rad_s']:.4f} rad/s above omega_max",
+            f"commanded {row['heading_rate_command_max_rad_s']:.4f} rad/s, above omega_max = {row['heading_rate_limit_rad_s']:.4f}",
         ),
     ]
     if "keepout_violations" in row:
@@ -188,13 +189,15 @@ def unmet_criteria(row: Row, criteria: Criteria) -> list[str]:
         checks.append(_at_most("tracking error at the end", row.get("tracking_error_end_m"), criteria.tracking_error_end_m, "m"))
     if criteria.law_within_heading_rate_max:
         wanted = row["heading_rate_wanted_max_rad_s"]
-        checks.append((wanted <= limit, f"the law asked for {wanted:.4f} rad/s, above omega_max"))
+        checks.append(
+            (wanted <= limit, f"the law asked for {wanted:.4f} rad/s, above omega_max = {row['heading_rate_limit_rad_s']:.4f}")
+        )
     return [message for met, message in checks if not met]
 
 
 def _mission_checks(row: Row, criteria: Criteria) -> list[tuple[bool, str]]:
     interval, predicted = row.get("crossing_interval_mean_s", math.nan), row["crossing_interval_predicted_s"]
-    return [
+    checks = [
         (row["keepout_violations"] == 0, f"entered the keep-out area {row['keepout_violations']} times"),
         (
             row.get("crossing_distance_min_m", -math.inf) >= row["keepout_radius_m"],
@@ -205,11 +208,20 @@ def _mission_checks(row: Row, criteria: Criteria) -> list[tuple[bool, str]]:
             f"mean crossing interval {interval:.3f} s against {predicted:.3f} s",
         ),
     ]
+    for name, key, unit, limits in (
+        ("interval", "crossing_interval_mean_s", "s", criteria.crossing_interval_s),
+        ("distance", "crossing_distance_mean_m", "m", criteria.crossing_distance_m),
+    ):
+        if limits is not None:
+            value = row.get(key, math.nan)
+            message = f"mean crossing {name} {value:.3f} {unit} outside {limits[0]:g} to {limits[1]:g} {unit}"
+            checks.append((limits[0] <= value <= limits[1], message))
+    return checks
 
 
 def _at_most(name: str, value: float | None, limit: float, unit: str) -> tuple[bool, str]:
     if value is None:
-        return False, f"{name} is unknown"
+        return False, f"{name} is unknown: the flight never settled"
     return value <= limit, f"{name} {value:.2f} {unit} above {limit:g} {unit}"
 
 

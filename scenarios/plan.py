@@ -121,17 +121,23 @@ def heading_rate_max(scenario: Scenario) -> float:
     return g.heading_rate_max_rad_s or heading_rate_for_bank(math.radians(g.bank_deg), g.airspeed_mps)
 
 
-def _mission(scenario: Scenario, nu: float) -> tuple[Mission, tuple[float, float, float]]:
-    """Return the mission, and its CO ahead of, right of and above the plume's origin [m]."""
+def plan_oscillation(scenario: Scenario, nu: float) -> Oscillation:
+    """Return the oscillation of the reference at a speed ratio, or raise an InfeasibleError."""
     g = scenario.guidance
-    axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
-    oscillation = design_oscillation(
+    return design_oscillation(
         nu=nu,
         speed=g.airspeed_mps,
         heading_rate_max=heading_rate_max(scenario),
         reserve=g.reserve,
         roll_rate_max=math.radians(g.roll_rate_max_deg_s),
     )
+
+
+def _mission(scenario: Scenario, nu: float) -> tuple[Mission, tuple[float, float, float]]:
+    """Return the mission, and its CO ahead of, right of and above the plume's origin [m]."""
+    g = scenario.guidance
+    axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
+    oscillation = plan_oscillation(scenario, nu)
     vessel = Vessel(
         speed=nu * g.airspeed_mps,
         course=math.radians(scenario.vessel.course_deg),

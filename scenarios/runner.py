@@ -15,6 +15,7 @@ from innerloop.jsbsim_root import write_root
 from innerloop.record import design_record
 from innerloop.responses import level_trim
 from innerloop.schedule import design_schedule
+from scenarios.bounds_record import bounds_record
 from scenarios.closed_loop import Outcome
 from scenarios.config import Scenario
 from scenarios.errors import InputError
@@ -112,6 +113,7 @@ def run_scenario(
     manifest |= {
         "seeds": {request.flight_id: request.seed for request in requests},
         "variants": {request.flight_id: request.variant for request in requests},
+        "flights_planned": sum(request.variant == STUDY for request in requests),
     }
     run.write_json(run.manifest, manifest)
     began = time.perf_counter()
@@ -128,23 +130,20 @@ def run_scenario(
         manifest["guidance_lag_s"] = guidance_lag(scenario, six_dof)
         _fly_all([r for r in requests if r.flight_id not in ledger.done], ledger, run.path, six_dof, jobs, progress)
         if scenario.study == "paper":
-            from scenarios.bounds_record import bounds_record
-
             progress("bounding commands", len(ledger.done), len(requests))
-            run.write_json(run.bounds, bounds_record(scenario, requests))
+            run.write_json(run.bounds, bounds_record(requests, scenario.seed))
     except KeyboardInterrupt:
         interrupted = True
     result = RunResult(
         directory=directory,
         rows=ledger.study_rows(),
-        planned=sum(request.variant == STUDY for request in requests),
+        planned=manifest["flights_planned"],
         interrupted=interrupted,
     )
     manifest |= {
         "state": "interrupted" if interrupted else "complete",
         "wall_time_s": time.perf_counter() - began,
         "outcomes": {outcome.value: sum(row["outcome"] == outcome.value for row in result.rows) for outcome in Outcome},
-        "flights_planned": result.planned,
         "flights_met_criteria": result.met,
     }
     run.write_json(run.manifest, manifest)

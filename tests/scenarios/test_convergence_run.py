@@ -1,6 +1,7 @@
 """A convergence study from its file to its run directory, with few trajectories from near by."""
 
 import json
+import shutil
 
 import pandas as pd
 import pytest
@@ -21,8 +22,8 @@ def study(*overrides):
     return loaded
 
 
-def run(scenario, path, *, resume=False, progress=lambda *_: None):
-    return run_study(scenario, "convergence", path, jobs=1, resume=resume, progress=progress)
+def run(scenario, path, *, resume=False, progress=lambda *_: None, jobs=1):
+    return run_study(scenario, "convergence", path, jobs=jobs, resume=resume, progress=progress)
 
 
 @pytest.fixture(scope="module")
@@ -104,14 +105,35 @@ def test_a_study_of_cut_commands_alone_is_no_verdict_on_the_theory(tmp_path):
     assert "30 of 30 trajectories converged, under laws that no theory covers" in html.read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_study_that_is_done_can_be_resumed_all_the_same(jobs, directory, tmp_path):
+    copy = shutil.copytree(directory, tmp_path / "copy")
+    assert run(study(), copy, resume=True, jobs=jobs).all_met
+
+
+def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_resumed(tmp_path, monkeypatch):
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("scenarios.convergence_run.trajectory_of", interrupt)
+        first = run(study(), tmp_path / "run")
+    assert first.interrupted
+    assert first.done == first.planned
+    assert json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
+    assert run(study(), tmp_path / "run", resume=True).all_met
+
+
 @pytest.mark.parametrize(
     ("override", "words"),
     [
+        ('guidance.laws=["cascade", "cascade"]', ["laws is ['cascade', 'cascade']", "once"]),
+        ("guidance.laws=cascade", ["guidance.laws", "'cascade'", "list in brackets"]),
         ('guidance.laws=["magic"]', ["guidance.laws.0", "'magic'", "lyapunov"]),
         ("ensemble.trajectories=0", ["ensemble.trajectories", "greater than or equal to 1"]),
         ("guidance.heading_rate_max_rad_s=0.4", ["heading_rate_max_rad_s", "0.4", "greater than 0.5"]),
         ("fidelity=six_dof", ["fidelity", "'six_dof'", "kinematic"]),
-        ("keepout.radius_m=200", ["unknown key 'keepout'"]),
+        ("keepout.radius_m=200", ["unknown key 'keepout'", "scenarios/convergence_config.py"]),
     ],
 )
 def test_bad_values_are_refused_in_one_line(override, words):

@@ -1,6 +1,7 @@
 import pytest
 
 from scenarios.errors import InputError
+from scenarios.flights import flight_requests
 from scenarios.load import catalog, load_scenario, load_study, with_values
 
 
@@ -59,6 +60,7 @@ def test_overrides_set_any_key(override, value):
         ("guidance.command_limit=false", ["command_limit is false", "set fidelity=kinematic"]),
         ("start.place_m=[-100, 0]", ["start.place_m lies at 100 m", "must exceed keepout.radius_m, 200 m"]),
         ("guidance={tuning='bounded', law='lyapunov'}", ["tuning is 'bounded' with law 'lyapunov'", "set law to 'cascade'"]),
+        ("study=magic", ["study is 'magic'", "'flights', 'paper' or 'convergence'"]),
         ("study=paper", ["study is 'paper' with 0 cases"]),
     ],
 )
@@ -98,3 +100,27 @@ def test_a_directory_is_no_scenario(tmp_path):
 def test_variants_are_checked_like_any_value():
     with pytest.raises(InputError, match=r"unknown key 'guidance\.previev'"):
         with_values(load_scenario("sweep_nu"), {"guidance.previev": False})
+
+
+@pytest.mark.parametrize(
+    ("cases", "words"),
+    [
+        ('[[cases]]\nname = "a"\n[[cases]]\nname = "a"\n', ["cases are named a, a", "a name of its own"]),
+        ('[[cases]]\nname = "a"\nset = { "sweep.nu" = [0.3, 0.5] }\n', ["case 'a' has 2 speed ratios"]),
+        ('[[cases]]\nname = "a"\nset = { fidelity = "kinematic" }\n', ["case 'a' sets fidelity"]),
+        ('[[cases]]\nname = "a"\nset = { "guidance.gain" = 1.0 }\n', ["case 'a': unknown key 'guidance.gain'"]),
+    ],
+)
+def test_cases_that_cannot_be_flown_are_refused_by_name(tmp_path, cases, words):
+    path = tmp_path / "cases.toml"
+    path.write_text(f'study = "paper"\ntitle = "cases"\n{cases}', encoding="utf-8")
+    with pytest.raises(InputError) as refusal:
+        flight_requests(load_scenario(str(path)))
+    for word in words:
+        assert word in str(refusal.value)
+
+
+def test_an_override_has_its_way_in_every_case():
+    requests = flight_requests(load_scenario("paper", ["sweep.nu=[0.3]", "start.course_deg=45.0", "fidelity=kinematic"]))
+    assert [request.nu for request in requests if request.flight_id.startswith("sim3")] == [0.3]
+    assert {request.scenario.start.course_deg for request in requests} == {45.0}
