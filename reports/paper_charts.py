@@ -9,9 +9,10 @@ import pandas as pd
 
 from reports.chart import Array, Chart, Line, Panel
 from reports.run_data import RunData
+from reports.tables import kinematic
 
-VEHICLES = {"kinematic": "kinematic vehicle, eq. (1)", "six_dof": "aircraft, six degrees of freedom"}
-"""What the flights' fidelity is called."""
+VEHICLES = ("kinematic", "six_dof")
+"""Fidelities, in the order of panels and columns."""
 
 _POINTS_MAX = 1500
 
@@ -46,6 +47,11 @@ class Flown:
         """Return the flight up to ``time`` [s], thinned to what a figure shows."""
         shown = self.history[self.history["time_s"] <= time]
         return Flown(self.row, shown.iloc[:: max(1, math.ceil(len(shown) / _POINTS_MAX))])
+
+
+def vehicle_name(run: RunData, fidelity: str) -> str:
+    """Return what the vehicle of a fidelity is called."""
+    return f"kinematic vehicle, {kinematic(run)}" if fidelity == "kinematic" else "aircraft, six degrees of freedom"
 
 
 def find_flight(run: RunData, flight_id: str) -> Flown | None:
@@ -180,7 +186,9 @@ def _side_by_side(
     pairs = {fidelity: flights for fidelity, flights in pairs.items() if len(flights) == len(cases)}
     settled = [float(f.row["settling_time_s"]) for flights in pairs.values() for f in flights.values()]
     until = max((time for time in settled if not math.isnan(time)), default=math.inf) + shown_after
-    drawn = {VEHICLES[key]: lines({c: flown.until(until) for c, flown in flights.items()}) for key, flights in pairs.items()}
+    drawn = {
+        vehicle_name(run, key): lines({c: flown.until(until) for c, flown in flights.items()}) for key, flights in pairs.items()
+    }
     x_range, y_range = _common_ranges([line for curves in drawn.values() for line in curves]) if drawn else (None, None)
     panels = [
         Panel(

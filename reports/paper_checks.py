@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from reports.blocks import Verdict
-from reports.paper_charts import VEHICLES
+from reports.paper_charts import VEHICLES, vehicle_name
 from reports.run_data import RunData
 from reports.tables import length, number
 
@@ -107,6 +107,8 @@ def paper_verdict(run: RunData) -> Verdict:
         headline = f"Simulation 3 entered the keep-out area {entries} times"
     elif wrong:
         headline = f"Not reproduced: {len(wrong)} of {len(checks)} statements do not hold"
+    elif state == "complete" and len(missing) == len(checks):
+        headline = f"{planned - len(unmet)} of {planned} flights met their criteria; none is one of the paper's simulations"
     elif not finished:
         headline = f"Unfinished: {len(checks) - len(missing)} of {len(checks)} statements could be tested, and hold"
     elif len(unmet):
@@ -114,7 +116,7 @@ def paper_verdict(run: RunData) -> Verdict:
     elif len(vehicles(run)) > 1:
         headline = "Reproduced: the paper's numbers, and what it says of Simulations 1 to 3, on both vehicles"
     else:
-        headline = f"Reproduced on the {VEHICLES[vehicles(run)[0]]}"
+        headline = f"Reproduced on the {vehicle_name(run, vehicles(run)[0])}"
     detail = f"{len(summary)} of {planned} flights are in this report; {int(summary['criteria_met'].sum())} met every criterion."
     if state != "complete":
         detail += f" The run is {state}; continue it with --resume."

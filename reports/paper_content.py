@@ -1,18 +1,17 @@
 """The report of the paper's three simulations: each figure on both vehicles, and each published number beside ours."""
 
 import json
-import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from reports.blocks import Content, FlightContent, FlightPicker, Heading, Section, Table, Text
+from reports.blocks import Block, Content, FlightContent, FlightPicker, Heading, Section, Table, Text
 from reports.bounds_section import bounds_section
 from reports.flight_charts import flight_charts
 from reports.innerloop_section import innerloop_section
-from reports.paper_charts import VEHICLES, find_flight, sim_1_charts, sim_2_charts, sim_3_charts
+from reports.paper_charts import VEHICLES, find_flight, sim_1_charts, sim_2_charts, sim_3_charts, vehicle_name
 from reports.paper_checks import DISTANCE_PRINTED, INTERVAL_PRINTED, paper_verdict, rows_by_id
 from reports.run_data import RunData
 from reports.tables import length, number, parameter_table, provenance_table
@@ -22,7 +21,6 @@ def paper_content(run: RunData) -> Content:
     """Return everything that the report of the paper's simulations shows."""
     flown = {name: charts for name, charts in _simulations(run).items() if charts}
     bounds = run.path / "bounds.json"
-    picker = _flights(run)
     sections = [
         Section(
             anchor="numbers",
@@ -36,7 +34,7 @@ def paper_content(run: RunData) -> Content:
             if number in flown
         ),
         *([bounds_section(json.loads(bounds.read_text(encoding="utf-8")))] if bounds.is_file() else []),
-        *([_detail(picker)] if picker.flights else []),
+        _detail(run, _flights(run)),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(
             anchor="parameters",
@@ -97,8 +95,30 @@ def _simulations(run: RunData) -> dict[str, list[Any]]:
     return {name: [chart for chart in found if chart.panels] for name, found in charts.items()}
 
 
-def _detail(picker: FlightPicker) -> Section:
-    return Section(anchor="flights", title="Simulation 3 in detail", nav_title="Flights", blocks=[picker])
+def _detail(run: RunData, picker: FlightPicker) -> Section:
+    blocks: list[Block] = [_flight_table(run), *([picker] if picker.flights else [])]
+    return Section(anchor="flights", title="Every flight", nav_title="Flights", blocks=blocks)
+
+
+def _flight_table(run: RunData) -> Table:
+    rows = []
+    for flight_id, row in rows_by_id(run).items():
+        end = row["tracking_error_end_m"]
+        rows.append([
+            flight_id,
+            number(row["settling_time_s"], "{:.1f}"),
+            "–" if pd.isna(end) else length(float(end)),
+            number(row["heading_rate_wanted_max_rad_s"], "{:.3f}"),
+            number(row["crossing_interval_mean_s"], "{:.3f}"),
+            number(row["crossing_distance_mean_m"], "{:.2f}"),
+            number(row["min_distance_m"], "{:.1f}"),
+            "met" if row["criteria_met"] else f"{str(row['outcome']).replace('_', ' ')}: {row['message']}",
+        ])  # fmt: skip
+    head = [
+        "Flight", "Settled [s]", "Distance at the end", "Asked for [rad/s]", "Interval [s]", "Crossing [m]", "Closest [m]",
+        "Outcome",
+    ]  # fmt: skip
+    return Table(head=head, rows=rows, widths=[1.9, 0.9, 1.1, 1.1, 0.9, 1.0, 1.0, 1.6])
 
 
 def _number_table(run: RunData) -> Table:
@@ -176,14 +196,28 @@ def _case_table(run: RunData) -> Table:
 
 
 def _flights(run: RunData) -> FlightPicker:
-    flights = [
-        FlightContent(
-            flight_id=str(row["flight_id"]),
-            label=VEHICLES[str(row["fidelity"])],
-            title=f"Simulation 3: {VEHICLES[str(row['fidelity'])]}",
-            charts=flight_charts(run, row),
+    """Return the flights with a vessel whose world is the run's own, which their figures are drawn in."""
+    elsewhere = {
+        case["name"] for case in run.manifest["config"]["cases"] if _is_elsewhere({**case["set"], **case["set_kinematic"]})
+    }
+    flights = []
+    for flight_id, row in rows_by_id(run).items():
+        fidelity = str(row["fidelity"])
+        case = flight_id.removesuffix(f"_{fidelity}")
+        if pd.isna(row["min_distance_m"]) or case in elsewhere:
+            continue
+        name = "Simulation 3" if case == "sim3" else case
+        flights.append(
+            FlightContent(
+                flight_id=flight_id,
+                label=f"{name} · {vehicle_name(run, fidelity)}",
+                title=f"{name}: {vehicle_name(run, fidelity)}",
+                charts=flight_charts(run, row),
+            )
         )
-        for _, row in run.summary.iterrows()
-        if str(row["flight_id"]).startswith("sim3") and not math.isnan(float(row["min_distance_m"]))
-    ]
     return FlightPicker(flights=flights)
+
+
+def _is_elsewhere(values: dict[str, Any]) -> bool:
+    """Return whether a case sets anything of the world that the figures of a flight are drawn in."""
+    return any(key.startswith(("vessel", "plume", "keepout", "guidance.airspeed_mps")) for key in values)

@@ -28,7 +28,7 @@ def flight_table(frame: pd.DataFrame, first: str = "ν") -> Table:
         name = f"{row['nu']:.2f}" if first == "ν" else f"{variant_name(str(row['flight_id']))}, ν = {row['nu']:g}"
         rows.append([name, *(number(row[key], pattern) for _, key, pattern in _FLIGHT_COLUMNS), _outcome(row)])
     head = [first, *(title for title, _, _ in _FLIGHT_COLUMNS), "Outcome"]
-    return Table(head=head, rows=rows, widths=[1.0 if first == "ν" else 2.4, *[0.9] * len(_FLIGHT_COLUMNS), 2.6])
+    return Table(head=head, rows=rows, widths=[1.0 if first == "ν" else 2.2, *[1.05] * len(_FLIGHT_COLUMNS), 2.2])
 
 
 def comparison_table(run: RunData) -> Table:

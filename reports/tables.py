@@ -15,7 +15,7 @@ def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
     return Table(
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
         rows=[*rows, *derived],
-        widths=[2.2, 1.2, 0.7, 4.5],
+        widths=[3.1, 1.2, 0.7, 3.9],
         left_columns=4,
         prose=True,
         breakable=True,
@@ -56,6 +56,12 @@ def _vehicle(run: RunData) -> list[list[str]]:
             ]
         )
     return rows
+
+
+def kinematic(run: RunData) -> str:
+    """Return what the kinematic vehicle of a run is: equation (1), with a lag if it has one."""
+    lag = float(run.manifest["config"].get("kinematic", {}).get("heading_rate_lag_s", 0.0))
+    return f"eq. (1) with a heading-rate lag of {lag:g} s" if lag else "eq. (1)"
 
 
 def length(metres: float) -> str:

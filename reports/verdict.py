@@ -5,6 +5,7 @@ import pandas as pd
 
 from reports.blocks import Verdict
 from reports.run_data import RunData
+from reports.tables import kinematic
 
 
 def verdict(run: RunData) -> Verdict:
@@ -33,7 +34,7 @@ def verdict(run: RunData) -> Verdict:
     if len(flown):
         detail += f" Closest approach of any flight, from its first second: {closest:.1f} m."
     if manifest["config"].get("fidelity") == "kinematic":
-        detail += " Flown with the paper's kinematic vehicle, not with an aircraft."
+        detail += f" Flown with the kinematic vehicle, {kinematic(run)}, not with an aircraft."
     if manifest.get("state") != "complete":
         detail += f" The run is {manifest.get('state', 'unfinished')}; continue it with --resume."
     return Verdict(safe=safe, complete=complete, headline=headline, detail=detail, failures=failures, figures=_figures(run, flown))

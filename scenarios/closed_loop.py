@@ -53,7 +53,8 @@ class FlightRecord:
     outcome, message : how it ended, in a word and in a sentence
     history : shape (samples, len(COLUMNS))
     saturation_fraction : share of guidance steps whose command was cut at omega_max [-]
-    heading_rate_wanted_max : largest heading rate that the law asked for, at any guidance step [rad/s]
+    heading_rate_wanted_max, heading_rate_command_max : largest heading rate that the law asked for, and that was commanded, at any
+        step of the guidance [rad/s]
     """
 
     outcome: Outcome
@@ -61,6 +62,7 @@ class FlightRecord:
     history: npt.NDArray[np.float64]
     saturation_fraction: float
     heading_rate_wanted_max: float
+    heading_rate_command_max: float
 
 
 def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
@@ -75,7 +77,7 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
     steps_max = round(plan.duration_max / time_step)
     rows: list[tuple[float, ...]] = []
     outcome, message = (Outcome.NOT_SETTLED if counter else Outcome.COMPLETED), ""
-    wanted_max = 0.0
+    wanted_max = command_max = 0.0
     saturated = finished_at = step = 0
     done = False
     while step <= steps_max:
@@ -85,6 +87,7 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
         guidance.step(north, east, course, math.sqrt(velocity_north**2 + velocity_east**2), heading_rate)
         wanted, command = guidance.heading_rate_wanted, guidance.heading_rate_command
         wanted_max = max(wanted_max, wanted, -wanted)
+        command_max = max(command_max, command, -command)
         saturated += guidance.saturated
         if counter:
             done = counter.update(step * time_step, north, east, at[0] - north, at[1] - east)
@@ -115,6 +118,7 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
         history=np.array(rows),
         saturation_fraction=saturated / max(1, step),
         heading_rate_wanted_max=wanted_max,
+        heading_rate_command_max=command_max,
     )
 
 

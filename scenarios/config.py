@@ -191,6 +191,10 @@ class Criteria(Section):
     """Least and largest mean crossing interval [s]."""
     crossing_distance_m: tuple[Positive, Positive] | None = None
     """Least and largest mean crossing distance from the vessel [m]."""
+    settles: bool = True
+    """Whether the flight must settle; if not, tracking, airspeed and altitude are not judged."""
+    law_beyond_heading_rate_max: bool = False
+    """Whether the law must ask for more than omega_max, to show that it does; how commands are limited is then not judged."""
     law_within_heading_rate_max: bool = False
     """Whether the law itself must ask for no more than omega_max, before commands are cut."""
 

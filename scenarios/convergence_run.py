@@ -51,6 +51,8 @@ class ConvergenceResult:
     judged: tuple[str, ...]
     interrupted: bool
 
+    what = "trajectories"
+
     @property
     def all_met(self) -> bool:
         """Whether every trajectory was flown and, under the laws that the verdict is about, converged."""

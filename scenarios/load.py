@@ -98,13 +98,16 @@ def _explain(key: str, kind: str, message: str, value: object, keys: str) -> str
     if kind == "extra_forbidden":
         return f"unknown key '{key}'; check its spelling against {keys} or an example in scenarios/catalog"
     if kind == "missing":
+        *parents, last = key.split(".")
+        if last.isdigit():
+            return f"{'.'.join(parents)} has too few values; give one more, as in [400, 800]"
         return f"key '{key}' is missing; add it to the scenario"
     text = message.removeprefix("Value error, ")
     where = f"{key}: " if key else ""
     if kind == "value_error":
         return f"{where}{text}"
     if kind == "tuple_type":
-        return f"{where}value is {value!r}; give a list in brackets, e.g. [0.5]"
+        return f"{where}value is {value!r}; give a list in brackets, as in [0.5] or [400, 800]"
     return f"{where}value is {value!r}; {text[0].lower()}{text[1:]}"
 
 

@@ -105,7 +105,8 @@ def _run(
     if result.interrupted:
         again = "".join(f"--set {shlex.quote(item)} " for item in overrides)
         again = f"{shlex.quote(name)} {again}--out {shlex.quote(str(directory))} --resume"
-        print(f"interrupted; what is done is kept. Go on with: python -m scenarios.run {again}", file=sys.stderr)
+        kept = f"{result.done} of {result.planned} {result.what} are kept"
+        print(f"interrupted; {kept}. Go on with: python -m scenarios.run {again}", file=sys.stderr)
         return INTERRUPTED
     status = MET if no_report else _report(directory)
     return status or (MET if result.all_met else NOT_MET)

@@ -58,6 +58,13 @@ class RunResult:
     planned: int
     interrupted: bool
 
+    what = "flights"
+
+    @property
+    def done(self) -> int:
+        """Number of flights that are done."""
+        return len(self.rows)
+
     @property
     def met(self) -> int:
         """Number of flights that completed and met every criterion."""

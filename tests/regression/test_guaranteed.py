@@ -38,4 +38,4 @@ def test_the_report_says_what_the_law_asked_for_and_with_which_look_ahead(direct
     text = html.read_text(encoding="utf-8")
     assert "The law asks for, over ω_max, worst" in text
     assert "R as searched" in text
-    assert "kinematic vehicle, not with an aircraft" in text
+    assert "kinematic vehicle, eq. (1), not with an aircraft" in text
