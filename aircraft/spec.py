@@ -115,7 +115,29 @@ X8 = AircraftSpec(
     source="Gryte et al., ICUAS 2018; inertia and propulsion as explained in the model file",
 )
 
-SPECS: dict[str, AircraftSpec] = {X8.name: X8}
+AEROSONDE = AircraftSpec(
+    name="aerosonde",
+    title="Aerosonde",
+    root=MODELS,
+    model="aerosonde",
+    inputs=(
+        ControlInput(name="elevator", command="fcs/elevator-cmd-norm", lower=-1.0, upper=1.0),
+        ControlInput(name="aileron", command="fcs/aileron-cmd-norm", lower=-1.0, upper=1.0),
+        ControlInput(name="throttle", command="fcs/throttle-cmd-norm", lower=0.0, upper=1.0),
+        ControlInput(name="rudder", command="fcs/rudder-cmd-norm", lower=-1.0, upper=1.0),
+    ),
+    driven_states=(
+        DrivenState(name="elevator_position", position="fcs/elevator-pos-rad", input="elevator"),
+        DrivenState(name="aileron_position", position="fcs/aileron-pos-rad", input="aileron"),
+        DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM),
+        DrivenState(name="rudder_position", position="fcs/rudder-pos-rad", input="rudder"),
+    ),
+    envelope=Envelope(airspeed_min=21.0, airspeed_max=30.0, bank_max=0.8727),
+    design_airspeeds=(20.0, 22.5, 25.0, 27.5, 30.0),
+    source="Beard and McLain, Small Unmanned Aircraft, supplement; servos and rotor inertia as explained in the model files",
+)
+
+SPECS: dict[str, AircraftSpec] = {aircraft.name: aircraft for aircraft in (X8, AEROSONDE)}
 """Every aircraft that commands accept."""
 
 

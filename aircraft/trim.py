@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares
+from scipy.optimize import approx_fprime, least_squares
 
 from aircraft.errors import TrimError
 from aircraft.fdm import Fdm
@@ -23,6 +23,7 @@ _TOLERANCE = 1e-5
 _ALPHA_MAX = 0.5
 _BETA_MAX = 0.3
 _BANK_MAX = 1.2
+_DIFFERENCE = 1e-5
 _START_ALPHA = 0.05
 _START_THROTTLES = (0.5, 0.95)
 """Starts of the search. From too little throttle at high speed it can end where JSBSim's propeller barely turns."""
@@ -127,6 +128,7 @@ class _TrimProblem:
         self._bank = bank
         self._climb_angle = climb_angle
         self._straight = bank == 0.0
+        self._rudder = len(fdm.spec.inputs) > 3
 
     def solve(self, start_throttle: float) -> tuple[npt.NDArray[np.float64], bool]:
         """Return the solver's last point and whether it calls it a solution."""
@@ -140,14 +142,19 @@ class _TrimProblem:
                 [-_ALPHA_MAX, -_BETA_MAX, -third_max] + [i.lower for i in inputs],
                 [_ALPHA_MAX, _BETA_MAX, third_max] + [i.upper for i in inputs],
             ),
+            jac=self._jacobian if self._rudder else "2-point",
             x_scale=0.1,
-            diff_step=[1e-5],
+            diff_step=[_DIFFERENCE],
             xtol=1e-12,
             ftol=1e-14,
             gtol=1e-14,
             max_nfev=60,
         )
         return solution.x, bool(solution.success)
+
+    def _jacobian(self, unknowns: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Differences over absolute steps: least_squares takes steps relative to an unknown, and a rudder makes sideslip zero."""
+        return np.asarray(approx_fprime(unknowns, self.residual, _DIFFERENCE))
 
     def residual(self, unknowns: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         fdm = self._fdm
@@ -156,7 +163,7 @@ class _TrimProblem:
         fdm.place(state)
         fdm.settle()
         residual = [*fdm.acceleration_body(), *fdm.angular_acceleration()]
-        if len(fdm.spec.inputs) > 3:
+        if self._rudder:
             residual.append(float(unknowns[1]))
         return np.array(residual)
 

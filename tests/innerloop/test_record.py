@@ -55,4 +55,4 @@ def test_designing_for_an_unknown_aircraft_ends_in_one_line_and_status_2():
     )
     assert done.returncode == 2
     assert done.stdout == ""
-    assert done.stderr == "error: unknown aircraft 'x9'; known: x8\n"
+    assert done.stderr == "error: unknown aircraft 'x9'; known: aerosonde, x8\n"
