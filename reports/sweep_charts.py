@@ -186,11 +186,11 @@ def _tracking(flown: pd.DataFrame, manifest: dict[str, Any]) -> Chart:
 def _command(summary: pd.DataFrame, manifest: dict[str, Any]) -> Chart:
     nu = _column(summary, "nu")
     kinematic = manifest["config"].get("fidelity") == "kinematic"
-    about_bank = (
-        " The kinematic vehicle has no bank: shown is that of a coordinated turn."
-        if kinematic
-        else " The X8 has no rudder: it slips in turns and needs two to three degrees more bank than a coordinated turn."
-    )
+    about_bank = ""
+    if kinematic:
+        about_bank = " The kinematic vehicle has no bank: shown is that of a coordinated turn."
+    elif manifest["config"]["aircraft"] == "x8":
+        about_bank = " The X8 has no rudder: it slips in turns and needs two to three degrees more bank than a coordinated turn."
     return Chart(
         name="command",
         caption="Largest commanded heading rate against ω_max, largest bank, and settling time." + about_bank,
