@@ -2,19 +2,20 @@
 
 from collections.abc import Callable
 
-from reports.blocks import Content
+from reports.blocks import Content, Section, Verdict
 from reports.convergence_content import convergence_content
 from reports.errors import ReportError
 from reports.paper_content import paper_content
 from reports.run_data import RunData
 from reports.sweep_content import sweep_content
+from reports.tables import provenance_table
 
-KINDS: dict[str, Callable[[RunData], Content]] = {
+KINDS: dict[str, Callable[[RunData], tuple[Verdict, list[Section]]]] = {
     "flights": sweep_content,
     "paper": paper_content,
     "convergence": convergence_content,
 }
-"""A study's kind, as its manifest names it, and what makes the content of its report."""
+"""A study's kind, as its manifest names it, and what makes the verdict and the sections of its report."""
 
 
 def content(run: RunData) -> Content:
@@ -27,4 +28,12 @@ def content(run: RunData) -> Content:
     study = run.manifest.get("study", "flights")
     if study not in KINDS:
         raise ReportError(f"'{run.path}': study is '{study}', which has no report; those that have one: {', '.join(KINDS)}")
-    return KINDS[study](run)
+    verdict, sections = KINDS[study](run)
+    provenance = Section(anchor="provenance", title="Provenance", blocks=[provenance_table(run)])
+    return Content(
+        title=run.manifest["title"],
+        description=run.manifest["config"]["description"],
+        changes=", ".join(run.manifest["overrides"]),
+        verdict=verdict,
+        sections=[section for section in (*sections, provenance) if section.blocks],
+    )

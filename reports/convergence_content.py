@@ -2,17 +2,17 @@
 
 import pandas as pd
 
-from reports.blocks import Block, Content, Heading, Section, Text
+from reports.blocks import Block, Heading, Section, Text, Verdict
 from reports.convergence_charts import HISTORIES_PER_LAW, history_chart, settling_charts
 from reports.convergence_data import REFERENCES, ConvergenceData, failed, read_convergence
 from reports.convergence_tables import FAILED_ROWS, failed_table, settling_table
 from reports.convergence_verdict import convergence_verdict
 from reports.run_data import RunData
-from reports.tables import number, parameter_table, provenance_table
+from reports.tables import number, parameter_table
 
 
-def convergence_content(run: RunData) -> Content:
-    """Return everything that the report of a convergence study shows."""
+def convergence_content(run: RunData) -> tuple[Verdict, list[Section]]:
+    """Return the verdict and the sections of the report of a convergence study."""
     data = read_convergence(run)
     sections = [
         Section(anchor="question", title="What was asked", blocks=_question(data)),
@@ -20,15 +20,8 @@ def convergence_content(run: RunData) -> Content:
         Section(anchor="samples", title="Sample trajectories", nav_title="Samples", blocks=_samples(data)),
         Section(anchor="counterexamples", title="What did not converge", nav_title="Counter-examples", blocks=_failed(data)),
         Section(anchor="parameters", title="Parameters", blocks=[parameter_table(run)]),
-        Section(anchor="provenance", title="Provenance", blocks=[provenance_table(run)]),
     ]
-    return Content(
-        title=run.manifest["title"],
-        description=run.manifest["config"]["description"],
-        changes=", ".join(run.manifest["overrides"]),
-        verdict=convergence_verdict(data),
-        sections=[section for section in sections if section.blocks],
-    )
+    return convergence_verdict(data), sections
 
 
 def _question(data: ConvergenceData) -> list[Block]:

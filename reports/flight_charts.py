@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from reports.chart import Array, Chart, Line, Panel, circle
+from reports.history import thinned
 from reports.run_data import RunData
 
 POINTS_MAX = 1800
@@ -27,7 +28,7 @@ class _View:
 
     def __init__(self, run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> None:
         config = run.manifest["config"]
-        self._h = history.iloc[:: max(1, math.ceil(len(history) / POINTS_MAX))]
+        self._h = thinned(history, POINTS_MAX)
         self._radius = float(row["keepout_radius_m"])
         course = math.radians(config["vessel"]["course_deg"])
         speed = float(row["nu"]) * float(config["guidance"]["airspeed_mps"])

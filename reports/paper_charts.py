@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from reports.chart import Array, Chart, Line, Panel
+from reports.history import thinned, tracking_error
 from reports.run_data import RunData
 from reports.tables import kinematic
 
@@ -39,14 +40,11 @@ class Flown:
     @property
     def distance(self) -> Array:
         """Distance to the reference [m]."""
-        return np.hypot(
-            self.column("reference_north_m") - self.column("north_m"), self.column("reference_east_m") - self.column("east_m")
-        )
+        return tracking_error(self.history)
 
     def until(self, time: float) -> "Flown":
         """Return the flight up to ``time`` [s], thinned to what a figure shows."""
-        shown = self.history[self.history["time_s"] <= time]
-        return Flown(self.row, shown.iloc[:: max(1, math.ceil(len(shown) / _POINTS_MAX))])
+        return Flown(self.row, thinned(self.history[self.history["time_s"] <= time], _POINTS_MAX))
 
 
 def vehicle_name(run: RunData, fidelity: str) -> str:

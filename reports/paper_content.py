@@ -7,19 +7,18 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from reports.blocks import Block, Content, FlightContent, FlightPicker, Heading, Section, Table, Text
+from reports.blocks import Block, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
 from reports.bounds_section import bounds_section
 from reports.flight_charts import flight_charts
 from reports.innerloop_section import innerloop_section
 from reports.paper_charts import VEHICLES, find_flight, sim_1_charts, sim_2_charts, sim_3_charts, vehicle_name
 from reports.paper_checks import DISTANCE_PRINTED, INTERVAL_PRINTED, paper_verdict, rows_by_id
 from reports.run_data import RunData
-from reports.tables import length, number, parameter_table, provenance_table
+from reports.tables import length, number, outcome, parameter_table
 
 
-def paper_content(run: RunData) -> Content:
-    """Return everything that the report of the paper's simulations shows."""
-    flown = {name: charts for name, charts in _simulations(run).items() if charts}
+def paper_content(run: RunData) -> tuple[Verdict, list[Section]]:
+    """Return the verdict and the sections of the report of the paper's simulations."""
     bounds = run.path / "bounds.json"
     sections = [
         Section(
@@ -29,9 +28,9 @@ def paper_content(run: RunData) -> Content:
             blocks=[Text(_NUMBERS), _number_table(run)],
         ),
         *(
-            Section(anchor=f"sim{number}", title=title, nav_title=f"Sim. {number}", blocks=[Text(text), *flown[number]])
-            for number, title, text in _SIMULATIONS
-            if number in flown
+            Section(anchor=f"sim{i}", title=f"Simulation {i}: {title}", nav_title=f"Sim. {i}", blocks=[Text(text), *charts])
+            for i, (title, text, figures) in enumerate(_SIMULATIONS, start=1)
+            if (charts := [chart for chart in figures(run) if chart.panels])
         ),
         *([bounds_section(json.loads(bounds.read_text(encoding="utf-8")))] if bounds.is_file() else []),
         _detail(run, _flights(run)),
@@ -46,15 +45,8 @@ def paper_content(run: RunData) -> Content:
                 parameter_table(run),
             ],
         ),
-        Section(anchor="provenance", title="Provenance", blocks=[provenance_table(run)]),
     ]  # fmt: skip
-    return Content(
-        title=run.manifest["title"],
-        description=run.manifest["config"]["description"],
-        changes=", ".join(run.manifest["overrides"]),
-        verdict=paper_verdict(run),
-        sections=sections,
-    )
+    return paper_verdict(run), sections
 
 
 _NUMBERS = (
@@ -84,15 +76,10 @@ _SIM_THREE = (
 )
 
 _SIMULATIONS = (
-    ("1", "Simulation 1: a circular reference, opposite headings", _SIM_ONE),
-    ("2", "Simulation 2: line of sight against the δ formulation", _SIM_TWO),
-    ("3", "Simulation 3: the smoke plume", _SIM_THREE),
+    ("a circular reference, opposite headings", _SIM_ONE, sim_1_charts),
+    ("line of sight against the δ formulation", _SIM_TWO, sim_2_charts),
+    ("the smoke plume", _SIM_THREE, sim_3_charts),
 )
-
-
-def _simulations(run: RunData) -> dict[str, list[Any]]:
-    charts = {"1": sim_1_charts(run), "2": sim_2_charts(run), "3": sim_3_charts(run)}
-    return {name: [chart for chart in found if chart.panels] for name, found in charts.items()}
 
 
 def _detail(run: RunData, picker: FlightPicker) -> Section:
@@ -103,16 +90,16 @@ def _detail(run: RunData, picker: FlightPicker) -> Section:
 def _flight_table(run: RunData) -> Table:
     rows = []
     for flight_id, row in rows_by_id(run).items():
-        end = row["tracking_error_end_m"]
+        end = row[_END]
         rows.append([
             flight_id,
             number(row["settling_time_s"], "{:.1f}"),
             "–" if pd.isna(end) else length(float(end)),
-            number(row["heading_rate_wanted_max_rad_s"], "{:.3f}"),
+            number(row[_WANTED], "{:.3f}"),
             number(row["crossing_interval_mean_s"], "{:.3f}"),
             number(row["crossing_distance_mean_m"], "{:.2f}"),
             number(row["min_distance_m"], "{:.1f}"),
-            "met" if row["criteria_met"] else f"{str(row['outcome']).replace('_', ' ')}: {row['message']}",
+            outcome(row),
         ])  # fmt: skip
     head = [
         "Flight", "Settled [s]", "Distance at the end", "Asked for [rad/s]", "Interval [s]", "Crossing [m]", "Closest [m]",

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from reports.chart import Array, Chart, Line, Panel, Style, constant
+from reports.history import tracking_error
 from reports.run_data import RunData
 
 _NU = "Speed ratio ν = V_vessel/V_r [-]"
@@ -72,7 +73,7 @@ def _error_line(run: RunData, row: "pd.Series[Any]", label: str, colour: str) ->
         return []
     settled = history[history["time_s"] >= row["settling_time_s"]]
     time = settled["time_s"].to_numpy() - float(row["settling_time_s"])
-    error = np.hypot(settled["reference_north_m"] - settled["north_m"], settled["reference_east_m"] - settled["east_m"]).to_numpy()
+    error = tracking_error(settled)
     shown = time <= 90.0
     return [Line(x=time[shown], y=error[shown], label=label, colour=colour)]
 

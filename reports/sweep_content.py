@@ -1,17 +1,16 @@
 """The report of a sweep of the speed ratio."""
 
-from reports.blocks import Block, Content, FlightContent, FlightPicker, Heading, Section, Table, Text
+from reports.blocks import Block, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
 from reports.flight_charts import flight_charts
 from reports.innerloop_section import innerloop_section
 from reports.run_data import RunData
 from reports.sweep_charts import comparison_chart, sweep_charts
 from reports.sweep_tables import comparison_table, flight_table, oscillation_table, sweep_parameter_table
-from reports.tables import provenance_table
 from reports.verdict import verdict
 
 
-def sweep_content(run: RunData) -> Content:
-    """Return everything that the report of a sweep shows."""
+def sweep_content(run: RunData) -> tuple[Verdict, list[Section]]:
+    """Return the verdict and the sections of the report of a sweep."""
     table = flight_table(run.summary)
     sections = [
         Section(anchor="sweep", title="Over the speed ratio", nav_title="Speed ratio", blocks=[*sweep_charts(run), table]),
@@ -28,15 +27,8 @@ def sweep_content(run: RunData) -> Content:
                 sweep_parameter_table(run),
             ],
         ),
-        Section(anchor="provenance", title="Provenance", blocks=[provenance_table(run)]),
     ]
-    return Content(
-        title=run.manifest["title"],
-        description=run.manifest["config"]["description"],
-        changes=", ".join(run.manifest["overrides"]),
-        verdict=verdict(run),
-        sections=sections,
-    )
+    return verdict(run), sections
 
 
 def _comparison(run: RunData) -> Section:

@@ -1,13 +1,11 @@
 """Tables over all flights of a run."""
 
-from typing import Any
-
 import pandas as pd
 
 from reports.blocks import Table
 from reports.run_data import RunData
 from reports.sweep_charts import variant_name
-from reports.tables import number, parameter_table
+from reports.tables import number, outcome, parameter_table
 
 _FLIGHT_COLUMNS = (
     ("Entries", "keepout_violations", "{:.0f}"),
@@ -26,7 +24,7 @@ def flight_table(frame: pd.DataFrame, first: str = "ν") -> Table:
     rows = []
     for _, row in frame.iterrows():
         name = f"{row['nu']:.2f}" if first == "ν" else f"{variant_name(str(row['flight_id']))}, ν = {row['nu']:g}"
-        rows.append([name, *(number(row[key], pattern) for _, key, pattern in _FLIGHT_COLUMNS), _outcome(row)])
+        rows.append([name, *(number(row[key], pattern) for _, key, pattern in _FLIGHT_COLUMNS), outcome(row)])
     head = [first, *(title for title, _, _ in _FLIGHT_COLUMNS), "Outcome"]
     return Table(head=head, rows=rows, widths=[1.0 if first == "ν" else 2.2, *[1.05] * len(_FLIGHT_COLUMNS), 2.2])
 
@@ -87,11 +85,3 @@ def _range(values: "pd.Series[float]", pattern: str) -> str:
         return "–"
     ends = [pattern.format(known.min()), pattern.format(known.max())]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
-
-
-def _outcome(row: "pd.Series[Any]") -> str:
-    message = str(row["message"])
-    if row["criteria_met"]:
-        return "met"
-    outcome = str(row["outcome"]).replace("_", " ")
-    return f"{outcome}: {message}" if message else outcome

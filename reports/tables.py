@@ -76,6 +76,14 @@ def number(value: Any, pattern: str) -> str:
     return "–" if value is None or pd.isna(value) else pattern.format(float(value))
 
 
+def outcome(row: "pd.Series[Any]") -> str:
+    """Return how a flight ended, in words."""
+    if row["criteria_met"]:
+        return "met"
+    ended, message = str(row["outcome"]).replace("_", " "), str(row["message"])
+    return f"{ended}: {message}" if message else ended
+
+
 def _value(value: Any, key: str = "") -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
