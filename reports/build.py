@@ -1,6 +1,7 @@
 """Command line: ``python -m reports.build RUN_DIR`` rebuilds a run's reports from what is on disk."""
 
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,7 @@ def build_reports(directory: Path) -> list[Path]:
     """
     from reports.content import content
     from reports.errors import ReportError
+    from reports.files import write_whole
     from reports.html import write_html
     from reports.pdf import write_pdf
     from reports.run_data import read_run
@@ -31,22 +33,18 @@ def build_reports(directory: Path) -> list[Path]:
         raise ReportError(f"'{directory}' is damaged ({what}); run the scenario again in another --out") from None
     paths = []
     for name, write in (("report.html", write_html), ("report.pdf", write_pdf)):
-        part = directory / f".{name}.part"
         try:
-            write(report, part)
-            part.replace(directory / name)
+            write_whole(directory / name, partial(write, report))
         except OSError as error:
             raise ReportError(f"'{directory / name}' cannot be written: {error.strerror}; check permissions and space") from None
-        finally:
-            part.unlink(missing_ok=True)
         paths.append(directory / name)
     return paths
 
 
 def command(
-    directory: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="A directory that scenarios.run wrote.")],
+    directory: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="A directory that scenarios.run or innerloop.design wrote.")],
 ) -> None:
-    """Rebuild report.html and report.pdf of a run, without flying anything."""
+    """Rebuild report.html and report.pdf of a run or of a design, without flying anything."""
     from reports.errors import ReportError
 
     try:

@@ -22,6 +22,9 @@ COLOURS = {
 }
 """Okabe and Ito's palette, which colour-blind readers can tell apart."""
 
+FILL_OPACITY = 0.16
+"""Of what a curve encloses: the grid still shows through."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Line:
@@ -30,10 +33,11 @@ class Line:
     Attributes
     ----------
     x, y : shape (n,) each, in the units of the panel's axes
-    label : for the legend; the same label in several panels is one entry
+    label : for the legend; the same label in several panels is one entry, and an empty one none
     colour : a key of ``COLOURS``
     style : how it is drawn
     error : half-height of error bars, shape (n,), or none
+    fill : tint what the curve encloses
     """
 
     x: Array
@@ -42,6 +46,24 @@ class Line:
     colour: str
     style: Style = "solid"
     error: Array | None = None
+    fill: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Note:
+    """A word or two beside a curve, where a legend would be too far away.
+
+    Attributes
+    ----------
+    x, y : where, in the units of the panel's axes
+    text : what it says
+    align : which end of the text stands at ``x``
+    """
+
+    x: float
+    y: float
+    text: str
+    align: Literal["left", "center", "right"] = "center"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +78,7 @@ class Panel:
     equal : one metre is as long both ways
     log_x, log_y : logarithmic abscissa, ordinate
     x_range, y_range : limits, or by the data
+    notes : words among the curves; on linear axes only
     """
 
     x_label: str
@@ -67,6 +90,7 @@ class Panel:
     log_y: bool = False
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
+    notes: Sequence[Note] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

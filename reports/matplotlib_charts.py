@@ -5,7 +5,7 @@ from typing import Any
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from reports.chart import COLOURS, Chart, Line, Panel
+from reports.chart import COLOURS, FILL_OPACITY, Chart, Line, Panel
 
 WIDTH_INCHES = 7.0
 """Width of a figure: the text width of an A4 page."""
@@ -52,7 +52,9 @@ def draw(chart: Chart) -> Figure:
         for i, panel in enumerate(chart.panels):
             ax = axes[i // chart.columns][i % chart.columns]
             for line in panel.lines:
-                handles.setdefault(line.label, _draw_line(ax, line))
+                handle = _draw_line(ax, line)
+                if line.label:
+                    handles.setdefault(line.label, handle)
             _dress(ax, panel, last_row=i + chart.columns >= len(chart.panels) or not chart.share_x)
         for ax in axes.flat[len(chart.panels) :]:
             ax.set_axis_off()
@@ -65,6 +67,8 @@ def draw(chart: Chart) -> Figure:
 def _draw_line(ax: Any, line: Line) -> Any:
     style = _LINE_STYLES[line.style]
     colour = COLOURS[line.colour]
+    if line.fill:
+        ax.fill(line.x, line.y, color=colour, alpha=FILL_OPACITY, linewidth=0.0)
     if line.error is not None:
         return ax.errorbar(line.x, line.y, yerr=line.error, color=colour, capsize=2, elinewidth=0.8, **style)
     return ax.plot(line.x, line.y, color=colour, rasterized=len(line.x) > 4000, **style)[0]
@@ -80,6 +84,8 @@ def _dress(ax: Any, panel: Panel, *, last_row: bool) -> None:
         ax.set_xscale("log")
     if panel.log_y:
         ax.set_yscale("log")
+    for note in panel.notes:
+        ax.text(note.x, note.y, note.text, color=COLOURS["grey"], fontsize=7.0, ha=note.align, va="center", clip_on=True)
     if panel.x_range:
         ax.set_xlim(*panel.x_range)
     if panel.y_range:

@@ -7,7 +7,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from reports.chart import COLOURS, Chart, Line, Panel
+from reports.chart import COLOURS, FILL_OPACITY, Chart, Line, Panel
 
 WIDTH_PIXELS = 980
 """Width that heights are made for; figures shrink with the window."""
@@ -38,7 +38,7 @@ def draw(chart: Chart) -> go.Figure:
         horizontal_spacing=0.09,
         vertical_spacing=gap / inner if chart.rows > 1 else 0.0,
     )
-    seen: set[str] = set()
+    seen = {""}
     for i, panel in enumerate(chart.panels):
         row, column = i // chart.columns + 1, i % chart.columns + 1
         for line in panel.lines:
@@ -51,7 +51,7 @@ def draw(chart: Chart) -> go.Figure:
         template="plotly_white",
         font={"size": 13},
         legend={"orientation": "h", "yanchor": "bottom", "y": 1.0 + (28 if titled else 8) / inner, "x": 0.0},
-        showlegend=len(seen) > 1,
+        showlegend=len(seen) > 2,
         hovermode="closest",
     )
     return figure
@@ -62,9 +62,16 @@ def _trace(line: Line, *, show: bool) -> go.Scatter:
     style["line" if "line" in style else "marker"]["color"] = COLOURS[line.colour]
     if line.error is not None:
         style["error_y"] = {"type": "data", "array": line.error.astype(np.float32), "thickness": 1}
+    if line.fill:
+        style |= {"fill": "toself", "fillcolor": _tint(COLOURS[line.colour])}
     return go.Scatter(
         x=line.x.astype(np.float32), y=line.y.astype(np.float32), name=line.label, legendgroup=line.label, showlegend=show, **style
     )
+
+
+def _tint(colour: str) -> str:
+    red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    return f"rgba({red},{green},{blue},{FILL_OPACITY})"
 
 
 def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bool) -> None:
@@ -81,6 +88,11 @@ def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bo
         y_options["range"] = _limits(panel.y_range, log=panel.log_y)
     figure.update_xaxes(**x_options, row=row, col=column)
     figure.update_yaxes(**y_options, row=row, col=column)
+    for note in panel.notes:
+        figure.add_annotation(
+            x=note.x, y=note.y, text=note.text, xanchor=note.align, showarrow=False,
+            font={"size": 11, "color": COLOURS["grey"]}, row=row, col=column,
+        )  # fmt: skip
     if panel.equal:
         free_x, free_y = _equal_ranges(panel)
         x_range, y_range = list(panel.x_range or free_x), list(panel.y_range or free_y)

@@ -1,19 +1,14 @@
 """What a run says about itself."""
 
 import hashlib
-import importlib.metadata
 import json
-import platform
 import re
-import shutil
-import subprocess
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
 
-_PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pandas", "pyarrow", "matplotlib", "plotly", "pydantic", "typst")
+from reports.provenance import provenance
 
 
 def opening_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -> dict[str, Any]:
@@ -65,30 +60,3 @@ def _split_unit(description: str) -> tuple[str, str]:
         return description, ""
     meaning = description[: found.start()] + description[found.end() :]
     return meaning, "" if found[1] == "-" else found[1]
-
-
-def provenance() -> dict[str, Any]:
-    """Return versions of Python, packages and source, without any path of the machine."""
-    versions = {}
-    for package in _PACKAGES:
-        try:
-            versions[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            versions[package] = "not installed"
-    return {
-        "python": platform.python_version(),
-        "platform": f"{platform.system()} {platform.machine()}",
-        "packages": versions,
-        "git_revision": _git_revision(),
-    }
-
-
-def _git_revision() -> str:
-    git = shutil.which("git")
-    if git is None:
-        return "unknown"
-    here = Path(__file__).parent
-    revision = subprocess.run(
-        [git, "describe", "--always", "--dirty", "--abbrev=12"], cwd=here, capture_output=True, text=True, check=False
-    )
-    return revision.stdout.strip() or "unknown"

@@ -1,14 +1,14 @@
 """A run directory: what is in it, and writing it whole or not at all."""
 
 import json
-import os
 import uuid
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from reports.files import write_json, write_whole
 from scenarios.errors import InputError
 
 Row = dict[str, Any]
@@ -83,8 +83,7 @@ class RunDirectory:
 
     def write_json(self, path: Path, value: Mapping[str, Any]) -> None:
         """Write a JSON file, whole or not at all."""
-        text = json.dumps(value, indent=1, allow_nan=False) + "\n"
-        write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+        write_json(path, value)
 
     def write_rows(self, name: str, rows: list[Row], columns: tuple[str, ...]) -> None:
         """Write a table with exactly ``columns`` to ``name``, whole or not at all; figures that a row lacks are empty."""
@@ -112,13 +111,3 @@ class RunDirectory:
         """Write a flight's time history, whole or not at all."""
         self.flights.mkdir(exist_ok=True)
         self.write_frame(f"{self.flights.name}/{flight_id}.parquet", history)
-
-
-def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Call ``write`` with a path beside ``path``, then move the result into place."""
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        write(part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)

@@ -1,7 +1,8 @@
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.run_directory import RunDirectory, write_whole
+from reports.files import write_whole
+from scenarios.run_directory import RunDirectory
 
 
 def test_an_interrupted_write_leaves_the_old_file(tmp_path):
