@@ -1,8 +1,8 @@
-"""Command line: ``python -m innerloop.design AIRCRAFT`` designs an autopilot, prints, plots and writes it out for JSBSim."""
+"""Command line: ``python -m innerloop.design AIRCRAFT`` designs an autopilot, prints, reports and writes it out for JSBSim."""
 
 import json
-import math
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,19 +12,22 @@ from reports.command_line import BAD_INPUT, run_command
 
 if TYPE_CHECKING:
     from innerloop.record import Record
+    from reports.blocks import Table
 
 
 def command(
     aircraft: Annotated[str, typer.Argument(metavar="AIRCRAFT", help="What to design for, e.g. x8.")],
     out: Annotated[Path | None, typer.Option(help="Directory for the design; default runs/design-AIRCRAFT.")] = None,
     altitude: Annotated[float, typer.Option(min=10.0, max=5000.0, help="Design altitude in metres.")] = 100.0,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Leave out report.html and report.pdf.")] = False,
 ) -> None:
-    """Design the autopilot of an aircraft: trim, poles, margins, step responses; a JSBSim root that flies it."""
+    """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a JSBSim root that flies it."""
     from aircraft.errors import AircraftError
+    from reports.errors import ReportError
 
     try:
-        _design(aircraft, out or Path("runs") / f"design-{aircraft}", altitude)
-    except AircraftError as error:
+        _design(aircraft, out or Path("runs") / f"design-{aircraft}", altitude, no_report=no_report)
+    except (AircraftError, ReportError) as error:
         print(f"error: {error}", file=sys.stderr)
         raise typer.Exit(BAD_INPUT) from None
     except OSError as error:
@@ -32,106 +35,100 @@ def command(
         raise typer.Exit(BAD_INPUT) from None
 
 
-def _design(aircraft: str, out: Path, altitude: float) -> None:
+def _design(aircraft: str, out: Path, altitude: float, *, no_report: bool) -> None:
     from aircraft.spec import find_spec
 
     spec = find_spec(aircraft)
+    _refuse_another_run(out)
 
+    from innerloop.design_manifest import design_manifest
     from innerloop.jsbsim_root import write_root
     from innerloop.record import design_record
     from innerloop.schedule import design_schedule
-    from reports.innerloop_charts import innerloop_charts
-    from reports.matplotlib_charts import draw
+    from reports.build import build_reports
+    from reports.files import write_json
 
     print(f"designing the autopilot of {spec.title}", file=sys.stderr)
+    started = time.monotonic()
     out.mkdir(parents=True, exist_ok=True)
     schedule = design_schedule(spec, altitude=altitude)
     write_root(schedule, out / "model")
     record = design_record(schedule, out / "model")
-    (out / "innerloop.json").write_text(json.dumps(record, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    write_json(out / "innerloop.json", record)
+    write_json(out / "manifest.json", design_manifest(record, wall_time=time.monotonic() - started))
     _print(record)
-    for chart in innerloop_charts(record):
-        draw(chart).savefig(out / f"{chart.name}.png", dpi=150)
-    print(f"\nplots and record: {out}\nJSBSim root with the autopilot: {out / 'model'}")
+    print(f"\ndesign: {out}\nJSBSim root with the autopilot: {out / 'model'}")
+    for path in () if no_report else build_reports(out):
+        print(f"report: {path}")
+
+
+def _refuse_another_run(out: Path) -> None:
+    """Refuse a directory that holds flights: their manifest would be lost. An older design may be replaced."""
+    from aircraft.errors import AircraftError
+
+    try:
+        study = json.loads((out / "manifest.json").read_text(encoding="utf-8")).get("study")
+    except FileNotFoundError:
+        return
+    except (ValueError, AttributeError):
+        study = None
+    if study != "design":
+        raise AircraftError(f"output directory '{out}' holds another run; choose another --out")
 
 
 def _print(record: "Record") -> None:
     from rich.console import Console
 
-    console = Console(width=None if sys.stdout.isatty() else 120)
+    from reports.design_data import at_middle, complete, excess_overshoot
+    from reports.design_tables import extreme_trims, pole_table, robustness_table, step_table, trim_table, worst_margin_table
+    from reports.design_verdict import design_verdict
+
+    design = complete(record)
+    tables = [
+        ("Equilibria", trim_table(extreme_trims(design))),
+        ("Poles of the grid", pole_table(design)),
+        (f"Poles at {design['design_airspeed_mps']:g} m/s in level flight [1/s]", _poles(at_middle(design, design["poles"])[0])),
+        ("Margins, the worst of the grid; servos, engine and computing delay included", worst_margin_table(design)),
+        *([("Margins of perturbed aircraft, the worst of loops and grid", robustness_table(design))] * bool(design["robustness"])),
+        ("Step responses", step_table(design)),
+    ]
+    console = Console(width=None if sys.stdout.isatty() else 140)
     console.print(f"[bold]{record['title']}[/bold], designed at {record['altitude_m']:g} m. {record['source']}")
-    for table in (_trims(record), _poles(record), _margins(record), _steps(record)):
+    for title, table in tables:
         console.print()
-        console.print(table)
+        console.print(_console_table(title, table))
     console.print(f"\nFlown heading rate lags its command by {record['heading_rate_lag_s']:.3f} s.")
+    excess = excess_overshoot(design)
+    if excess is not None:
+        console.print(f"A heading-rate step overshoots its reference model by {100.0 * excess:.1f} %.")
+    verdict = design_verdict(design)
+    for line in (verdict.headline, *verdict.failures):
+        console.print(line, markup=False, highlight=False)
 
 
-def _table(title: str, head: tuple[str, ...], rows: list[list[str]]) -> Any:
-    from rich.table import Table
-    from rich.text import Text
+def _poles(poles: "Record") -> "Table":
+    from reports.blocks import Table
 
-    table = Table(title=Text(title), title_justify="left", box=None, pad_edge=False)
-    for i, name in enumerate(head):
-        table.add_column(Text(name), justify="left" if i == 0 else "right")
-    for row in rows:
-        table.add_row(*row)
-    return table
-
-
-def _trims(record: "Record") -> Any:
-    head = ("airspeed [m/s]", "bank [deg]", "alpha [rad]", "sideslip [rad]", "pitch [rad]", "elevator", "aileron", "throttle")
-    rows = [
-        [
-            f"{t['airspeed_mps']:g}",
-            f"{round(math.degrees(t['bank_rad']), 1) + 0.0:.1f}",
-            *(f"{t[name]:.4f}" for name in ("alpha_rad", "sideslip_rad", "pitch_rad", "elevator", "aileron", "throttle")),
-        ]
-        for t in record["trims"]
-    ]
-    return _table("Equilibria", head, rows)
-
-
-def _poles(record: "Record") -> Any:
-    rows = [
-        [f"{poles['airspeed_mps']:g}", kind.replace("_", " "), "  ".join(_pole(*p) for p in poles[kind] if p[1] >= 0.0)]
-        for poles in record["poles"]
-        if poles["airspeed_mps"] == record["design_airspeed_mps"]
-        for kind in ("open_loop", "closed_loop")
-    ]
-    return _table("Poles [1/s]", ("airspeed [m/s]", "", "poles"), rows)
+    names = {"open_loop": "aircraft", "closed_loop": "under the autopilot"}
+    rows = [[name, "  ".join(_pole(*p) for p in poles[kind] if p[1] >= 0.0)] for kind, name in names.items()]
+    return Table(head=["", ""], rows=rows, widths=[1.0, 4.0], left_columns=2)
 
 
 def _pole(real: float, imaginary: float) -> str:
     return f"{real:.2f}±{imaginary:.2f}j" if imaginary else f"{real:.3g}"
 
 
-def _margins(record: "Record") -> Any:
-    head = ("airspeed [m/s]", "loop opened at", "gain [dB]", "phase [deg]", "disk gain [dB]", "disk phase [deg]")
-    rows = [
-        [
-            f"{m['airspeed_mps']:g}",
-            m["loop"].replace("_", " "),
-            *("-" if m[k] is None else f"{m[k]:.1f}" for k in ("gain_db", "phase_deg", "disk_gain_db", "disk_phase_deg")),
-        ]
-        for m in record["margins"]
-    ]
-    return _table("Margins, servos, propeller and computing delay included", head, rows)
+def _console_table(title: str, table: "Table") -> Any:
+    """Return a table of the report for the console."""
+    from rich.table import Table as ConsoleTable
+    from rich.text import Text
 
-
-def _steps(record: "Record") -> Any:
-    head = ("step [rad/s, m/s, m]", "", "rise [s]", "overshoot [%]", "altitude moves [m]", "airspeed moves [m/s]")
-    rows = [
-        [
-            f"{r['command'].replace('_', ' ')} {r['size']:g}",
-            r["kind"],
-            "-" if r["rise_time_s"] is None else f"{r['rise_time_s']:.2f}",
-            f"{100.0 * r['overshoot']:.1f}",
-            f"{r['altitude_largest_m']:.3f}",
-            f"{r['airspeed_largest_mps']:.3f}",
-        ]
-        for r in record["responses"]
-    ]
-    return _table("Step responses", head, rows)
+    printed = ConsoleTable(title=Text(title), title_justify="left", box=None, pad_edge=False)
+    for i, name in enumerate(table.head):
+        printed.add_column(Text(name), justify="left" if i < table.left_columns else "right")
+    for row in table.rows:
+        printed.add_row(*(Text(cell) for cell in row))
+    return printed
 
 
 def main() -> None:

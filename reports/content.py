@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from reports.blocks import Content, Section, Verdict
 from reports.convergence_content import convergence_content
+from reports.design_content import design_content
 from reports.errors import ReportError
 from reports.paper_content import paper_content
 from reports.run_data import RunData
@@ -14,6 +15,7 @@ KINDS: dict[str, Callable[[RunData], tuple[Verdict, list[Section]]]] = {
     "flights": sweep_content,
     "paper": paper_content,
     "convergence": convergence_content,
+    "design": design_content,
 }
 """A study's kind, as its manifest names it, and what makes the verdict and the sections of its report."""
 

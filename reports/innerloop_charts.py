@@ -5,10 +5,11 @@ from typing import Any
 import numpy as np
 
 from reports.chart import Chart, Line, Panel, constant
+from reports.design_data import Record, at_middle, bank_deg, loop_name, loops_of, responses_of
+from reports.design_loop_charts import turned
+from reports.design_response_charts import RESPONSE_STYLES
+from reports.loop_styles import LOOP_STYLES, OTHER_LOOP
 
-Record = dict[str, Any]
-
-_LOOP_COLOURS = ("blue", "vermillion", "green", "orange", "purple", "sky")
 _COMMANDS = {
     "heading_rate": ("Heading rate [rad/s]", "heading-rate step"),
     "airspeed": ("Airspeed [m/s]", "airspeed step"),
@@ -17,7 +18,7 @@ _COMMANDS = {
 
 
 def innerloop_charts(design: Record) -> list[Chart]:
-    """Return the figures of a design record: responses, margins over airspeed, loop shapes, poles."""
+    """Return the figures of a complete design record, of level flight alone: responses, margins, loop shapes, poles."""
     return [_responses(design), _margins(design), _loops(design), _poles(design)]
 
 
@@ -28,18 +29,11 @@ def _responses(design: Record) -> Chart:
             label = own_label if channel == command else _COMMANDS.get(channel, ("Bank [deg]", ""))[0]
             scale = np.degrees(1.0) if channel == "roll" else 1.0
             lines = []
-            for response in design["responses"]:
-                if response["command"] == command:
-                    predicted = response["kind"] == "predicted"
-                    lines.append(
-                        Line(
-                            x=np.array(response["time_s"]),
-                            y=scale * np.array(response["channels"][channel]),
-                            label="linear design" if predicted else "flown in JSBSim",
-                            colour="orange" if predicted else "blue",
-                            style="dash" if predicted else "solid",
-                        )
-                    )
+            for response in responses_of(design, command):
+                if channel in response["channels"]:
+                    kind, colour, style = RESPONSE_STYLES[response["kind"]]
+                    x, y = np.array(response["time_s"]), scale * np.array(response["channels"][channel])
+                    lines.append(Line(x=x, y=y, label=kind, colour=colour, style=style))
             panels.append(Panel(x_label="Time [s]", y_label=label, lines=lines, title=title if channel == command else ""))
     return Chart(
         name="responses",
@@ -52,34 +46,30 @@ def _responses(design: Record) -> Chart:
 
 
 def _margins(design: Record) -> Chart:
-    loops = list(dict.fromkeys(m["loop"] for m in design["margins"]))
+    required = design["required"]
+    level = [m for m in design["margins"] if not (bank_deg(m) or m["between"])]
 
     def panel(name: str, label: str, limit: float, top: float) -> Panel:
         lines = []
-        for i, loop in enumerate(loops):
-            rows = [m for m in design["margins"] if m["loop"] == loop and m[name] is not None]
+        for loop in loops_of(level):
+            rows = [m for m in level if m["loop"] == loop and m[name] is not None]
             if rows:
-                lines.append(
-                    Line(
-                        x=np.array([m["airspeed_mps"] for m in rows]),
-                        y=np.array([m[name] for m in rows]),
-                        label=loop.replace("_", " "),
-                        colour=(*_LOOP_COLOURS, "black")[i % 7],
-                    )
-                )
+                x, y = np.array([m["airspeed_mps"] for m in rows]), np.array([m[name] for m in rows])
+                colour, style = LOOP_STYLES.get(loop, OTHER_LOOP)
+                lines.append(Line(x=x, y=y, label=loop_name(rows[0]), colour=colour, style=style))
         x = np.array(design["airspeeds_mps"])
-        lines.append(Line(x=x, y=constant(x, limit), label="required", colour="black", style="dash"))
+        lines.append(Line(x=x, y=constant(x, limit), label="required", colour="black", style="dot"))
         return Panel(x_label="Design airspeed [m/s]", y_label=label, lines=lines, y_range=(0.0, top))
 
     return Chart(
         name="margins",
         caption="Margins with one loop opened and all others closed, servos, propeller and computing delay included; disk margins"
-        " allow for gain and phase changing together, “all controls” for all three controls changing independently.",
+        " allow for gain and phase changing together, “all controls” for every control changing independently.",
         panels=[
-            panel("gain_db", "Gain margin [dB]", 6.0, 40.0),
-            panel("phase_deg", "Phase margin [deg]", 45.0, 95.0),
-            panel("disk_gain_db", "Disk gain margin [dB]", 6.0, 25.0),
-            panel("disk_phase_deg", "Disk phase margin [deg]", 45.0, 95.0),
+            panel("gain_db", "Gain margin [dB]", required["gain_db"], 40.0),
+            panel("phase_deg", "Phase margin [deg]", required["phase_deg"], 95.0),
+            panel("disk_gain_db", "Disk gain margin [dB]", required["gain_db"], 25.0),
+            panel("disk_phase_deg", "Disk phase margin [deg]", required["phase_deg"], 95.0),
         ],
         columns=2,
         panel_height=0.3,
@@ -88,14 +78,14 @@ def _margins(design: Record) -> Chart:
 
 def _loops(design: Record) -> Chart:
     gain, phase = [], []
-    for loop, colour in zip(design["loops"], _LOOP_COLOURS, strict=False):
+    for loop in design["loops"]:
         x = np.array(loop["frequency_rad_s"])
-        label = loop["loop"].replace("_", " ")
-        gain.append(Line(x=x, y=np.array(loop["gain_db"]), label=label, colour=colour))
-        phase.append(Line(x=x, y=np.array(loop["phase_deg"]), label=label, colour=colour))
+        colour, style = LOOP_STYLES.get(loop["loop"], OTHER_LOOP)
+        gain.append(Line(x=x, y=np.array(loop["gain_db"]), label=loop_name(loop), colour=colour, style=style))
+        phase.append(Line(x=x, y=turned(loop), label=loop_name(loop), colour=colour, style=style))
     x = np.array(design["loops"][0]["frequency_rad_s"])
     limits = (float(x[0]), float(x[-1]))
-    gain.append(Line(x=np.array(limits), y=np.zeros(2), label="crossover", colour="black", style="dash"))
+    gain.append(Line(x=np.array(limits), y=np.zeros(2), label="crossover", colour="black", style="dot"))
     return Chart(
         name="loops",
         caption=f"Open loops at {design['design_airspeed_mps']:g} m/s, one opened at a time.",
@@ -109,8 +99,7 @@ def _loops(design: Record) -> Chart:
 
 
 def _poles(design: Record) -> Chart:
-    index = design["airspeeds_mps"].index(design["design_airspeed_mps"])
-    poles = design["poles"][index]
+    poles = at_middle(design, design["poles"])[0]
 
     def points(name: str, label: str, colour: str, style: Any) -> Line:
         values = np.array(poles[name])

@@ -1,33 +1,38 @@
 """The autopilot's design, as a section of a report."""
 
-import math
-
 from reports.blocks import Heading, Section, Table
-from reports.innerloop_charts import Record, innerloop_charts
+from reports.design_data import Record, at_middle, bank_deg, complete, grid_trims
+from reports.design_tables import step_table, trim_table
+from reports.innerloop_charts import innerloop_charts
 from reports.tables import number
 
+_BANK_SHOWN = 45.0
+"""Bank of the equilibria shown beside those in level flight [deg], or what the design has that is nearest."""
 
-def innerloop_section(design: Record) -> Section:
+
+def innerloop_section(record: Record) -> Section:
     """Return the section on a design record: step responses, margins, loop shapes, poles and trims."""
+    design = complete(record)
+    bank = min({bank_deg(t) for t in design["trims"]}, key=lambda known: abs(known - _BANK_SHOWN))
+    trims = sorted((t for t in grid_trims(design) if bank_deg(t) in (0.0, bank)), key=lambda t: float(t["airspeed_mps"]))
     responses, *others = innerloop_charts(design)
     return Section(
         anchor="innerloop",
         title="Autopilot",
         blocks=[
             responses,
-            _step_table(design),
+            step_table(design),
             Heading("Margins at the middle design airspeed"),
             _margin_table(design),
             *others,
-            Heading("Equilibria: level, and at 45 degrees of bank"),
-            _trim_table(design),
+            Heading(f"Equilibria: level, and at {bank:g} degrees of bank"),
+            trim_table(trims),
         ],
     )
 
 
 def _margin_table(design: Record) -> Table:
-    """Return the margins at the middle design airspeed."""
-    airspeed = design["design_airspeed_mps"]
+    """Return the margins at the middle design airspeed in level flight."""
     rows = [
         [
             m["loop"].replace("_", " "),
@@ -37,51 +42,11 @@ def _margin_table(design: Record) -> Table:
             number(m["disk_gain_db"], "{:.1f}"),
             number(m["disk_phase_deg"], "{:.1f}"),
         ]
-        for m in design["margins"]
-        if m["airspeed_mps"] == airspeed
+        for m in at_middle(design, design["margins"])
+        if not m["between"]
     ]
     head = ["Loop opened at", "Gain [dB]", "Phase [deg]", "Crossover [rad/s]", "Disk gain [dB]", "Disk phase [deg]"]
     return Table(head=head, rows=rows, widths=[1.6, 1.0, 1.0, 1.2, 1.1, 1.2])
-
-
-def _step_table(design: Record) -> Table:
-    """Return what the flown steps show."""
-    rows = [
-        [
-            f"{response['command'].replace('_', ' ')}, {response['size']:g}",
-            response["kind"],
-            number(response["rise_time_s"], "{:.2f}"),
-            f"{100 * response['overshoot']:.1f}",
-            f"{response['altitude_largest_m']:.3f}",
-            f"{response['airspeed_largest_mps']:.3f}",
-        ]
-        for response in design["responses"]
-    ]
-    head = ["Step [rad/s, m/s, m]", "", "Rise 10–90 % [s]", "Overshoot [%]", "Altitude moves [m]", "Airspeed moves [m/s]"]
-    return Table(head=head, rows=rows, widths=[1.6, 0.9, 1.2, 1.0, 1.2, 1.3], left_columns=2)
-
-
-def _trim_table(design: Record) -> Table:
-    """Return the equilibria behind the design."""
-    rows = [
-        [
-            f"{t['airspeed_mps']:g}",
-            f"{round(math.degrees(t['bank_rad']), 1) + 0.0:.1f}",
-            f"{t['alpha_rad']:.4f}",
-            f"{t['sideslip_rad']:.4f}",
-            f"{t['pitch_rad']:.4f}",
-            f"{t['yaw_rate_rad_s']:.4f}",
-            f"{t['elevator_position']:.4f}",
-            f"{t['aileron_position']:.4f}",
-            f"{t['throttle']:.3f}",
-        ]
-        for t in design["trims"]
-    ]
-    head = [
-        "Airspeed [m/s]", "Bank [deg]", "α [rad]", "β [rad]", "θ [rad]", "Yaw rate [rad/s]", "Elevator [rad]", "Aileron [rad]",
-        "Throttle [-]",
-    ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[1.0] * 9, left_columns=0)
 
 
 def _margin(value: float | None, pattern: str, loop: str) -> str:

@@ -75,7 +75,7 @@ def _tint(colour: str) -> str:
 
 
 def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bool) -> None:
-    x_options: dict[str, Any] = {"title": panel.x_label if show_x else None}
+    x_options: dict[str, Any] = {"title": {"text": panel.x_label, "standoff": 6} if show_x else None}
     y_options: dict[str, Any] = {"title": panel.y_label}
     if panel.log_x:
         x_options["type"] = "log"

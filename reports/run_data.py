@@ -18,7 +18,7 @@ class RunData:
     ----------
     path : the run directory
     manifest : its configuration and provenance
-    summary : a row per flight of the study, or per trajectory and law
+    summary : a row per flight of the study, or per trajectory and law; empty for a design, of which nothing is counted
     comparison : a row per flight of the comparisons, possibly none
     crossings : a row per crossing
     innerloop : the autopilot's design record, or none if the run ended before
@@ -61,7 +61,7 @@ def read_run(path: Path) -> RunData:
         raise ReportError(f"'{path}': manifest.json cannot be read: {error}; run the scenario again") from None
     if not (isinstance(manifest, dict) and isinstance(manifest.get("config"), dict)):
         raise ReportError(f"'{path}': manifest.json is not that of a run; run the scenario again in another --out")
-    if not (path / "summary.csv").is_file():
+    if manifest.get("study") != "design" and not (path / "summary.csv").is_file():
         raise ReportError(f"'{path}' holds nothing finished (no summary.csv); continue the run with --resume")
     innerloop = path / "innerloop.json"
     try:

@@ -25,11 +25,12 @@ def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
 def provenance_table(run: RunData) -> Table:
     """Return where the run comes from."""
     manifest = run.manifest
+    design = manifest.get("study") == "design"
     rows = [
-        ["Scenario", f"{manifest['name']}: {manifest['title']}"],
+        ["Design" if design else "Scenario", f"{manifest['name']}: {manifest['title']}"],
         *_vehicle(run),
-        ["Seed", str(manifest["config"]["seed"])],
-        ["Configuration hash", manifest["config_hash"]],
+        # A design is made without chance, and of no more than its title says.
+        *([] if design else [["Seed", str(manifest["config"]["seed"])], ["Configuration hash", manifest["config_hash"]]]),
         ["Source revision", manifest["git_revision"]],
         ["Python", f"{manifest['python']} on {manifest['platform']}"],
         ["Packages", ", ".join(f"{name} {version}" for name, version in manifest["packages"].items())],

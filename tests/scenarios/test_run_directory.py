@@ -1,7 +1,7 @@
 import pytest
 
-from scenarios.errors import InputError
 from reports.files import write_whole
+from scenarios.errors import InputError
 from scenarios.run_directory import RunDirectory
 
 

@@ -1,0 +1,113 @@
+"""A design record as reports use it: fields that an older record lacks, and the questions that several figures ask."""
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+Record = dict[str, Any]
+
+CONTROLS = ("elevator", "aileron", "throttle", "rudder")
+"""Loop breaks at a control; every other loop break is at a measurement."""
+
+TOGETHER = "all controls"
+"""The loop break at all controls at once, which has disk margins only."""
+
+_REQUIRED = {"gain_db": 6.0, "phase_deg": 45.0, "perturbed_gain_db": 4.0, "perturbed_phase_deg": 30.0}
+
+
+def complete(record: Record) -> Record:
+    """Return a design record with every field that reports ask for: one made before there was a grid over bank lacks some."""
+
+    def level(rows: Iterable[Record]) -> list[Record]:
+        return [{"bank_rad": 0.0, "climb_angle_rad": 0.0, "between": False, **row} for row in rows]
+
+    return {
+        "envelope": None,
+        "required": _REQUIRED,
+        "robustness": [],
+        "verification": [],
+        **record,
+        "trims": level(record["trims"]),
+        "poles": level(record["poles"]),
+        "margins": level(record["margins"]),
+        "loops": [{"airspeed_mps": record["design_airspeed_mps"], "bank_rad": 0.0, **loop} for loop in record["loops"]],
+    }
+
+
+def bank_deg(row: Record) -> float:
+    """Return the bank of a row to a tenth of a degree, so that the rows of one bank are equal in it."""
+    return round(math.degrees(row["bank_rad"]), 1) + 0.0
+
+
+def where(row: Record) -> str:
+    """Return the point of the grid that a row belongs to."""
+    bank = bank_deg(row)
+    return f"{row['airspeed_mps']:g} m/s, " + (f"{bank:+g}°".replace("-", "−") if bank else "level")
+
+
+def loop_name(row: Record) -> str:
+    """Return what a row's loop is called in print."""
+    return str(row["loop"]).replace("_", " ")
+
+
+def loops_of(rows: Iterable[Record]) -> list[str]:
+    """Return the loops of ``rows``, each once, in their order."""
+    return list(dict.fromkeys(row["loop"] for row in rows))
+
+
+def worst(rows: Iterable[Record], key: str) -> Record | None:
+    """Return the row whose ``key`` is least, or none where no row has a value; a margin without a value is unlimited."""
+    return min((row for row in rows if row.get(key) is not None), key=lambda row: float(row[key]), default=None)
+
+
+def short_of(rows: Iterable[Record], key: str, required: float) -> list[Record]:
+    """Return the rows whose ``key`` is below ``required``."""
+    return [row for row in rows if row.get(key) is not None and row[key] < required]
+
+
+def down(value: float | None, places: int = 1) -> str:
+    """Return a margin rounded down, so that none looks as large as required that is not; one without a value is unlimited."""
+    if value is None:
+        return "∞"
+    scale = 10.0**places
+    # The small share forgives what binary fractions lose: 5.7 stays 5.7.
+    return f"{math.floor(value * scale + 1e-6) / scale:.{places}f}".replace("-", "−")
+
+
+def at_middle(record: Record, rows: Iterable[Record]) -> list[Record]:
+    """Return the rows at the design airspeed in level flight."""
+    airspeed = record["design_airspeed_mps"]
+    return [row for row in rows if row["airspeed_mps"] == airspeed and not bank_deg(row) and not row.get("climb_angle_rad")]
+
+
+def grid_trims(record: Record) -> list[Record]:
+    """Return the equilibria that neither climb nor descend, ordered by bank and airspeed."""
+    return sorted((t for t in record["trims"] if not t["climb_angle_rad"]), key=lambda t: (bank_deg(t), t["airspeed_mps"]))
+
+
+def climb_trims(record: Record) -> list[Record]:
+    """Return the wings-level equilibria at the design airspeed, by climb angle."""
+    airspeed = record["design_airspeed_mps"]
+    rows = (t for t in record["trims"] if t["airspeed_mps"] == airspeed and not bank_deg(t))
+    return sorted(rows, key=lambda t: float(t["climb_angle_rad"]))
+
+
+def responses_of(record: Record, command: str) -> list[Record]:
+    """Return the step responses to ``command``, the prediction first and what was flown last, so that it is drawn on top."""
+    order = {"model": 0, "predicted": 1, "flown": 2}
+    rows = (row for row in record["responses"] if row["command"] == command)
+    return sorted(rows, key=lambda row: order.get(row["kind"], 0))
+
+
+def excess_overshoot(record: Record) -> float | None:
+    """Return how far a flown heading-rate step goes past its reference model, as a share of the step; none without a model."""
+    overshoot = {row["kind"]: float(row["overshoot"]) for row in responses_of(record, "heading_rate")}
+    if not {"model", "flown"} <= set(overshoot):
+        return None
+    return max(0.0, overshoot["flown"] - overshoot["model"])
+
+
+def damping(pole: tuple[float, float]) -> float:
+    """Return the damping ratio of a pole [-]; 1 for a real stable one."""
+    size = math.hypot(*pole)
+    return -pole[0] / size if size else 0.0
