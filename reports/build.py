@@ -28,9 +28,11 @@ def build_reports(directory: Path) -> list[Path]:
     print("building the report", file=sys.stderr)
     try:
         report = content(run)
-    except (KeyError, TypeError, ValueError, AttributeError, OSError) as error:
+    except ReportError:
+        raise
+    except (LookupError, TypeError, ValueError, AttributeError, OSError) as error:
         what = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise ReportError(f"'{directory}' is damaged ({what}); run the scenario again in another --out") from None
+        raise ReportError(f"'{directory}' is damaged ({what}); run it again in another --out") from None
     paths = []
     for name, write in (("report.html", write_html), ("report.pdf", write_pdf)):
         try:

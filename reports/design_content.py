@@ -69,7 +69,10 @@ def _equilibria(design: Record) -> Section:
     if design["envelope"]:
         blocks += [envelope_table(design["envelope"]), *(Text(note) for note in design["envelope"].get("notes", []))]
     blocks += trim_charts(design)
-    blocks += [Heading("Level flight, the largest banks, and the steepest climb and descent"), trim_table(extreme_trims(design))]
+    shown = extreme_trims(design)
+    climbing = any(t["climb_angle_rad"] for t in shown)
+    title = "Level flight and the largest banks" + (", and the steepest climb and descent" if climbing else "")
+    blocks += [Heading(title), trim_table(shown)]
     residuals = [float(t["residual"]) for t in design["trims"] if t.get("residual") is not None]
     if residuals:
         blocks.append(Text(f"Largest residual of any of the {len(residuals)} equilibria: {max(residuals):.1e}."))

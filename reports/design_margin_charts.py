@@ -24,8 +24,8 @@ def margin_charts(design: Record) -> list[Chart]:
     """Return the disk margins and the classical margins over airspeed and over bank."""
     required = design["required"]
     disk = [
-        _Margin(key="disk_gain_db", label="Disk gain margin [dB]", required=None, ceiling=25.0),
-        _Margin(key="disk_phase_deg", label="Disk phase margin [deg]", required=None, ceiling=90.0),
+        _Margin(key="disk_gain_db", label="Disk gain [dB]", required=None, ceiling=25.0),
+        _Margin(key="disk_phase_deg", label="Disk phase [deg]", required=None, ceiling=90.0),
     ]
     classical = [
         _Margin(key="gain_db", label="Gain margin [dB]", required=required["gain_db"], ceiling=40.0),
@@ -58,7 +58,7 @@ def _chart(design: Record, name: str, margins: Sequence[_Margin], caption: str) 
         caption += " Above, the worst over bank at each airspeed; below, the worst over airspeed at each bank."
     if any(row["between"] for row in rows):
         caption += " Diamonds: at points between those of the grid, for which nothing was designed."
-    return Chart(name=name, caption=caption, panels=panels, columns=2, panel_height=0.26)
+    return Chart(name=name, caption=caption, panels=panels, columns=2, panel_height=0.24)
 
 
 def _panel(rows: Sequence[Record], margin: _Margin, *, over_bank: bool) -> Panel:

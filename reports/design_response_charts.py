@@ -45,10 +45,11 @@ def _turn(design: Record) -> Chart:
     # An even number of panels leaves no gap.
     channels = _present(_TURN, responses)
     channels = channels[: len(channels) // 2 * 2] or channels
+    model = " Dotted: the reference model that it is to follow." if "model" in {row["kind"] for row in responses} else ""
     return Chart(
         name="turnresponse",
         caption=f"A step of the heading-rate command by {_size(responses)} rad/s from level flight at"
-        f" {design['design_airspeed_mps']:g} m/s. The roll loop is designed to follow the reference model. Deviations from trim.",
+        f" {design['design_airspeed_mps']:g} m/s; deviations from trim.{model}",
         panels=[_panel(responses, channel) for channel in channels],
         columns=2,
         panel_height=0.28,

@@ -39,7 +39,7 @@ def worst_margin_table(design: Record) -> Table:
             ]
         )
     head = ["Loop opened at", "Gain [dB]", "at", "Phase [deg]", "at", "Disk gain [dB]", "Disk phase [deg]", "at"]
-    return Table(head=head, rows=rows, widths=[1.1, 0.7, 1.35, 0.8, 1.35, 0.8, 0.9, 1.35])
+    return Table(head=head, rows=rows, widths=[1.15, 0.85, 1.15, 0.95, 1.15, 1.15, 1.25, 1.15])
 
 
 def _margin_cells(row: Record | None, key: str, loop: str) -> list[str]:
@@ -60,7 +60,7 @@ def robustness_table(design: Record) -> Table:
         )
         rows.append([case, *_perturbed(gain, "gain"), *_perturbed(phase, "phase"), "no" if short else "yes"])
     head = ["Perturbation", "Gain [dB]", "of", "at", "Phase [deg]", "of", "at", "Met"]
-    return Table(head=head, rows=rows, widths=[1.9, 0.7, 0.9, 1.3, 0.8, 0.9, 1.3, 0.4])
+    return Table(head=head, rows=rows, widths=[1.8, 0.75, 0.9, 1.15, 0.95, 0.9, 1.15, 0.4])
 
 
 def _perturbed(row: Record | None, name: str) -> list[str]:
@@ -155,7 +155,7 @@ def step_table(design: Record) -> Table:
         for response in responses_of(design, command)
     ]
     head = ["Step [rad/s, m/s, m]", "", "Rise 10–90 % [s]", "Overshoot [%]", "Altitude moves [m]", "Airspeed moves [m/s]"]
-    return Table(head=head, rows=rows, widths=[1.6, 1.1, 1.2, 1.0, 1.2, 1.3], left_columns=2)
+    return Table(head=head, rows=rows, widths=[1.4, 1.1, 1.2, 1.0, 1.25, 1.5], left_columns=2)
 
 
 def _moved(response: Record, key: str) -> str:

@@ -1,0 +1,287 @@
+"""Reports of made-up designs: what is judged, drawn, listed and said."""
+
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+from design_runs import AIRSPEEDS, BANKS_DEG, CASES, LOOPS, record, write_design
+
+from reports import matplotlib_charts, plotly_charts
+from reports.blocks import Heading, Table, Text
+from reports.build import build_reports
+from reports.chart import Chart
+from reports.content import content
+from reports.design_data import complete, down, excess_overshoot, where
+from reports.design_loop_charts import disk_region, turned
+from reports.design_margin_charts import margin_charts
+from reports.design_trim_charts import trim_charts
+from reports.design_verdict import design_verdict
+from reports.errors import ReportError
+from reports.innerloop_charts import innerloop_charts
+from reports.innerloop_section import innerloop_section
+from reports.run_data import read_run
+
+FIRST_VERSION_LACKS = ("envelope", "required", "robustness", "verification", "banks_deg")
+LEVEL_LACKS = {"between", "climb_angle_rad", "limits", "rudder", "residual"}
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    return write_design(tmp_path_factory.mktemp("design") / "run")
+
+
+@pytest.fixture(scope="module")
+def report(path):
+    return content(read_run(path))
+
+
+def blocks_of(report, kind, anchor=None):
+    sections = [section for section in report.sections if anchor in (None, section.anchor)]
+    return [block for section in sections for block in section.blocks if isinstance(block, kind)]
+
+
+def changed(**rows):
+    """Return a design of which the first row of each list named is changed as said."""
+    design = record()
+    for name, change in rows.items():
+        design[name][0] |= change
+    return complete(design)
+
+
+def first_version():
+    """Return a design as it was recorded before there was a grid over bank."""
+    design = {key: value for key, value in record().items() if key not in FIRST_VERSION_LACKS}
+    for name in ("margins", "poles", "trims"):
+        level = [row for row in design[name] if not (row["bank_rad"] or row.get("between") or row.get("climb_angle_rad"))]
+        lost = LEVEL_LACKS if name == "trims" else {*LEVEL_LACKS, "bank_rad"}
+        design[name] = [{key: value for key, value in row.items() if key not in lost} for row in level]
+    design["loops"] = [{k: v for k, v in loop.items() if k not in ("airspeed_mps", "bank_rad")} for loop in design["loops"]]
+    design["responses"] = [row for row in design["responses"] if row["kind"] != "model"]
+    return design
+
+
+def test_both_reports_are_built_from_disk_alone(path):
+    html, pdf = build_reports(path)
+    text = html.read_text(encoding="utf-8")
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert "Autopilot of the Cessna 172" in text
+    assert not re.search(r"<(script|link|img)[^>]+(src|href)=", text)
+    for anchor in re.findall(r'href="#([a-z]+)"', text):
+        assert f'id="{anchor}"' in text
+
+
+def test_everything_is_in_its_place(report):
+    shown = {section.anchor: [chart.name for chart in blocks_of(report, Chart, section.anchor)] for section in report.sections}
+    assert shown == {
+        "margins": ["diskmargins", "classicalmargins"],
+        "loops": ["bode", "nichols"],
+        "responses": ["turnresponse", "climbresponse"],
+        "equilibria": ["trims", "climbs"],
+        "poles": ["gridpoles"],
+        "linearisation": [],
+        "weights": [],
+        "elsewhere": [],
+        "provenance": [],
+    }
+
+
+def test_axes_have_units_and_every_curve_is_drawn_on_screen_and_in_print(report):
+    for chart in blocks_of(report, Chart):
+        lines = [line for panel in chart.panels for line in panel.lines]
+        assert len(plotly_charts.draw(chart).data) == len(lines), chart.name
+        assert sum(len(ax.lines) for ax in matplotlib_charts.draw(chart).axes) == len(lines), chart.name
+        for panel in chart.panels:
+            assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)
+            for label in (panel.x_label, panel.y_label):
+                assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)
+
+
+def test_a_design_with_every_margin_is_called_good(report):
+    verdict = report.verdict
+    assert (verdict.safe, verdict.complete, verdict.failures) == (True, True, [])
+    assert verdict.headline == "Every loop has at least 6 dB and 45° of margin at every point of the grid"
+    assert "45 points of the grid over airspeed and bank and at 20 points between them" in verdict.detail
+    assert "1 of 45 equilibria are at a limit" in verdict.detail
+    # At the corner of the grid: 11 dB less 2.2 dB for each of airspeed and bank.
+    assert verdict.figures[0] == ("Worst gain margin: elevator, 45 m/s, −33°", "6.6 dB", "≥ 6 dB")
+
+
+def test_one_margin_too_small_is_named_and_never_rounded_up_to_what_is_required():
+    verdict = design_verdict(changed(margins={"gain_db": 5.96}))
+    assert verdict.safe
+    assert not verdict.complete
+    assert verdict.headline == "Stable everywhere, but short of 6 dB and 45° in elevator"
+    # 45 grid points and 20 between.
+    assert verdict.failures == ["elevator: gain margin 5.9 dB at 45 m/s, −33°, required 6 dB; short at 1 of 65 points"]
+
+
+def test_a_point_between_those_of_the_grid_counts_as_much():
+    design = complete(record())
+    row = next(row for row in design["margins"] if row["between"] and row["loop"] == "rudder")
+    row["phase_deg"] = 44.0
+    (failure,) = design_verdict(design).failures
+    assert failure.startswith("rudder: phase margin 44.0 deg at 47.5 m/s, −30°")
+
+
+def test_a_perturbed_aircraft_that_falls_short_is_named():
+    verdict = design_verdict(changed(robustness={"phase_deg": 29.0}))
+    assert verdict.safe
+    assert not verdict.complete
+    assert verdict.failures == ["mass +20 %: phase margin 29.0 deg of heading rate at 45 m/s, −33°, required 30 deg"]
+
+
+def test_an_unstable_point_is_worse_than_any_margin():
+    verdict = design_verdict(changed(poles={"closed_loop": [[0.02, 0.0], [-1.0, 0.0]]}))
+    assert not verdict.safe
+    assert verdict.headline == "Unstable at 1 of 45 points of the grid"
+    assert verdict.failures[0] == "unstable at 45 m/s, −33°"
+
+
+def test_a_pole_at_the_origin_but_for_rounding_is_not_unstable():
+    assert design_verdict(changed(poles={"closed_loop": [[1e-12, 0.0]]})).safe
+
+
+@pytest.mark.parametrize(("value", "text"), [(5.99, "5.9"), (5.7, "5.7"), (6.0, "6.0"), (-0.3, "−0.3"), (None, "∞")])
+def test_margins_are_rounded_down(value, text):
+    assert down(value) == text
+
+
+def test_the_margin_table_has_the_worst_of_each_loop_and_where(report):
+    table = blocks_of(report, Table, "margins")[0]
+    assert [row[0] for row in table.rows] == [*(loop.replace("_", " ") for loop in LOOPS), "all controls"]
+    assert table.rows[0] == ["elevator", "6.6", "45 m/s, −33°", "71.0", "45 m/s, −33°", "6.0", "46.0", "45 m/s, −33°"]
+    # The throttle bears any gain; of all controls at once there are disk margins only.
+    assert [table.rows[2][1], table.rows[-1][1], table.rows[-1][3]] == ["∞", "–", "–"]
+
+
+def test_curves_of_margins_are_the_worst_over_the_other_axis():
+    design = complete(record())
+    row = next(m for m in design["margins"] if m["loop"] == "aileron" and where(m) == "60 m/s, +21°")
+    row["disk_gain_db"] = 0.5
+    chart = margin_charts(design)[0]
+    by_airspeed, by_bank = (next(line for line in chart.panels[i].lines if line.label == "aileron") for i in (0, 2))
+    assert by_airspeed.x.tolist() == AIRSPEEDS
+    assert by_bank.x.tolist() == BANKS_DEG
+    assert by_airspeed.y[AIRSPEEDS.index(60.0)] == by_bank.y[BANKS_DEG.index(21.0)] == 0.5
+    assert by_airspeed.y.min() == by_bank.y.min() == 0.5
+    assert np.sum(by_airspeed.y < 1.0) == np.sum(by_bank.y < 1.0) == 1
+
+
+def test_a_disk_margin_of_6_db_keeps_a_loop_37_degrees_from_the_critical_point():
+    phase, gain = disk_region(20.0 * math.log10(2.0))
+    assert gain.max() == pytest.approx(20.0 * math.log10(2.0))
+    assert gain.min() == pytest.approx(-20.0 * math.log10(2.0))
+    # c = (2 - 1)/(2 + 1): 2 atan(1/3) = 36.87 deg, as Seiler, Packard and Gahinet print for a disk of that gain. The outline has
+    # points every 2 degrees, and unit gain at a quarter turn is one of them.
+    quarter = np.argmin(np.abs(gain[:90]))
+    assert abs(phase[quarter] + 180.0) == pytest.approx(36.87, abs=0.01)
+
+
+def test_a_phase_written_a_whole_turn_too_high_is_drawn_no_elsewhere():
+    loop = record()["loops"][0]
+    higher = {**loop, "phase_deg": [phase + 360.0 for phase in loop["phase_deg"]]}
+    assert turned(higher) == pytest.approx(turned(loop))
+    assert -360.0 < turned(loop)[np.argmin(np.abs(loop["gain_db"]))] <= 0.0
+
+
+def test_every_loop_has_a_nichols_panel_with_the_region_that_is_excluded(report):
+    nichols = next(chart for chart in blocks_of(report, Chart, "loops") if chart.name == "nichols")
+    assert [panel.title for panel in nichols.panels] == [loop.replace("_", " ") for loop in LOOPS]
+    for panel in nichols.panels:
+        region = next(line for line in panel.lines if line.fill)
+        assert region.label == "excluded: 6 dB, 45 deg"
+        assert set(zip(region.x, region.y, strict=True)) == {(-225.0, 0.0), (-180.0, 6.0), (-135.0, 0.0), (-180.0, -6.0)}
+        assert panel.x_range[0] < -225.0
+        assert panel.x_range[1] > -135.0
+
+
+def test_the_trim_map_has_a_curve_per_bank_and_marks_what_is_at_a_limit():
+    design = complete(record())
+    panels = {panel.y_label: panel for panel in trim_charts(design)[0].panels}
+    labels = [line.label for line in panels["Rudder command [-]"].lines]
+    assert labels[:3] == ["level", "bank +13°", "bank −13°"]
+    assert len([label for label in labels if label.startswith("bank")]) == len(BANKS_DEG) - 1
+    marked = next(line for line in panels["Elevator command [-]"].lines if line.label == "at a limit")
+    assert marked.x.tolist() == [45.0]
+    # Throttle is drawn between its stops, a rudder near neutral is not.
+    assert "limit of a control" in [line.label for line in panels["Throttle command [-]"].lines]
+    assert "limit of a control" not in labels
+
+
+@pytest.mark.parametrize(("stall", "drawn"), [(27.0, False), (40.0, True), (None, False)])
+def test_the_stall_is_drawn_where_it_is_near_the_grid(stall, drawn):
+    design = complete(record())
+    design["envelope"]["stall_airspeed_mps"] = stall
+    assert ("stall" in [line.label for line in trim_charts(design)[0].panels[0].lines]) == drawn
+
+
+def test_the_overshoot_is_counted_beyond_that_of_the_reference_model():
+    design = complete(record())
+    overshoot = {r["kind"]: r["overshoot"] for r in design["responses"] if r["command"] == "heading_rate"}
+    assert excess_overshoot(design) == pytest.approx(overshoot["flown"] - overshoot["model"])
+    assert excess_overshoot(design) > 0.0
+    assert excess_overshoot(complete(first_version())) is None
+
+
+def test_perturbations_and_checks_of_the_linear_model_are_listed(report):
+    robustness = blocks_of(report, Table, "margins")[1]
+    assert [row[0] for row in robustness.rows] == list(CASES)
+    assert {row[-1] for row in robustness.rows} == {"yes"}
+    (verification,) = blocks_of(report, Table, "linearisation")
+    assert verification.head == ["Input", "airspeed [%]", "q [%]", "p [%]"]
+    assert verification.rows[0] == ["elevator", "0.20", "0.50", "0.80"]
+
+
+def test_how_to_fly_it_elsewhere_names_the_files_that_are_there(report, tmp_path):
+    files, order = (text.text for text in blocks_of(report, Text, "elsewhere"))
+    assert "aircraft/c172x/c172x.xml; its autopilot, systems/c172x_autopilot.xml; a script, scripts/c172x.xml" in files
+    assert order.endswith("JSBSim --root=model --script=scripts/c172x.xml")
+    path = write_design(tmp_path / "run")
+    (path / "model" / "scripts" / "c172x.xml").unlink()
+    assert len(blocks_of(content(read_run(path)), Text, "elsewhere")) == 1
+
+
+def test_a_design_recorded_before_the_grid_over_bank_can_be_reported_on(tmp_path):
+    path = write_design(tmp_path / "run")
+    (path / "innerloop.json").write_text(json.dumps(first_version()), encoding="utf-8")
+    report = content(read_run(path))
+    assert report.verdict.complete
+    assert "linearisation" not in [section.anchor for section in report.sections]
+    assert len(blocks_of(report, Table, "margins")) == 1
+    # Without a rudder the yaw rate has its place.
+    trims = next(chart for chart in blocks_of(report, Chart) if chart.name == "trims")
+    assert [panel.y_label for panel in trims.panels][-2:] == ["Yaw rate [rad/s]", "Sideslip [deg]"]
+    assert len(build_reports(path)) == 2
+
+
+@pytest.mark.parametrize(("design", "bank"), [(record(), 33), (first_version(), 0)])
+def test_a_sweeps_report_takes_from_a_design_only_what_belongs_to_level_flight(design, bank):
+    section = innerloop_section(design)
+    steps, margins, trims = (block for block in section.blocks if isinstance(block, Table))
+    assert len(steps.rows) == len(design["responses"])
+    assert [row[0] for row in margins.rows] == [*(loop.replace("_", " ") for loop in LOOPS), "all controls"]
+    assert {float(row[1]) for row in trims.rows} == {0.0, bank}
+    assert section.blocks[-2] == Heading(f"Equilibria: level, and at {bank} degrees of bank")
+    curves = innerloop_charts(complete(design))[1].panels[0].lines
+    assert all(line.x.tolist() == AIRSPEEDS for line in curves)
+    assert len(innerloop_charts(complete(design))[2].panels[1].lines) == len(LOOPS)
+
+
+@pytest.mark.parametrize(
+    ("damage", "words"),
+    [
+        (lambda path: (path / "innerloop.json").unlink(), "holds no design record"),
+        (lambda path: (path / "innerloop.json").write_text("{", encoding="utf-8"), "cannot be read"),
+        (lambda path: (path / "innerloop.json").write_text("{}", encoding="utf-8"), "is damaged"),
+        (lambda path: (path / "innerloop.json").write_text(json.dumps({**record(), "poles": []})), "is damaged"),
+    ],
+)
+def test_a_damaged_design_is_refused_in_one_line(damage, words, tmp_path):
+    path = write_design(tmp_path / "run")
+    damage(path)
+    with pytest.raises(ReportError, match=words) as refusal:
+        build_reports(path)
+    assert "\n" not in str(refusal.value)
+    assert str(refusal.value).startswith("'")
