@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from reports.blocks import Block, Heading, Section, Text, Verdict
-from reports.design_data import Record, complete
+from reports.design_data import Record, climbing, complete
 from reports.design_loop_charts import loop_charts
 from reports.design_margin_charts import margin_charts
 from reports.design_pole_chart import pole_chart
@@ -70,8 +70,8 @@ def _equilibria(design: Record) -> Section:
         blocks += [envelope_table(design["envelope"]), *(Text(note) for note in design["envelope"].get("notes", []))]
     blocks += trim_charts(design)
     shown = extreme_trims(design)
-    climbing = any(t["climb_angle_rad"] for t in shown)
-    title = "Level flight and the largest banks" + (", and the steepest climb and descent" if climbing else "")
+    climbs = any(climbing(t) for t in shown)
+    title = "Level flight and the largest banks" + (", and the steepest climb and descent" if climbs else "")
     blocks += [Heading(title), trim_table(shown)]
     residuals = [float(t["residual"]) for t in design["trims"] if t.get("residual") is not None]
     if residuals:

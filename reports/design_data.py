@@ -13,10 +13,14 @@ TOGETHER = "all controls"
 """The loop break at all controls at once, which has disk margins only."""
 
 _REQUIRED = {"gain_db": 6.0, "phase_deg": 45.0, "perturbed_gain_db": 4.0, "perturbed_phase_deg": 30.0}
+_MARGINS = ("gain_db", "phase_deg", "disk_gain_db", "disk_phase_deg")
 
 
 def complete(record: Record) -> Record:
-    """Return a design record with every field that reports ask for: one made before there was a grid over bank lacks some."""
+    """Return a design record with every field that reports ask for: one made before there was a grid over bank lacks some.
+
+    A row that says of itself that its loop is not stable has no margins, whatever distance to the critical point was measured.
+    """
 
     def level(rows: Iterable[Record]) -> list[Record]:
         return [{"bank_rad": 0.0, "climb_angle_rad": 0.0, "between": False, **row} for row in rows]
@@ -24,14 +28,20 @@ def complete(record: Record) -> Record:
     return {
         "envelope": None,
         "required": _REQUIRED,
-        "robustness": [],
         "verification": [],
         **record,
         "trims": level(record["trims"]),
         "poles": level(record["poles"]),
-        "margins": level(record["margins"]),
+        "margins": [_judged(row) for row in level(record["margins"])],
+        "robustness": [_judged(row) for row in record.get("robustness", [])],
         "loops": [{"airspeed_mps": record["design_airspeed_mps"], "bank_rad": 0.0, **loop} for loop in record["loops"]],
     }
+
+
+def _judged(row: Record) -> Record:
+    if row.get("stable", True):
+        return {"stable": True, **row}
+    return {**row, **{key: 0.0 for key in _MARGINS if key in row}}
 
 
 def bank_deg(row: Record) -> float:
@@ -39,10 +49,30 @@ def bank_deg(row: Record) -> float:
     return round(math.degrees(row["bank_rad"]), 1) + 0.0
 
 
+def climbing(row: Record) -> bool:
+    """Return whether a row's equilibrium climbs or descends."""
+    return abs(float(row.get("climb_angle_rad", 0.0))) > 1e-6
+
+
+def speed(airspeed: float) -> str:
+    """Return an airspeed in words."""
+    return f"{round(airspeed, 1):g} m/s"
+
+
 def where(row: Record) -> str:
     """Return the point of the grid that a row belongs to."""
     bank = bank_deg(row)
-    return f"{row['airspeed_mps']:g} m/s, " + (f"{bank:+g}°".replace("-", "−") if bank else "level")
+    return f"{speed(row['airspeed_mps'])}, " + (minus(f"{bank:+g}°") if bank else "level")
+
+
+def minus(text: str) -> str:
+    """Return figures with a minus sign for their hyphen."""
+    return text.replace("-", "−")
+
+
+def case_name(row: Record) -> str:
+    """Return what a row's perturbation is called in print."""
+    return str(row["case"]).replace(" -", " −")
 
 
 def loop_name(row: Record) -> str:
@@ -71,24 +101,29 @@ def down(value: float | None, places: int = 1) -> str:
         return "∞"
     scale = 10.0**places
     # The small share forgives what binary fractions lose: 5.7 stays 5.7.
-    return f"{math.floor(value * scale + 1e-6) / scale:.{places}f}".replace("-", "−")
+    return minus(f"{math.floor(value * scale + 1e-6) / scale:.{places}f}")
 
 
 def at_middle(record: Record, rows: Iterable[Record]) -> list[Record]:
     """Return the rows at the design airspeed in level flight."""
     airspeed = record["design_airspeed_mps"]
-    return [row for row in rows if row["airspeed_mps"] == airspeed and not bank_deg(row) and not row.get("climb_angle_rad")]
+    return [row for row in rows if _same(row["airspeed_mps"], airspeed) and not (bank_deg(row) or climbing(row))]
+
+
+def _same(airspeed: float, other: float) -> bool:
+    """Return whether two airspeeds are the same point of the grid, however they were rounded."""
+    return abs(airspeed - other) < 1e-3
 
 
 def grid_trims(record: Record) -> list[Record]:
     """Return the equilibria that neither climb nor descend, ordered by bank and airspeed."""
-    return sorted((t for t in record["trims"] if not t["climb_angle_rad"]), key=lambda t: (bank_deg(t), t["airspeed_mps"]))
+    return sorted((t for t in record["trims"] if not climbing(t)), key=lambda t: (bank_deg(t), t["airspeed_mps"]))
 
 
 def climb_trims(record: Record) -> list[Record]:
     """Return the wings-level equilibria at the design airspeed, by climb angle."""
     airspeed = record["design_airspeed_mps"]
-    rows = (t for t in record["trims"] if t["airspeed_mps"] == airspeed and not bank_deg(t))
+    rows = (t for t in record["trims"] if _same(t["airspeed_mps"], airspeed) and not bank_deg(t))
     return sorted(rows, key=lambda t: float(t["climb_angle_rad"]))
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from reports.chart import Array, Chart, Line, Panel
-from reports.design_data import CONTROLS, Record, at_middle, loop_name
+from reports.design_data import CONTROLS, Record, at_middle, loop_name, speed
 from reports.loop_styles import LOOP_STYLES, OTHER_LOOP
 
 _NICHOLS_GAIN = (-30.0, 40.0)
@@ -50,7 +50,7 @@ def _bode(design: Record) -> Chart:
     groups = [group for group in groups if group[1]]
     return Chart(
         name="bode",
-        caption=f"Open loops at {design['design_airspeed_mps']:g} m/s in level flight, one opened at a time and all others closed,"
+        caption=f"Open loops at {speed(design['design_airspeed_mps'])} in level flight, one opened at a time and all others closed,"
         " with servos, engine and computing delay. Dotted: gain 1 and −180 deg.",
         panels=[
             *(_bode_panel(loops, title, "gain_db") for title, loops in groups),
@@ -109,7 +109,7 @@ def _nichols_panel(loop: Record, disk_gain_db: float | None, gain_db: float, pha
     for critical in (_CRITICAL - 360.0, _CRITICAL, _CRITICAL + 360.0):
         if x_range[0] < critical + phase_deg and critical - phase_deg < x_range[1]:
             lines += _regions(critical, disk_gain_db, gain_db, phase_deg)
-    lines.append(Line(x=phase[shown], y=gain[shown], label="open loop", colour="blue"))
+    lines.append(Line(x=phase, y=gain, label="open loop", colour="blue"))
     return Panel(
         x_label="Phase [deg]",
         y_label="Gain [dB]",

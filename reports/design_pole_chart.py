@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from reports.chart import Chart, Line, Note, Panel
-from reports.design_data import Record
+from reports.design_data import Record, speed
 
 _FAST = 45.0
 """Poles farther out [rad/s] belong to servos and delays, and would hide those of the flight."""
@@ -50,7 +50,13 @@ def _panel(design: Record, kind: str, title: str, reach: float) -> Panel:
     for i, airspeed in enumerate(airspeeds):
         points = _points([poles for poles in design["poles"] if poles["airspeed_mps"] == airspeed], kind, x_range, y_range)
         lines.append(
-            Line(x=points[:, 0], y=points[:, 1], label=f"{airspeed:g} m/s", colour=_COLOURS[i % len(_COLOURS)], style="points")
+            Line(
+                x=points[:, 0],
+                y=points[:, 1],
+                label=speed(airspeed),
+                colour=_COLOURS[i % len(_COLOURS)],
+                style="points",
+            )
         )
     return Panel(
         x_label="Real part [1/s]",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from reports.chart import Chart, Line, Panel, Style
-from reports.design_data import Record, responses_of
+from reports.design_data import Record, minus, responses_of, speed
 
 RESPONSE_STYLES: dict[str, tuple[str, str, Style]] = {
     "model": ("reference model", "black", "dot"),
@@ -49,7 +49,7 @@ def _turn(design: Record) -> Chart:
     return Chart(
         name="turnresponse",
         caption=f"A step of the heading-rate command by {_size(responses)} rad/s from level flight at"
-        f" {design['design_airspeed_mps']:g} m/s; deviations from trim.{model}",
+        f" {speed(design['design_airspeed_mps'])}; deviations from trim.{model}",
         panels=[_panel(responses, channel) for channel in channels],
         columns=2,
         panel_height=0.28,
@@ -79,7 +79,7 @@ def _present(channels: Sequence[str], responses: Sequence[Record]) -> list[str]:
 
 
 def _size(responses: Sequence[Record]) -> str:
-    return " and ".join(dict.fromkeys(f"{response['size']:g}" for response in responses))
+    return " and ".join(dict.fromkeys(minus(f"{response['size']:g}") for response in responses))
 
 
 def _panel(responses: Sequence[Record], channel: str, title: str = "") -> Panel:

@@ -8,12 +8,15 @@ from reports.blocks import Table
 from reports.design_data import (
     Record,
     bank_deg,
+    case_name,
     climb_trims,
+    climbing,
     damping,
     down,
     grid_trims,
     loop_name,
     loops_of,
+    minus,
     responses_of,
     short_of,
     where,
@@ -58,7 +61,7 @@ def robustness_table(design: Record) -> Table:
         short = short_of(own, "gain_db", required["perturbed_gain_db"]) + short_of(
             own, "phase_deg", required["perturbed_phase_deg"]
         )
-        rows.append([case, *_perturbed(gain, "gain"), *_perturbed(phase, "phase"), "no" if short else "yes"])
+        rows.append([case_name(own[0]), *_perturbed(gain, "gain"), *_perturbed(phase, "phase"), "no" if short else "yes"])
     head = ["Perturbation", "Gain [dB]", "of", "at", "Phase [deg]", "of", "at", "Met"]
     return Table(head=head, rows=rows, widths=[1.8, 0.75, 0.9, 1.15, 0.95, 0.9, 1.15, 0.4])
 
@@ -74,7 +77,7 @@ def extreme_trims(design: Record) -> list[Record]:
     banks = sorted({bank_deg(t) for t in grid})
     chosen = [t for t in grid if bank_deg(t) in {banks[0], 0.0, banks[-1]}]
     climbs = climb_trims(design)
-    steepest = [t for t in (climbs[0], climbs[-1]) if t["climb_angle_rad"]] if climbs else []
+    steepest = [t for t in (climbs[0], climbs[-1]) if climbing(t)] if climbs else []
     return [*sorted(chosen, key=lambda t: (t["airspeed_mps"], bank_deg(t))), *steepest]
 
 
@@ -108,16 +111,16 @@ def _trim_columns(trims: Sequence[Record]) -> list[tuple[str, str, float]]:
         ("Rudder [-]", "rudder", 1.0),
         ("Throttle [-]", "throttle", 1.0),
     ]
-    if not any(t["climb_angle_rad"] for t in trims):
+    if not any(climbing(t) for t in trims):
         columns = [column for column in columns if column[1] != "climb_angle_rad"]
     return [column for column in columns if all(column[1] in t for t in trims)]
 
 
 def _cell(trim: Record, title: str, key: str, scale: float) -> str:
     """Return a figure of an equilibrium; ``z`` makes a zero of what is rounded to minus zero."""
-    forms = {"airspeed_mps": "g", "bank_rad": "z.0f", "climb_angle_rad": "z.1f"}
+    forms = {"airspeed_mps": "z.1f", "bank_rad": "z.0f", "climb_angle_rad": "z.1f"}
     form = forms.get(key, "z.2f" if "[deg]" in title else "z.3f")
-    return f"{scale * trim[key]:{form}}".replace("-", "−")
+    return minus(f"{scale * trim[key]:{form}}")
 
 
 def pole_table(design: Record) -> Table:
@@ -130,9 +133,9 @@ def pole_table(design: Record) -> Table:
         least = min(swinging, key=lambda item: damping(item[1]), default=None)
         cells = [
             name,
-            f"{slowest[1][0]:.3g}".replace("-", "−"),
+            minus(f"{slowest[1][0]:.3g}"),
             where(slowest[0]),
-            f"{damping(least[1]):.2f}".replace("-", "−") if least else "–",
+            minus(f"{damping(least[1]):.2f}") if least else "–",
             f"{math.hypot(*least[1]):.2f}" if least else "–",
             where(least[0]) if least else "",
         ]
@@ -145,7 +148,7 @@ def step_table(design: Record) -> Table:
     """Return what the steps show."""
     rows = [
         [
-            f"{response['command'].replace('_', ' ')}, {response['size']:g}",
+            f"{response['command'].replace('_', ' ')}, " + minus(f"{response['size']:g}"),
             "reference model" if response["kind"] == "model" else str(response["kind"]),
             number(response["rise_time_s"], "{:.2f}"),
             f"{100 * response['overshoot']:.1f}",

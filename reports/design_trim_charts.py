@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reports.chart import Chart, Line, Panel, Style
-from reports.design_data import Record, bank_deg, climb_trims, grid_trims
+from reports.design_data import Record, bank_deg, climb_trims, grid_trims, minus, speed
 
 _BANK_COLOURS = ("black", "blue", "orange", "green", "purple", "sky", "vermillion")
 """By the size of the bank, level first."""
@@ -71,7 +71,7 @@ def _map_panel(design: Record, trims: Sequence[Record], quantity: _Quantity) -> 
     for bank in banks:
         rows = [t for t in trims if bank_deg(t) == bank]
         style: Style = "solid" if bank >= 0.0 else "dash"
-        label = f"bank {bank:+g}°".replace("-", "−") if bank else "level"
+        label = minus(f"bank {bank:+g}°") if bank else "level"
         lines.append(_line(rows, "airspeed_mps", quantity, label, _colour(sizes.index(abs(bank))), style))
     at_limit = [t for t in trims if t.get("limits")]
     if at_limit:
@@ -146,7 +146,7 @@ def _climb_chart(design: Record, climbs: Sequence[Record]) -> Chart:
 
     return Chart(
         name="climbs",
-        caption=f"Straight climbs and descents at {design['design_airspeed_mps']:g} m/s.",
+        caption=f"Straight climbs and descents at {speed(design['design_airspeed_mps'])}.",
         panels=[panel(quantity) for quantity in (_ALPHA, _ELEVATOR, _THROTTLE)],
         columns=3,
         panel_height=0.28,

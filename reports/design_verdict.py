@@ -6,6 +6,8 @@ from reports.blocks import Verdict
 from reports.design_data import (
     TOGETHER,
     Record,
+    bank_deg,
+    case_name,
     down,
     excess_overshoot,
     grid_trims,
@@ -22,12 +24,12 @@ _UNSTABLE = 1e-4
 
 def design_verdict(design: Record) -> Verdict:
     """Judge a design: safe if it is stable over the whole grid, complete if every margin is as required."""
-    unstable = [point for point in design["poles"] if max(pole[0] for pole in point["closed_loop"]) > _UNSTABLE]
+    unstable = _unstable(design)
     nominal, perturbed = _nominal_failures(design), _perturbed_failures(design)
     required = design["required"]
     asked = f"{required['gain_db']:g} dB and {required['phase_deg']:g}°"
     if unstable:
-        headline = f"Unstable at {len(unstable)} of {len(design['poles'])} points of the grid"
+        headline = f"Unstable at {len(unstable)} of {len(_points(design['margins']))} points"
     elif nominal:
         headline = f"Stable everywhere, but short of {asked} in {_loops(nominal)}"
     elif perturbed:
@@ -39,9 +41,20 @@ def design_verdict(design: Record) -> Verdict:
         complete=not (nominal or perturbed),
         headline=headline,
         detail=_detail(design),
-        failures=[*(f"unstable at {where(point)}" for point in unstable), *nominal.values(), *perturbed],
+        failures=[*(f"unstable at {point}" for point in unstable), *nominal.values(), *perturbed],
         figures=_figures(design),
     )
+
+
+def _unstable(design: Record) -> list[str]:
+    """Return the points at which the aircraft as modelled is unstable, by its poles or by what its margins say."""
+    poles = [point for point in design["poles"] if max(pole[0] for pole in point["closed_loop"]) > _UNSTABLE]
+    return _points([*poles, *(row for row in design["margins"] if not row["stable"])])
+
+
+def _points(rows: Sequence[Record]) -> list[str]:
+    """Return the operating points of ``rows``, each once, in their order."""
+    return list(dict.fromkeys(where(row) for row in rows))
 
 
 def _loops(failures: dict[tuple[str, str], str]) -> str:
@@ -71,21 +84,27 @@ def _perturbed_failures(design: Record) -> list[str]:
     failures = []
     for case in dict.fromkeys(row["case"] for row in design["robustness"]):
         rows = [row for row in design["robustness"] if row["case"] == case]
+        unstable = _points([row for row in rows if not row["stable"]])
+        if unstable:
+            failures.append(
+                f"{case_name(rows[0])}: unstable at {len(unstable)} of {len(_points(rows))} points, as at {unstable[0]}"
+            )
+            continue
         for kind, key, unit in (("gain", "gain_db", "dB"), ("phase", "phase_deg", "deg")):
             required = design["required"][f"perturbed_{key}"]
             row = worst(short_of(rows, key, required), key)
             if row is not None:
                 loop = str(row[f"{kind}_loop"]).replace("_", " ")
                 failures.append(
-                    f"{case}: {kind} margin {down(row[key])} {unit} of {loop} at {where(row)}, required {required:g} {unit}"
+                    f"{case_name(row)}: {kind} margin {down(row[key])} {unit} of {loop} at {where(row)}, required {required:g} {unit}"
                 )
     return failures
 
 
 def _detail(design: Record) -> str:
-    grid = {where(row) for row in design["margins"] if not row["between"]}
-    between = {where(row) for row in design["margins"] if row["between"]}
-    banks = {row["bank_rad"] for row in design["margins"]}
+    grid = _points([row for row in design["margins"] if not row["between"]])
+    between = _points([row for row in design["margins"] if row["between"]])
+    banks = {bank_deg(row) for row in design["margins"]}
     detail = f"Margins were computed at {len(grid)} points of the grid over airspeed" + (" and bank" if len(banks) > 1 else "")
     detail += f" and at {len(between)} points between them, for which nothing was designed." if between else "."
     if design["robustness"]:

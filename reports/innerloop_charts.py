@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from reports.chart import Chart, Line, Panel, constant
-from reports.design_data import Record, at_middle, bank_deg, loop_name, loops_of, responses_of
+from reports.design_data import Record, at_middle, bank_deg, loop_name, loops_of, responses_of, speed
 from reports.design_loop_charts import turned
 from reports.design_response_charts import RESPONSE_STYLES
 from reports.loop_styles import LOOP_STYLES, OTHER_LOOP
@@ -88,7 +88,7 @@ def _loops(design: Record) -> Chart:
     gain.append(Line(x=np.array(limits), y=np.zeros(2), label="crossover", colour="black", style="dot"))
     return Chart(
         name="loops",
-        caption=f"Open loops at {design['design_airspeed_mps']:g} m/s, one opened at a time.",
+        caption=f"Open loops at {speed(design['design_airspeed_mps'])}, one opened at a time.",
         panels=[
             Panel(x_label="Frequency [rad/s]", y_label="Gain [dB]", lines=gain, log_x=True, x_range=limits, y_range=(-60.0, 60.0)),
             Panel(x_label="Frequency [rad/s]", y_label="Phase [deg]", lines=phase, log_x=True, x_range=limits),
@@ -107,7 +107,7 @@ def _poles(design: Record) -> Chart:
 
     return Chart(
         name="poles",
-        caption=f"Poles at {design['design_airspeed_mps']:g} m/s, up to 45 1/s: the bare aircraft with servos and propeller,"
+        caption=f"Poles at {speed(design['design_airspeed_mps'])}, up to 45 1/s: the bare aircraft with servos and propeller,"
         " and under the autopilot.",
         panels=[
             Panel(

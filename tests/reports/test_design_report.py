@@ -135,8 +135,23 @@ def test_a_perturbed_aircraft_that_falls_short_is_named():
 def test_an_unstable_point_is_worse_than_any_margin():
     verdict = design_verdict(changed(poles={"closed_loop": [[0.02, 0.0], [-1.0, 0.0]]}))
     assert not verdict.safe
-    assert verdict.headline == "Unstable at 1 of 45 points of the grid"
+    assert verdict.headline == "Unstable at 1 of 65 points"
     assert verdict.failures[0] == "unstable at 45 m/s, −33°"
+
+
+def test_a_point_that_says_it_is_unstable_has_no_margin_whatever_was_measured():
+    between = next(i for i, row in enumerate(record()["margins"]) if row["between"])
+    design = record()
+    design["margins"][between]["stable"] = False
+    design["robustness"][0]["stable"] = False
+    verdict = design_verdict(complete(design))
+    assert not verdict.safe
+    assert verdict.failures == [
+        "unstable at 47.5 m/s, −30°",
+        "elevator: gain margin 0.0 dB at 47.5 m/s, −30°, required 6 dB; short at 1 of 65 points",
+        "elevator: phase margin 0.0 deg at 47.5 m/s, −30°, required 45 deg; short at 1 of 65 points",
+        "mass +20 %: unstable at 1 of 45 points, as at 45 m/s, −33°",
+    ]
 
 
 def test_a_pole_at_the_origin_but_for_rounding_is_not_unstable():
@@ -227,7 +242,7 @@ def test_the_overshoot_is_counted_beyond_that_of_the_reference_model():
 
 def test_perturbations_and_checks_of_the_linear_model_are_listed(report):
     robustness = blocks_of(report, Table, "margins")[1]
-    assert [row[0] for row in robustness.rows] == list(CASES)
+    assert [row[0] for row in robustness.rows] == [case.replace("-", "−") for case in CASES]
     assert {row[-1] for row in robustness.rows} == {"yes"}
     (verification,) = blocks_of(report, Table, "linearisation")
     assert verification.head == ["Input", "airspeed [%]", "q [%]", "p [%]"]
