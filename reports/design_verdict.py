@@ -96,7 +96,8 @@ def _perturbed_failures(design: Record) -> list[str]:
             if row is not None:
                 loop = str(row[f"{kind}_loop"]).replace("_", " ")
                 failures.append(
-                    f"{case_name(row)}: {kind} margin {down(row[key])} {unit} of {loop} at {where(row)}, required {required:g} {unit}"
+                    f"{case_name(row)}: {kind} margin {down(row[key])} {unit} of {loop} at {where(row)},"
+                    f" required {required:g} {unit}"
                 )
     return failures
 
