@@ -92,6 +92,6 @@ def _rays(x_range: tuple[float, float], y_range: tuple[float, float], reach: flo
         length = min(x_range[0] / direction[0], y_range[1] / direction[1])
         end = length * direction
         lines.append(Line(x=np.array([0.0, end[0]]), y=np.array([0.0, end[1]]), label="equal damping", colour="grey", style="dot"))
-        at = 0.93 * end
+        at = 0.88 * end
         notes.append(Note(x=float(at[0]) + 0.03 * reach, y=float(at[1]) + 0.04 * reach, text=f"ζ = {ratio:g}", align="left"))
     return lines, notes

@@ -128,6 +128,9 @@ def test_a_disk_margin_of_6_db_keeps_a_loop_37_degrees_from_the_critical_point()
     # points every 2 degrees, and unit gain at a quarter turn is one of them.
     quarter = np.argmin(np.abs(gain[:90]))
     assert abs(phase[quarter] + 180.0) == pytest.approx(36.87, abs=0.01)
+    # Another form of the same: the margin is the least abs(1/(S - T)), and S - T = (1 - L)/(1 + L).
+    loop = 10.0 ** (gain / 20.0) * np.exp(1j * np.radians(phase))
+    assert np.abs((1.0 + loop) / (1.0 - loop)) == pytest.approx(1.0 / 3.0)
 
 
 def test_a_phase_written_a_whole_turn_too_high_is_drawn_no_elsewhere():
