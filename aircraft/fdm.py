@@ -22,9 +22,10 @@ EARTH_RATE = 7.292115e-5
 
 _PROPERTY_NAME = re.compile(r"[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*")
 
-_INTEGRATORS = tuple(
+INTEGRATORS = tuple(
     f"simulation/integrator/{kind}/{motion}" for kind in ("rate", "position") for motion in ("rotational", "translational")
 )
+"""Properties that choose how the rigid body is integrated; 0 in all four holds it still."""
 
 
 class Fdm:
@@ -61,7 +62,7 @@ class Fdm:
             raise AircraftError(f"aircraft '{spec.name}': JSBSim refused {model_file}; run JSBSim on it to see why")
         self._exec.disable_output()
         self._properties = self._exec.get_property_manager()
-        self._motion = {name: self.read(name) for name in _INTEGRATORS}
+        self._motion = {name: self.read(name) for name in INTEGRATORS}
         self.run = self._exec.run
         """Advance one time step. Bound directly to JSBSim: the innermost call of every flight."""
 
@@ -90,22 +91,7 @@ class Fdm:
 
     def place(self, state: RigidBodyState) -> None:
         """Put the aircraft into ``state``, engines running. JSBSim then spins propellers up from rest: let them ``settle``."""
-        u, v, w = state.velocity_body
-        p, q, r = state.rates_body
-        for name, value in (
-            ("ic/lat-geod-rad", state.latitude),
-            ("ic/long-gc-rad", state.longitude),
-            ("ic/h-sl-ft", state.altitude / METRES_PER_FOOT),
-            ("ic/phi-rad", state.roll),
-            ("ic/theta-rad", state.pitch),
-            ("ic/psi-true-rad", state.yaw),
-            ("ic/u-fps", u / METRES_PER_FOOT),
-            ("ic/v-fps", v / METRES_PER_FOOT),
-            ("ic/w-fps", w / METRES_PER_FOOT),
-            ("ic/p-rad_sec", p),
-            ("ic/q-rad_sec", q),
-            ("ic/r-rad_sec", r),
-        ):
+        for name, value in initial_conditions(state):
             self.write(name, value)
         if not self._exec.run_ic():
             raise AircraftError(f"aircraft '{self.spec.name}': JSBSim refused the initial state {state}")
@@ -124,7 +110,7 @@ class Fdm:
     @contextlib.contextmanager
     def frozen(self) -> Iterator[None]:
         """Hold the rigid body where it is while servos, propellers and forces go on, for trim and linearisation."""
-        for name in _INTEGRATORS:
+        for name in INTEGRATORS:
             self.write(name, 0.0)
         try:
             yield
@@ -133,13 +119,8 @@ class Fdm:
                 self.write(name, value)
 
     def hold(self, state: RigidBodyState, steps: int) -> None:
-        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else at rest.
-
-        A body that is held stands still among the stars while the earth turns under it, so it is placed as far east as it will
-        drift west.
-        """
-        drift = EARTH_RATE * steps * self.time_step
-        self.place(replace(state, longitude=state.longitude + drift))
+        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else at rest."""
+        self.place(before_hold(state, steps * self.time_step))
         with self.frozen():
             self.step(steps)
 
@@ -179,6 +160,38 @@ class Fdm:
     def _vector(self, pattern: str, components: str, scale: float) -> tuple[float, float, float]:
         x, y, z = (self.read(pattern.format(component)) * scale for component in components)
         return x, y, z
+
+
+def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
+    """Return the properties, and their values in JSBSim's units, that set an initial state.
+
+    The order matters to the last digit: JSBSim works each one into those before it.
+    """
+    u, v, w = (speed / METRES_PER_FOOT for speed in state.velocity_body)
+    p, q, r = state.rates_body
+    return [
+        ("ic/lat-geod-rad", state.latitude),
+        ("ic/long-gc-rad", state.longitude),
+        ("ic/h-sl-ft", state.altitude / METRES_PER_FOOT),
+        ("ic/phi-rad", state.roll),
+        ("ic/theta-rad", state.pitch),
+        ("ic/psi-true-rad", state.yaw),
+        ("ic/u-fps", u),
+        ("ic/v-fps", v),
+        ("ic/w-fps", w),
+        ("ic/p-rad_sec", p),
+        ("ic/q-rad_sec", q),
+        ("ic/r-rad_sec", r),
+    ]
+
+
+def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
+    """Return where to place a body that is to be in ``state`` after it was held for ``duration`` [s].
+
+    A body that is held stands still among the stars while the earth turns under it, so it is placed as far east as it will drift
+    west.
+    """
+    return replace(state, longitude=state.longitude + EARTH_RATE * duration)
 
 
 @contextlib.contextmanager

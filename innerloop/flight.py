@@ -8,7 +8,7 @@ from aircraft.spec import AircraftSpec
 from aircraft.state import RigidBodyState
 from innerloop.jsbsim_system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND, RESET
 
-_SETTLE_STEPS = 240
+SETTLE_STEPS = 240
 """Two seconds for servos, propeller and the autopilot's filters to stand still before release."""
 
 
@@ -44,5 +44,5 @@ class AutopilotedAircraft:
         self.command_altitude(altitude)
         self.command_heading_rate(0.0)
         self.fdm.write(RESET, -1.0)
-        self.fdm.hold(state, _SETTLE_STEPS)
+        self.fdm.hold(state, SETTLE_STEPS)
         self.fdm.write(RESET, 0.0)
