@@ -3,6 +3,7 @@
 import contextlib
 import os
 import re
+import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 import jsbsim
 
 from aircraft.errors import AircraftError, ReadOnlyPropertyError, UnknownPropertyError
+from aircraft.model_copy import copy_model
 from aircraft.spec import AircraftSpec
 from aircraft.state import RigidBodyState
 from aircraft.units import METRES_PER_FOOT
@@ -27,6 +29,27 @@ INTEGRATORS = tuple(
 )
 """Properties that choose how the rigid body is integrated; 0 in all four holds it still."""
 
+INITIAL_STATE = (
+    "ic/lat-geod-rad", "ic/long-gc-rad", "ic/h-sl-ft", "ic/phi-rad", "ic/theta-rad", "ic/psi-true-rad", "ic/u-fps", "ic/v-fps",
+    "ic/w-fps", "ic/p-rad_sec", "ic/q-rad_sec", "ic/r-rad_sec",
+)  # fmt: skip
+"""JSBSim's initial conditions, in the order in which it must be told: each may change others."""
+
+_ACCELERATION = "accelerations/{}dot-ft_sec2"
+_ANGULAR_ACCELERATION = "accelerations/{}dot-rad_sec2"
+
+START_ENGINES = (("propulsion/set-running", -1.0),)
+"""Property that starts every engine at once, where JSBSim can."""
+
+CRANK = (("propulsion/magneto_cmd", 3.0), ("propulsion/starter_cmd", 1.0))
+STOP_CRANKING = (("propulsion/starter_cmd", 0.0),)
+"""Properties that start an engine as a pilot does: both magnetos, and the starter."""
+
+RUN_UP_STEPS = 1200
+"""Time steps for cranking, and again for running up before an aircraft is placed."""
+
+_SETTLE_STRIDE = 4
+
 
 class Fdm:
     """One aircraft in JSBSim.
@@ -34,7 +57,8 @@ class Fdm:
     Parameters
     ----------
     spec : the aircraft
-    root : JSBSim root to load it from instead of the aircraft's own, e.g. one with an autopilot written into it
+    root : JSBSim root to load it from as it stands, e.g. one with an autopilot written into it; without one, a copy of the
+        aircraft's own model is loaded that has no autopilot, no output, and no play in its servos
     time_step : integration step [s]
 
     Raises
@@ -45,26 +69,41 @@ class Fdm:
     def __init__(self, spec: AircraftSpec, root: Path | None = None, time_step: float = TIME_STEP) -> None:
         self.spec = spec
         self.time_step = time_step
-        root = root or spec.root
-        model_file = root / "aircraft" / spec.model / f"{spec.model}.xml"
+        if root is None:
+            with tempfile.TemporaryDirectory() as copy:
+                copy_model(spec.root, spec.model, Path(copy), play=False)
+                self._exec = self._load(Path(copy))
+        else:
+            self._exec = self._load(root)
+        self._exec.disable_output()
+        self._properties = self._exec.get_property_manager()
+        self._initial = [self.writable_node(name) for name in INITIAL_STATE]
+        self._accelerations = [
+            self.node(name) for name in (*_components(_ACCELERATION, "uvw"), *_components(_ANGULAR_ACCELERATION, "pqr"))
+        ]
+        self._engines_run = False
+        self.cranked = False
+        """Whether an engine had to be started with its starter."""
+        self.run = self._exec.run
+        """Advance one time step. Bound directly to JSBSim: the innermost call of every flight."""
+
+    def _load(self, root: Path) -> jsbsim.FGFDMExec:
+        name, model = self.spec.name, self.spec.model
+        model_file = root / "aircraft" / model / f"{model}.xml"
         if not model_file.is_file():
-            raise AircraftError(f"aircraft '{spec.name}': no model file {model_file}; check the JSBSim root directory")
+            raise AircraftError(f"aircraft '{name}': no model file {model_file}; check the JSBSim root directory")
         with _silence():
             jsbsim.FGJSBBase().debug_lvl = 0  # type: ignore[no-untyped-call]
-            self._exec = jsbsim.FGFDMExec(str(root))
-            self._exec.set_debug_level(0)
-            self._exec.set_dt(time_step)
+            executive = jsbsim.FGFDMExec(str(root))
+            executive.set_debug_level(0)
+            executive.set_dt(self.time_step)
             try:
-                loaded = self._exec.load_model(spec.model)
+                loaded = executive.load_model(model)
             except jsbsim.BaseError:
                 loaded = False
         if not loaded:
-            raise AircraftError(f"aircraft '{spec.name}': JSBSim refused {model_file}; run JSBSim on it to see why")
-        self._exec.disable_output()
-        self._properties = self._exec.get_property_manager()
-        self._motion = {name: self.read(name) for name in INTEGRATORS}
-        self.run = self._exec.run
-        """Advance one time step. Bound directly to JSBSim: the innermost call of every flight."""
+            raise AircraftError(f"aircraft '{name}': JSBSim refused its model '{model}'; run JSBSim on it to see why")
+        return executive
 
     def node(self, name: str) -> jsbsim.FGPropertyNode:
         """Return the node of an existing property, for repeated access at the least cost."""
@@ -90,17 +129,63 @@ class Fdm:
         self.writable_node(name).set_double_value(value)
 
     def place(self, state: RigidBodyState) -> None:
-        """Put the aircraft into ``state``, engines running. JSBSim then spins propellers up from rest: let them ``settle``."""
-        for name, value in initial_conditions(state):
-            self.write(name, value)
-        if not self._exec.run_ic():
+        """Put the aircraft into ``state``, configured as its spec says. Engines go on as they were; the first time they start."""
+        self._initialise(state)
+        if not self._engines_run:
+            self._start_engines()
+            self._initialise(state)
+
+    def _initialise(self, state: RigidBodyState) -> None:
+        for node, (_, value) in zip(self._initial, initial_conditions(state), strict=True):
+            node.set_double_value(value)
+        try:
+            placed = self._exec.run_ic()
+        except jsbsim.BaseError as error:
+            raise AircraftError(f"aircraft '{self.spec.name}' does not run in JSBSim alone: {error}") from None
+        if not placed:
             raise AircraftError(f"aircraft '{self.spec.name}': JSBSim refused the initial state {state}")
-        self.write("propulsion/set-running", -1.0)
+        for name, value in self.spec.configuration:
+            self.write(name, value)
+
+    def _start_engines(self) -> None:
+        """Start every engine: at once where JSBSim can, otherwise as a pilot does; then run them up while the body is held.
+
+        A governed propeller that comes from idle can stay at its fine stop, wind-milling; from full throttle it governs.
+        """
+        self._engines_run = True
+        for name, value in START_ENGINES:
+            self.write(name, value)
+        if not self.spec.engine_flags:
+            return
+        throttles = {name: self.read(name) for name in self.spec.input("throttle").commands}
+        with self.frozen():
+            for name in throttles:
+                self.write(name, 1.0)
+            self.cranked = not self._running()
+            if self.cranked:
+                for name, value in CRANK:
+                    self.write(name, value)
+            self.step(RUN_UP_STEPS)
+            for name, value in STOP_CRANKING:
+                self.write(name, value)
+            self.step(RUN_UP_STEPS)
+        for name, value in throttles.items():
+            self.write(name, value)
+        if not self._running():
+            seconds = RUN_UP_STEPS * self.time_step
+            raise AircraftError(
+                f"aircraft '{self.spec.name}': an engine does not run after {seconds:g} s of cranking and as much without"
+            )
+
+    def _running(self) -> bool:
+        return all(self.read(name) > 0.5 for name in self.spec.engine_flags)
 
     def command(self, inputs: dict[str, float]) -> None:
         """Set control inputs by name [-], unclipped."""
         for name, value in inputs.items():
-            self.write(self.spec.input(name).command, value)
+            control_input = self.spec.input(name)
+            for command in control_input.commands:
+                self.write(command, control_input.command(value))
 
     def step(self, count: int = 1) -> None:
         """Advance ``count`` time steps."""
@@ -110,12 +195,13 @@ class Fdm:
     @contextlib.contextmanager
     def frozen(self) -> Iterator[None]:
         """Hold the rigid body where it is while servos, propellers and forces go on, for trim and linearisation."""
+        before = {name: self.read(name) for name in INTEGRATORS}
         for name in INTEGRATORS:
             self.write(name, 0.0)
         try:
             yield
         finally:
-            for name, value in self._motion.items():
+            for name, value in before.items():
                 self.write(name, value)
 
     def hold(self, state: RigidBodyState, steps: int) -> None:
@@ -124,19 +210,21 @@ class Fdm:
         with self.frozen():
             self.step(steps)
 
-    def settle(self, tolerance: float = 1e-9, steps_max: int = 1200) -> bool:
-        """Step, inside ``frozen``, until every driven state moves by less than ``tolerance`` of its size a step.
+    def settle(self, tolerance: float = 1e-9, steps_max: int = 4800) -> bool:
+        """Step, inside ``frozen``, until no acceleration [m/s^2, rad/s^2] moves by more than ``tolerance`` a step.
 
         Returns
         -------
         bool : whether that was reached within ``steps_max`` steps
         """
-        nodes = [self.node(state.position) for state in self.spec.driven_states]
-        before = [node.get_double_value() for node in nodes]
-        for _ in range(steps_max):
-            self.run()
+        run, nodes = self.run, self._accelerations
+        before: list[float] = []
+        for _ in range(0, steps_max, _SETTLE_STRIDE):
+            for _ in range(_SETTLE_STRIDE):
+                run()
             after = [node.get_double_value() for node in nodes]
-            if all(abs(a - b) <= tolerance * max(1.0, abs(a)) for a, b in zip(after, before, strict=True)):
+            limit = _SETTLE_STRIDE * tolerance
+            if before and all(abs(a - b) <= limit * max(1.0, abs(a)) for a, b in zip(after, before, strict=True)):
                 return True
             before = after
         return False
@@ -147,7 +235,7 @@ class Fdm:
 
     def acceleration_body(self) -> tuple[float, float, float]:
         """Return the rates of the body velocity components [m/s^2], as they stand after the last step."""
-        return self._vector("accelerations/{}dot-ft_sec2", "uvw", METRES_PER_FOOT)
+        return self._vector(_ACCELERATION, "uvw", METRES_PER_FOOT)
 
     def rates_body(self) -> tuple[float, float, float]:
         """Return roll, pitch and yaw rate [rad/s]."""
@@ -155,10 +243,10 @@ class Fdm:
 
     def angular_acceleration(self) -> tuple[float, float, float]:
         """Return the rates of p, q and r [rad/s^2], as they stand after the last step."""
-        return self._vector("accelerations/{}dot-rad_sec2", "pqr", 1.0)
+        return self._vector(_ANGULAR_ACCELERATION, "pqr", 1.0)
 
     def _vector(self, pattern: str, components: str, scale: float) -> tuple[float, float, float]:
-        x, y, z = (self.read(pattern.format(component)) * scale for component in components)
+        x, y, z = (self.read(name) * scale for name in _components(pattern, components))
         return x, y, z
 
 
@@ -168,21 +256,19 @@ def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
     The order matters to the last digit: JSBSim works each one into those before it.
     """
     u, v, w = (speed / METRES_PER_FOOT for speed in state.velocity_body)
-    p, q, r = state.rates_body
-    return [
-        ("ic/lat-geod-rad", state.latitude),
-        ("ic/long-gc-rad", state.longitude),
-        ("ic/h-sl-ft", state.altitude / METRES_PER_FOOT),
-        ("ic/phi-rad", state.roll),
-        ("ic/theta-rad", state.pitch),
-        ("ic/psi-true-rad", state.yaw),
-        ("ic/u-fps", u),
-        ("ic/v-fps", v),
-        ("ic/w-fps", w),
-        ("ic/p-rad_sec", p),
-        ("ic/q-rad_sec", q),
-        ("ic/r-rad_sec", r),
-    ]
+    values = (
+        state.latitude,
+        state.longitude,
+        state.altitude / METRES_PER_FOOT,
+        state.roll,
+        state.pitch,
+        state.yaw,
+        u,
+        v,
+        w,
+        *state.rates_body,
+    )
+    return list(zip(INITIAL_STATE, values, strict=True))
 
 
 def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
@@ -194,14 +280,20 @@ def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
     return replace(state, longitude=state.longitude + EARTH_RATE * duration)
 
 
+def _components(pattern: str, components: str) -> list[str]:
+    return [pattern.format(component) for component in components]
+
+
 @contextlib.contextmanager
 def _silence() -> Iterator[None]:
-    """Keep the C++ start-up banner of JSBSim off standard output."""
-    saved = os.dup(1)
+    """Keep the banner and the warnings that JSBSim prints in C++ off standard output and standard error."""
+    saved = {stream: os.dup(stream) for stream in (1, 2)}
     try:
         with Path(os.devnull).open("w", encoding="utf-8") as sink:
-            os.dup2(sink.fileno(), 1)
+            for stream in saved:
+                os.dup2(sink.fileno(), stream)
             yield
     finally:
-        os.dup2(saved, 1)
-        os.close(saved)
+        for stream, copy in saved.items():
+            os.dup2(copy, stream)
+            os.close(copy)

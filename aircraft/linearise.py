@@ -5,10 +5,13 @@ JSBSim's own linearisation bypasses servo lags and leaves the simulation unusabl
 propeller cannot be set directly; it is moved by holding its input off trim, and its own pole is read from how it returns. What an
 input does at once, before servo or propeller has moved (a motor's torque on the airframe), is told apart by reading after one
 step as well.
+
+Where the spec names no property that follows an input (of a stock aircraft nobody knows which), the input's way to the airframe is
+measured: from a step of it, the area that the accelerations leave to their end is the time constant of a lag.
 """
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import control
 import numpy as np
@@ -25,9 +28,22 @@ BODY_STATES = ("airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "alt
 EXTRA_OUTPUTS = ("heading_rate", "climb_rate")
 """Outputs beside the states: rate of the air-relative course [rad/s] and climb rate [m/s]."""
 
-_STEPS = {"airspeed": 0.05, "altitude": 5.0}
+_AIRSPEED_STEP = 0.0025
+"""Of the airspeed itself [-]."""
+
+_ALTITUDE_STEP = 5.0
 _STEP = 0.002
 _INPUT_STEP = 0.01
+_LAG_STEP = {"throttle": 0.05}
+"""Input steps from which lags are measured: a turbine spools at a steady rate, so a small step would see no lag at all [-]."""
+
+_SETTLED = 1e-8
+"""Change of acceleration a step below which engines count as settled: behind one as slow as a second, 1e-6 from the end."""
+
+_LAG_STEPS_MAX = 2400
+_LAG_SETTLED = 0.002
+_NO_LAG = 0.6
+"""A time constant below this many steps is the half step of holding an input, not a lag [-]."""
 
 
 def linearise(fdm: Fdm, trim: Trim) -> control.StateSpace:
@@ -41,8 +57,9 @@ def linearise(fdm: Fdm, trim: Trim) -> control.StateSpace:
     Returns
     -------
     control.StateSpace
-        States: ``BODY_STATES`` followed by the aircraft's driven states. Inputs: the aircraft's control inputs [-]. Outputs: every
-        state followed by ``EXTRA_OUTPUTS``. All are deviations from trim, in SI and radians.
+        States: ``BODY_STATES`` followed by the aircraft's driven states, then ``INPUT_effect`` for each measured lag. Inputs: the
+        aircraft's control inputs [-]. Outputs: every state followed by ``EXTRA_OUTPUTS``. All are deviations from trim, in SI and
+        radians.
 
     Raises
     ------
@@ -68,7 +85,8 @@ class _Differences:
 
     def model(self) -> control.StateSpace:
         n_body, n_driven, n_inputs = len(BODY_STATES), len(self._spec.driven_states), len(self._inputs)
-        body_steps = np.array([_STEPS.get(name, _STEP) for name in BODY_STATES])
+        steps = {"airspeed": _AIRSPEED_STEP * self._trim.airspeed, "altitude": _ALTITUDE_STEP}
+        body_steps = np.array([steps.get(name, _STEP) for name in BODY_STATES])
         by_body = np.column_stack([self._difference(body=j, step=step) for j, step in enumerate(body_steps)])
         by_input = np.column_stack([self._difference(control_input=j, step=_INPUT_STEP) for j in range(n_inputs)])
         driver = [[i.name for i in self._spec.inputs].index(s.input) for s in self._spec.driven_states]
@@ -96,17 +114,49 @@ class _Differences:
         driven_forcing = np.zeros((n_driven, n_inputs))
         for i, j in enumerate(driver):
             driven_forcing[i, j] = -poles[i] * driven_by_input[i, j]
+        extras = np.hstack([read_by_body[n_body:], by_driven[n_body:]])
+        model = _Model(a=a, b=np.vstack([direct[:n_body], driven_forcing]), c=extras, d=direct[n_body:])
         states = [*BODY_STATES, *(s.name for s in self._spec.driven_states)]
+        for j, control_input in enumerate(self._spec.inputs):
+            if j in driver or (lag := self._measured_lag(j)) <= _NO_LAG * self._fdm.time_step:
+                continue
+            model = model.with_lag(j, lag)
+            states.append(f"{control_input.name}_effect")
         return control.ss(
-            a,
-            np.vstack([direct[:n_body], driven_forcing]),
-            np.vstack([np.eye(len(states)), np.hstack([read_by_body[n_body:], by_driven[n_body:]])]),
-            np.vstack([np.zeros((len(states), n_inputs)), direct[n_body:]]),
+            model.a,
+            model.b,
+            np.vstack([np.eye(len(states)), model.c]),
+            np.vstack([np.zeros((len(states), n_inputs)), model.d]),
             states=states,
             inputs=[i.name for i in self._spec.inputs],
             outputs=[*states, *EXTRA_OUTPUTS],
             name=self._spec.name,
         )
+
+    def _measured_lag(self, j: int) -> float:
+        """Return the time constant of the lag between input j and the accelerations [s], from the area above a step's answer."""
+        name, step = self._spec.inputs[j].name, _LAG_STEP.get(self._spec.inputs[j].name, _INPUT_STEP)
+        inputs = self._inputs.copy()
+        inputs[j] += step if inputs[j] + step <= self._spec.inputs[j].upper else -step
+        self._hold(self._body, inputs)
+        end = self._accelerations()
+        self._hold(self._body, self._inputs)
+        whole = self._accelerations() - end
+        size = float(whole @ whole)
+        if size == 0.0:
+            raise AircraftError(f"aircraft '{self._spec.name}': nothing moves with '{name}'; it cannot be controlled with it")
+        self._fdm.command({name: float(inputs[j])})
+        area = 0.5
+        for _ in range(_LAG_STEPS_MAX):
+            self._fdm.step()
+            left = float((self._accelerations() - end) @ whole) / size
+            area += left
+            if abs(left) < _LAG_SETTLED:
+                break
+        return max(0.0, area) * self._fdm.time_step
+
+    def _accelerations(self) -> npt.NDArray[np.float64]:
+        return np.array([*self._fdm.acceleration_body(), *self._fdm.angular_acceleration()])
 
     def _difference(self, *, body: int | None = None, control_input: int | None = None, step: float) -> npt.NDArray[np.float64]:
         high, low = (self._read(body, control_input, sign * step) for sign in (1.0, -1.0))
@@ -141,7 +191,7 @@ class _Differences:
         self._fdm.place(
             replace(self._trim.state(), altitude=altitude, roll=roll, pitch=pitch, velocity_body=velocity, rates_body=(p, q, r))
         )
-        if not self._fdm.settle():
+        if not self._fdm.settle(_SETTLED):
             raise AircraftError(f"aircraft '{self._spec.name}': servos and propeller do not settle near the trim; check its spec")
 
     def _driven(self) -> npt.NDArray[np.float64]:
@@ -173,3 +223,27 @@ class _Differences:
         self._fdm.step()
         second = self._driven()[i] - rest
         return math.log(second / first) / self._fdm.time_step
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Model:
+    """Matrices of states and of extra outputs."""
+
+    a: npt.NDArray[np.float64]
+    b: npt.NDArray[np.float64]
+    c: npt.NDArray[np.float64]
+    d: npt.NDArray[np.float64]
+
+    def with_lag(self, j: int, lag: float) -> "_Model":
+        """Return the model in which input j acts through a state of its own that follows it with time constant ``lag`` [s]."""
+        n, m = self.b.shape
+        forcing = np.zeros((1, m))
+        forcing[0, j] = 1.0 / lag
+        without = np.ones(m)
+        without[j] = 0.0
+        return _Model(
+            a=np.block([[self.a, self.b[:, [j]]], [np.zeros((1, n)), np.array([[-1.0 / lag]])]]),
+            b=np.vstack([self.b * without, forcing]),
+            c=np.hstack([self.c, self.d[:, [j]]]),
+            d=self.d * without,
+        )

@@ -1,5 +1,7 @@
-"""What the study must know of a JSBSim aircraft beyond its model files. A new aircraft is one more entry in ``SPECS``."""
+"""What the study must know of a JSBSim aircraft beyond its model files."""
 
+import bisect
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,14 +19,24 @@ class ControlInput:
     Attributes
     ----------
     name : the input's name in linear models, e.g. ``elevator``
-    command : JSBSim property that takes the command [-]
+    commands : JSBSim properties that take the command, one for each engine or surface that shares it [-]
     lower, upper : range of the command [-]
+    shape : points (effect, command) of a surface that is flown by its effect, ascending; then the range is that of the effect
     """
 
     name: str
-    command: str
+    commands: tuple[str, ...]
     lower: float
     upper: float
+    shape: tuple[tuple[float, float], ...] = ()
+
+    def command(self, value: float) -> float:
+        """Return what JSBSim is told for a value of this input, which is its effect where it has a shape [-]."""
+        if not self.shape:
+            return value
+        i = min(max(bisect.bisect(self.shape, (value,)), 1), len(self.shape) - 1)
+        (x0, y0), (x1, y1) = self.shape[i - 1], self.shape[i]
+        return y0 + (y1 - y0) * (value - x0) / (x1 - x0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,6 +57,13 @@ class DrivenState:
     scale: float = 1.0
 
 
+BANK_RESERVE = math.radians(5.0)
+"""What the autopilot may bank beyond the bank that the guidance plans with [rad]."""
+
+DESIGN_AIRSPEEDS = 5
+"""Number of airspeeds at which an autopilot is designed."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Envelope:
     """Where the autopilot may fly the aircraft.
@@ -52,12 +71,29 @@ class Envelope:
     Attributes
     ----------
     airspeed_min, airspeed_max : range of commanded true airspeed [m/s]
-    bank_max : largest commanded bank angle [rad]
+    airspeed : at which the aircraft flies the study unless told otherwise [m/s]
+    bank : of the coordinated turn that the guidance may ask for [rad]
+    stall : stall airspeed in level flight; not a number where it is not known [m/s]
+    notes : what set the limits
     """
 
     airspeed_min: float
     airspeed_max: float
-    bank_max: float
+    airspeed: float
+    bank: float
+    stall: float = math.nan
+    notes: tuple[str, ...] = ()
+
+    @property
+    def bank_max(self) -> float:
+        """Return the largest bank that the autopilot commands [rad]."""
+        return self.bank + BANK_RESERVE
+
+    @property
+    def design_airspeeds(self) -> tuple[float, ...]:
+        """Return the airspeeds at which the autopilot is designed [m/s], ascending."""
+        step = (self.airspeed_max - self.airspeed_min) / (DESIGN_AIRSPEEDS - 1)
+        return tuple(self.airspeed_min + i * step for i in range(DESIGN_AIRSPEEDS))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,9 +107,11 @@ class AircraftSpec:
     root : JSBSim root directory that holds ``aircraft/`` and ``engine/``
     model : JSBSim model name
     inputs : control inputs; ``elevator``, ``aileron`` and ``throttle`` at least
-    driven_states : servo and propeller states
-    envelope : limits of the autopilot
-    design_airspeeds : airspeeds at which the autopilot is designed [m/s], ascending
+    driven_states : servo and propeller states that have a property of their own; lags that have none are measured
+    envelope : where its maker or its model's author says that it flies; none where that is to be found by trimming it
+    configuration : JSBSim properties and the values they have in every flight, such as a retracted gear
+    engine_flags : JSBSim properties that are 1 while an engine runs
+    settle_time : in which servos and engines stand still behind a held aircraft [s]
     source : where the model's numbers come from
     """
 
@@ -82,9 +120,11 @@ class AircraftSpec:
     root: Path
     model: str
     inputs: tuple[ControlInput, ...]
-    driven_states: tuple[DrivenState, ...]
-    envelope: Envelope
-    design_airspeeds: tuple[float, ...]
+    driven_states: tuple[DrivenState, ...] = ()
+    envelope: Envelope | None = None
+    configuration: tuple[tuple[str, float], ...] = ()
+    engine_flags: tuple[str, ...] = ()
+    settle_time: float = 2.0
     source: str
 
     def input(self, name: str) -> ControlInput:
@@ -101,17 +141,16 @@ X8 = AircraftSpec(
     root=MODELS,
     model="x8",
     inputs=(
-        ControlInput(name="elevator", command="fcs/elevator-cmd-norm", lower=-1.0, upper=1.0),
-        ControlInput(name="aileron", command="fcs/aileron-cmd-norm", lower=-1.0, upper=1.0),
-        ControlInput(name="throttle", command="fcs/throttle-cmd-norm", lower=0.0, upper=1.0),
+        ControlInput(name="elevator", commands=("fcs/elevator-cmd-norm",), lower=-1.0, upper=1.0),
+        ControlInput(name="aileron", commands=("fcs/aileron-cmd-norm",), lower=-1.0, upper=1.0),
+        ControlInput(name="throttle", commands=("fcs/throttle-cmd-norm",), lower=0.0, upper=1.0),
     ),
     driven_states=(
         DrivenState(name="elevator_position", position="fcs/elevator-pos-rad", input="elevator"),
         DrivenState(name="aileron_position", position="fcs/aileron-pos-rad", input="aileron"),
         DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM),
     ),
-    envelope=Envelope(airspeed_min=15.0, airspeed_max=25.0, bank_max=0.8727),
-    design_airspeeds=(14.0, 17.0, 20.0, 23.0, 26.0),
+    envelope=Envelope(airspeed_min=15.0, airspeed_max=25.0, airspeed=19.42, bank=math.radians(45.0)),
     source="Gryte et al., ICUAS 2018; inertia and propulsion as explained in the model file",
 )
 
@@ -121,10 +160,10 @@ AEROSONDE = AircraftSpec(
     root=MODELS,
     model="aerosonde",
     inputs=(
-        ControlInput(name="elevator", command="fcs/elevator-cmd-norm", lower=-1.0, upper=1.0),
-        ControlInput(name="aileron", command="fcs/aileron-cmd-norm", lower=-1.0, upper=1.0),
-        ControlInput(name="throttle", command="fcs/throttle-cmd-norm", lower=0.0, upper=1.0),
-        ControlInput(name="rudder", command="fcs/rudder-cmd-norm", lower=-1.0, upper=1.0),
+        ControlInput(name="elevator", commands=("fcs/elevator-cmd-norm",), lower=-1.0, upper=1.0),
+        ControlInput(name="aileron", commands=("fcs/aileron-cmd-norm",), lower=-1.0, upper=1.0),
+        ControlInput(name="throttle", commands=("fcs/throttle-cmd-norm",), lower=0.0, upper=1.0),
+        ControlInput(name="rudder", commands=("fcs/rudder-cmd-norm",), lower=-1.0, upper=1.0),
     ),
     driven_states=(
         DrivenState(name="elevator_position", position="fcs/elevator-pos-rad", input="elevator"),
@@ -132,18 +171,6 @@ AEROSONDE = AircraftSpec(
         DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM),
         DrivenState(name="rudder_position", position="fcs/rudder-pos-rad", input="rudder"),
     ),
-    envelope=Envelope(airspeed_min=21.0, airspeed_max=30.0, bank_max=0.8727),
-    design_airspeeds=(20.0, 22.5, 25.0, 27.5, 30.0),
+    envelope=Envelope(airspeed_min=21.0, airspeed_max=30.0, airspeed=25.0, bank=math.radians(45.0)),
     source="Beard and McLain, Small Unmanned Aircraft, supplement; servos and rotor inertia as explained in the model files",
 )
-
-SPECS: dict[str, AircraftSpec] = {aircraft.name: aircraft for aircraft in (X8, AEROSONDE)}
-"""Every aircraft that commands accept."""
-
-
-def find_spec(name: str) -> AircraftSpec:
-    """Return the aircraft called ``name``; raises AircraftError that lists the known ones."""
-    try:
-        return SPECS[name]
-    except KeyError:
-        raise AircraftError(f"unknown aircraft '{name}'; known: {', '.join(sorted(SPECS))}") from None

@@ -8,9 +8,6 @@ from aircraft.spec import AircraftSpec
 from aircraft.state import RigidBodyState
 from innerloop.jsbsim_system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND, RESET
 
-SETTLE_STEPS = 240
-"""Two seconds for servos, propeller and the autopilot's filters to stand still before release."""
-
 
 class AutopilotedAircraft:
     """An aircraft and its autopilot, as ``innerloop.jsbsim_root.write_root`` wrote them.
@@ -44,5 +41,5 @@ class AutopilotedAircraft:
         self.command_altitude(altitude)
         self.command_heading_rate(0.0)
         self.fdm.write(RESET, -1.0)
-        self.fdm.hold(state, SETTLE_STEPS)
+        self.fdm.hold(state, round(self.fdm.spec.settle_time / self.fdm.time_step))
         self.fdm.write(RESET, 0.0)

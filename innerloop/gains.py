@@ -1,99 +1,78 @@
-"""Servo LQR at one airspeed: gains from the linearisation, nothing pasted.
+"""Servo LQR at one airspeed and bank: gains from the linearisation, nothing pasted.
 
-Why a servo LQR: the plant is multivariable (elevator and throttle both move airspeed and altitude), every state it feeds back
-is one that a small autopilot measures, integral action comes with the design, and one set of deviations scales to the next
-aircraft.
+Why a servo LQR: the plant is multivariable (elevator and throttle both move airspeed and altitude, aileron and rudder both roll and
+yaw), every state it feeds back is one that an autopilot measures, integral action comes with the design, and weights that follow from
+the aircraft's own frequencies carry over to the next aircraft.
 
-Servo and propeller states are left out of the feedback (nobody measures a hobby servo's position) and out of the Riccati
-equation, where they stand for their static gain; the margins are then computed with them and with the computing delay.
+Servo and engine states are left out of the feedback (nobody measures a hobby servo's position) and out of the Riccati
+equation, where they stand for their static gain; the margins are then computed with them and with the computing delay. At a bank,
+longitudinal and lateral motion couple; the gains of each are computed as if the other stood still, and the margins with both.
 """
 
-from collections.abc import Sequence
+import math
 from dataclasses import dataclass
 
 import control
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.linearise import BODY_STATES
-from innerloop.weights import DesignWeights
+from aircraft.trim import Trim
+from innerloop.quasi_static import pick, quasi_static
+from innerloop.weights import STANDARD_GRAVITY, ControlWeights, DesignWeights
 
 LONGITUDINAL = ("airspeed", "climb_rate", "q", "pitch", "altitude")
 """Measured longitudinal states. Climb rate stands for angle of attack, which small aircraft do not measure."""
 
-LATERAL = ("p", "r", "roll")
-"""Measured lateral states. Sideslip, not measured either, is in the Riccati equation but not fed back."""
+LATERAL = ("p", "r", "roll", "beta")
+"""Measured lateral states. Sideslip is fed back where there is a rudder to act on it; without one, it is not measured, and stays in
+the Riccati equation only."""
 
 Matrix = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gains:
-    """Feedback at one airspeed.
+    """Feedback at one airspeed and bank.
 
     Attributes
     ----------
-    airspeed : [m/s]
+    airspeed, bank : [m/s, rad]
     longitudinal : shape (2, 5), from deviations of ``LONGITUDINAL`` to elevator and throttle [-]
     longitudinal_integral : shape (2, 2), from the integrals of airspeed and altitude error to elevator and throttle [-]
-    lateral : shape (3,), from deviations of ``LATERAL`` to aileron [-]
+    lateral : shape (2, 4), from deviations of ``LATERAL`` to aileron and rudder [-]; zero where there is no rudder
     heading_integral : from the integral of heading-rate error to bank command [rad/rad]
-    roll_rate_feedforward, roll_acceleration_feedforward : aileron for the model's roll rate and acceleration [s, s^2]
+    sideslip_integral : from the integral of sideslip to rudder [1/(rad s)]
+    roll_rate_feedforward, roll_acceleration_feedforward : shape (2,), aileron and rudder for the model's roll rate and acceleration
+        [s, s^2]
     """
 
     airspeed: float
+    bank: float
     longitudinal: Matrix
     longitudinal_integral: Matrix
     lateral: Matrix
     heading_integral: float
-    roll_rate_feedforward: float
-    roll_acceleration_feedforward: float
+    sideslip_integral: float
+    roll_rate_feedforward: Matrix
+    roll_acceleration_feedforward: Matrix
 
 
-def design_gains(model: control.StateSpace, airspeed: float, weights: DesignWeights) -> Gains:
-    """Design the feedback for a linear model from ``aircraft.linearise`` at ``airspeed`` [m/s]."""
-    plant = _quasi_static(model)
-    longitudinal, longitudinal_integral = _longitudinal(plant, weights)
-    lateral, aileron_integral, a_p, b_p = _lateral(plant, weights)
+def design_gains(model: control.StateSpace, trim: Trim, weights: DesignWeights, controls: ControlWeights) -> Gains:
+    """Design the feedback for a linear model from ``aircraft.linearise`` about ``trim``."""
+    plant = quasi_static(model)
+    longitudinal, longitudinal_integral = _longitudinal(plant, weights, controls)
+    lateral, heading_integral, sideslip_integral = _lateral(plant, weights, controls)
+    by_rate, by_acceleration = _feedforward(plant, trim)
     return Gains(
-        airspeed=airspeed,
+        airspeed=trim.airspeed,
+        bank=trim.roll,
         longitudinal=longitudinal,
         longitudinal_integral=longitudinal_integral,
         lateral=lateral,
-        heading_integral=aileron_integral / float(lateral[LATERAL.index("roll")]),
-        roll_rate_feedforward=-a_p / b_p,
-        roll_acceleration_feedforward=1.0 / b_p,
-    )
-
-
-def _quasi_static(model: control.StateSpace) -> control.StateSpace:
-    """Replace every state that follows an input by its static gain."""
-    labels: Sequence[str] = model.state_labels
-    rigid = [i for i, name in enumerate(labels) if name in BODY_STATES]
-    driven = [i for i, name in enumerate(labels) if name not in BODY_STATES]
-    a, b, c, d = model.A, model.B, model.C, model.D
-    inverse = -np.linalg.inv(a[np.ix_(driven, driven)])
-    by_rigid, by_input = inverse @ a[np.ix_(driven, rigid)], inverse @ b[driven]
-    return control.ss(
-        a[np.ix_(rigid, rigid)] + a[np.ix_(rigid, driven)] @ by_rigid,
-        b[rigid] + a[np.ix_(rigid, driven)] @ by_input,
-        c[:, rigid] + c[:, driven] @ by_rigid,
-        d + c[:, driven] @ by_input,
-        states=[labels[i] for i in rigid],
-        inputs=model.input_labels,
-        outputs=model.output_labels,
-    )
-
-
-def _pick(plant: control.StateSpace, states: Sequence[str], inputs: Sequence[str], outputs: Sequence[str]) -> tuple[Matrix, ...]:
-    rows = [plant.state_labels.index(name) for name in states]
-    columns = [plant.input_labels.index(name) for name in inputs]
-    reads = [plant.output_labels.index(name) for name in outputs]
-    return (
-        plant.A[np.ix_(rows, rows)],
-        plant.B[np.ix_(rows, columns)],
-        plant.C[np.ix_(reads, rows)],
-        plant.D[np.ix_(reads, columns)],
+        heading_integral=heading_integral,
+        sideslip_integral=sideslip_integral,
+        roll_rate_feedforward=by_rate,
+        roll_acceleration_feedforward=by_acceleration,
     )
 
 
@@ -109,18 +88,42 @@ def _servo(a: Matrix, b: Matrix, c: Matrix, d: Matrix, q: Matrix, r: Matrix) -> 
     return np.asarray(gain)
 
 
-def _longitudinal(plant: control.StateSpace, w: DesignWeights) -> tuple[Matrix, Matrix]:
+def _longitudinal(plant: control.StateSpace, w: DesignWeights, controls: ControlWeights) -> tuple[Matrix, Matrix]:
     states = ("airspeed", "alpha", "q", "pitch", "altitude")
-    a, b, c, d = _pick(plant, states, ("elevator", "throttle"), ("airspeed", "altitude"))
-    q = _bryson(w.airspeed, 0.0, 0.0, w.pitch, w.altitude, w.airspeed_integral, w.altitude_integral)
-    gain = _servo(a, b, c, d, q, _bryson(w.elevator, w.throttle))
-    _, _, measured, _ = _pick(plant, states, ("elevator",), LONGITUDINAL)
+    a, b, c, d = pick(plant, states, ("elevator", "throttle"), ("airspeed", "altitude"))
+    q = _bryson(w.airspeed, 0.0, w.pitch_rate, w.pitch, w.altitude, w.airspeed_integral, w.altitude_integral)
+    gain = _servo(a, b, c, d, q, _bryson(controls.elevator, controls.throttle))
+    _, _, measured, _ = pick(plant, states, ("elevator",), LONGITUDINAL)
     return gain[:, :5] @ np.linalg.inv(measured), -gain[:, 5:]
 
 
-def _lateral(plant: control.StateSpace, w: DesignWeights) -> tuple[Matrix, float, float, float]:
-    states = ("beta", *LATERAL)
-    a, b, c, d = _pick(plant, states, ("aileron",), ("heading_rate",))
-    q = _bryson(0.0, w.roll_rate, 0.0, w.roll, w.heading_integral)
-    gain = _servo(a, b, c, d, q, _bryson(w.aileron))
-    return gain[0, 1:4], -float(gain[0, 4]), float(a[1, 1]), float(b[1, 0])
+def _lateral(plant: control.StateSpace, w: DesignWeights, controls: ControlWeights) -> tuple[Matrix, float, float]:
+    """Return the gains from ``LATERAL``, and those from the integrals of heading-rate error and of sideslip."""
+    states = ("beta", "p", "r", "roll")
+    if not _has_rudder(plant):
+        a, b, c, d = pick(plant, states, ("aileron",), ("heading_rate",))
+        q = _bryson(0.0, w.roll_rate, 0.0, w.roll, w.heading_integral)
+        gain = _servo(a, b, c, d, q, _bryson(controls.aileron))[0]
+        return np.array([[*gain[1:4], 0.0], np.zeros(4)]), -float(gain[4]) / float(gain[3]), 0.0
+    a, b, c, d = pick(plant, states, ("aileron", "rudder"), ("heading_rate", "beta"))
+    q = _bryson(w.sideslip, w.roll_rate, 0.0, w.roll, w.heading_integral, w.sideslip_integral)
+    gain = _servo(a, b, c, d, q, _bryson(controls.aileron, controls.rudder))
+    return gain[:, [1, 2, 3, 0]], -float(gain[0, 4]) / float(gain[0, 3]), float(gain[1, 5])
+
+
+def _has_rudder(plant: control.StateSpace) -> bool:
+    return "rudder" in plant.input_labels
+
+
+def _feedforward(plant: control.StateSpace, trim: Trim) -> tuple[Matrix, Matrix]:
+    """Return aileron and rudder for a roll rate and for a roll acceleration.
+
+    The rudder takes out the yaw that rolling and aileron make, and turns the nose with the turn: r grows by g cos(bank)/V times p.
+    """
+    axes, inputs = (("p", "r"), ("aileron", "rudder")) if _has_rudder(plant) else (("p",), ("aileron",))
+    a, b, _, _ = pick(plant, axes, inputs, ("p",))
+    turning = np.array([0.0, STANDARD_GRAVITY * math.cos(trim.roll) / trim.airspeed])[: len(axes)]
+    inverse = np.linalg.inv(b)
+    by_rate, by_acceleration = inverse @ (turning - a[:, 0]), inverse[:, 0]
+    padding = np.zeros(2 - len(axes))
+    return np.concatenate([by_rate, padding]), np.concatenate([by_acceleration, padding])

@@ -6,12 +6,12 @@ The commands are the properties ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND``
 import math
 import xml.etree.ElementTree as ET
 
-import numpy as np
+from collections.abc import Callable
 
-from aircraft.spec import AircraftSpec
+from aircraft.spec import AircraftSpec, ControlInput
 from aircraft.units import METRES_PER_FOOT
-from innerloop.controller import bank_slope
-from innerloop.gains import LATERAL, LONGITUDINAL
+from innerloop.control_law import bank_slopes
+from innerloop.gains import LATERAL, LONGITUDINAL, Gains
 from innerloop.jsbsim_xml import (
     clipped,
     function,
@@ -26,7 +26,8 @@ from innerloop.jsbsim_xml import (
     total,
     within,
 )
-from innerloop.schedule import BANKS_DEG, STANDARD_GRAVITY, Schedule
+from innerloop.schedule import Schedule
+from innerloop.weights import STANDARD_GRAVITY
 
 AIRSPEED_COMMAND = "autopilot/airspeed-command-mps"
 ALTITUDE_COMMAND = "autopilot/altitude-command-m"
@@ -37,13 +38,13 @@ RESET = "autopilot/reset"
 """Negative to hold every integrator at 0, otherwise 0."""
 
 _AIRSPEED = "autopilot/airspeed-mps"
+_SIDESLIP = "aero/beta-rad"
 _CLIMB_RATE = "autopilot/climb-rate-mps"
 _SCHEDULE = "autopilot/schedule-mps"
 _MODEL_RATE = "autopilot/model-rate"
 _MODEL_ACCELERATION = "autopilot/model-acceleration"
 _MODEL_JERK = "autopilot/model-jerk"
-_TURNS_MAX = 1.4
-_TURN_STEP = 0.1
+_ROLL = "attitude/phi-rad"
 
 
 def system_name(spec: AircraftSpec) -> str:
@@ -61,7 +62,7 @@ def system_xml(schedule: Schedule) -> str:
     commands = "\n".join(
         f'<property value="{value:.9g}">{name}</property>'
         for name, value in (
-            (AIRSPEED_COMMAND, schedule.airspeeds[len(schedule.airspeeds) // 2]),
+            (AIRSPEED_COMMAND, schedule.airspeeds[schedule.middle]),
             (ALTITUDE_COMMAND, schedule.altitude),
             (HEADING_RATE_COMMAND, 0.0),
             (RESET, 0.0),
@@ -74,18 +75,32 @@ def system_xml(schedule: Schedule) -> str:
     return f'<?xml version="1.0"?>\n{note}\n{ET.tostring(document, encoding="unicode")}\n'
 
 
-def _by_airspeed(schedule: Schedule, values: list[float]) -> str:
-    return table_1d(_SCHEDULE, schedule.airspeeds, values)
+def _by_point(schedule: Schedule, gain: Callable[[Gains], float]) -> str:
+    """Return a gain over the bank that is flown and the commanded airspeed."""
+    values = schedule.gain_over_bank([[float(gain(g)) for g in row] for row in schedule.gains])
+    return table_2d(_ROLL, _SCHEDULE, schedule.gain_banks, schedule.airspeeds, values)
 
 
-def _by_bank(schedule: Schedule, quantity: str) -> str:
-    """Turn compensation: a trim quantity over the bank that is flown and the commanded airspeed."""
-    rows = [math.radians(bank) for bank in BANKS_DEG]
-    return table_2d("attitude/phi-rad", _SCHEDULE, rows, schedule.airspeeds, schedule.over_bank(quantity))
+def _by_bank(schedule: Schedule, quantity: str, bank: str = _ROLL) -> str:
+    """Turn compensation: a trim quantity over the bank that is flown, or another, and the commanded airspeed."""
+    return table_2d(bank, _SCHEDULE, schedule.banks, schedule.airspeeds, schedule.over_bank(quantity))
+
+
+def _commanded(control_input: ControlInput, unlimited: str) -> list[str]:
+    """Return components that keep a control within its range and hand it to JSBSim."""
+    name = f"autopilot/{control_input.name}-command"
+    value = clipped(read(unlimited), control_input.lower, control_input.upper)
+    if not control_input.shape:
+        return [function(name, value, control_input.commands)]
+    effects, commands = zip(*control_input.shape, strict=True)
+    return [
+        function(name, value),
+        function(f"autopilot/{control_input.name}-told", table_1d(name, effects, commands), control_input.commands),
+    ]
 
 
 def _measurements(schedule: Schedule) -> list[str]:
-    envelope = schedule.spec.envelope
+    envelope = schedule.envelope
     foot = number(METRES_PER_FOOT)
     sin_roll, cos_roll = (operation(f, read("attitude/phi-rad")) for f in ("sin", "cos"))
     sin_pitch, cos_pitch = (operation(f, read("attitude/theta-rad")) for f in ("sin", "cos"))
@@ -140,25 +155,24 @@ def _longitudinal(schedule: Schedule) -> list[str]:
         )
     )
     for row, name in ((0, "elevator"), (1, "throttle")):
-        limits = schedule.spec.input(name)
         unlimited, integral, growth = (f"autopilot/{name}-{part}" for part in ("unlimited", "integral", "integral-rate"))
         feedback = [
-            times(_by_airspeed(schedule, [float(g.longitudinal[row, j]) for g in schedule.gains]), errors[state])
+            times(_by_point(schedule, lambda g, at=(row, j): g.longitudinal[at]), errors[state])  # type: ignore[misc]
             for j, state in enumerate(LONGITUDINAL)
         ]
         parts += [
             # The integral of the last step enters here; back-calculation then holds it to what the control can give.
             function(unlimited, total(_by_bank(schedule, name), read(integral), *feedback)),
-            function(f"autopilot/{name}-command", clipped(read(unlimited), limits.lower, limits.upper), output=limits.command),
+            *_commanded(schedule.spec.input(name), unlimited),
             function(
                 growth,
                 total(
                     times(
-                        _by_airspeed(schedule, [float(g.longitudinal_integral[row, 0]) for g in schedule.gains]),
+                        _by_point(schedule, lambda g, row=row: g.longitudinal_integral[row, 0]),  # type: ignore[misc]
                         read(f"{airspeed_error}-integrated"),
                     ),
                     times(
-                        _by_airspeed(schedule, [float(g.longitudinal_integral[row, 1]) for g in schedule.gains]),
+                        _by_point(schedule, lambda g, row=row: g.longitudinal_integral[row, 1]),  # type: ignore[misc]
                         read(f"{altitude_error}-integrated"),
                     ),
                     times(number(weights.anti_windup_rate), minus(read(f"autopilot/{name}-command"), read(unlimited))),
@@ -182,33 +196,60 @@ def _limited_error(name: str, error: str, limit: float) -> list[str]:
 
 
 def _lateral(schedule: Schedule) -> list[str]:
-    weights, spec = schedule.weights, schedule.spec
-    frequency, damping = weights.model_frequency, weights.model_damping
-    bank_max = spec.envelope.bank_max
-    turns = np.arange(-_TURNS_MAX, _TURNS_MAX + 0.5 * _TURN_STEP, _TURN_STEP)
-    slopes = [bank_slope(schedule, i) for i in range(len(schedule.airspeeds))]
-    gains = schedule.gains
-    aileron = spec.input("aileron")
-    errors = dict(
-        zip(
-            LATERAL,
-            (
-                minus(read("autopilot/model-roll-rate"), read("velocities/p-rad_sec")),
-                minus(_by_bank(schedule, "r"), read("velocities/r-rad_sec")),
-                minus(read(BANK_COMMAND), read("attitude/phi-rad")),
+    parts = [*_heading_rate_model(schedule), *_bank_command(schedule)]
+    errors = {
+        "p": minus(read("autopilot/model-roll-rate"), read("velocities/p-rad_sec")),
+        "r": minus(_by_bank(schedule, "r"), read("velocities/r-rad_sec")),
+        "roll": minus(read(BANK_COMMAND), read(_ROLL)),
+    }
+    rudder = "rudder" in schedule.controls
+    if rudder:
+        errors["beta"] = times(number(-1.0), read(_SIDESLIP))
+    parts += [function(f"autopilot/{name}-error", error) for name, error in errors.items()]
+    for row, name in enumerate(("aileron", "rudder") if rudder else ("aileron",)):
+        feedback = [
+            times(_by_point(schedule, lambda g, at=(row, j): g.lateral[at]), read(f"autopilot/{state}-error"))  # type: ignore[misc]
+            for j, state in enumerate(LATERAL)
+            if state in errors
+        ]
+        ahead = [
+            times(
+                _by_point(schedule, lambda g, row=row: g.roll_rate_feedforward[row]),  # type: ignore[misc]
+                read("autopilot/model-roll-rate"),
             ),
-            strict=True,
-        )
+            times(
+                _by_point(schedule, lambda g, row=row: g.roll_acceleration_feedforward[row]),  # type: ignore[misc]
+                read("autopilot/bank-rate-per-acceleration"),
+                read(_MODEL_JERK),
+            ),
+        ]
+        integral = [read("autopilot/rudder-integral")] if name == "rudder" else []
+        unlimited = f"autopilot/{name}-unlimited"
+        parts += [
+            function(unlimited, total(_by_bank(schedule, name, BANK_COMMAND), *integral, *feedback, *ahead)),
+            *_commanded(schedule.spec.input(name), unlimited),
+        ]
+    return parts + (_rudder_integral(schedule) if rudder else [])
+
+
+def _rudder_integral(schedule: Schedule) -> list[str]:
+    """Return components that take out what sideslip is left, held to what the rudder can give."""
+    held = minus(read("autopilot/rudder-command"), read("autopilot/rudder-unlimited"))
+    growth = total(
+        times(_by_point(schedule, lambda g: g.sideslip_integral), read(_SIDESLIP)),
+        times(number(schedule.weights.anti_windup_rate), held),
     )
-    rate_to_bank_rate = times(
-        operation("pow", operation("cos", read("autopilot/model-bank-rad")), number(2.0)),
-        _by_airspeed(schedule, slopes),
-        read(_AIRSPEED),
-        number(1.0 / STANDARD_GRAVITY),
-    )
-    turn_max = math.tan(bank_max) * STANDARD_GRAVITY
     return [
-        # The heading-rate response that the aircraft is made to follow.
+        function("autopilot/rudder-integral-rate", growth),
+        integrator("autopilot/rudder-integral", "autopilot/rudder-integral-rate", RESET),
+    ]
+
+
+def _heading_rate_model(schedule: Schedule) -> list[str]:
+    """Return the heading-rate response that the aircraft is made to follow."""
+    frequency, damping = schedule.weights.model_frequency, schedule.weights.model_damping
+    turn_max = math.tan(schedule.envelope.bank_max) * STANDARD_GRAVITY
+    return [
         function(
             "autopilot/heading-rate-limited",
             operation(
@@ -226,6 +267,20 @@ def _lateral(schedule: Schedule) -> list[str]:
         ),
         integrator(_MODEL_ACCELERATION, _MODEL_JERK, RESET),
         integrator(_MODEL_RATE, _MODEL_ACCELERATION, RESET),
+    ]
+
+
+def _bank_command(schedule: Schedule) -> list[str]:
+    """Return the bank that the model's turn takes, and what heading rate is still amiss."""
+    bank_max = schedule.envelope.bank_max
+    turns = schedule.turns()
+    rate_to_bank_rate = times(
+        operation("pow", operation("cos", read("autopilot/model-bank-rad")), number(2.0)),
+        table_1d(_SCHEDULE, schedule.airspeeds, bank_slopes(schedule)),
+        read(_AIRSPEED),
+        number(1.0 / STANDARD_GRAVITY),
+    )
+    return [
         function("autopilot/model-turn", times(read(_MODEL_RATE), read(_AIRSPEED), number(1.0 / STANDARD_GRAVITY))),
         function(
             "autopilot/model-bank-rad",
@@ -238,36 +293,11 @@ def _lateral(schedule: Schedule) -> list[str]:
         function(
             "autopilot/bank-integral-rate",
             total(
-                times(_by_airspeed(schedule, [g.heading_integral for g in gains]), minus(read(_MODEL_RATE), read(HEADING_RATE))),
-                times(number(weights.anti_windup_rate), minus(read(BANK_COMMAND), read("autopilot/bank-unlimited-rad"))),
+                times(_by_point(schedule, lambda g: g.heading_integral), minus(read(_MODEL_RATE), read(HEADING_RATE))),
+                times(
+                    number(schedule.weights.anti_windup_rate), minus(read(BANK_COMMAND), read("autopilot/bank-unlimited-rad"))
+                ),
             ),
         ),
         integrator("autopilot/bank-integral", "autopilot/bank-integral-rate", RESET),
-        function(
-            "autopilot/aileron-command",
-            clipped(
-                total(
-                    table_2d(
-                        BANK_COMMAND,
-                        _SCHEDULE,
-                        [math.radians(bank) for bank in BANKS_DEG],
-                        schedule.airspeeds,
-                        schedule.over_bank("aileron"),
-                    ),
-                    *(
-                        times(_by_airspeed(schedule, [float(g.lateral[j]) for g in gains]), errors[state])
-                        for j, state in enumerate(LATERAL)
-                    ),
-                    times(_by_airspeed(schedule, [g.roll_rate_feedforward for g in gains]), read("autopilot/model-roll-rate")),
-                    times(
-                        _by_airspeed(schedule, [g.roll_acceleration_feedforward for g in gains]),
-                        read("autopilot/bank-rate-per-acceleration"),
-                        read(_MODEL_JERK),
-                    ),
-                ),
-                aileron.lower,
-                aileron.upper,
-            ),
-            output=aileron.command,
-        ),
     ]

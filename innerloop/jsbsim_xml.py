@@ -64,9 +64,9 @@ def table_2d(row_at: str, column_at: str, rows: Sequence[float], columns: Sequen
     )
 
 
-def function(name: str, expression: str, output: str | None = None) -> str:
-    """Return a component that writes an expression to property ``name``, and to ``output`` as well."""
-    extra = f"<output>{output}</output>" if output else ""
+def function(name: str, expression: str, outputs: Sequence[str] = ()) -> str:
+    """Return a component that writes an expression to property ``name``, and to ``outputs`` as well."""
+    extra = "".join(f"<output>{output}</output>" for output in outputs)
     return f'<fcs_function name="{name}"><function>{expression}</function>{extra}</fcs_function>'
 
 

@@ -11,11 +11,13 @@ from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.spec import AircraftSpec
 from aircraft.trim import Trim, trim
 from aircraft.units import METRES_PER_FOOT
-from innerloop.controller import COMMANDS
 from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_system import HEADING_RATE
+from innerloop.control_law import COMMANDS, ControlLaw
+from innerloop.controller import linear_controller
 from innerloop.margins import closed_loop
-from innerloop.schedule import Schedule
+from innerloop.schedule import LEVEL_GAINS, Schedule
+from innerloop.weights import STANDARD_GRAVITY
 
 Array = npt.NDArray[np.float64]
 
@@ -24,10 +26,11 @@ CHANNELS: dict[str, tuple[str, float]] = {
     "altitude": ("position/h-sl-ft", METRES_PER_FOOT),
     "heading_rate": (HEADING_RATE, 1.0),
     "roll": ("attitude/phi-rad", 1.0),
-    "elevator_position": ("fcs/elevator-pos-rad", 1.0),
-    "aileron_position": ("fcs/aileron-pos-rad", 1.0),
+    "beta": ("aero/beta-rad", 1.0),
+    "elevator_command": ("autopilot/elevator-command", 1.0),
+    "aileron_command": ("autopilot/aileron-command", 1.0),
 }
-"""Recorded quantities: JSBSim property and SI value of its unit."""
+"""Recorded quantities, by their name in the closed loop: JSBSim property and SI value of its unit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,7 +68,8 @@ class Response:
 
 def predicted_step(schedule: Schedule, index: int, command: str, size: float, duration: float) -> Response:
     """Return the linear design's answer to a step of ``size`` [SI] at design airspeed ``index``."""
-    loop = closed_loop(schedule, index)
+    autopilot = linear_controller(ControlLaw(schedule), schedule.level(index))
+    loop = closed_loop(schedule.models[index][LEVEL_GAINS], autopilot)
     time = np.arange(0.0, duration, TIME_STEP)
     answer = control.step_response(loop, time, input=COMMANDS.index(f"{command}_command"), squeeze=False)
     labels = list(loop.output_labels)
@@ -75,6 +79,15 @@ def predicted_step(schedule: Schedule, index: int, command: str, size: float, du
         time=time,
         channels={name: size * answer.outputs[labels.index(name), 0] for name in CHANNELS},
     )
+
+
+def model_step(schedule: Schedule, size: float, duration: float) -> Response:
+    """Return the answer to a step of heading rate [rad/s] that the aircraft is made to follow."""
+    frequency, damping = schedule.weights.model_frequency, schedule.weights.model_damping
+    time = np.arange(0.0, duration, TIME_STEP)
+    model = control.tf([frequency**2], [1.0, 2.0 * damping * frequency, frequency**2])
+    answer = control.step_response(model, time).outputs
+    return Response(command="heading_rate", size=size, time=time, channels={"heading_rate": size * answer})
 
 
 def flown_step(aircraft: AutopilotedAircraft, start: Trim, command: str, size: float, duration: float) -> Response:
@@ -92,15 +105,14 @@ def flown_step(aircraft: AutopilotedAircraft, start: Trim, command: str, size: f
     )
 
 
-def measure_lag(aircraft: AutopilotedAircraft, start: Trim, *, frequency: float = 0.5, amplitude: float = 0.25) -> float:
+def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> float:
     """Return how long the flown heading rate lags its command [s]: the phase of a sinusoid, fitted over two periods after two.
 
-    Parameters
-    ----------
-    aircraft, start : what flies, and from which equilibrium
-    frequency : of the commanded sinusoid [rad/s], near those of the guidance
-    amplitude : [rad/s]
+    Half the heading rate of a turn at ``bank`` [rad] is the sinusoid's amplitude, and its frequency is that heading rate itself,
+    near which those of the guidance lie.
     """
+    frequency = STANDARD_GRAVITY * math.tan(bank) / start.airspeed
+    amplitude = 0.5 * frequency
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     node = aircraft.fdm.node(HEADING_RATE)
     period = round(2.0 * math.pi / frequency / TIME_STEP)
@@ -116,9 +128,15 @@ def measure_lag(aircraft: AutopilotedAircraft, start: Trim, *, frequency: float 
     return float(-np.angle(phasor / commanded) / frequency)
 
 
-def level_trim(spec: AircraftSpec, airspeed: float, altitude: float) -> Trim:
-    """Return the straight and level equilibrium of the bare aircraft at ``airspeed`` [m/s] and ``altitude`` [m]."""
-    return trim(Fdm(spec), airspeed=airspeed, altitude=altitude)
+def level_trim(spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None) -> Trim:
+    """Return the straight and level equilibrium of the bare aircraft at ``airspeed`` [m/s] and ``altitude`` [m].
+
+    Parameters
+    ----------
+    spec, airspeed, altitude : what flies, and where
+    start : an equilibrium nearby
+    """
+    return trim(Fdm(spec), airspeed=airspeed, altitude=altitude, start=start)
 
 
 def _record(fdm: Fdm, duration: float) -> tuple[Array, Array]:

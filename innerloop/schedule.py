@@ -1,21 +1,27 @@
-"""The autopilot's tables: equilibria over airspeed and bank (turn compensation), and gains over airspeed."""
+"""The autopilot's tables over airspeed and bank: equilibria (turn compensation), linear models, and gains."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import control
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.fdm import Fdm
-from aircraft.linearise import linearise
-from aircraft.spec import AircraftSpec
-from aircraft.trim import Trim, trim
-from innerloop.gains import Gains, design_gains
-from innerloop.weights import DesignWeights
+from aircraft.envelope import TABLE_REACH
+from aircraft.spec import AircraftSpec, Envelope
+from aircraft.trim import Trim
+from innerloop.gains import Gains
+from innerloop.weights import STANDARD_GRAVITY, DesignWeights
 
-BANKS_DEG = (-55.0, -45.0, -35.0, -22.0, 0.0, 22.0, 35.0, 45.0, 55.0)
-"""Bank angles of the equilibria behind turn compensation [deg]."""
+TRIM_BANKS = (-1.0, -0.82, -0.64, -0.4, 0.0, 0.4, 0.64, 0.82, 1.0)
+"""Banks of the equilibria, over the largest of the tables [-]."""
+
+GAIN_BANKS = (-0.82, -0.4, 0.0, 0.4, 0.82)
+"""Those of them at which there are linear models and gains [-]."""
+
+LEVEL = TRIM_BANKS.index(0.0)
+LEVEL_GAINS = GAIN_BANKS.index(0.0)
 
 Array = npt.NDArray[np.float64]
 
@@ -27,32 +33,62 @@ class Schedule:
     Attributes
     ----------
     spec : the aircraft
+    envelope : where it may fly
     weights : what the design asked for
     altitude : at which it was designed [m]
     airspeeds : shape (n,) [m/s], ascending
-    gains : one per airspeed
-    models : linear model per airspeed, straight and level
-    trims : equilibria by airspeed, then by bank in the order of ``BANKS_DEG``
+    trims : equilibria by airspeed, then by bank in the order of ``TRIM_BANKS``
+    models : linear models by airspeed, then by bank in the order of ``GAIN_BANKS``
+    gains : as ``models``
     """
 
     spec: AircraftSpec
+    envelope: Envelope
     weights: DesignWeights
     altitude: float
     airspeeds: tuple[float, ...]
-    gains: tuple[Gains, ...]
-    models: tuple[control.StateSpace, ...]
     trims: tuple[tuple[Trim, ...], ...]
+    models: tuple[tuple[control.StateSpace, ...], ...]
+    gains: tuple[tuple[Gains, ...], ...]
+
+    @property
+    def banks(self) -> tuple[float, ...]:
+        """Return the banks of the equilibria [rad], ascending."""
+        return table_banks(self.envelope, TRIM_BANKS)
+
+    @property
+    def gain_banks(self) -> tuple[float, ...]:
+        """Return the banks of models and gains [rad], ascending."""
+        return table_banks(self.envelope, GAIN_BANKS)
+
+    @property
+    def middle(self) -> int:
+        """Return the index of the middle design airspeed."""
+        return len(self.airspeeds) // 2
+
+    @property
+    def controls(self) -> tuple[str, ...]:
+        """Return the control inputs that the autopilot moves."""
+        return tuple(i.name for i in self.spec.inputs)
 
     def level(self, index: int) -> Trim:
         """Return the straight and level equilibrium at airspeed ``index``."""
-        return self.trims[index][BANKS_DEG.index(0.0)]
+        return self.trims[index][LEVEL]
+
+    def gain_trim(self, index: int, bank_index: int) -> Trim:
+        """Return the equilibrium of the model at airspeed ``index`` and gain bank ``bank_index``."""
+        return self.trims[index][TRIM_BANKS.index(GAIN_BANKS[bank_index])]
 
     def over_bank(self, quantity: str) -> Array:
         """Return a trim quantity over bank and airspeed, shape (banks, airspeeds).
 
         ``quantity`` is ``pitch``, ``yaw_rate``, ``p``, ``q``, ``r`` [rad, rad/s] or the name of a control input [-].
         """
-        return np.array([[_quantity(t, quantity) for t in row] for row in self.trims]).T
+        return np.array([[trim_quantity(t, quantity) for t in row] for row in self.trims]).T
+
+    def gain_over_bank(self, values: Sequence[Sequence[float]]) -> Array:
+        """Return a gain given by airspeed and gain bank over gain bank and airspeed, as ``over_bank`` does."""
+        return np.array(values, dtype=np.float64).T
 
     def bank_for_turn(self, turns: Array) -> Array:
         """Return the bank [rad] that gives the dimensionless turn V omega/g = ``turns``, shape (turns, airspeeds).
@@ -65,9 +101,15 @@ class Schedule:
             columns.append(np.tan(_interpolate(turns, np.array(turn), np.array([t.roll for t in row]))))
         return np.arctan(np.array(columns).T)
 
+    def turns(self) -> Array:
+        """Return the dimensionless turns of the table of ``bank_for_turn``: up to the largest bank's, and beyond."""
+        largest = 1.05 * math.tan(self.banks[-1])
+        return np.linspace(-largest, largest, 29)
 
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of free fall [m/s^2]; here it only makes turns dimensionless."""
+
+def table_banks(envelope: Envelope, shares: Sequence[float]) -> tuple[float, ...]:
+    """Return shares of the tables' largest bank [rad]."""
+    return tuple(share * TABLE_REACH * envelope.bank_max for share in shares)
 
 
 def _interpolate(x: Array, at: Array, angles: Array) -> Array:
@@ -78,36 +120,10 @@ def _interpolate(x: Array, at: Array, angles: Array) -> Array:
     return np.arctan(np.where(x < at[0], tangents[0] * x / at[0], inside))
 
 
-def _quantity(t: Trim, quantity: str) -> float:
+def trim_quantity(t: Trim, quantity: str) -> float:
+    """Return a body rate, a control input or an attribute of an equilibrium by its name."""
     if quantity in ("p", "q", "r"):
         return t.rates_body["pqr".index(quantity)]
     if quantity in t.inputs:
         return t.inputs[quantity]
     return float(getattr(t, quantity))
-
-
-def design_schedule(spec: AircraftSpec, altitude: float = 100.0, weights: DesignWeights | None = None) -> Schedule:
-    """Trim, linearise and design over the aircraft's airspeeds at ``altitude`` [m].
-
-    Raises
-    ------
-    TrimError : the aircraft cannot fly one of the design conditions
-    """
-    weights = weights or DesignWeights()
-    fdm = Fdm(spec)
-    trims = tuple(
-        tuple(trim(fdm, airspeed=airspeed, altitude=altitude, bank=math.radians(bank)) for bank in BANKS_DEG)
-        for airspeed in spec.design_airspeeds
-    )
-    level = BANKS_DEG.index(0.0)
-    models = tuple(linearise(fdm, row[level]) for row in trims)
-    gains = tuple(design_gains(m, v, weights) for m, v in zip(models, spec.design_airspeeds, strict=True))
-    return Schedule(
-        spec=spec,
-        weights=weights,
-        altitude=altitude,
-        airspeeds=spec.design_airspeeds,
-        gains=gains,
-        models=models,
-        trims=trims,
-    )

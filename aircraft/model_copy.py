@@ -1,0 +1,136 @@
+"""A copy of a JSBSim model that does only what it is told: its outputs, sockets and autopilots are left out."""
+
+import re
+import shutil
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+from aircraft.errors import AircraftError
+
+_OWN_AUTOPILOT = re.compile(r"(^|[^a-z])(ap|autopilot|autothrottle)([^a-z]|$)")
+_FOLDERS = {"engine": "engine", "thruster": "engine", "system": "systems", "autopilot": "systems"}
+"""Folder of a JSBSim root where files of an element stand."""
+
+_PLAY = ("hysteresis_width", "deadband_width")
+
+
+def copy_model(root: Path, model: str, directory: Path, *, play: bool = True) -> Path:
+    """Copy a model with all it refers to into a JSBSim root of its own, and return the copy's model file.
+
+    Outputs and inputs (files, sockets) are left out. So is every autopilot: ``<autopilot>`` elements and systems that are called
+    one. Their properties stay, at rest: flight controls that add an autopilot's command to the pilot's then add 0.
+
+    Parameters
+    ----------
+    root : JSBSim root that holds the model; it is not changed
+    model : its name
+    directory : where to write the copy
+    play : whether servos keep their hysteresis and dead bands; a linear model has none
+
+    Raises
+    ------
+    AircraftError : the model's file is missing or not XML
+    """
+    source = root / "aircraft" / model
+    if not (source / f"{model}.xml").is_file():
+        raise AircraftError(f"no model file {source / model}.xml; check the JSBSim root directory")
+    target = directory / "aircraft" / model
+    shutil.copytree(source, target, dirs_exist_ok=True)
+    model_file = target / f"{model}.xml"
+    try:
+        document = ET.parse(model_file)
+    except ET.ParseError as error:
+        raise AircraftError(f"model file {source / model}.xml is not valid XML: {error}; mend it") from None
+    config = document.getroot()
+    at_rest = _take_out(config, root, source)
+    if at_rest:
+        before = next((i for i, element in enumerate(config) if element.tag == "flight_control"), len(config))
+        config.insert(before, _properties_at_rest(at_rest))
+    _copy_referenced(config, root, source, directory)
+    if not play:
+        for folder in (target, directory / "systems"):
+            for path in folder.rglob("*.xml"):
+                _take_out_play(path)
+        _remove_play(config)
+    document.write(model_file, encoding="utf-8", xml_declaration=True)
+    return model_file
+
+
+def _take_out(config: ET.Element, root: Path, source: Path) -> list[str]:
+    """Remove outputs, inputs and autopilots; return the properties that the autopilots had."""
+    names: list[str] = []
+    for element in list(config):
+        if element.tag in ("output", "input"):
+            config.remove(element)
+        elif _is_autopilot(element):
+            names += _properties(_content(element, root, source))
+            config.remove(element)
+    return list(dict.fromkeys(names))
+
+
+def _is_autopilot(element: ET.Element) -> bool:
+    if element.tag == "autopilot":
+        return True
+    names = (element.get("name", ""), Path(element.get("file", "")).stem)
+    return element.tag == "system" and any(_OWN_AUTOPILOT.search(name.lower()) for name in names)
+
+
+def _content(element: ET.Element, root: Path, source: Path) -> ET.Element:
+    """Return the element itself, or what the file it names holds."""
+    found = _find(element, root, source)
+    return ET.parse(found).getroot() if found else element
+
+
+def _find(element: ET.Element, root: Path, source: Path) -> Path | None:
+    """Return the file that an element names, searched as JSBSim does."""
+    if not (file := element.get("file")):
+        return None
+    name = file if file.endswith(".xml") else f"{file}.xml"
+    folders = [source, source / "Engines", source / "Systems", source / "systems"]
+    if element.tag in _FOLDERS:
+        folders.append(root / _FOLDERS[element.tag])
+    return next((folder / name for folder in folders if (folder / name).is_file()), None)
+
+
+def _properties(autopilot: ET.Element) -> list[str]:
+    """Return every property that an autopilot declares or writes."""
+    names = [(element.text or "").strip() for element in autopilot.iter() if element.tag in ("property", "output")]
+    for channel in autopilot.iter("channel"):
+        for component in channel:
+            name = component.get("name", "")
+            names.append(name if "/" in name else f"ap/{name.lower().replace(' ', '-')}")
+    return [name.lstrip("-") for name in names if re.fullmatch(r"-?[A-Za-z_][\w.\-/\[\]]*", name)]
+
+
+def _properties_at_rest(names: list[str]) -> ET.Element:
+    system = ET.Element("system", name="The model's own autopilot, off")
+    for name in names:
+        ET.SubElement(system, "property", value="0").text = name
+    return system
+
+
+def _copy_referenced(config: ET.Element, root: Path, source: Path, directory: Path) -> None:
+    """Copy the engines, thrusters and systems that stand in the root's common folders; files of the model's own are there."""
+    for element in config.iter():
+        if element.tag not in _FOLDERS or not (found := _find(element, root, source)) or found.is_relative_to(source):
+            continue
+        folder = directory / _FOLDERS[element.tag]
+        folder.mkdir(parents=True, exist_ok=True)
+        shutil.copy(found, folder / found.name)
+
+
+def _take_out_play(path: Path) -> None:
+    try:
+        document = ET.parse(path)
+    except ET.ParseError:
+        return  # a file beside the model that JSBSim does not read
+    if _remove_play(document.getroot()):
+        document.write(path, encoding="utf-8", xml_declaration=True)
+
+
+def _remove_play(config: ET.Element) -> bool:
+    """Remove hysteresis and dead bands from every actuator; return whether there were any."""
+    found = [(actuator, part) for actuator in config.iter("actuator") for part in actuator if part.tag in _PLAY]
+    for actuator, part in found:
+        actuator.remove(part)
+    return bool(found)
