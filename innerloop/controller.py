@@ -9,7 +9,7 @@ from aircraft.trim import Trim
 from innerloop.control_law import COMMANDS, STATES, ControlLaw, measurements
 
 _STEP = 1e-4
-"""Step of differences [SI]: the law is made of products and of tables with straight pieces, so only rounding limits it from below."""
+"""Step of differences [SI]: the law is made of products and of straight pieces of tables, so only rounding limits it from below."""
 
 
 def linear_controller(law: ControlLaw, trim: Trim) -> control.StateSpace:

@@ -36,24 +36,24 @@ def command(
 
 
 def _design(aircraft: str, out: Path, altitude: float, *, no_report: bool) -> None:
-    from aircraft.spec import find_spec
+    from aircraft.find import find_spec
 
     spec = find_spec(aircraft)
     _refuse_another_run(out)
 
+    from innerloop.cache import designed
     from innerloop.design_manifest import design_manifest
     from innerloop.jsbsim_root import write_root
-    from innerloop.record import design_record
-    from innerloop.schedule import design_schedule
+    from innerloop.jsbsim_script import write_script
     from reports.build import build_reports
     from reports.files import write_json
 
     print(f"designing the autopilot of {spec.title}", file=sys.stderr)
     started = time.monotonic()
+    found = designed(spec, altitude)
+    record = found.record
     out.mkdir(parents=True, exist_ok=True)
-    schedule = design_schedule(spec, altitude=altitude)
-    write_root(schedule, out / "model")
-    record = design_record(schedule, out / "model")
+    write_script(found.design.schedule, write_root(found.design.schedule, out / "model"))
     write_json(out / "innerloop.json", record)
     write_json(out / "manifest.json", design_manifest(record, wall_time=time.monotonic() - started))
     _print(record)

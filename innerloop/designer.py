@@ -82,8 +82,8 @@ def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
         speeds = _slower(speeds, short)
     worst = min(short, key=lambda check: check.shortfall)
     raise DesignError(
-        f"aircraft '{spec.name}': no design has {REQUIRED.gain_db:g} dB and {REQUIRED.phase_deg:g} deg at every operating point; the"
-        f" slowest tried has {worst.describe()}. It is not flown"
+        f"aircraft '{spec.name}': no design has {REQUIRED.gain_db:g} dB and {REQUIRED.phase_deg:g} deg at every operating point;"
+        f" the slowest tried has {worst.describe()}. It is not flown"
     )
 
 
@@ -99,7 +99,9 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
     near: Trim | None = None
     for airspeed in envelope.design_airspeeds:
         near = trim(fdm, airspeed=airspeed, altitude=altitude, start=near)
-        row = tuple(near if bank == 0.0 else trim(fdm, airspeed=airspeed, altitude=altitude, bank=bank, start=near) for bank in banks)
+        row = tuple(
+            near if bank == 0.0 else trim(fdm, airspeed=airspeed, altitude=altitude, bank=bank, start=near) for bank in banks
+        )
         trims.append(row)
         models.append(tuple(linearise(fdm, row[TRIM_BANKS.index(share)]) for share in GAIN_BANKS))
     return Grid(spec=spec, envelope=envelope, altitude=altitude, trims=tuple(trims), models=tuple(models))

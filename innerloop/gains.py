@@ -1,8 +1,8 @@
 """Servo LQR at one airspeed and bank: gains from the linearisation, nothing pasted.
 
-Why a servo LQR: the plant is multivariable (elevator and throttle both move airspeed and altitude, aileron and rudder both roll and
-yaw), every state it feeds back is one that an autopilot measures, integral action comes with the design, and weights that follow from
-the aircraft's own frequencies carry over to the next aircraft.
+Why a servo LQR: the plant is multivariable (elevator and throttle both move airspeed and altitude, aileron and rudder both roll
+and yaw), every state it feeds back is one that an autopilot measures, integral action comes with the design, and weights that
+follow from the aircraft's own frequencies carry over to the next aircraft.
 
 Servo and engine states are left out of the feedback (nobody measures a hobby servo's position) and out of the Riccati
 equation, where they stand for their static gain; the margins are then computed with them and with the computing delay. At a bank,

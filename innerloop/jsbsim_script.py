@@ -7,18 +7,25 @@ from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
 from aircraft.errors import AircraftError, UnknownPropertyError
-from aircraft.fdm import INTEGRATORS, TIME_STEP, Fdm, before_hold, initial_conditions
-from aircraft.spec import AircraftSpec
+from aircraft.fdm import (
+    CRANK,
+    INTEGRATORS,
+    RUN_UP_STEPS,
+    START_ENGINES,
+    STOP_CRANKING,
+    TIME_STEP,
+    Fdm,
+    before_hold,
+    initial_conditions,
+)
+from aircraft.spec import Envelope
 from aircraft.trim import Trim
-from innerloop.flight import SETTLE_STEPS
 from innerloop.jsbsim_system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, BANK_COMMAND, HEADING_RATE, HEADING_RATE_COMMAND, RESET
-from innerloop.schedule import STANDARD_GRAVITY
+from innerloop.schedule import Schedule
+from innerloop.weights import STANDARD_GRAVITY
 
 OUTPUT_RATE = 20.0
 """Rows of the script's output file a second [Hz]."""
-
-ENGINES_RUNNING = (("propulsion/set-running", -1.0),)
-"""Settings that start every engine at once."""
 
 _AFTERWARDS = 10.0
 """Flight after the last command [s]."""
@@ -61,7 +68,7 @@ class Command:
 
 
 def demonstration(
-    spec: AircraftSpec,
+    envelope: Envelope,
     start: Trim,
     *,
     heading_rate: float | None = None,
@@ -72,7 +79,7 @@ def demonstration(
 
     Parameters
     ----------
-    spec, start : the aircraft and the level equilibrium it starts from
+    envelope, start : where the aircraft may fly, and the level equilibrium it starts from
     heading_rate : of both turns [rad/s], positive; by default a quarter of what the largest commanded bank gives
     altitude_step : [m]; by default what the aircraft flies in half a second
     airspeed_step : [m/s]; by default a tenth of the airspeed or half the room that the envelope leaves, whichever is less, towards
@@ -83,13 +90,13 @@ def demonstration(
     AircraftError : the heading rate is not positive
     """
     if heading_rate is None:
-        heading_rate = 0.25 * STANDARD_GRAVITY * math.tan(spec.envelope.bank_max) / start.airspeed
+        heading_rate = 0.25 * STANDARD_GRAVITY * math.tan(envelope.bank_max) / start.airspeed
     if not heading_rate > 0.0:
         raise AircraftError(f"heading rate of the turns is {heading_rate} rad/s; it must be above 0, for the first is to the right")
     if altitude_step is None:
         altitude_step = 0.5 * start.airspeed
     if airspeed_step is None:
-        below, above = start.airspeed - spec.envelope.airspeed_min, spec.envelope.airspeed_max - start.airspeed
+        below, above = start.airspeed - envelope.airspeed_min, envelope.airspeed_max - start.airspeed
         airspeed_step = math.copysign(min(0.1 * start.airspeed, 0.5 * max(below, above)), above - below)
     turn = f"{math.degrees(heading_rate):.3g} degrees a second"
     return tuple(
@@ -107,26 +114,17 @@ def demonstration(
     )
 
 
-def write_script(
-    spec: AircraftSpec,
-    start: Trim,
-    root: Path,
-    *,
-    commands: Sequence[Command] | None = None,
-    settings: Sequence[tuple[str, float]] = ENGINES_RUNNING,
-    settle_steps: int = SETTLE_STEPS,
-) -> Path:
+def write_script(schedule: Schedule, root: Path, *, commands: Sequence[Command] | None = None) -> Path:
     """Write a JSBSim script, and the initialisation file it starts from, into a root of ``innerloop.jsbsim_root.write_root``.
 
-    The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock.
+    The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock, from level flight at the middle
+    design airspeed.
 
     Parameters
     ----------
-    spec, start : the aircraft and the level equilibrium it starts from
-    root : JSBSim root with the autopilot
+    schedule : the design
+    root : JSBSim root with its autopilot
     commands : what is flown; by default ``demonstration``
-    settings : properties and values set in this order before the first step: what starts the engines, and the configuration
-    settle_steps : time steps for which the body is held before release
 
     Returns
     -------
@@ -137,15 +135,17 @@ def write_script(
     UnknownPropertyError, ReadOnlyPropertyError : the aircraft has no such property, or it takes no writes
     AircraftError : a command is given before release, or a value is not finite
     """
-    commands = demonstration(spec, start) if commands is None else commands
+    spec, start = schedule.spec, schedule.level(schedule.middle)
+    commands = demonstration(schedule.envelope, start) if commands is None else commands
     fdm = Fdm(spec, root)
-    _check(fdm, commands, settings)
+    fdm.place(start.state())
+    _check(fdm, commands)
     name = f"{spec.model}_autopilot"
     (root / "aircraft" / spec.model / f"{name}_init.xml").write_text(_INITIALISATION.format(name=name), encoding="utf-8")
-    hold = [*settings, *((integrator, 0.0) for integrator in INTEGRATORS)]
+    held, preparations = _preparations(fdm)
     release = [*((integrator, fdm.read(integrator)) for integrator in INTEGRATORS), (RESET, 0.0)]
     events = [
-        _event("Start the engines, and hold the body still while servos and propellers settle.", -settle_steps, hold),
+        *preparations,
         _event("Release: let the body and the autopilot's integrators go.", 0, release),
         *(_event(c.note, round(c.time / TIME_STEP), [(c.name, c.value)]) for c in commands),
     ]
@@ -155,16 +155,32 @@ def write_script(
         title=escape(spec.title),
         name=name,
         model=spec.model,
-        start=-settle_steps * TIME_STEP,
+        start=-held * TIME_STEP,
         end=max((c.time for c in commands), default=0.0) + _AFTERWARDS,
         step=TIME_STEP,
         rate=OUTPUT_RATE,
-        before=_before(start, settle_steps * TIME_STEP),
+        before=_before(start, held * TIME_STEP),
         events="\n".join(events),
         columns="\n".join(f'    <property caption="{column}">{column}</property>' for column in columns(fdm)),
     )
     script.write_text(text, encoding="utf-8")
     return script
+
+
+def _preparations(fdm: Fdm) -> tuple[int, list[str]]:
+    """Return for how many steps the body is held before release, and the events in that time."""
+    settle = round(fdm.spec.settle_time / TIME_STEP)
+    run_up = 2 * RUN_UP_STEPS if fdm.spec.engine_flags else 0
+    held = settle + run_up
+    still = [(integrator, 0.0) for integrator in INTEGRATORS]
+    cranking = CRANK if fdm.cranked else ()
+    start = [*START_ENGINES, *cranking, *fdm.spec.configuration, *still]
+    events = [_event("Start the engines, and hold the body still while servos and engines settle.", -held, start)]
+    if fdm.cranked:
+        events.append(_event("Let the starter go.", -held + RUN_UP_STEPS, STOP_CRANKING))
+    if run_up:
+        events.append(_event("Gear, fuel and levers again, as they are in flight.", -settle, fdm.spec.configuration))
+    return held, events
 
 
 def columns(fdm: Fdm) -> list[str]:
@@ -174,7 +190,7 @@ def columns(fdm: Fdm) -> list[str]:
     ----------
     fdm : the aircraft under its autopilot
     """
-    names = [*_MOTION, *(i.command for i in fdm.spec.inputs), *(s.position for s in fdm.spec.driven_states)]
+    names = [*_MOTION, *(command for i in fdm.spec.inputs for command in i.commands), *(s.position for s in fdm.spec.driven_states)]
     for name in names:
         fdm.node(name)
     engine = 0
@@ -189,15 +205,14 @@ def columns(fdm: Fdm) -> list[str]:
         engine += 1
 
 
-def _check(fdm: Fdm, commands: Sequence[Command], settings: Sequence[tuple[str, float]]) -> None:
+def _check(fdm: Fdm, commands: Sequence[Command]) -> None:
     """Raise what ``write_script`` says; JSBSim itself would stop in mid-flight, or not say anything."""
     for command in commands:
         if not (math.isfinite(command.time) and command.time >= 0.0):
             raise AircraftError(f"command {command.name} is given at {command.time} s; it must be at or after release, at 0 s")
-    for name, value in (*settings, *((command.name, command.value) for command in commands)):
-        fdm.writable_node(name)
-        if not math.isfinite(value):
-            raise AircraftError(f"script of '{fdm.spec.name}': {name} is set to {value}; it must be finite")
+        fdm.writable_node(command.name)
+        if not math.isfinite(command.value):
+            raise AircraftError(f"script of '{fdm.spec.name}': {command.name} is set to {command.value}; it must be finite")
 
 
 def _before(start: Trim, held: float) -> str:

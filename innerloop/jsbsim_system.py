@@ -5,7 +5,6 @@ The commands are the properties ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND``
 
 import math
 import xml.etree.ElementTree as ET
-
 from collections.abc import Callable
 
 from aircraft.spec import AircraftSpec, ControlInput
@@ -34,6 +33,9 @@ ALTITUDE_COMMAND = "autopilot/altitude-command-m"
 HEADING_RATE_COMMAND = "autopilot/heading-rate-command-rad_sec"
 HEADING_RATE = "autopilot/heading-rate-rad_sec"
 BANK_COMMAND = "autopilot/bank-command-rad"
+CONTROL_COMMAND = "autopilot/{}-command"
+"""Pattern of the properties that hold what a control is commanded [-], by its name in the linear model."""
+
 RESET = "autopilot/reset"
 """Negative to hold every integrator at 0, otherwise 0."""
 
@@ -88,7 +90,7 @@ def _by_bank(schedule: Schedule, quantity: str, bank: str = _ROLL) -> str:
 
 def _commanded(control_input: ControlInput, unlimited: str) -> list[str]:
     """Return components that keep a control within its range and hand it to JSBSim."""
-    name = f"autopilot/{control_input.name}-command"
+    name = CONTROL_COMMAND.format(control_input.name)
     value = clipped(read(unlimited), control_input.lower, control_input.upper)
     if not control_input.shape:
         return [function(name, value, control_input.commands)]
@@ -294,9 +296,7 @@ def _bank_command(schedule: Schedule) -> list[str]:
             "autopilot/bank-integral-rate",
             total(
                 times(_by_point(schedule, lambda g: g.heading_integral), minus(read(_MODEL_RATE), read(HEADING_RATE))),
-                times(
-                    number(schedule.weights.anti_windup_rate), minus(read(BANK_COMMAND), read("autopilot/bank-unlimited-rad"))
-                ),
+                times(number(schedule.weights.anti_windup_rate), minus(read(BANK_COMMAND), read("autopilot/bank-unlimited-rad"))),
             ),
         ),
         integrator("autopilot/bank-integral", "autopilot/bank-integral-rate", RESET),

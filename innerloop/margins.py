@@ -123,7 +123,9 @@ class Loops:
         n_controls = len(self.controls)
         # Law, delays, aircraft, one after the other; the aircraft's outputs come back to the law.
         delayed = (np.kron(np.eye(n_controls), m) for m in (pade.A, pade.B, pade.C, pade.D))
-        chain = _series(delayed, (plant.A, plant.B[:, self._columns], plant.C[self._rows], plant.D[np.ix_(self._rows, self._columns)]))
+        chain = _series(
+            delayed, (plant.A, plant.B[:, self._columns], plant.C[self._rows], plant.D[np.ix_(self._rows, self._columns)])
+        )
         a, b, c, d = _series((law.A, law.B[:, self._reads], law.C, law.D[:, self._reads]), chain)
         return np.asarray(np.linalg.eigvals(a + b @ np.linalg.solve(np.eye(len(d)) - d, c)))
 
@@ -172,7 +174,9 @@ def loop_margin(name: str, loop: Complex, frequencies: Array) -> Margin:
     at_unity = np.nonzero(np.sign(logs[:-1]) != np.sign(logs[1:]))[0]
     shares = [logs[i] / (logs[i] - logs[i + 1]) for i in at_unity]
     phases = [phase[i] + share * (phase[i + 1] - phase[i]) for i, share in zip(at_unity, shares, strict=True)]
-    crossovers = [frequencies[i] * (frequencies[i + 1] / frequencies[i]) ** share for i, share in zip(at_unity, shares, strict=True)]
+    crossovers = [
+        frequencies[i] * (frequencies[i + 1] / frequencies[i]) ** share for i, share in zip(at_unity, shares, strict=True)
+    ]
     away = [abs(math.remainder(p - math.pi, 2.0 * math.pi)) for p in phases]
     disk_gain_db, disk_phase_deg = _disk(float(np.min(2.0 * np.abs(1.0 + loop) / np.abs(1.0 - loop))))
     return Margin(

@@ -110,9 +110,7 @@ def _climbs(schedule: Schedule) -> list[Record]:
     """Return climbs and descents at the middle airspeed, as far as there are equilibria."""
     fdm, level = Fdm(schedule.spec), schedule.level(schedule.middle)
     found = [
-        search_trim(
-            fdm, airspeed=level.airspeed, altitude=schedule.altitude, climb_angle=math.radians(angle), start=level
-        )
+        search_trim(fdm, airspeed=level.airspeed, altitude=schedule.altitude, climb_angle=math.radians(angle), start=level)
         for angle in _CLIMB_ANGLES_DEG
     ]
     return [_trim_record(t) for t in found if t.outcome is TrimOutcome.CONVERGED]
@@ -204,12 +202,14 @@ def _response_record(kind: str, response: Response) -> Record:
         "size": response.size,
         "rise_time_s": _finite(response.rise_time()),
         "overshoot": response.overshoot(),
-        "altitude_largest_m": response.largest("altitude"),
-        "airspeed_largest_mps": response.largest("airspeed"),
+        **{f"{name}_largest_{unit}": response.largest(name) for name, unit in _UPSET.items() if name in response.channels},
         "time_s": response.time[::stride].round(6).tolist(),
         "channels": {_CHANNEL_NAMES.get(name, name): values[::stride].tolist() for name, values in response.channels.items()},
     }
 
+
+_UPSET = {"altitude": "m", "airspeed": "mps"}
+"""What a step should not move, and its unit."""
 
 _CHANNEL_NAMES = {"beta": "sideslip", "elevator_command": "elevator", "aileron_command": "aileron"}
 """What channels are called where they are shown, if not as in the closed loop."""

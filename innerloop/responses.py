@@ -11,10 +11,10 @@ from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.spec import AircraftSpec
 from aircraft.trim import Trim, trim
 from aircraft.units import METRES_PER_FOOT
-from innerloop.flight import AutopilotedAircraft
-from innerloop.jsbsim_system import HEADING_RATE
 from innerloop.control_law import COMMANDS, ControlLaw
 from innerloop.controller import linear_controller
+from innerloop.flight import AutopilotedAircraft
+from innerloop.jsbsim_system import HEADING_RATE
 from innerloop.margins import closed_loop
 from innerloop.schedule import LEVEL_GAINS, Schedule
 from innerloop.weights import STANDARD_GRAVITY

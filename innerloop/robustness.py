@@ -229,7 +229,7 @@ def _inertia(factor: float) -> Change:
 
 
 def _mass(factor: float) -> Change:
-    """Return a change of mass: accelerations by forces of the air and the engine divide by it, those of gravity and turning do not."""
+    """Return a change of mass: accelerations by air and engine divide by it, those by gravity and turning do not."""
 
     def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
         a, b, c, d = (m.copy() for m in _matrices(model))

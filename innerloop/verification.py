@@ -72,4 +72,4 @@ def _flown(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
         now = _SIZE if t < _HALF else -_SIZE if t < 2.0 * _HALF else 0.0
         fdm.command({name: level.inputs[name] + now})
         fdm.step()
-    return fdm.time_step * np.arange(count), {output: v - v[0] for output, v in values.items()}
+    return fdm.time_step * np.arange(count, dtype=np.float64), {output: v - v[0] for output, v in values.items()}
