@@ -81,10 +81,10 @@ class Guidance(Section):
 
     law: Literal["cascade", "lyapunov", "line_of_sight"] = "cascade"
     """Steering law: eq. (30), eq. (24), or the line-of-sight baseline."""
-    airspeed_mps: Annotated[float, Field(ge=5.0, le=100.0)] = 19.42
-    """V_r, speed of the reference and of the UAV [m/s]."""
+    airspeed_mps: Annotated[float, Field(ge=5.0, le=300.0)] = 19.42
+    """V_r, speed of the reference and of the UAV [m/s]; the aircraft's own unless it is given."""
     bank_deg: Annotated[float, Field(gt=0.0, le=60.0)] = 45.0
-    """Bank whose coordinated turn sets omega_max = g tan(bank)/V_r [deg]."""
+    """Bank whose coordinated turn sets omega_max = g tan(bank)/V_r [deg]; the aircraft's own unless it is given."""
     heading_rate_max_rad_s: Positive | None = None
     """omega_max given directly [rad/s]; overrides bank_deg."""
     reserve: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.015
@@ -95,7 +95,7 @@ class Guidance(Section):
     """Oscillation phase phi_0 [deg]."""
     placement: Literal["paper", "exact"] = "paper"
     """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside."""
-    tracking_allowance_m: Annotated[float, Field(ge=0.0, le=100.0)] = 1.0
+    tracking_allowance_m: Annotated[float, Field(ge=0.0, le=10_000.0)] = 1.0
     """Added to r_min in the placement: what the UAV may stray from the reference, which may touch r_min itself [m]."""
     tuning: Literal["given", "bounded"] = "given"
     """Look-ahead and steering_max as given, or those that converge fastest while no state asks for more than omega_max."""
@@ -231,7 +231,7 @@ class Scenario(Section):
     """A flight for each of sweep.nu, or the cases that are the paper's simulations."""
     title: str
     description: str = ""
-    aircraft: str = "x8"
+    aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = "x8"
     fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
     """The aircraft in six degrees of freedom, the paper's kinematic vehicle, or (cases only) one after the other."""
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from aircraft.errors import AircraftError
-from aircraft.spec import find_spec
+from aircraft.find import find_spec
+from aircraft.spec import Envelope
 from aircraft.trim import Trim
 from gnc.errors import InfeasibleError
 from innerloop.flight import AutopilotedAircraft
@@ -68,10 +69,12 @@ class SixDof:
     ----------
     start : equilibrium to start from
     lag : of the autopilot's heading rate behind its command [s]
+    envelope : where the autopilot may fly it
     """
 
     start: Trim
     lag: float
+    envelope: Envelope
 
 
 def flight_requests(scenario: Scenario) -> list[FlightRequest]:
@@ -203,7 +206,7 @@ def place_vehicle(scenario: Scenario, plan: FlightPlan, model: Path, six_dof: Si
         lag = scenario.kinematic.heading_rate_lag_s
         return KinematicVehicle(**where, speed=plan.reference.speed, time_step=time_step, lag=lag)
     aircraft = AutopilotedAircraft(find_spec(scenario.aircraft), model)
-    return JsbsimVehicle(aircraft, six_dof.start, **where, time_step=time_step)
+    return JsbsimVehicle(aircraft, six_dof.start, six_dof.envelope, **where, time_step=time_step)
 
 
 def _fly(request: FlightRequest, plan: FlightPlan, run: RunDirectory, six_dof: SixDof | None) -> tuple[Row, list[Row]]:

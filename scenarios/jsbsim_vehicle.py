@@ -4,12 +4,15 @@ import math
 from dataclasses import replace
 
 from aircraft.local_frame import LocalFrame
+from aircraft.spec import Envelope
 from aircraft.trim import Trim
 from innerloop.flight import AutopilotedAircraft
 from scenarios.telemetry import Telemetry
 
 _BANK_LIMIT = 1.4
-_AIRSPEED_LIMITS = (8.0, 45.0)
+_AIRSPEED_LIMITS = (8.0 / 15.0, 1.8)
+"""Out of control below and above these shares of the slowest and the fastest airspeed of the envelope [-]."""
+
 _ALTITUDE_MIN = 1.0
 
 
@@ -20,17 +23,19 @@ class JsbsimVehicle:
     ----------
     aircraft : with its autopilot; whatever it flew before is over
     start : straight and level equilibrium
+    envelope : where the autopilot may fly it
     north, east, altitude : where it is released [m]
     course : of its velocity over the ground [rad]
     time_step : of the guidance, a multiple of the simulation's [s]
     """
 
-    __slots__ = ("_command_airspeed", "_command_heading_rate", "_run", "_runs", "motion", "sample")
+    __slots__ = ("_airspeed_limits", "_command_airspeed", "_command_heading_rate", "_run", "_runs", "motion", "sample")
 
     def __init__(
         self,
         aircraft: AutopilotedAircraft,
         start: Trim,
+        envelope: Envelope,
         *,
         north: float,
         east: float,
@@ -47,6 +52,7 @@ class JsbsimVehicle:
         self.sample = telemetry.sample
         self._command_airspeed = aircraft.command_airspeed
         self._command_heading_rate = aircraft.command_heading_rate
+        self._airspeed_limits = (_AIRSPEED_LIMITS[0] * envelope.airspeed_min, _AIRSPEED_LIMITS[1] * envelope.airspeed_max)
         self._run = aircraft.fdm.run
         self._runs = range(round(time_step / aircraft.fdm.time_step))
 
@@ -61,11 +67,11 @@ class JsbsimVehicle:
     def fault(self, sample: tuple[float, ...]) -> str:
         """Return why the aircraft is out of control, or nothing. A value that is not a number is never within its limits."""
         altitude, airspeed, roll = sample[:3]
-        low, high = _AIRSPEED_LIMITS
+        low, high = self._airspeed_limits
         if not abs(roll) < _BANK_LIMIT:
             return f"bank reached {math.degrees(roll):.0f} deg against a limit of {math.degrees(_BANK_LIMIT):.0f}"
         if not low < airspeed < high:
-            return f"airspeed reached {airspeed:.1f} m/s outside {low:g} to {high:g}"
+            return f"airspeed reached {airspeed:.1f} m/s outside {low:.1f} to {high:.1f}"
         if not altitude > _ALTITUDE_MIN:
             return f"altitude fell to {altitude:.1f} m"
         return ""

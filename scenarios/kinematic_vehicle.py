@@ -4,8 +4,9 @@ import math
 
 from gnc.oscillation import bank_for_heading_rate
 from gnc.unicycle import lagged_move, unicycle_move
+from scenarios.vehicle import SAMPLE_COLUMNS
 
-_NONE = math.nan
+_NONE = (math.nan,) * (len(SAMPLE_COLUMNS) - 4)
 
 
 class KinematicVehicle:
@@ -40,7 +41,7 @@ class KinematicVehicle:
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``."""
         bank = bank_for_heading_rate(self._heading_rate, self._speed)
-        return self._altitude, self._speed, bank, 0.0, _NONE, _NONE, _NONE, _NONE, _NONE, _NONE
+        return self._altitude, self._speed, bank, 0.0, *_NONE
 
     def advance(self, heading_rate: float, airspeed: float) -> None:
         """Fly one guidance step with these commands [rad/s, m/s]."""

@@ -45,13 +45,17 @@ class RunDirectory:
         ------
         InputError : it holds something already, or cannot be written
         """
+        self.refuse_taken()
+        self._create()
+
+    def refuse_taken(self) -> None:
+        """Raise an InputError where the directory holds something already."""
         if self.manifest.exists():
             raise InputError(
                 f"output directory '{self.path}' holds another run; choose another --out, or continue it with --resume"
             )
         if self.path.is_dir() and any(self.path.iterdir()):
             raise InputError(f"output directory '{self.path}' is not empty; choose another --out")
-        self._create()
 
     def open_existing(self, config_hash: str) -> None:
         """Open a directory that holds an unfinished or finished run of the same configuration.

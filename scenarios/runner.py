@@ -9,16 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from aircraft.errors import AircraftError
-from aircraft.spec import AircraftSpec, find_spec
+from aircraft.find import find_spec
+from aircraft.spec import AircraftSpec, Envelope
 from gnc.oscillation import bank_for_heading_rate
+from innerloop.cache import Designed, designed
 from innerloop.jsbsim_root import write_root
-from innerloop.record import design_record
 from innerloop.responses import level_trim
-from innerloop.schedule import design_schedule
 from scenarios.bounds_record import bounds_record
 from scenarios.closed_loop import Outcome
 from scenarios.config import Scenario
 from scenarios.errors import InputError
+from scenarios.fitting import fitted
 from scenarios.flights import (
     STUDY,
     FlightRequest,
@@ -111,9 +112,22 @@ def run_scenario(
     ------
     InputError : unknown aircraft, or a directory that cannot be used
     """
-    requests = flight_requests(scenario)
-    spec = _check_aircraft(requests)
     run = RunDirectory(directory)
+    if not resume:
+        run.refuse_taken()
+    spec = _aircraft(scenario)
+    design, refusal = None, ""
+    if spec is not None:
+        progress("designing the autopilot", 0, len(scenario.sweep.nu))
+        try:
+            design = designed(spec, scenario.plume.source_height_m)
+        except AircraftError as error:
+            refusal = str(error)
+        else:
+            scenario = fitted(scenario, design.design.schedule.envelope)
+    requests = flight_requests(scenario)
+    if design is not None:
+        _check_flights(requests, design.design.schedule.spec, design.design.schedule.envelope)
     manifest = opening_manifest(scenario, name, overrides)
     run.open(manifest["config_hash"], resume=resume)
     ledger = _Ledger(run, requests)
@@ -124,16 +138,13 @@ def run_scenario(
     }
     run.write_json(run.manifest, manifest)
     began = time.perf_counter()
-    progress("designing the autopilot" if spec else "flying", len(ledger.done), len(requests))
+    progress("flying", len(ledger.done), len(requests))
     interrupted = False
     try:
-        six_dof = None
-        try:
-            six_dof = _design(spec, scenario, run) if spec else None
-        except AircraftError as error:
-            for request in requests:
-                if request.scenario.fidelity == "six_dof" and request.flight_id not in ledger.done:
-                    ledger.add(failed(request, Outcome.TRIM_FAILED, str(error)))
+        six_dof = _six_dof(design, scenario, run) if design else None
+        for request in requests if refusal else ():
+            if request.scenario.fidelity == "six_dof" and request.flight_id not in ledger.done:
+                ledger.add(failed(request, Outcome.TRIM_FAILED, refusal))
         manifest["guidance_lag_s"] = guidance_lag(scenario, six_dof)
         _fly_all([r for r in requests if r.flight_id not in ledger.done], ledger, run.path, six_dof, jobs, progress)
         if scenario.study == "paper":
@@ -157,28 +168,39 @@ def run_scenario(
     return result
 
 
-def _check_aircraft(requests: list[FlightRequest]) -> AircraftSpec | None:
-    """Return the aircraft of the flights in six degrees of freedom, if there are any, having checked that it can fly them.
+def _aircraft(scenario: Scenario) -> AircraftSpec | None:
+    """Return the aircraft that flies the scenario, or that a kinematic flight of it is fitted to; none where there is neither.
 
     Raises
     ------
-    InputError : unknown aircraft, an airspeed or bank it cannot fly, or flights that differ in what the autopilot is designed for
+    InputError : there is no such aircraft, or it is none for an autopilot
     """
-    flown = [request.scenario for request in requests if request.scenario.fidelity == "six_dof"]
-    designs = {(s.aircraft, s.guidance.airspeed_mps, s.plume.source_height_m) for s in flown}
-    if not designs:
+    kinematic_alone = scenario.fidelity == "kinematic"
+    if kinematic_alone and scenario.aircraft == Scenario.model_fields["aircraft"].default:
         return None
-    if len(designs) > 1:
-        raise InputError("flights differ in aircraft, guidance.airspeed_mps or plume.source_height_m; give each a run of its own")
-    scenario = flown[0]
     try:
-        spec = find_spec(scenario.aircraft)
+        return find_spec(scenario.aircraft)
     except AircraftError as error:
         raise InputError(f"aircraft: {error}") from None
-    envelope, airspeed = spec.envelope, scenario.guidance.airspeed_mps
+
+
+def _check_flights(requests: list[FlightRequest], spec: AircraftSpec, envelope: Envelope) -> None:
+    """Check that the aircraft can fly the flights in six degrees of freedom.
+
+    Raises
+    ------
+    InputError : an airspeed or bank it cannot fly, or flights that differ in what the autopilot is designed for
+    """
+    flown = [request.scenario for request in requests if request.scenario.fidelity == "six_dof"]
+    if not flown:
+        return
+    if len({(s.aircraft, s.guidance.airspeed_mps, s.plume.source_height_m) for s in flown}) > 1 or flown[0].aircraft != spec.name:
+        raise InputError("flights differ in aircraft, guidance.airspeed_mps or plume.source_height_m; give each a run of its own")
+    airspeed = flown[0].guidance.airspeed_mps
     if not envelope.airspeed_min <= airspeed <= envelope.airspeed_max:
         raise InputError(
-            f"guidance.airspeed_mps is {airspeed:g}; {spec.title} flies {envelope.airspeed_min:g} to {envelope.airspeed_max:g} m/s"
+            f"guidance.airspeed_mps is {airspeed:g}; {spec.title} flies {envelope.airspeed_min:.1f} to"
+            f" {envelope.airspeed_max:.1f} m/s: choose an airspeed in between, or leave it out"
         )
     bank = max(bank_for_heading_rate(heading_rate_max(s), airspeed) for s in flown)
     if bank > envelope.bank_max:
@@ -186,17 +208,16 @@ def _check_aircraft(requests: list[FlightRequest]) -> AircraftSpec | None:
             f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {spec.title} stops at"
             f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or guidance.heading_rate_max_rad_s"
         )
-    return spec
 
 
-def _design(spec: AircraftSpec, scenario: Scenario, run: RunDirectory) -> SixDof:
-    """Design the autopilot into the run directory, and return what flights need of it."""
-    schedule = design_schedule(spec, altitude=scenario.plume.source_height_m)
+def _six_dof(found: Designed, scenario: Scenario, run: RunDirectory) -> SixDof:
+    """Write the autopilot into the run directory, and return what flights need of it."""
+    schedule = found.design.schedule
     write_root(schedule, run.model)
-    design = design_record(schedule, run.model)
-    run.write_json(run.innerloop, design)
-    start = level_trim(spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m)
-    return SixDof(start=start, lag=float(design["heading_rate_lag_s"]))
+    run.write_json(run.innerloop, found.record)
+    near = schedule.level(schedule.middle)
+    start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, near)
+    return SixDof(start=start, lag=float(found.record["heading_rate_lag_s"]), envelope=schedule.envelope)
 
 
 class _Ledger:

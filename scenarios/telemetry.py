@@ -1,9 +1,11 @@
 """What guidance and record read from the aircraft, in SI, through cached property nodes."""
 
+import math
+
 from aircraft.fdm import Fdm
 from aircraft.local_frame import LocalFrame
 from aircraft.units import METRES_PER_FOOT
-from innerloop.jsbsim_system import HEADING_RATE
+from innerloop.jsbsim_system import CONTROL_COMMAND, HEADING_RATE
 
 _SAMPLED = (
     ("position/h-sl-ft", METRES_PER_FOOT),
@@ -13,10 +15,11 @@ _SAMPLED = (
     ("attitude/theta-rad", 1.0),
     ("aero/alpha-rad", 1.0),
     ("aero/beta-rad", 1.0),
-    ("fcs/elevator-pos-rad", 1.0),
-    ("fcs/aileron-pos-rad", 1.0),
-    ("fcs/throttle-cmd-norm", 1.0),
 )
+
+
+def _nothing() -> float:
+    return math.nan
 
 
 class Telemetry:
@@ -37,7 +40,11 @@ class Telemetry:
         self._east = fdm.node("velocities/v-east-fps").get_double_value
         self._heading_rate = fdm.node(HEADING_RATE).get_double_value
         self._north_scale, self._east_scale = frame.north_scale, frame.east_scale
+        controls = {i.name for i in fdm.spec.inputs}
         self._sampled = [(fdm.node(name).get_double_value, scale) for name, scale in _SAMPLED]
+        for name in ("elevator", "aileron", "throttle", "rudder"):
+            read = fdm.node(CONTROL_COMMAND.format(name)).get_double_value if name in controls else _nothing
+            self._sampled.append((read, 1.0))
 
     def motion(self) -> tuple[float, float, float, float, float]:
         """Return north, east [m], north and east velocity [m/s] and heading rate [rad/s]."""

@@ -10,11 +10,12 @@ SAMPLE_COLUMNS = (
     "pitch_rad",
     "alpha_rad",
     "sideslip_rad",
-    "elevator_rad",
-    "aileron_rad",
+    "elevator",
+    "aileron",
     "throttle",
+    "rudder",
 )
-"""What a vehicle's ``sample`` returns, in order; not a number where it has no such thing."""
+"""What a vehicle's ``sample`` returns, in order; not a number where it has no such thing. Controls are commands [-]."""
 
 
 class Vehicle(Protocol):
