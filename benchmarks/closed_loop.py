@@ -13,10 +13,10 @@ from pathlib import Path
 
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.spec import X8
+from innerloop.designer import design_autopilot
 from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim, measure_lag
-from innerloop.schedule import design_schedule
 from scenarios.closed_loop import fly
 from scenarios.flights import SixDof, guidance_lag, place_vehicle
 from scenarios.load import load_scenario, with_values
@@ -43,10 +43,11 @@ def main() -> None:
 def _loops(folder: Path) -> dict[str, Callable[[], float]]:
     scenario = load_scenario("sweep_nu", ["start.course_deg=0.0"])
     airspeed, altitude = scenario.guidance.airspeed_mps, scenario.plume.source_height_m
-    root = write_root(design_schedule(X8, altitude=altitude), folder)
+    schedule = design_autopilot(X8, altitude).schedule
+    root = write_root(schedule, folder)
     level = level_trim(X8, airspeed, altitude)
     bare, autopiloted = Fdm(X8), AutopilotedAircraft(X8, root)
-    six_dof = SixDof(start=level, lag=measure_lag(autopiloted, level))
+    six_dof = SixDof(start=level, lag=measure_lag(autopiloted, level, schedule.envelope.bank), envelope=schedule.envelope)
     # No flight ends before its time: no number of crossings is enough.
     endless = with_values(scenario, {"flight.duration_max_s": FLOWN, "flight.crossings": 10_000})
     plan = plan_flight(endless, flight_id="bench", nu=0.5, seed=1, lag=guidance_lag(endless, six_dof))

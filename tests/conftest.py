@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from aircraft.fdm import Fdm
+    from innerloop.designer import Design
     from innerloop.flight import AutopilotedAircraft
     from innerloop.schedule import Schedule
 
@@ -23,12 +24,18 @@ settings.load_profile("reproducible")
 
 
 @pytest.fixture(scope="session")
-def x8_schedule() -> Schedule:
-    """The X8's autopilot at its default altitude and weights; two seconds of work."""
+def x8_design() -> Design:
+    """The X8's autopilot at its default altitude, and its margins; two seconds of work."""
     from aircraft.spec import X8
-    from innerloop.schedule import design_schedule
+    from innerloop.designer import design_autopilot
 
-    return design_schedule(X8)
+    return design_autopilot(X8)
+
+
+@pytest.fixture(scope="session")
+def x8_schedule(x8_design: Design) -> Schedule:
+    """The tables of the X8's autopilot."""
+    return x8_design.schedule
 
 
 @pytest.fixture(scope="session")
