@@ -139,9 +139,11 @@ class Fdm:
         for node, (_, value) in zip(self._initial, initial_conditions(state), strict=True):
             node.set_double_value(value)
         try:
-            placed = self._exec.run_ic()
+            with contextlib.nullcontext() if self._engines_run else _silence():
+                placed = self._exec.run_ic()
         except jsbsim.BaseError as error:
-            raise AircraftError(f"aircraft '{self.spec.name}' does not run in JSBSim alone: {error}") from None
+            reason = " ".join(str(error).split(") ", 1)[-1].split())
+            raise AircraftError(f"aircraft '{self.spec.name}' does not run in JSBSim alone: {reason}") from None
         if not placed:
             raise AircraftError(f"aircraft '{self.spec.name}': JSBSim refused the initial state {state}")
         for name, value in self.spec.configuration:

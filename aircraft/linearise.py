@@ -37,8 +37,9 @@ _INPUT_STEP = 0.01
 _LAG_STEP = {"throttle": 0.05}
 """Input steps from which lags are measured: a turbine spools at a steady rate, so a small step would see no lag at all [-]."""
 
-_SETTLED = 1e-8
-"""Change of acceleration a step below which engines count as settled: behind one as slow as a second, 1e-6 from the end."""
+_SETTLED = 3e-8
+"""Change of acceleration a step below which engines count as settled: behind one as slow as a second, 4e-6 from the end, where the
+differences are 5e-3 and more."""
 
 _LAG_STEPS_MAX = 2400
 _LAG_SETTLED = 0.002

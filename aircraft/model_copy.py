@@ -42,7 +42,7 @@ def copy_model(root: Path, model: str, directory: Path, *, play: bool = True) ->
     except ET.ParseError as error:
         raise AircraftError(f"model file {source / model}.xml is not valid XML: {error}; mend it") from None
     config = document.getroot()
-    at_rest = _take_out(config, root, source)
+    at_rest = [*_take_out(config, root, source), *_of_another_program(config, root, source)]
     if at_rest:
         before = next((i for i, element in enumerate(config) if element.tag == "flight_control"), len(config))
         config.insert(before, _properties_at_rest(at_rest))
@@ -66,6 +66,13 @@ def _take_out(config: ET.Element, root: Path, source: Path) -> list[str]:
             names += _properties(_content(element, root, source))
             config.remove(element)
     return list(dict.fromkeys(names))
+
+
+def _of_another_program(config: ET.Element, root: Path, source: Path) -> list[str]:
+    """Return the properties that the model reads from FlightGear's tree, such as ``/sim/model/pushback``: JSBSim alone has none."""
+    parts = [config, *(_content(element, root, source) for element in config.iter() if element.get("file"))]
+    words = (word.lstrip("-") for part in parts for element in part.iter() for word in (element.text or "").split())
+    return list(dict.fromkeys(word for word in words if re.fullmatch(r"/[A-Za-z_][\w.\-/\[\]]*", word)))
 
 
 def _is_autopilot(element: ET.Element) -> bool:

@@ -22,8 +22,11 @@ from aircraft.state import RigidBodyState, body_velocity, level, turn_rates
 _TOLERANCE = 1e-5
 """Largest acceleration that counts as zero [m/s^2, rad/s^2]: a millionth of g."""
 
-_SETTLED = 2e-9
-"""Change of acceleration a step below which engines count as settled: behind one as slow as ten seconds, 2e-6 from the end."""
+_SETTLED = 1e-8
+"""Change of acceleration a step below which engines count as settled: behind one as slow as two seconds, 2e-6 from the end."""
+
+_GOOD = 0.05
+"""Where a search ends, over what counts as zero: the settling that is left must not tip the balance [-]."""
 
 _ALPHA_MAX = 0.5
 _BETA_MAX = 0.3
@@ -156,13 +159,22 @@ def search_trim(
     problem = _TrimProblem(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle)
     nearest: Trim | None = None
     with fdm.frozen():
-        for guess in problem.guesses(start):
-            found = problem.solve(guess)
+        for i, guess in enumerate(problem.guesses(start)):
+            # Near a known equilibrium the engines are as that left them.
+            found = problem.solve(guess, run_up=start is None or i > 0)
             if found.outcome is TrimOutcome.CONVERGED:
                 return found
             if nearest is None or found.residual < nearest.residual:
                 nearest = found
         return problem.nearest(nearest)
+
+
+class _FoundError(Exception):
+    """Ends a search at its first good point: MINPACK would go on to the last digit, which an engine that settles does not have."""
+
+    def __init__(self, unknowns: npt.NDArray[np.float64]) -> None:
+        super().__init__()
+        self.unknowns = unknowns
 
 
 class _TrimProblem:
@@ -195,16 +207,24 @@ class _TrimProblem:
         third = start.roll if self._straight and start.yaw_rate == 0.0 else self._turn
         return [np.array([start.alpha, start.beta, third] + [start.inputs[i.name] for i in inputs]), *blank]
 
-    def solve(self, guess: npt.NDArray[np.float64]) -> Trim:
+    def solve(self, guess: npt.NDArray[np.float64], *, run_up: bool) -> Trim:
         """Return what Powell's method makes of a guess. It knows no limits; a solution beyond one is none."""
 
         def scaled(z: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
             # MINPACK steps relative to an unknown, and sideslip is zero: so every unknown is near one.
-            return self.residual(guess + self._scale * (z - 1.0))
+            unknowns = guess + self._scale * (z - 1.0)
+            residual = self.residual(unknowns)
+            if np.max(np.abs(residual)) < _GOOD * _TOLERANCE:
+                raise _FoundError(unknowns)
+            return residual
 
-        self._run_up(guess)
+        if run_up:
+            self._run_up(guess)
         step = (_DIFFERENCE / _SCALE) ** 2
-        solution, *_ = fsolve(scaled, np.ones(len(guess)), full_output=True, xtol=1e-10, epsfcn=step, factor=1.0, maxfev=80)
+        try:
+            solution, *_ = fsolve(scaled, np.ones(len(guess)), full_output=True, xtol=1e-10, epsfcn=step, factor=1.0, maxfev=80)
+        except _FoundError as found:
+            return self._result(found.unknowns)
         return self._result(guess + self._scale * (np.asarray(solution) - 1.0))
 
     def _run_up(self, guess: npt.NDArray[np.float64]) -> None:

@@ -1,6 +1,7 @@
 """Command line: ``python -m innerloop.design AIRCRAFT`` designs an autopilot, prints, reports and writes it out for JSBSim."""
 
 import json
+import os
 import sys
 import time
 from pathlib import Path
@@ -16,15 +17,24 @@ if TYPE_CHECKING:
 
 
 def command(
-    aircraft: Annotated[str, typer.Argument(metavar="AIRCRAFT", help="What to design for, e.g. x8.")],
+    aircraft: Annotated[str | None, typer.Argument(metavar="AIRCRAFT", help="What to design for, e.g. x8.")] = None,
     out: Annotated[Path | None, typer.Option(help="Directory for the design; default runs/design-AIRCRAFT.")] = None,
     altitude: Annotated[float, typer.Option(min=10.0, max=5000.0, help="Design altitude in metres.")] = 100.0,
     no_report: Annotated[bool, typer.Option("--no-report", help="Leave out report.html and report.pdf.")] = False,
+    list_aircraft: Annotated[
+        bool, typer.Option("--list", help="Say of every aircraft whether it can be flown, or why not, and exit.")
+    ] = False,
 ) -> None:
     """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a JSBSim root that flies it."""
     from aircraft.errors import AircraftError
     from reports.errors import ReportError
 
+    if list_aircraft:
+        _list(altitude)
+        return
+    if aircraft is None:
+        print("error: no aircraft given; `--list` names those there are", file=sys.stderr)
+        raise typer.Exit(BAD_INPUT)
     try:
         _design(aircraft, out or Path("runs") / f"design-{aircraft}", altitude, no_report=no_report)
     except (AircraftError, ReportError) as error:
@@ -33,6 +43,18 @@ def command(
     except OSError as error:
         print(f"error: '{error.filename}' cannot be written: {error.strerror}; choose another --out", file=sys.stderr)
         raise typer.Exit(BAD_INPUT) from None
+
+
+def _list(altitude: float) -> None:
+    """Print a line for every aircraft, as soon as it is known."""
+    from innerloop.discovery import discover
+
+    print("designing every aircraft that is not remembered; the first time, some minutes", file=sys.stderr)
+    flown = 0
+    for found in discover(altitude, os.cpu_count() or 1):
+        flown += found.flies
+        print(f"{'flies' if found.flies else '-':6}{found.name:18}{found.text}", flush=True)
+    print(f"{flown} can be flown", file=sys.stderr)
 
 
 def _design(aircraft: str, out: Path, altitude: float, *, no_report: bool) -> None:

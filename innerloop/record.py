@@ -71,11 +71,12 @@ def step_sizes(schedule: Schedule) -> dict[str, float]:
     """Return the steps that are predicted and flown [rad/s, m/s, m]: half the study's turn, and half of what still works harder."""
     turn = STANDARD_GRAVITY * math.tan(schedule.envelope.bank) / schedule.level(schedule.middle).airspeed
     room = 0.25 * (schedule.envelope.airspeed_max - schedule.envelope.airspeed_min)
-    return {
+    sizes = {
         "heading_rate": 0.5 * turn,
         "airspeed": min(0.5 * schedule.weights.airspeed_error_max, room),
         "altitude": 0.5 * schedule.weights.altitude_error_max,
     }
+    return {name: float(f"{size:.2g}") for name, size in sizes.items()}
 
 
 def _envelope_record(envelope: Envelope) -> Record:
