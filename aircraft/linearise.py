@@ -7,7 +7,8 @@ input does at once, before servo or propeller has moved (a motor's torque on the
 step as well.
 
 Where the spec names no property that follows an input (of a stock aircraft nobody knows which), the input's way to the airframe is
-measured: from a step of it, the area that the accelerations leave to their end is the time constant of a lag.
+measured: what the accelerations leave to their end after a step of it has an area and a first moment in time, and those are the
+coefficients of a lag of first or second order (a piston engine's manifold pressure, then its speed).
 """
 
 import math
@@ -43,6 +44,9 @@ differences are 5e-3 and more."""
 
 _LAG_STEPS_MAX = 2400
 _LAG_SETTLED = 0.002
+_SECOND_ORDER = 0.05
+"""Product of two time constants over the square of their sum below which the smaller of them is none [-]."""
+
 _NO_LAG = 0.6
 """A time constant below this many steps is the half step of holding an input, not a lag [-]."""
 
@@ -58,9 +62,9 @@ def linearise(fdm: Fdm, trim: Trim) -> control.StateSpace:
     Returns
     -------
     control.StateSpace
-        States: ``BODY_STATES`` followed by the aircraft's driven states, then ``INPUT_effect`` for each measured lag. Inputs: the
-        aircraft's control inputs [-]. Outputs: every state followed by ``EXTRA_OUTPUTS``. All are deviations from trim, in SI and
-        radians.
+        States: ``BODY_STATES`` followed by the aircraft's driven states, then ``INPUT_effect`` for each measured lag, followed by
+        ``INPUT_effect_rate`` where it is of second order. Inputs: the aircraft's control inputs [-]. Outputs: every state followed
+        by ``EXTRA_OUTPUTS``. All are deviations from trim, in SI and radians.
 
     Raises
     ------
@@ -119,10 +123,14 @@ class _Differences:
         model = _Model(a=a, b=np.vstack([direct[:n_body], driven_forcing]), c=extras, d=direct[n_body:])
         states = [*BODY_STATES, *(s.name for s in self._spec.driven_states)]
         for j, control_input in enumerate(self._spec.inputs):
-            if j in driver or (lag := self._measured_lag(j)) <= _NO_LAG * self._fdm.time_step:
+            if j in driver:
                 continue
-            model = model.with_lag(j, lag)
-            states.append(f"{control_input.name}_effect")
+            lag, product = self._measured_lag(j)
+            if lag <= _NO_LAG * self._fdm.time_step:
+                continue
+            second = product > _SECOND_ORDER * lag**2
+            model = model.with_lag(j, lag, product if second else 0.0)
+            states += [f"{control_input.name}_effect", f"{control_input.name}_effect_rate"][: 1 + second]
         return control.ss(
             model.a,
             model.b,
@@ -134,8 +142,11 @@ class _Differences:
             name=self._spec.name,
         )
 
-    def _measured_lag(self, j: int) -> float:
-        """Return the time constant of the lag between input j and the accelerations [s], from the area above a step's answer."""
+    def _measured_lag(self, j: int) -> tuple[float, float]:
+        """Return sum and product of the time constants between input j and the accelerations [s, s^2].
+
+        After a step through two lags, what is left of it has the area T1 + T2 and the first moment T1^2 + T1 T2 + T2^2.
+        """
         name, step = self._spec.inputs[j].name, _LAG_STEP.get(self._spec.inputs[j].name, _INPUT_STEP)
         inputs = self._inputs.copy()
         inputs[j] += step if inputs[j] + step <= self._spec.inputs[j].upper else -step
@@ -147,14 +158,15 @@ class _Differences:
         if size == 0.0:
             raise AircraftError(f"aircraft '{self._spec.name}': nothing moves with '{name}'; it cannot be controlled with it")
         self._fdm.command({name: float(inputs[j])})
-        area = 0.5
-        for _ in range(_LAG_STEPS_MAX):
+        area, moment = 0.5, 0.0
+        for i in range(1, _LAG_STEPS_MAX):
             self._fdm.step()
             left = float((self._accelerations() - end) @ whole) / size
             area += left
+            moment += i * left
             if abs(left) < _LAG_SETTLED:
                 break
-        return max(0.0, area) * self._fdm.time_step
+        return max(0.0, area) * self._fdm.time_step, (area**2 - moment) * self._fdm.time_step**2
 
     def _accelerations(self) -> npt.NDArray[np.float64]:
         return np.array([*self._fdm.acceleration_body(), *self._fdm.angular_acceleration()])
@@ -235,16 +247,23 @@ class _Model:
     c: npt.NDArray[np.float64]
     d: npt.NDArray[np.float64]
 
-    def with_lag(self, j: int, lag: float) -> "_Model":
-        """Return the model in which input j acts through a state of its own that follows it with time constant ``lag`` [s]."""
+    def with_lag(self, j: int, lag: float, product: float) -> "_Model":
+        """Return the model in which input j acts through one or two states of its own.
+
+        The sum of their time constants is ``lag`` [s], their product ``product`` [s^2]; 0 for a single one.
+        """
         n, m = self.b.shape
-        forcing = np.zeros((1, m))
-        forcing[0, j] = 1.0 / lag
-        without = np.ones(m)
-        without[j] = 0.0
+        if product:
+            follow, driven = np.array([[0.0, 1.0], [-1.0 / product, -lag / product]]), np.array([[0.0], [1.0 / product]])
+        else:
+            follow, driven = np.array([[-1.0 / lag]]), np.array([[1.0 / lag]])
+        order = len(follow)
+        selected = np.eye(m)[[j]]
+        without = 1.0 - selected[0]
+        padding = np.zeros((len(self.c), order - 1))
         return _Model(
-            a=np.block([[self.a, self.b[:, [j]]], [np.zeros((1, n)), np.array([[-1.0 / lag]])]]),
-            b=np.vstack([self.b * without, forcing]),
-            c=np.hstack([self.c, self.d[:, [j]]]),
+            a=np.block([[self.a, self.b[:, [j]], np.zeros((n, order - 1))], [np.zeros((order, n)), follow]]),
+            b=np.vstack([self.b * without, driven @ selected]),
+            c=np.hstack([self.c, self.d[:, [j]], padding]),
             d=self.d * without,
         )

@@ -8,6 +8,9 @@ import numpy.typing as npt
 
 from aircraft.linearise import BODY_STATES
 
+_MOVES = 1e-9
+"""Final value below which a state does not follow an input: a rate comes back to zero."""
+
 Matrix = npt.NDArray[np.float64]
 
 
@@ -31,10 +34,14 @@ def quasi_static(model: control.StateSpace) -> control.StateSpace:
 
 
 def state_lag(model: control.StateSpace, control_input: str) -> float:
-    """Return the time constant with which a control input comes to act [s]: that of the slowest state it drives alone."""
-    column = model.B[:, model.input_labels.index(control_input)]
-    driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES and column[i] != 0.0]
-    return max((-1.0 / float(model.A[i, i]) for i in driven), default=0.0)
+    """Return how late a control input comes to act [s]: the area above the answer to a step of what follows it most slowly."""
+    driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES]
+    if not driven:
+        return 0.0
+    follow = model.A[np.ix_(driven, driven)]
+    end = -np.linalg.solve(follow, model.B[driven, model.input_labels.index(control_input)])
+    area = -np.linalg.solve(follow, end)
+    return max((float(a / e) for a, e in zip(area, end, strict=True) if abs(e) > _MOVES), default=0.0)
 
 
 def pick(plant: control.StateSpace, states: Sequence[str], inputs: Sequence[str], outputs: Sequence[str]) -> tuple[Matrix, ...]:

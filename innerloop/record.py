@@ -55,7 +55,8 @@ def design_record(design: Design, root: Path) -> Record:
         "speeds_rad_s": asdict(design.speeds),
         "model_frequency_rad_s": schedule.weights.model_frequency,
         "model_damping": schedule.weights.model_damping,
-        "trims": [_trim_record(t) for row in schedule.trims for t in row] + _climbs(schedule),
+        "trims": [_trim_record(t, bank) for row in schedule.trims for t, bank in zip(row, schedule.banks, strict=True)]
+        + _climbs(schedule),
         "poles": _poles(schedule),
         "margins": [row for check in design.checks if check.case == NOMINAL for row in _margin_records(check)],
         "robustness": [_robustness_record(check) for check in design.checks if check.case != NOMINAL],
@@ -91,10 +92,12 @@ def _envelope_record(envelope: Envelope) -> Record:
     }
 
 
-def _trim_record(t: Trim) -> Record:
+def _trim_record(t: Trim, bank: float) -> Record:
+    """Return an equilibrium; ``bank`` is the grid's [rad], 0 in straight flight whatever roll balances the propeller's torque."""
     return {
         "airspeed_mps": t.airspeed,
-        "bank_rad": t.roll,
+        "bank_rad": bank,
+        "roll_rad": t.roll,
         "climb_angle_rad": t.climb_angle,
         "alpha_rad": t.alpha,
         "sideslip_rad": t.beta,
@@ -114,7 +117,7 @@ def _climbs(schedule: Schedule) -> list[Record]:
         search_trim(fdm, airspeed=level.airspeed, altitude=schedule.altitude, climb_angle=math.radians(angle), start=level)
         for angle in _CLIMB_ANGLES_DEG
     ]
-    return [_trim_record(t) for t in found if t.outcome is TrimOutcome.CONVERGED]
+    return [_trim_record(t, 0.0) for t in found if t.outcome is TrimOutcome.CONVERGED]
 
 
 def _margin_records(check: Check) -> list[Record]:
@@ -147,7 +150,7 @@ def _poles(schedule: Schedule) -> list[Record]:
     return [
         {
             "airspeed_mps": t.airspeed,
-            "bank_rad": t.roll,
+            "bank_rad": schedule.gain_banks[j],
             "open_loop": _pairs(model.poles()),
             "closed_loop": _pairs(Loops(model, linear_controller(law, t)).poles()),
         }
@@ -172,7 +175,7 @@ def _loops(schedule: Schedule) -> list[Record]:
             {
                 "loop": BREAK_NAMES.get(name, name),
                 "airspeed_mps": level.airspeed,
-                "bank_rad": level.roll,
+                "bank_rad": 0.0,
                 "frequency_rad_s": _FREQUENCIES.tolist(),
                 "gain_db": (20.0 * np.log10(np.abs(response))).tolist(),
                 "phase_deg": np.degrees(np.unwrap(np.angle(response))).tolist(),

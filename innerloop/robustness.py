@@ -105,9 +105,13 @@ class Check:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OperatingPoint:
-    """Where margins are computed: an equilibrium, the aircraft about it, and whether it lies between those of the grid."""
+    """Where margins are computed: an equilibrium, the aircraft about it, and whether it lies between those of the grid.
+
+    ``bank`` is that of the grid [rad]: straight flight has 0, also where it takes a little bank against the propeller's torque.
+    """
 
     trim: Trim
+    bank: float
     model: control.StateSpace
     between: bool
 
@@ -119,7 +123,7 @@ def operating_points(schedule: Schedule) -> list[OperatingPoint]:
     """
     columns = [TRIM_BANKS.index(share) for share in GAIN_BANKS]
     at = {
-        (i, j): OperatingPoint(trim=row[columns[j]], model=schedule.models[i][j], between=False)
+        (i, j): OperatingPoint(trim=row[columns[j]], bank=schedule.gain_banks[j], model=schedule.models[i][j], between=False)
         for i, row in enumerate(schedule.trims)
         for j in range(len(columns))
     }
@@ -152,7 +156,8 @@ def _middle(first: OperatingPoint, second: OperatingPoint) -> OperatingPoint:
         residuals=p.residuals,
         limits=(),
     )
-    return OperatingPoint(trim=trim, model=_mean_model(first.model, second.model), between=True)
+    bank = mean(first.bank, second.bank)
+    return OperatingPoint(trim=trim, bank=bank, model=_mean_model(first.model, second.model), between=True)
 
 
 def _mean_model(first: control.StateSpace, second: control.StateSpace) -> control.StateSpace:
@@ -181,7 +186,7 @@ def _checks(law: ControlLaw, point: OperatingPoint, cases: "dict[str, tuple[Chan
         yield Check(
             case=case,
             airspeed=point.trim.airspeed,
-            bank=point.trim.roll,
+            bank=point.bank,
             between=point.between,
             stable=loops.stable,
             margins=tuple(loops.margins(together=False)),
