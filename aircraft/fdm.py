@@ -135,6 +135,10 @@ class Fdm:
             self._start_engines()
             self._initialise(state)
 
+    def revive(self) -> None:
+        """Let engines that have stopped start again when the aircraft is placed next: too little throttle can stall them."""
+        self._engines_run = self._engines_run and self._running()
+
     def _initialise(self, state: RigidBodyState) -> None:
         for node, (_, value) in zip(self._initial, initial_conditions(state), strict=True):
             node.set_double_value(value)
@@ -208,6 +212,7 @@ class Fdm:
 
     def hold(self, state: RigidBodyState, steps: int) -> None:
         """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else at rest."""
+        self.revive()
         self.place(before_hold(state, steps * self.time_step))
         with self.frozen():
             self.step(steps)

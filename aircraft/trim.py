@@ -22,9 +22,10 @@ from aircraft.state import RigidBodyState, body_velocity, level, turn_rates
 _TOLERANCE = 1e-5
 """Largest acceleration that counts as zero [m/s^2, rad/s^2]: a millionth of g."""
 
-_SETTLED = 1e-8
-"""Change of acceleration a step below which engines count as settled: behind one as slow as two seconds, 2e-6 from the end."""
+_SETTLED = 2e-9
+"""Change of acceleration a step below which engines count as settled: behind one as slow as ten seconds, 2e-6 from the end."""
 
+_SETTLE_STEPS = 2400
 _GOOD = 0.05
 """Where a search ends, over what counts as zero: the settling that is left must not tip the balance [-]."""
 
@@ -218,6 +219,7 @@ class _TrimProblem:
                 raise _FoundError(unknowns)
             return residual
 
+        self._fdm.revive()
         if run_up:
             self._run_up(guess)
         step = (_DIFFERENCE / _SCALE) ** 2
@@ -245,7 +247,7 @@ class _TrimProblem:
                 xtol=1e-10,
                 ftol=1e-12,
                 gtol=1e-12,
-                max_nfev=30,
+                max_nfev=12,
             )
             result = self._result(solution.x)
             if result.outcome is TrimOutcome.CONVERGED:
@@ -273,7 +275,7 @@ class _TrimProblem:
         state, _ = self._state(unknowns)
         fdm.command(self._inputs(unknowns))
         fdm.place(state)
-        fdm.settle(_SETTLED)
+        fdm.settle(_SETTLED, _SETTLE_STEPS)
         residual = [*fdm.acceleration_body(), *fdm.angular_acceleration()]
         if self._rudder:
             residual.append(float(unknowns[1]))
@@ -283,7 +285,7 @@ class _TrimProblem:
         state, yaw_rate = self._state(unknowns)
         spec = self._fdm.spec
         residuals = tuple(float(value) for value in self.residual(unknowns))
-        settled = self._fdm.settle(_SETTLED)
+        settled = self._fdm.settle(_SETTLED, _SETTLE_STEPS)
         limits = self._limits(unknowns, settled)
         converged = settled and max(abs(value) for value in residuals) < _TOLERANCE
         inside = bool(np.all(unknowns <= self._upper) and np.all(unknowns >= self._lower))
