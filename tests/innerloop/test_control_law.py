@@ -159,7 +159,7 @@ def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_st
         for j in range(len(schedule.gain_banks)):
             t, gains = schedule.gain_trim(i, j), schedule.gains[i][j]
             rates, controls = evaluate_at(law, operating_point(law, t))
-            # The law damps all of the roll rate, and a nose-up turn has one of its own, -yaw rate times sin(pitch): what aileron and
+            # The law damps all of the roll rate, and a nose-up turn has its own, -yaw rate times sin(pitch): what aileron and
             # rudder then lack, the integral of the heading rate adds.
             by_roll_rate = dict(zip(("aileron", "rudder"), -gains.lateral[:, LATERAL.index("p")] * t.rates_body[0], strict=True))
             # At its own nodes a table is exact, and every error is nought. At wings level the propeller's torque banks the X8 by

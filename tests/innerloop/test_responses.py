@@ -53,7 +53,7 @@ def test_steps_of_airspeed_and_altitude_settle_on_the_command(x8_schedule, x8_ai
 @pytest.mark.parametrize("index", INSIDE)
 def test_the_flown_heading_rate_lags_its_command_by_the_lag_of_the_model(x8_schedule, x8_aircraft, index):
     weights = x8_schedule.weights
-    # A second-order model lags slow commands by 2 zeta/omega_n: 2 times 0.9 over 4.83 rad/s is 0.373 s. 0.03 s is left for the model's
+    # A second-order model lags slow commands by 2 zeta/omega_n: 2 times 0.9 over 4.83 rad/s is 0.373 s. 0.03 s is left for its
     # own phase at 0.5 rad/s (0.2 ms), two steps of computing (8 ms each), and how well the aircraft follows the model.
     expected = 2.0 * weights.model_damping / weights.model_frequency
     assert measure_lag(x8_aircraft, x8_schedule.level(index), X8.envelope.bank) == pytest.approx(expected, abs=0.03)
