@@ -1,4 +1,4 @@
-"""Changed aircraft: each change is what changing JSBSim's own model makes of the linear aircraft; and what is made of too little margin."""
+"""Changed aircraft: each change is what changing JSBSim's own model makes of the linear one; what too little margin leads to."""
 
 import dataclasses
 import math
@@ -81,7 +81,7 @@ def test_a_fifth_of_inertia_changes_the_linear_aircraft_as_a_fifth_of_inertia_in
     larger = [(f"i{axes}", factor) for axes in ("xx", "yy", "zz", "xz")]
     stiff = linearise(Fdm(X8, x8_with(tmp_path, *larger)), trims[name])
     found = changed(f"inertia {100.0 * (factor - 1.0):+.0f} %", models[name], trims[name])
-    # The same moments over other inertia; rounding of differences over 0.002 rad/s. Turning, a body's own gyroscopic moments grow with
+    # The same moments over other inertia; rounding of differences over 0.002 rad/s. Turning, its own gyroscopic moments grow with
     # its inertia: the change divides them as well, a fifth of rates near 0.3 rad/s, where the air's terms are up to 20 1/s.
     assert_same(found, stiff, rtol=1e-4, atol=gyroscopic)
 
@@ -102,7 +102,7 @@ def test_a_fifth_of_effectiveness_is_a_fifth_of_what_every_control_does_in_the_e
 
 
 def test_gravity_and_turning_are_those_of_a_body_without_forces(trims):
-    # Without force a body falls: in level flight with pitch = alpha the path bends down at g/V, V_dot by pitch is -g, alpha_dot by q
+    # Without force a body falls: in level flight the path bends down at g/V, V_dot by pitch is -g, alpha_dot by q
     # is 1, and sideslip follows -r and g roll/V (Stevens and Lewis, linear equations of motion with all aerodynamics left out).
     states = ["airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude"]
     level = dataclasses.replace(trims["level"], alpha=0.05, beta=0.0, roll=0.0, pitch=0.05, rates_body=(0.0, 0.0, 0.0))
