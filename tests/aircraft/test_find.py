@@ -41,16 +41,15 @@ def test_every_aircraft_of_jsbsim_is_found_or_refused_with_a_reason(name):
     try:
         spec = find_spec(name)
     except AircraftError as error:
-        assert str(error).startswith(f"aircraft '{name}' cannot be flown: ")
-        assert len(str(error)) > len(f"aircraft '{name}' cannot be flown: ") + 10
-        assert "\n" not in str(error)
+        spec, refusal = None, str(error)
+    if spec is None:
+        assert re.fullmatch(rf"aircraft '{name}' cannot be flown: [^\n]{{10,}}", refusal)
         return
     assert (spec.name, spec.model, spec.root) == (name, name, STOCK.parent)
     assert {i.name for i in spec.inputs} == {"elevator", "aileron", "throttle", "rudder"}
     # A throttle for each engine in the model's own file.
-    engines = len(
-        re.findall(r"<engine\s", re.sub(r"<!--.*?-->", "", (STOCK / name / f"{name}.xml").read_text(errors="replace"), flags=re.S))
-    )
+    text = (STOCK / name / f"{name}.xml").read_text(encoding="utf-8", errors="replace")
+    engines = len(re.findall(r"<engine\s", re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)))
     assert len(spec.input("throttle").commands) == engines
     assert len(set(spec.input("throttle").commands)) == engines
     assert "own autopilot off" in spec.source
