@@ -131,8 +131,7 @@ class Fdm:
     def place(self, state: RigidBodyState) -> None:
         """Put the aircraft into ``state``, configured as its spec says. Engines go on as they were; the first time they start."""
         self._initialise(state)
-        if not self._engines_run:
-            self._start_engines()
+        if not self._engines_run and self._start_engines():
             self._initialise(state)
 
     def revive(self) -> None:
@@ -153,8 +152,8 @@ class Fdm:
         for name, value in self.spec.configuration:
             self.write(name, value)
 
-    def _start_engines(self) -> None:
-        """Start every engine: at once where JSBSim can, otherwise as a pilot does; then run them up while the body is held.
+    def _start_engines(self) -> bool:
+        """Start every engine, at once or as a pilot does, and run them up, the body held; return whether that took any time.
 
         A governed propeller that comes from idle can stay at its fine stop, wind-milling; from full throttle it governs.
         """
@@ -162,7 +161,7 @@ class Fdm:
         for name, value in START_ENGINES:
             self.write(name, value)
         if not self.spec.engine_flags:
-            return
+            return False
         throttles = {name: self.read(name) for name in self.spec.input("throttle").commands}
         with self.frozen():
             for name in throttles:
@@ -182,6 +181,7 @@ class Fdm:
             raise AircraftError(
                 f"aircraft '{self.spec.name}': an engine does not run after {seconds:g} s of cranking and as much without"
             )
+        return True
 
     def _running(self) -> bool:
         return all(self.read(name) > 0.5 for name in self.spec.engine_flags)

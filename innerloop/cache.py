@@ -3,6 +3,7 @@
 import contextlib
 import hashlib
 import importlib.metadata
+import io
 import os
 import pickle
 import platform
@@ -25,6 +26,7 @@ from innerloop.record import Record, design_record
 from reports.files import write_whole
 
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot")
+_DIGEST = hashlib.sha256().digest_size
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +63,14 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
         _remember(key, found)
     if isinstance(found, _Refused):
         raise (DesignError if found.is_margins else AircraftError)(found.message)
-    return found
+    return _at(spec.root, found)
+
+
+def _at(root: Path, found: Designed) -> Designed:
+    """Return a design whose model is looked for in ``root``: the same files may have stood elsewhere when it was made."""
+    schedule = found.design.schedule
+    schedule = replace(schedule, spec=replace(schedule.spec, root=root))
+    return replace(found, design=replace(found.design, schedule=schedule))
 
 
 def design_key(spec: AircraftSpec, altitude: float) -> str:
@@ -107,8 +116,11 @@ def cache_directory() -> Path:
 def _remembered(key: str) -> Designed | _Refused | None:
     """Return what is remembered under a key; nothing if there is nothing, or nothing that can be read."""
     try:
-        with (cache_directory() / f"{key}.design").open("rb") as file:
-            found = pickle.load(file)
+        content = (cache_directory() / f"{key}.design").read_bytes()
+        # A file that is damaged could still be read, as another autopilot.
+        if content[:_DIGEST] != hashlib.sha256(content[_DIGEST:]).digest():
+            return None
+        found = pickle.loads(content[_DIGEST:])
     except (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, TypeError, ValueError, IndexError):
         return None
     return found if isinstance(found, Designed | _Refused) else None
@@ -116,14 +128,12 @@ def _remembered(key: str) -> Designed | _Refused | None:
 
 def _remember(key: str, found: Designed | _Refused) -> None:
     """Keep a design; where that cannot be done, it is made again the next time."""
-
-    def write(path: Path) -> None:
-        with path.open("wb") as file:
-            _Pickler(file).dump(found)
-
+    buffer = io.BytesIO()
+    _Pickler(buffer).dump(found)
+    content = hashlib.sha256(buffer.getvalue()).digest() + buffer.getvalue()
     with contextlib.suppress(OSError):
         cache_directory().mkdir(parents=True, exist_ok=True)
-        write_whole(cache_directory() / f"{key}.design", write)
+        write_whole(cache_directory() / f"{key}.design", lambda path: path.write_bytes(content))
 
 
 class _Pickler(pickle.Pickler):

@@ -1,19 +1,25 @@
-"""Fixtures that several test packages share: the X8, bare and under an autopilot that is designed once per session.
+"""Fixtures that several test packages share: designs made once per run, the X8 bare and under its autopilot.
 
 They import what they need when they are used: tests/gnc runs where neither JSBSim nor python-control is installed.
 """
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import os
+import time
 from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from aircraft.fdm import Fdm
+    from innerloop.cache import Designed
     from innerloop.designer import Design
     from innerloop.flight import AutopilotedAircraft
     from innerloop.schedule import Schedule
@@ -23,13 +29,49 @@ settings.register_profile("reproducible", deadline=None, derandomize=True)
 settings.load_profile("reproducible")
 
 
-@pytest.fixture(scope="session")
-def x8_design() -> Design:
-    """The X8's autopilot at its default altitude, and its margins; two seconds of work."""
-    from aircraft.spec import X8
-    from innerloop.designer import design_autopilot
+@pytest.fixture(scope="session", autouse=True)
+def cache_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A cache directory for this run and all its workers, so that tests neither read nor leave designs in the user's."""
+    base = tmp_path_factory.getbasetemp()
+    home = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache"
+    home.mkdir(exist_ok=True)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(home))
+        yield home
 
-    return design_autopilot(X8)
+
+@pytest.fixture(scope="session")
+def designs(cache_home: Path) -> Callable[[str], Designed]:
+    """A function from an aircraft's name to its design and record, made by whichever worker asks first: seconds of work."""
+    from aircraft.find import find_spec
+    from innerloop.cache import designed
+
+    @functools.cache
+    def design(name: str) -> Designed:
+        with _alone(cache_home / f"{name}.lock"):
+            return designed(find_spec(name))
+
+    return design
+
+
+@contextlib.contextmanager
+def _alone(lock: Path) -> Iterator[None]:
+    """Wait while another worker is at the same work, for two minutes at most: then it does not live any more."""
+    for _ in range(2400):
+        with contextlib.suppress(FileExistsError):
+            lock.touch(exist_ok=False)
+            break
+        time.sleep(0.05)
+    try:
+        yield
+    finally:
+        lock.unlink(missing_ok=True)
+
+
+@pytest.fixture(scope="session")
+def x8_design(designs: Callable[[str], Designed]) -> Design:
+    """The X8's autopilot at its default altitude, and its margins."""
+    return designs("x8").design
 
 
 @pytest.fixture(scope="session")

@@ -11,13 +11,11 @@ import pandas as pd
 import pytest
 
 from aircraft.errors import AircraftError, UnknownPropertyError
-from aircraft.fdm import INTEGRATORS
-from aircraft.spec import AEROSONDE, X8
+from aircraft.fdm import INTEGRATORS, START_ENGINES
 from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
 from innerloop.jsbsim_script import Command, columns, demonstration, write_script
 from innerloop.jsbsim_system import ALTITUDE_COMMAND, HEADING_RATE_COMMAND
-from innerloop.schedule import design_schedule
 
 MIDDLE = 2
 STEPS_PER_SECOND = 120
@@ -53,16 +51,25 @@ def fly_in_python(root, schedule, commands, duration):
     return pd.DataFrame(rows, columns=names).assign(Time=np.arange(len(rows)) / STEPS_PER_SECOND)
 
 
-@pytest.fixture(scope="module", params=[X8, AEROSONDE], ids=lambda spec: spec.name)
-def flights(request, x8_schedule, tmp_path_factory):
+def fly_both(schedule, tmp_path_factory):
     """An autopilot's schedule, the demonstration flown by JSBSim alone, hold and all, and flown from Python."""
-    spec, root, away = request.param, tmp_path_factory.mktemp("root"), tmp_path_factory.mktemp("away")
-    schedule = x8_schedule if spec is X8 else design_schedule(spec)
-    script = write_script(spec, schedule.level(MIDDLE), write_root(schedule, root))
+    root, away = tmp_path_factory.mktemp("root"), tmp_path_factory.mktemp("away")
+    script = write_script(schedule, write_root(schedule, root))
     run_jsbsim(f"--root={root}", f"--outputpath={away}", f"--script=scripts/{script.name}", directory=away)
     alone = read_result(away / f"{script.stem}.csv")
     duration = alone["Time"].iloc[-1]
-    return schedule, alone, fly_in_python(root, schedule, demonstration(spec, schedule.level(MIDDLE)), duration)
+    return schedule, alone, fly_in_python(root, schedule, demonstration(schedule.envelope, schedule.level(MIDDLE)), duration)
+
+
+@pytest.fixture(scope="module", params=["x8", "aerosonde"])
+def flights(request, designs, tmp_path_factory):
+    return fly_both(designs(request.param).design.schedule, tmp_path_factory)
+
+
+@pytest.fixture(scope="module")
+def jet_flight(designs, tmp_path_factory):
+    """JSBSim's own T-37, a jet whose engines need no starter."""
+    return fly_both(designs("T37").design.schedule, tmp_path_factory)
 
 
 def released(alone):
@@ -96,15 +103,15 @@ def test_jsbsim_alone_flies_the_trajectory_that_python_flies(flights):
 def test_the_demonstration_turns_climbs_changes_speed_and_comes_back(flights):
     schedule, alone, _ = flights
     start = schedule.level(MIDDLE)
-    rate, _, higher, faster, *_ = (command.value for command in demonstration(schedule.spec, start))
+    rate, _, higher, faster, *_ = (command.value for command in demonstration(schedule.envelope, start))
     # A turn commanded for 15 s and given time to end turns by rate times 15 s, however it lags; a hundredth is let go.
     assert turned(alone, 5.0, 25.0) == pytest.approx(15.0 * rate, rel=0.01)
     assert turned(alone, 70.0, 95.0) == pytest.approx(-15.0 * rate, rel=0.01)
-    # Fifteen seconds after each step: within two hundredths of it.
-    assert at(alone, 40.0, "position/h-sl-meters") == pytest.approx(higher, abs=0.02 * (higher - start.altitude))
-    assert at(alone, 55.0, "autopilot/airspeed-mps") == pytest.approx(faster, abs=0.02 * abs(faster - start.airspeed))
-    assert at(alone, 70.0, "position/h-sl-meters") == pytest.approx(start.altitude, abs=0.02 * (higher - start.altitude))
-    assert at(alone, 70.0, "autopilot/airspeed-mps") == pytest.approx(start.airspeed, abs=0.02 * abs(faster - start.airspeed))
+    # Fifteen seconds after each step: within four hundredths of it; the Aerosonde's slowest closed-loop pole is 0.23 1/s.
+    assert at(alone, 40.0, "position/h-sl-meters") == pytest.approx(higher, abs=0.04 * (higher - start.altitude))
+    assert at(alone, 55.0, "autopilot/airspeed-mps") == pytest.approx(faster, abs=0.04 * abs(faster - start.airspeed))
+    assert at(alone, 70.0, "position/h-sl-meters") == pytest.approx(start.altitude, abs=0.04 * (higher - start.altitude))
+    assert at(alone, 70.0, "autopilot/airspeed-mps") == pytest.approx(start.airspeed, abs=0.04 * abs(faster - start.airspeed))
 
 
 def test_the_engine_runs_at_its_trim_when_the_aircraft_is_released(flights):
@@ -125,10 +132,47 @@ def test_a_held_body_is_released_where_it_was_meant_to_be(flights):
     assert np.ptp(held["attitude/phi-rad"]) < 1e-9
 
 
+def test_a_stock_aircraft_is_flown_by_jsbsim_alone_as_from_python_but_for_its_engines_last_breath(jet_flight):
+    schedule, alone, python = jet_flight
+    alone = released(alone)
+    same = python.iloc[:: STEPS_PER_SECOND // 20].reset_index(drop=True)
+    assert len(alone) == len(same)
+    start = schedule.level(MIDDLE)
+    # Python places the aircraft twice, to run its engines up in between, and the script holds it all the time: engines are released
+    # in states that differ by what is left of spooling after 20 s. Measured 2e-9 m/s, 2e-8 m, 1e-11 and 1e-10 rad; a hundred times
+    # that is let go, for another platform's rounding decides when an engine settles.
+    tolerances = {
+        "autopilot/airspeed-mps": 2e-7,
+        "position/h-sl-meters": 2e-6,
+        "attitude/phi-rad": 1e-9,
+        "attitude/theta-rad": 1e-8,
+    }
+    for name, tolerance in tolerances.items():
+        assert np.abs(alone[name] - same[name]).max() < tolerance, name
+    # It flew: the turn to the right by a quarter of the bank's turn, and the climb.
+    rate = demonstration(schedule.envelope, start)[0].value
+    assert alone["autopilot/heading-rate-rad_sec"][300] == pytest.approx(rate, rel=0.05)
+    assert alone["position/h-sl-meters"].max() > start.altitude + 0.4 * start.airspeed
+
+
+def test_a_stock_aircrafts_script_runs_its_engines_up_while_the_body_is_held_and_has_gear_and_fuel_as_in_flight(designs, tmp_path):
+    schedule = designs("T37").design.schedule
+    script = write_script(schedule, write_root(schedule, tmp_path))
+    run = ET.parse(script).getroot().find("run")
+    events = [{e.get("name"): float(e.get("value")) for e in event.findall("set")} for event in run.findall("event")]
+    start, again, release = events[:3]
+    assert dict(START_ENGINES).items() <= start.items()
+    # Twenty seconds of cranking and running up (RUN_UP_STEPS each), then the settling time of 20 s.
+    assert float(run.get("start")) == pytest.approx(-40.0)
+    assert set(schedule.spec.configuration) <= set(start.items())
+    assert again == dict(schedule.spec.configuration)
+    assert [release[name] for name in INTEGRATORS] != [0.0] * 4
+
+
 def test_run_without_options_the_script_writes_its_result_where_it_is_run(x8_schedule, x8_root, tmp_path):
     root = shutil.copytree(x8_root, tmp_path / "root")
     commands = [Command(time=0.5, name=ALTITUDE_COMMAND, value=101.0, note='Climb -- "1 m" & stay.')]
-    script = write_script(X8, x8_schedule.level(MIDDLE), root, commands=commands)
+    script = write_script(x8_schedule, root, commands=commands)
     run_jsbsim(f"--script=scripts/{script.name}", directory=root)
     alone = read_result(root / f"{script.stem}.csv")
     command = released(alone).set_index("Time")[ALTITUDE_COMMAND]
@@ -141,42 +185,41 @@ def test_run_without_options_the_script_writes_its_result_where_it_is_run(x8_sch
 
 def test_sizes_of_the_demonstration_are_taken(x8_schedule):
     start = x8_schedule.level(MIDDLE)
-    found = demonstration(X8, start, heading_rate=0.1, altitude_step=-7.0, airspeed_step=1.5)
+    found = demonstration(x8_schedule.envelope, start, heading_rate=0.1, altitude_step=-7.0, airspeed_step=1.5)
     assert [c.value for c in found] == [0.1, 0.0, 93.0, 21.5, 100.0, 20.0, -0.1, 0.0]
     assert [c.time for c in found] == sorted(c.time for c in found)
 
 
-@pytest.mark.parametrize(("index", "step"), [(1, 1.7), (2, 2.0), (3, -2.3)])
+@pytest.mark.parametrize(("index", "step"), [(1, 1.75), (2, 2.0), (3, -2.25)])
 def test_the_airspeed_step_goes_where_the_envelope_has_room(x8_schedule, index, step):
-    start = x8_schedule.level(index)  # 17, 20, 23 m/s in an envelope of 15 to 25 m/s: a tenth of each
-    assert demonstration(X8, start)[3].value - start.airspeed == pytest.approx(step)
+    start = x8_schedule.level(index)  # 17.5, 20, 22.5 m/s in an envelope of 15 to 25 m/s: a tenth of each
+    assert demonstration(x8_schedule.envelope, start)[3].value - start.airspeed == pytest.approx(step)
 
 
 def test_a_turn_that_is_not_to_the_right_is_refused(x8_schedule):
     with pytest.raises(AircraftError, match="rad/s"):
-        demonstration(X8, x8_schedule.level(MIDDLE), heading_rate=-0.1)
+        demonstration(x8_schedule.envelope, x8_schedule.level(MIDDLE), heading_rate=-0.1)
 
 
-def test_settings_are_made_in_their_order_before_the_body_is_held(x8_schedule, x8_root, tmp_path):
+def test_engines_are_started_before_the_body_is_held(x8_schedule, x8_root, tmp_path):
     root = shutil.copytree(x8_root, tmp_path / "root")
-    settings = [("propulsion/set-running", -1.0), ("fcs/throttle-cmd-norm", 0.25)]
-    script = write_script(X8, x8_schedule.level(MIDDLE), root, settings=settings)
-    first = ET.parse(script).getroot().find("run/event")
+    first = ET.parse(write_script(x8_schedule, root)).getroot().find("run/event")
     found = [(e.get("name"), float(e.get("value"))) for e in first.findall("set")]
-    assert found == settings + [(name, 0.0) for name in INTEGRATORS]
+    assert found == [*START_ENGINES, *((name, 0.0) for name in INTEGRATORS)]
 
 
 def test_a_property_that_the_aircraft_lacks_is_refused(x8_schedule, x8_root):
-    with pytest.raises(UnknownPropertyError, match="fcs/mixtrue-cmd-norm"):
-        write_script(X8, x8_schedule.level(MIDDLE), x8_root, settings=[("fcs/mixtrue-cmd-norm", 1.0)])
+    unknown = [Command(time=1.0, name="autopilot/heading-command", value=0.1, note="Turn.")]
+    with pytest.raises(UnknownPropertyError, match="autopilot/heading-command"):
+        write_script(x8_schedule, x8_root, commands=unknown)
 
 
 def test_a_command_before_release_is_refused(x8_schedule, x8_root):
     early = [Command(time=-1.0, name=HEADING_RATE_COMMAND, value=0.1, note="Turn.")]
     with pytest.raises(AircraftError, match="at or after release"):
-        write_script(X8, x8_schedule.level(MIDDLE), x8_root, commands=early)
+        write_script(x8_schedule, x8_root, commands=early)
 
 
 def test_a_value_that_is_not_finite_is_refused(x8_schedule, x8_root):
     with pytest.raises(AircraftError, match="finite"):
-        write_script(X8, x8_schedule.level(MIDDLE), x8_root, settings=[("fcs/throttle-cmd-norm", math.nan)])
+        write_script(x8_schedule, x8_root, commands=[Command(time=1.0, name=HEADING_RATE_COMMAND, value=math.nan, note="Turn.")])

@@ -104,10 +104,11 @@ def test_a_table_over_two_properties_is_bilinear_with_rows_first(run, x, y):
     assert value_at(run(function("test/out", table_2d("test/x", "test/y", rows, columns, values))), x, y) == pytest.approx(expected)
 
 
-def test_a_function_writes_its_output_as_well(run):
-    fdm = run(function("test/out", read("test/x"), output="fcs/elevator-cmd-norm"))
+def test_a_function_writes_its_outputs_as_well(run):
+    both = ("fcs/elevator-cmd-norm", "fcs/throttle-cmd-norm")
+    fdm = run(function("test/out", read("test/x"), both))
     assert value_at(fdm, 0.37) == 0.37
-    assert fdm.read("fcs/elevator-cmd-norm") == 0.37
+    assert [fdm.read(name) for name in both] == [0.37, 0.37]
 
 
 def test_an_integrator_integrates_by_the_trapezoidal_rule(run):

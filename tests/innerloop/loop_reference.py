@@ -1,0 +1,43 @@
+"""Loops by another way than the package's: opened in a block diagram by python-control, the delay a rational function."""
+
+import control
+import numpy as np
+
+from innerloop.control_law import COMMANDS
+
+PADE_ORDER = 4
+"""Of the delay of 12.5 ms: exact to 1e-6 rad below 50 rad/s, where all crossovers lie."""
+
+
+def delays(names, delay):
+    """One delay for each control."""
+    rational = control.ss(control.tf(*control.pade(delay, PADE_ORDER)))
+    return [control.ss(rational, inputs=[f"{n}_asked"], outputs=[n], name=f"{n}_delay") for n in names]
+
+
+def opened(aircraft, autopilot, name, delay):
+    """The loop opened at a control or a measurement, closed elsewhere, for negative feedback."""
+    controls = list(autopilot.output_labels)
+    plant = control.ss(aircraft, inputs=aircraft.input_labels, outputs=aircraft.output_labels, name="aircraft")
+    law = control.ss(autopilot, inputs=autopilot.input_labels, outputs=autopilot.output_labels, name="law")
+    wires = [[f"law.{m}", f"aircraft.{m}"] for m in autopilot.input_labels if m not in COMMANDS and m != name]
+    for c in controls:
+        wires.append([f"aircraft.{c}", f"{c}_delay.{c}"])
+        if c != name:
+            wires.append([f"{c}_delay.{c}_asked", f"law.{c}"])
+    into, out = (f"{name}_delay.{name}_asked", f"law.{name}") if name in controls else (f"law.{name}", f"aircraft.{name}")
+    loop = control.interconnect(
+        [plant, law, *delays(controls, delay)],
+        connections=wires,
+        inplist=[into],
+        outlist=[out],
+        warn_duplicate=False,
+        check_unused=False,
+    )
+    return -control.ss(loop)
+
+
+def closed_poles(loop, gain=1.0):
+    """Poles of a single loop closed with a gain, from its state equations: A - B K C/(1 + K D)."""
+    direct = 1.0 + gain * float(loop.D[0, 0])
+    return np.linalg.eigvals(loop.A - gain / direct * loop.B @ loop.C)
