@@ -1,6 +1,7 @@
 """Figures of one flight: tracks and time histories."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,9 @@ from reports.run_data import RunData
 POINTS_MAX = 1800
 """Points of a curve at most: more than a screen shows."""
 
+_FAR = 10_000.0
+"""Distances from which axes are in kilometres [m]."""
+
 
 def flight_charts(run: RunData, row: "pd.Series[Any]") -> list[Chart]:
     """Return the figures of one flight, or none if it has no record."""
@@ -20,7 +24,25 @@ def flight_charts(run: RunData, row: "pd.Series[Any]") -> list[Chart]:
     if history is None or len(history) < 2:
         return []
     view = _View(run, row, history)
-    return [view.tracks(), view.histories()]
+    return [replace(chart, panels=[in_kilometres(panel) for panel in chart.panels]) for chart in (view.tracks(), view.histories())]
+
+
+def in_kilometres(panel: Panel) -> Panel:
+    """Return a panel with kilometres where metres would have five digits: on both axes if they are equally long."""
+    x, y = _reach([line.x for line in panel.lines]), _reach([line.y for line in panel.lines])
+    if panel.equal:
+        x = y = max(x, y)
+    if x >= _FAR and panel.x_label.endswith("[m]"):
+        lines = [replace(line, x=line.x / 1000.0) for line in panel.lines]
+        panel = replace(panel, lines=lines, x_label=panel.x_label.replace("[m]", "[km]"))
+    if y >= _FAR and panel.y_label.endswith("[m]"):
+        lines = [replace(line, y=line.y / 1000.0) for line in panel.lines]
+        panel = replace(panel, lines=lines, y_label=panel.y_label.replace("[m]", "[km]"))
+    return panel
+
+
+def _reach(curves: list[Array]) -> float:
+    return max((float(np.nanmax(np.abs(curve))) for curve in curves if len(curve)), default=0.0)
 
 
 class _View:

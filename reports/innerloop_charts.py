@@ -16,6 +16,9 @@ _COMMANDS = {
     "altitude": ("Altitude [m]", "altitude step"),
 }
 
+_FAST = 45.0
+"""Poles farther out belong to servos and delays, and would hide those of the flight [1/s]."""
+
 
 def innerloop_charts(design: Record) -> list[Chart]:
     """Return the figures of a complete design record, of level flight alone: responses, margins, loop shapes, poles."""
@@ -63,7 +66,7 @@ def _margins(design: Record) -> Chart:
 
     return Chart(
         name="margins",
-        caption="Margins with one loop opened and all others closed, servos, propeller and computing delay included; disk margins"
+        caption="Margins with one loop opened and all others closed, servos, engine and computing delay included; disk margins"
         " allow for gain and phase changing together, “all controls” for every control changing independently.",
         panels=[
             panel("gain_db", "Gain margin [dB]", required["gain_db"], 40.0),
@@ -100,6 +103,7 @@ def _loops(design: Record) -> Chart:
 
 def _poles(design: Record) -> Chart:
     poles = at_middle(design, design["poles"])[0]
+    reach = _reach([*poles["open_loop"], *poles["closed_loop"]])
 
     def points(name: str, label: str, colour: str, style: Any) -> Line:
         values = np.array(poles[name])
@@ -107,7 +111,7 @@ def _poles(design: Record) -> Chart:
 
     return Chart(
         name="poles",
-        caption=f"Poles at {speed(design['design_airspeed_mps'])}, up to 45 1/s: the bare aircraft with servos and propeller,"
+        caption=f"Poles at {speed(design['design_airspeed_mps'])}, up to {_FAST:g} 1/s: the bare aircraft with servos and engine,"
         " and under the autopilot.",
         panels=[
             Panel(
@@ -117,9 +121,15 @@ def _poles(design: Record) -> Chart:
                     points("open_loop", "aircraft", "orange", "diamonds"),
                     points("closed_loop", "under the autopilot", "blue", "points"),
                 ],
-                x_range=(-45.0, 2.0),
-                y_range=(-20.0, 20.0),
+                x_range=(-reach, 0.05 * reach),
+                y_range=(-0.45 * reach, 0.45 * reach),
             )
         ],
         panel_height=0.36,
     )
+
+
+def _reach(poles: list[list[float]]) -> float:
+    """Return how far the s-plane is shown [1/s]: to hold every pole that is not too fast, in its width and in its height."""
+    sizes = [1.1 * max(-real, abs(imaginary) / 0.45) for real, imaginary in poles]
+    return max((size for size in sizes if size <= _FAST), default=_FAST)

@@ -7,13 +7,14 @@ from reports.innerloop_charts import innerloop_charts
 from reports.tables import number
 
 _BANK_SHOWN = 45.0
-"""Bank of the equilibria shown beside those in level flight [deg], or what the design has that is nearest."""
+"""Bank of the equilibria shown beside those in level flight [deg], where a record does not say with which bank it is flown."""
 
 
 def innerloop_section(record: Record) -> Section:
     """Return the section on a design record: step responses, margins, loop shapes, poles and trims."""
     design = complete(record)
-    bank = min({bank_deg(t) for t in design["trims"]}, key=lambda known: abs(known - _BANK_SHOWN))
+    flown = float((design.get("envelope") or {}).get("bank_deg") or _BANK_SHOWN)
+    bank = min({bank_deg(t) for t in design["trims"]}, key=lambda known: abs(known - flown))
     trims = sorted((t for t in grid_trims(design) if bank_deg(t) in (0.0, bank)), key=lambda t: float(t["airspeed_mps"]))
     responses, *others = innerloop_charts(design)
     return Section(
@@ -25,7 +26,7 @@ def innerloop_section(record: Record) -> Section:
             Heading("Margins at the middle design airspeed"),
             _margin_table(design),
             *others,
-            Heading(f"Equilibria: level, and at {bank:g} degrees of bank"),
+            Heading(f"Equilibria: level, and at {bank:.3g} degrees of bank"),
             trim_table(trims),
         ],
     )

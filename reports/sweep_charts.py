@@ -10,6 +10,12 @@ from reports.history import tracking_error
 from reports.run_data import RunData
 
 _NU = "Speed ratio ν = V_vessel/V_r [-]"
+_SHOWN_TURNS = 45.5
+"""How much of a flight a comparison shows after settling, over the time to turn by one radian at omega_max [-]."""
+
+_SHOWN_BANDS = 1.2
+"""Largest distance that a comparison shows, over the settling band [-]."""
+
 VARIANT_COLOURS = ("vermillion", "orange", "sky", "purple", "green", "grey")
 
 
@@ -31,6 +37,10 @@ def comparison_chart(run: RunData) -> Chart | None:
     if not len(rows):
         return None
     ratios = sorted(rows["nu"].unique())
+    # The same part of the flight for a fast aircraft, which turns slowly, as for a slow one.
+    turn = 1.0 / float(rows["heading_rate_limit_rad_s"].max())
+    shown = float(f"{_SHOWN_TURNS * turn:.2g}")
+    band = _SHOWN_BANDS * float(run.manifest["config"]["flight"]["settling_band_m"])
     panels = []
     for nu in ratios:
         study = run.summary[np.isclose(run.summary["nu"], nu)]
@@ -38,9 +48,9 @@ def comparison_chart(run: RunData) -> Chart | None:
         lines = []
         for i, (_, row) in enumerate(compared.iterrows()):
             name = variant_name(str(row["flight_id"]))
-            lines += _error_line(run, row, name, VARIANT_COLOURS[i % len(VARIANT_COLOURS)])
+            lines += _error_line(run, row, name, VARIANT_COLOURS[i % len(VARIANT_COLOURS)], shown)
         for _, row in study.iterrows():
-            lines += _error_line(run, row, "as flown in the study", "blue")
+            lines += _error_line(run, row, "as flown in the study", "blue", shown)
         if lines:
             panels.append(
                 Panel(
@@ -48,8 +58,8 @@ def comparison_chart(run: RunData) -> Chart | None:
                     y_label="Tracking error [m]",
                     lines=lines,
                     title=f"ν = {nu:g}",
-                    x_range=(0.0, 90.0),
-                    y_range=(0.0, 6.0),
+                    x_range=(0.0, shown),
+                    y_range=(0.0, band),
                 )
             )
     if not panels:
@@ -67,14 +77,14 @@ def variant_name(flight_id: str) -> str:
     return flight_id.split("_", 2)[2].replace("_", " ")
 
 
-def _error_line(run: RunData, row: "pd.Series[Any]", label: str, colour: str) -> list[Line]:
+def _error_line(run: RunData, row: "pd.Series[Any]", label: str, colour: str, duration: float) -> list[Line]:
     history = run.history(str(row["flight_id"]))
     if history is None or pd.isna(row["settling_time_s"]):
         return []
     settled = history[history["time_s"] >= row["settling_time_s"]]
     time = settled["time_s"].to_numpy() - float(row["settling_time_s"])
     error = tracking_error(settled)
-    shown = time <= 90.0
+    shown = time <= duration
     return [Line(x=time[shown], y=error[shown], label=label, colour=colour)]
 
 

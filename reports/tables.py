@@ -72,6 +72,16 @@ def length(metres: float) -> str:
     return f"{1000.0 * metres:.1f} mm" if metres >= 1e-4 else "< 0.1 mm"
 
 
+def limit(value: float) -> str:
+    """Return a limit to three digits: one that is fitted to an aircraft has many."""
+    return f"{float(f'{value:.3g}'):g}"
+
+
+def aircraft(run: RunData) -> str:
+    """Return the name of the aircraft that flew a run, or was to."""
+    return str(run.innerloop["title"] if run.innerloop else run.manifest["config"].get("aircraft", "unknown"))
+
+
 def number(value: Any, pattern: str) -> str:
     """Return a value by its pattern, and a dash if there is none."""
     return "–" if value is None or pd.isna(value) else pattern.format(float(value))

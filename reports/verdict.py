@@ -5,7 +5,7 @@ import pandas as pd
 
 from reports.blocks import Verdict
 from reports.run_data import RunData
-from reports.tables import kinematic
+from reports.tables import aircraft, kinematic, limit
 
 
 def verdict(run: RunData) -> Verdict:
@@ -35,6 +35,8 @@ def verdict(run: RunData) -> Verdict:
         detail += f" Closest approach of any flight, from its first second: {closest:.1f} m."
     if manifest["config"].get("fidelity") == "kinematic":
         detail += f" Flown with the kinematic vehicle, {kinematic(run)}, not with an aircraft."
+    else:
+        detail += f" Aircraft: {aircraft(run)}, in six degrees of freedom."
     if manifest.get("state") != "complete":
         detail += f" The run is {manifest.get('state', 'unfinished')}; continue it with --resume."
     return Verdict(safe=safe, complete=complete, headline=headline, detail=detail, failures=failures, figures=_figures(run, flown))
@@ -53,10 +55,10 @@ def _figures(run: RunData, flown: pd.DataFrame) -> list[tuple[str, str, str]]:
     minimum = flown["crossing_distance_min_m"].dropna()
     command = flown["heading_rate_command_max_rad_s"] / flown["heading_rate_limit_rad_s"]
     closest = f"{float(minimum.min()):.1f} m" if len(minimum) else "none"
-    interval_limit = f"≤ {100 * criteria['crossing_interval_error']:g} %"
-    tracking_limit = f"≤ {criteria['tracking_error_rms_m']:g} m"
-    airspeed_limit = f"≤ {criteria['airspeed_error_rms_mps']:g} m/s"
-    altitude_limit = f"≤ {criteria['altitude_error_max_m']:g} m"
+    interval_limit = f"≤ {limit(100 * criteria['crossing_interval_error'])} %"
+    tracking_limit = f"≤ {limit(criteria['tracking_error_rms_m'])} m"
+    airspeed_limit = f"≤ {limit(criteria['airspeed_error_rms_mps'])} m/s"
+    altitude_limit = f"≤ {limit(criteria['altitude_error_max_m'])} m"
     asked = [("Heading-rate command over ω_max, worst", worst(command, "{:.3f}"), "≤ 1")]
     if run.manifest["config"]["guidance"].get("tuning") == "bounded":
         wanted = flown["heading_rate_wanted_max_rad_s"] / flown["heading_rate_limit_rad_s"]

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+from scenarios.errors import InputError
 from scenarios.runner import Progress as Report
 
 
@@ -13,7 +14,7 @@ from scenarios.runner import Progress as Report
 def progress_bar() -> Iterator[Report]:
     """Yield a function to call with what is being done, the number of flights done, and their total.
 
-    The bar appears at the first call: input that is refused before then leaves nothing but its message.
+    The bar appears at the first call, and goes again where input is refused: that leaves nothing but its message.
     """
     bar = Progress(
         TextColumn("{task.description}"),
@@ -31,6 +32,11 @@ def progress_bar() -> Iterator[Report]:
 
     try:
         yield report
+    except InputError:
+        # Erased from a terminal; elsewhere nothing has been written yet.
+        bar.live.transient = True
+        bar.console.quiet = not bar.console.is_terminal
+        raise
     finally:
         if bar.live.is_started:
             bar.stop()

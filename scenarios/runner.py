@@ -141,7 +141,8 @@ def run_scenario(
     progress("flying", len(ledger.done), len(requests))
     interrupted = False
     try:
-        six_dof = _six_dof(design, scenario, run) if design else None
+        # A kinematic flight is only fitted to the aircraft: it has none of its autopilot, nor its lag.
+        six_dof = _six_dof(design, scenario, run) if design and scenario.fidelity != "kinematic" else None
         for request in requests if refusal else ():
             if request.scenario.fidelity == "six_dof" and request.flight_id not in ledger.done:
                 ledger.add(failed(request, Outcome.TRIM_FAILED, refusal))

@@ -1,58 +1,69 @@
-"""The Aerosonde under the autopilot as it stands: elevator, aileron and throttle alone, its rudder at rest."""
+"""The Aerosonde flies the study with elevator, aileron, throttle and rudder."""
 
 import math
 
-import pandas as pd
 import pytest
+from study_runs import assert_flown_as_the_issue_asks, fly_study
 
 from aircraft.spec import AEROSONDE
-from innerloop.flight import AutopilotedAircraft
-from innerloop.jsbsim_root import write_root
-from innerloop.margins import loop_margins
-from innerloop.responses import level_trim, measure_lag
-from innerloop.schedule import design_schedule
-from scenarios.flights import SixDof, flight_requests, fly_request
-from scenarios.load import load_scenario
+from innerloop.cache import designed
 
-SPEED = 25.0  # m/s, the airspeed of Beard and McLain's simulations
+NUS = (0.3, 0.5, 0.7)
 
 
 @pytest.fixture(scope="module")
-def schedule():
-    return design_schedule(AEROSONDE)
+def run(tmp_path_factory):
+    return fly_study(tmp_path_factory.mktemp("aerosonde") / "run", "aerosonde", nus=NUS)
 
 
-@pytest.fixture(scope="module")
-def run_directory(schedule, tmp_path_factory):
-    directory = tmp_path_factory.mktemp("aerosonde")
-    (directory / "flights").mkdir()
-    write_root(schedule, directory / "model")
-    return directory
+def test_every_loop_keeps_6_db_and_45_degrees_wherever_it_was_checked(run):
+    # The usual requirement on a single loop (MIL-F-9490D: 6 dB, 45 deg), at every airspeed and bank, and in between. Disk margins
+    # that open all controls at once are smaller by nature, and not part of it.
+    margins = [row for row in designed(AEROSONDE, 60.0).record["margins"] if row["loop"] != "all controls"]
+    assert len({(row["airspeed_mps"], row["bank_rad"]) for row in margins}) > 25
+    assert {"elevator", "aileron", "throttle", "rudder"} <= {row["loop"] for row in margins}
+    for row in margins:
+        assert row["stable"], row
+        # None is a margin without end: nothing that was tried upsets that loop.
+        assert row["gain_db"] is None or row["gain_db"] >= 6.0, row
+        assert row["phase_deg"] is None or row["phase_deg"] >= 45.0, row
 
 
-def test_every_loop_keeps_6_db_and_45_degrees_at_every_airspeed(schedule):
-    # The usual requirement on a single loop (MIL-F-9490D: 6 dB, 45 deg). The least are altitude's, 11.1 dB and 47.7 deg.
-    for index in range(len(schedule.airspeeds)):
-        for margin in loop_margins(schedule, index)[:-1]:
-            assert margin.gain_db >= 6.0, (schedule.airspeeds[index], margin)
-            assert margin.phase_deg >= 45.0, (schedule.airspeeds[index], margin)
-
-
-@pytest.mark.parametrize("nu", [0.3, 0.5, 0.7])
-def test_it_flies_the_sweep_as_the_x8_does(run_directory, nu):
-    start = level_trim(AEROSONDE, SPEED, 60.0)
-    lag = measure_lag(AutopilotedAircraft(AEROSONDE, run_directory / "model"), start)
-    overrides = ["aircraft=aerosonde", f"guidance.airspeed_mps={SPEED}", f"sweep.nu=[{nu}]", "comparison.variants=[]"]
-    result = fly_request(flight_requests(load_scenario("sweep_nu", overrides))[0], run_directory, SixDof(start=start, lag=lag))
-    row = result.row
-    # The X8's criteria (test_flights), the keep-out radius and the crossings among them.
-    assert row["outcome"] == "completed"
-    assert row["criteria_met"]
-    assert row["keepout_violations"] == 0
+@pytest.mark.parametrize("nu", NUS)
+def test_it_flies_the_sweep_as_the_x8_does(run, nu):
+    row = run.rows[nu]
+    assert_flown_as_the_issue_asks(row)
     assert row["crossing_count"] >= 30
-    assert row["crossing_distance_min_m"] >= 200.0
-    assert row["crossing_interval_mean_s"] == pytest.approx(row["crossing_interval_predicted_s"], rel=0.01)
+    # The X8's own limits, though the Aerosonde is given 1.66 times as much: it flies faster and turns wider.
     assert row["tracking_error_rms_m"] <= 1.5
-    # Nobody moves the rudder, so it slips; 2.3 deg at most was measured, at the start of the flight, and 5 deg would be noticed.
-    history = pd.read_parquet(run_directory / "flights" / f"{row['flight_id']}.parquet")
-    assert history["sideslip_rad"].abs().max() < math.radians(5.0)
+    assert row["airspeed_error_rms_mps"] <= 0.3
+    assert row["altitude_error_max_m"] <= 1.5
+    # It flies at its own airspeed, with its own omega_max: g tan(45 deg)/25 m/s.
+    assert row["heading_rate_limit_rad_s"] == pytest.approx(9.80665 / 25.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("nu", NUS)
+def test_its_rudder_keeps_it_from_slipping(run, nu):
+    # With its rudder at rest it slipped by 2.3 deg. Measured now: 0.05, 0.07 and 0.11 deg once settled, 0.9 deg while it turns to
+    # its reference at omega_max. Asserted is twice that, which another machine's rounding will not reach.
+    assert run.settled(nu)["sideslip_rad"].abs().max() < math.radians(0.25)
+    assert run.history(nu)["sideslip_rad"].abs().max() < math.radians(1.8)
+    # By working for it, not because there is nothing to do.
+    assert run.settled(nu)["rudder"].std() > 0.005
+
+
+def test_its_controls_stay_off_their_stops(run):
+    for nu in NUS:
+        settled = run.settled(nu)
+        assert settled[["elevator", "aileron", "rudder"]].abs().max().max() < 1.0
+        assert settled["throttle"].between(0.0, 1.0, inclusive="neither").all()
+
+
+def test_the_guard_keeps_it_out_where_the_law_would_fly_in(tmp_path):
+    # The X8's start at nu = 0.15 (test_flights), in the Aerosonde's units, about a keep-out area that is as much larger.
+    words = ["keepout.radius_m=331.44", "flight.crossings=2", "criteria.crossing_interval_error=0.1"]
+    without = fly_study(tmp_path / "without", "aerosonde", *words, "guidance.keepout_guard=false", nus=(0.15,)).rows[0.15]
+    guarded = fly_study(tmp_path / "guarded", "aerosonde", *words, nus=(0.15,)).rows[0.15]
+    assert without["keepout_violations"] > 0
+    assert guarded["keepout_violations"] == 0
+    assert guarded["outcome"] == "completed"

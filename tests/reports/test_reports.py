@@ -8,14 +8,17 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
+from design_runs import record
 
 from reports import matplotlib_charts, plotly_charts
 from reports.blocks import FlightPicker, Table
 from reports.build import build_reports
-from reports.chart import Chart
+from reports.chart import Chart, Line, Panel
 from reports.content import content
 from reports.errors import ReportError
+from reports.flight_charts import in_kilometres
 from reports.run_data import read_run
+from reports.tables import limit
 from reports.verdict import verdict
 from scenarios.load import load_scenario
 from scenarios.runner import run_scenario
@@ -160,6 +163,66 @@ def test_an_interrupted_run_can_be_reported_on(copy):
     html, pdf = build_reports(copy)
     assert "continue it with --resume" in html.read_text(encoding="utf-8")
     assert pdf.stat().st_size > 10_000
+
+
+def test_the_aircraft_is_named_at_the_head_of_the_report(report):
+    assert report.verdict.detail.endswith("Aircraft: Skywalker X8, in six degrees of freedom.")
+
+
+def test_a_record_of_another_aircraft_over_airspeed_and_bank_is_shown_in_the_sweeps_report(copy):
+    design = record()
+    (copy / "innerloop.json").write_text(json.dumps(design), encoding="utf-8")
+    html, pdf = build_reports(copy)
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert f"Aircraft: {design['title']}, in six degrees of freedom" in html.read_text(encoding="utf-8")
+    section = next(section for section in content(read_run(copy)).sections if section.anchor == "innerloop")
+    assert [block.name for block in section.blocks if isinstance(block, Chart)] == ["responses", "margins", "loops", "poles"]
+    shown = [block for block in section.blocks if isinstance(block, Table)]
+    assert len(shown) == 3
+    assert all(table.rows for table in shown)
+
+
+def test_poles_are_shown_as_far_out_as_the_aircraft_has_them(copy):
+    # Else those of an airliner would be one dot at the origin. One at -80 1/s is a servo's, and off the figure.
+    design = record()
+    slow = [[-3.0, 1.0], [-3.0, -1.0], [-80.0, 0.0]]
+    for poles in design["poles"]:
+        poles["open_loop"] = poles["closed_loop"] = slow
+    (copy / "innerloop.json").write_text(json.dumps(design), encoding="utf-8")
+    panel = next(chart for chart in charts_of(content(read_run(copy))) if chart.name == "poles").panels[0]
+    # A tenth beyond the farthest, to the left and with 0.45 of that either way.
+    assert panel.x_range == pytest.approx((-3.3, 0.165), rel=1e-9)
+    assert panel.y_range == pytest.approx((-1.485, 1.485), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("reach", "equal", "labels"),
+    [
+        ((9_999.0, 500.0), True, ("East [m]", "North [m]")),
+        # Of two axes that are equally long, both.
+        ((500.0, 10_000.0), True, ("East [km]", "North [km]")),
+        ((500.0, 10_000.0), False, ("East [m]", "North [km]")),
+    ],
+)
+def test_far_flights_are_shown_in_kilometres(reach, equal, labels):
+    line = Line(x=np.array([-reach[0], 0.0]), y=np.array([0.0, -reach[1]]), label="", colour="blue")
+    nothing = Line(x=np.array([]), y=np.array([]), label="", colour="blue")
+    panel = in_kilometres(Panel(x_label="East [m]", y_label="North [m]", lines=[nothing, line], equal=equal))
+    assert (panel.x_label, panel.y_label) == labels
+    shown = [1000.0 if "[km]" in label else 1.0 for label in labels]
+    assert panel.lines[1].x[0] * shown[0] == pytest.approx(-reach[0], rel=1e-12)
+    assert panel.lines[1].y[1] * shown[1] == pytest.approx(-reach[1], rel=1e-12)
+
+
+def test_what_has_another_unit_than_metres_stays_as_it_is():
+    time = Line(x=np.array([0.0, 20_000.0]), y=np.array([0.0, 1.0]), label="", colour="blue")
+    panel = Panel(x_label="Time [s]", y_label="Distance [m]", lines=[time])
+    assert in_kilometres(panel) is panel
+
+
+@pytest.mark.parametrize(("value", "text"), [(1.5, "1.5"), (40.0925, "40.1"), (1234.5, "1230"), (0.3, "0.3"), (0.01, "0.01")])
+def test_limits_have_three_digits_and_no_exponent(value, text):
+    assert limit(value) == text
 
 
 def with_study(path, study):
