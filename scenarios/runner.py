@@ -123,8 +123,9 @@ def run_scenario(
             design = designed(spec, scenario.plume.source_height_m)
         except AircraftError as error:
             refusal = str(error)
-        else:
-            scenario = fitted(scenario, design.design.schedule.envelope)
+        envelope = design.design.schedule.envelope if design else spec.envelope
+        if envelope is not None:
+            scenario = fitted(scenario, envelope)
     requests = flight_requests(scenario)
     if design is not None:
         _check_flights(requests, design.design.schedule.spec, design.design.schedule.envelope)
@@ -144,7 +145,9 @@ def run_scenario(
         # A kinematic flight is only fitted to the aircraft: it has none of its autopilot, nor its lag.
         six_dof = _six_dof(design, scenario, run) if design and scenario.fidelity != "kinematic" else None
         for request in requests if refusal else ():
-            if request.scenario.fidelity == "six_dof" and request.flight_id not in ledger.done:
+            # A kinematic flight needs the aircraft's envelope only, to be fitted to; but that as well is known from its design alone.
+            lacking = request.scenario.fidelity == "six_dof" or (spec is not None and spec.envelope is None)
+            if lacking and request.flight_id not in ledger.done:
                 ledger.add(failed(request, Outcome.TRIM_FAILED, refusal))
         manifest["guidance_lag_s"] = guidance_lag(scenario, six_dof)
         _fly_all([r for r in requests if r.flight_id not in ledger.done], ledger, run.path, six_dof, jobs, progress)
