@@ -145,7 +145,7 @@ def run_scenario(
         # A kinematic flight is only fitted to the aircraft: it has none of its autopilot, nor its lag.
         six_dof = _six_dof(design, scenario, run) if design and scenario.fidelity != "kinematic" else None
         for request in requests if refusal else ():
-            # A kinematic flight needs the aircraft's envelope only, to be fitted to; but that as well is known from its design alone.
+            # A kinematic flight needs only an envelope to be fitted to; where the spec has none, that too comes from the design.
             lacking = request.scenario.fidelity == "six_dof" or (spec is not None and spec.envelope is None)
             if lacking and request.flight_id not in ledger.done:
                 ledger.add(failed(request, Outcome.TRIM_FAILED, refusal))
