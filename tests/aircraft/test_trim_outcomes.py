@@ -101,7 +101,7 @@ def test_a_condition_that_takes_more_than_the_throttle_gives_says_so(x8_fdm, con
 
 
 # By hand: 5 m/s needs a lift coefficient of 2.9, an angle of attack of 0.7 rad; a dive of 0.5 rad needs 16 N of drag at 20 m/s,
-# where there are 3 and what an idle propeller adds.
+# where there are 5 and what an idle propeller adds.
 @pytest.mark.parametrize("condition", [{"airspeed": 5.0}, {"airspeed": 20.0, "climb_angle": -0.5}])
 def test_a_condition_far_from_any_equilibrium_says_how_far_within_all_limits(x8_fdm, condition):
     found = search_trim(x8_fdm, altitude=100.0, **condition)
@@ -114,7 +114,7 @@ def test_a_condition_far_from_any_equilibrium_says_how_far_within_all_limits(x8_
 
 
 def test_an_impossible_airspeed_of_a_jet_names_its_throttle(jet):
-    # 240 m/s at 1000 m: half as much again as its flight manual's limit, 425 mph.
+    # 240 m/s at 1000 m: a quarter more than the 425 mph (190 m/s) that a T-37 reaches.
     found = search_trim(jet, airspeed=240.0, altitude=1000.0)
     assert found.outcome is TrimOutcome.LIMITED
     assert found.limits == ("throttle at its upper limit",)
