@@ -29,13 +29,13 @@ _FLAT = 0.05
 def straightened(fdm: Fdm, level: Trim) -> AircraftSpec:
     """Return the aircraft's spec with its surfaces straightened, measured in the level flight of ``level``.
 
-    The new commands run from 0 at the old 0, and over 2 from stop to stop.
+    The new commands run from 0 at the old 0, and over 2 from stop to stop. Surfaces that were straightened before are left.
 
     Raises
     ------
     AircraftError : a surface does nothing
     """
-    inputs = tuple(_straighten(fdm, level, i) if i.name in AXES else i for i in fdm.spec.inputs)
+    inputs = tuple(_straighten(fdm, level, i) if i.name in AXES and not i.shape else i for i in fdm.spec.inputs)
     return replace(fdm.spec, inputs=inputs)
 
 

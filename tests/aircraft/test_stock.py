@@ -36,7 +36,7 @@ def test_engines_that_jsbsim_starts_at_once_are_not_cranked(placed):
 
 
 def test_an_engine_that_jsbsim_does_not_start_at_once_is_started_by_its_starter():
-    # The Mustang's: with magnetos on alone it stands still.
+    # The Mustang's: asked to run at once, its running flag stays 0.
     fdm = Fdm(find_spec("p51d"))
     fdm.command({"throttle": 0.7})
     fdm.place(RigidBodyState(altitude=1000.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(110.0, 0.05, 0.0)))

@@ -159,7 +159,7 @@ def test_without_a_rudder_roll_feedforward_is_the_inverse_of_the_roll_equation(x
 
 def test_gains_change_little_from_one_bank_to_the_same_on_the_other_side(designs):
     schedule = designs("T37").design.schedule
-    # A jet without propeller is the same to both sides; a gyroscopic moment of rotors is not in JSBSim's turbines.
+    # The model is the same to both sides: it trims level without bank or aileron (to 1e-15), so nothing turns one way.
     for row in schedule.gains:
         for left, right in zip(row, reversed(row), strict=True):
             assert left.bank == pytest.approx(-right.bank, abs=2e-3)

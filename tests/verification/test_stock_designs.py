@@ -1,0 +1,66 @@
+"""Designs of JSBSim's own aircraft: what is required of every design, on those that are designed in seconds."""
+
+import math
+
+import pytest
+
+from innerloop.flight import AutopilotedAircraft
+from innerloop.jsbsim_root import write_root
+from innerloop.responses import flown_step, model_step
+
+STOCK = ("T37", "737", "J3Cub")
+TURN = 0.5
+"""Of the heading rate that the study's turn has, in the step that is flown [-]."""
+
+
+@pytest.fixture(scope="module", params=STOCK)
+def stock(request, designs):
+    return designs(request.param)
+
+
+def test_margins_hold_at_every_grid_point_and_between_as_modelled_and_changed(stock):
+    checks = stock.design.checks
+    # 25 points of the grid and 40 half-way between, the aircraft as modelled and changed in seven ways.
+    assert len(checks) == 65 * 8
+    for check in checks:
+        assert check.stable
+        # MIL-F-9490D's 6 dB and 45 degrees; of a changed aircraft, 4 dB and 30 degrees.
+        gain_db, phase_deg = (6.0, 45.0) if check.case == "as modelled" else (4.0, 30.0)
+        assert {margin.loop for margin in check.margins} == {
+            "elevator", "aileron", "throttle", "rudder", "airspeed", "altitude", "heading_rate", "sideslip",
+        }  # fmt: skip
+        assert min(margin.gain_db for margin in check.margins) >= gain_db, check.describe()
+        assert min(margin.phase_deg for margin in check.margins) >= phase_deg, check.describe()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_half_the_studys_turn_overshoots_its_model_by_less_than_a_tenth_and_slips_little(stock, sign, tmp_path):
+    schedule = stock.design.schedule
+    level = schedule.level(schedule.middle)
+    size = sign * TURN * 9.80665 * math.tan(schedule.envelope.bank) / level.airspeed
+    duration = 20.0 / schedule.weights.model_frequency
+    aircraft = AutopilotedAircraft(schedule.spec, write_root(schedule, tmp_path))
+    flown, model = flown_step(aircraft, level, "heading_rate", size, duration), model_step(schedule, size, duration)
+    # The requirement on every design.
+    assert flown.overshoot() < model.overshoot() + 0.1
+    # It gets there, and as quickly as its model within a fifth.
+    assert flown.rise_time() == pytest.approx(model.rise_time(), rel=0.2)
+    assert flown.channels["heading_rate"][-1] == pytest.approx(size, rel=0.02)
+    # Sideslip is what the rudder is for: under a degree and a half on the way into a bank of 15 degrees and more.
+    assert flown.largest("beta") < math.radians(1.5)
+    # Altitude keeps to what a pilot is allowed in a turn, 100 ft.
+    assert flown.largest("altitude") < 30.0
+
+
+def test_the_flown_heading_rate_lags_its_command_by_what_the_guidance_is_told(stock):
+    weights = stock.design.schedule.weights
+    # 2 zeta/omega_n of a second-order model; the aircraft follows it within a tenth.
+    assert stock.record["heading_rate_lag_s"] == pytest.approx(2.0 * weights.model_damping / weights.model_frequency, rel=0.1)
+
+
+def test_the_envelope_that_was_found_leaves_room_for_the_study(stock):
+    envelope = stock.design.schedule.envelope
+    assert envelope.stall > 0.0
+    # 1.3 times above stall, more in the steepest turn; and at least 12 % from end to end, or there is nothing to schedule.
+    assert envelope.airspeed_min > 1.3 * envelope.stall
+    assert envelope.airspeed_max / envelope.airspeed_min > 1.12
