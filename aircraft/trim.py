@@ -29,6 +29,9 @@ _SETTLE_STEPS = 2400
 _GOOD = 0.05
 """Where a search ends, over what counts as zero: the settling that is left must not tip the balance [-]."""
 
+_NEAR_LIMIT = 0.05
+"""A bounded search stops short of its limits by some of the unknowns' scale [-]."""
+
 _ALPHA_MAX = 0.5
 _BETA_MAX = 0.3
 _BANK_MAX = 1.2
@@ -124,10 +127,12 @@ def trim(
     if found.outcome is TrimOutcome.CONVERGED:
         return found
     where = f"{airspeed:g} m/s, {altitude:g} m, bank {math.degrees(bank):g} deg, climb {math.degrees(climb_angle):g} deg"
-    held = f" with {' and '.join(found.limits)}" if found.limits else ""
+    held = " and ".join(found.limits)
+    if found.residual < _TOLERANCE and held:
+        raise TrimError(f"trim of '{fdm.spec.name}' at {where} takes {held}; choose a condition inside the flight envelope")
     raise TrimError(
-        f"trim of '{fdm.spec.name}' at {where} did not converge: largest acceleration {found.residual:.2g}{held} against a limit of"
-        f" {_TOLERANCE:g}; choose a condition inside the flight envelope"
+        f"trim of '{fdm.spec.name}' at {where} did not converge: largest acceleration {found.residual:.2g}"
+        f"{f' with {held}' if held else ''} against a limit of {_TOLERANCE:g}; choose a condition inside the flight envelope"
     )
 
 
@@ -311,7 +316,7 @@ class _TrimProblem:
     def _limits(self, unknowns: npt.NDArray[np.float64], settled: bool) -> tuple[str, ...]:
         """Return the limits that the unknowns stand at or beyond, in words."""
         names = ["angle of attack", "sideslip", "bank" if self._straight else "yaw rate", *(i.name for i in self._fdm.spec.inputs)]
-        near = 1e-3 * self._scale
+        near = _NEAR_LIMIT * self._scale
         at = [
             f"{name} at its {'lower' if value <= low + step else 'upper'} limit"
             for name, value, low, high, step in zip(names, unknowns, self._lower, self._upper, near, strict=True)
