@@ -48,6 +48,8 @@ def _straighten(fdm: Fdm, level: Trim, control_input: ControlInput) -> ControlIn
     if float(np.max(np.abs(moment - straight))) < _STRAIGHT * span:
         return control_input
     low, high = _travel(moment)
+    if _COMMANDS.size // 2 in (low, high):
+        raise AircraftError(f"aircraft '{fdm.spec.name}' cannot be flown: its {control_input.name} moves it one way only")
     effect = 2.0 * (moment - moment[_COMMANDS.size // 2]) / (moment[high] - moment[low])
     shape = tuple((float(e), float(c)) for e, c in zip(effect[low : high + 1], _COMMANDS[low : high + 1], strict=True))
     return replace(control_input, lower=shape[0][0], upper=shape[-1][0], shape=shape)
@@ -76,6 +78,4 @@ def _travel(moment: npt.NDArray[np.float64]) -> tuple[int, int]:
         low -= 1
     while high < moment.size - 1 and moving[high]:
         high += 1
-    if middle in (low, high):
-        raise AircraftError("cannot be flown: a control surface moves one way only")
     return low, high

@@ -4,7 +4,7 @@ import math
 
 from aircraft.errors import AircraftError
 from aircraft.fdm import Fdm
-from aircraft.spec import BANK_RESERVE, Envelope
+from aircraft.spec import BANK_RESERVE, AircraftSpec, Envelope
 from aircraft.state import RigidBodyState, body_velocity
 from aircraft.trim import Trim, TrimOutcome, search_trim, trim
 from aircraft.units import KG_PER_SLUG, METRES_PER_FOOT, NEWTONS_PER_POUND
@@ -133,7 +133,7 @@ def _airspeeds(fdm: Fdm, level: Trim, stall: float, bank: float) -> tuple[list[f
         near = level
         for turn in (0.0, steepest, -steepest):
             found = search_trim(fdm, airspeed=airspeed, altitude=level.altitude, bank=turn, start=near)
-            reason = _lacks(found)
+            reason = _lacks(found, fdm.spec)
             if reason:
                 why = reason
                 break
@@ -148,13 +148,14 @@ def _airspeeds(fdm: Fdm, level: Trim, stall: float, bank: float) -> tuple[list[f
     return flown, why
 
 
-def _lacks(t: Trim) -> str:
+def _lacks(t: Trim, spec: AircraftSpec) -> str:
     """Return what an equilibrium lacks for the study, or nothing."""
     if t.outcome is not TrimOutcome.CONVERGED:
         return f"trim is {_why(t)}"
     where = f"{t.airspeed:.0f} m/s and {math.degrees(t.roll):.0f} deg of bank"
     for name, value in t.inputs.items():
-        low, high = _THROTTLE if name == "throttle" else (-_SURFACE, _SURFACE)
+        travel = spec.input(name)
+        low, high = _THROTTLE if name == "throttle" else (_SURFACE * travel.lower, _SURFACE * travel.upper)
         if not low <= value <= high:
             return f"{where} take {value:.2f} of {name}; {low:g} to {high:g} leaves a reserve"
     return ""

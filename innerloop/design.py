@@ -72,9 +72,9 @@ def _design(aircraft: str, out: Path, altitude: float, *, no_report: bool) -> No
 
     print(f"designing the autopilot of {spec.title}", file=sys.stderr)
     started = time.monotonic()
+    out.mkdir(parents=True, exist_ok=True)
     found = designed(spec, altitude)
     record = found.record
-    out.mkdir(parents=True, exist_ok=True)
     write_script(found.design.schedule, write_root(found.design.schedule, out / "model"))
     write_json(out / "innerloop.json", record)
     write_json(out / "manifest.json", design_manifest(record, wall_time=time.monotonic() - started))

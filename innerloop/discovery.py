@@ -2,6 +2,7 @@
 
 import math
 import multiprocessing
+import signal
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -40,13 +41,22 @@ def discover(altitude: float, jobs: int) -> Iterator[Discovered]:
     """
     names = aircraft_names()
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(max_workers=jobs, mp_context=context) as pool:
+    pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=_ignore_interrupt)
+    try:
         futures = {name: pool.submit(examine, name, altitude) for name in names}
         for name, future in futures.items():
             try:
                 yield future.result()
             except BrokenProcessPool:
                 yield _alone(name, altitude)
+    finally:
+        # Interrupted, the list ends with the aircraft that are being designed, and those are remembered.
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _ignore_interrupt() -> None:
+    """Leave Ctrl-C to the parent process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _alone(name: str, altitude: float) -> Discovered:
@@ -67,6 +77,8 @@ def examine(name: str, altitude: float) -> Discovered:
         design = designed(spec, altitude).design
     except AircraftError as error:
         return Discovered(name=name, title=title, flies=False, text=_reason(name, str(error)))
+    except Exception as error:  # noqa: BLE001 - one aircraft that nobody foresaw does not end the list
+        return Discovered(name=name, title=title, flies=False, text=f"{type(error).__name__}: {error}")
     envelope = design.schedule.envelope
     nominal = [check for check in design.checks if check.case == NOMINAL]
     gain = min(check.worst_gain.gain_db for check in nominal)

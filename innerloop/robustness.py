@@ -13,7 +13,7 @@ from aircraft.linearise import BODY_STATES
 from aircraft.trim import Trim
 from innerloop.control_law import ControlLaw
 from innerloop.controller import linear_controller
-from innerloop.margins import Loops, Margin
+from innerloop.margins import ALL_CONTROLS, Loops, Margin
 from innerloop.schedule import GAIN_BANKS, TRIM_BANKS, Schedule
 from innerloop.weights import DELAY, STANDARD_GRAVITY
 
@@ -71,7 +71,8 @@ class Check:
     def short_loops(self) -> tuple[str, ...]:
         """Return the loops with too little margin; all of them if the closed loop is unstable."""
         gain, phase = self.required
-        return tuple(m.loop for m in self.margins if not self.stable or m.gain_db < gain or m.phase_deg < phase)
+        judged = [m for m in self.margins if m.loop != ALL_CONTROLS]
+        return tuple(m.loop for m in judged if not (self.stable and m.gain_db >= gain and m.phase_deg >= phase))
 
     @property
     def met(self) -> bool:
@@ -119,7 +120,8 @@ class OperatingPoint:
 def operating_points(schedule: Schedule) -> list[OperatingPoint]:
     """Return the points of the grid, and those in the middle between them along airspeed and along bank.
 
-    Between, the linear model is interpolated, and so is the equilibrium: both are smooth there.
+    Between, the linear model is interpolated, and so is the equilibrium: both are smooth there. Where two neighbours' measured lags
+    are of different order there is nothing to interpolate, and the point is checked with either aircraft.
     """
     columns = [TRIM_BANKS.index(share) for share in GAIN_BANKS]
     at = {
@@ -131,11 +133,11 @@ def operating_points(schedule: Schedule) -> list[OperatingPoint]:
     for (i, j), point in at.items():
         for neighbour in ((i + 1, j), (i, j + 1)):
             if neighbour in at:
-                points.append(_middle(point, at[neighbour]))
+                points += _middle(point, at[neighbour])
     return points
 
 
-def _middle(first: OperatingPoint, second: OperatingPoint) -> OperatingPoint:
+def _middle(first: OperatingPoint, second: OperatingPoint) -> list[OperatingPoint]:
     def mean(a: float, b: float) -> float:
         return 0.5 * (a + b)
 
@@ -157,15 +159,16 @@ def _middle(first: OperatingPoint, second: OperatingPoint) -> OperatingPoint:
         limits=(),
     )
     bank = mean(first.bank, second.bank)
-    return OperatingPoint(trim=trim, bank=bank, model=_mean_model(first.model, second.model), between=True)
+    models = _between(first.model, second.model)
+    return [OperatingPoint(trim=trim, bank=bank, model=model, between=True) for model in models]
 
 
-def _mean_model(first: control.StateSpace, second: control.StateSpace) -> control.StateSpace:
-    """Return the mean of two models; one may have a measured lag that was too short to be a state in the other."""
+def _between(first: control.StateSpace, second: control.StateSpace) -> list[control.StateSpace]:
+    """Return the mean of two models, or both where their states differ."""
     if list(first.state_labels) != list(second.state_labels):
-        return first
+        return [first, second]
     a, b, c, d = (0.5 * (x + y) for x, y in zip(_matrices(first), _matrices(second), strict=True))
-    return control.ss(a, b, c, d, states=first.state_labels, inputs=first.input_labels, outputs=first.output_labels)
+    return [_like(first, a, b, c, d)]
 
 
 def _matrices(model: control.StateSpace) -> tuple[npt.NDArray[np.float64], ...]:
@@ -189,7 +192,7 @@ def _checks(law: ControlLaw, point: OperatingPoint, cases: "dict[str, tuple[Chan
             bank=point.bank,
             between=point.between,
             stable=loops.stable,
-            margins=tuple(loops.margins(together=False)),
+            margins=tuple(loops.margins(together=case == NOMINAL and not point.between)),
         )
 
 
@@ -242,9 +245,11 @@ def _mass(factor: float) -> Change:
         kinematic = gravity_and_turning(trim, list(model.state_labels))
         a[rows] = kinematic + (a[rows] - kinematic) / factor
         b[rows] /= factor
-        # Rate of the course: side force over mass and speed. It has no part from gravity at constant bank but what lift gives.
+        # Rate of the course: side force over mass and speed, but for what attitude gives: an aircraft in equilibrium carries its
+        # weight whatever that is, so bank turns it by g/V as before.
         row = model.output_labels.index("heading_rate")
-        c[row] /= factor
+        columns = [i for i, name in enumerate(model.state_labels) if name not in ("roll", "pitch")]
+        c[row, columns] /= factor
         d[row] /= factor
         return _like(model, a, b, c, d)
 

@@ -1,5 +1,6 @@
 """Whether a design is as asked, at a glance."""
 
+import math
 from collections.abc import Sequence
 
 from reports.blocks import Verdict
@@ -138,7 +139,8 @@ def _figures(design: Record) -> list[tuple[str, str, str]]:
         figures.append(("Heading-rate overshoot beyond the model's", f"{100.0 * excess:.1f} %", ""))
     figures.append(("Flown heading rate lags by", f"{design['heading_rate_lag_s']:.2f} s", ""))
     if design["verification"]:
-        error = max(float(row["error"]) for row in design["verification"])
+        # An input that moves nothing has no error to speak of; the table shows it.
+        error = max((float(row["error"]) for row in design["verification"] if row["error"] is not None), default=math.nan)
         figures.append(("Linear model against small motions, worst", f"{100.0 * error:.1f} %", ""))
     return figures
 

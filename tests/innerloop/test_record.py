@@ -25,11 +25,13 @@ def test_the_record_is_json_without_nan_or_infinity(record):
 
 def test_the_record_has_every_operating_point_and_every_loop(record, x8_schedule):
     assert record["airspeeds_mps"] == [15.0, 17.5, 20.0, 22.5, 25.0]
-    assert len(record["margins"]) == 65 * 6  # 25 points and 40 between; three controls, three measurements
+    # 25 points and 40 between; three controls, three measurements, and at the points all controls at once.
+    assert len(record["margins"]) == 65 * 6 + 25
     level = x8_schedule.level(2)
     expected = Loops(x8_schedule.models[2][2], linear_controller(ControlLaw(x8_schedule), level)).margins()[0]
-    here = [m for m in record["margins"] if m["airspeed_mps"] == 20.0 and m["bank_rad"] == level.roll]
-    assert [m["loop"] for m in here] == ["elevator", "aileron", "throttle", "airspeed", "altitude", "heading_rate"]
+    here = [m for m in record["margins"] if m["airspeed_mps"] == 20.0 and m["bank_rad"] == 0.0]
+    loops = ["elevator", "aileron", "throttle", "airspeed", "altitude", "heading_rate", "all controls"]
+    assert [m["loop"] for m in here] == loops
     assert here[0]["gain_db"] == pytest.approx(expected.gain_db, rel=1e-12)
     # Seven changed aircraft at each point, each with its worst loops.
     assert len(record["robustness"]) == 65 * 7

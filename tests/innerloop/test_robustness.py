@@ -64,6 +64,11 @@ def test_a_fifth_of_mass_changes_the_linear_aircraft_as_a_fifth_of_mass_in_jsbsi
     factor = 1.0 + sign * 0.2
     heavier = linearise(Fdm(X8, x8_with(tmp_path, ("emptywt", factor))), trims[name])
     found = changed(f"mass {100.0 * (factor - 1.0):+.0f} %", models[name], trims[name])
+    # What bank does to the heading rate is left alone: the heavier aircraft that flies carries its weight, and turns by g/V.
+    row = found.output_labels.index("heading_rate")
+    attitude = [found.state_labels.index(angle) for angle in ("roll", "pitch")]
+    np.testing.assert_array_equal(found.C[row, attitude], models[name].C[row, attitude])
+    heavier.C[row, attitude] = found.C[row, attitude]
     # Held in the same state, with the same inertia: only forces' accelerations differ. Gravity in JSBSim is 9.78 m/s^2, and the
     # earth turns: 0.3 % and 3e-3 m/s^2 of what gravity does, of which a fifth is misplaced.
     assert_same(found, heavier, rtol=1e-3, atol=6e-3)
