@@ -128,7 +128,8 @@ class _Differences:
             lag, product = self._measured_lag(j)
             if lag <= _NO_LAG * self._fdm.time_step:
                 continue
-            second = product > _SECOND_ORDER * lag**2
+            # A smaller lag of less than a step is how JSBSim holds and averages an input, not a lag of the aircraft.
+            second = product > max(_SECOND_ORDER * lag, self._fdm.time_step) * lag
             model = model.with_lag(j, lag, product if second else 0.0)
             states += [f"{control_input.name}_effect", f"{control_input.name}_effect_rate"][: 1 + second]
         return control.ss(

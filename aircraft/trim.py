@@ -129,7 +129,9 @@ def trim(
     where = f"{airspeed:g} m/s, {altitude:g} m, bank {math.degrees(bank):g} deg, climb {math.degrees(climb_angle):g} deg"
     held = " and ".join(found.limits)
     if found.residual < _TOLERANCE and held:
-        raise TrimError(f"trim of '{fdm.spec.name}' at {where} takes {held}; choose a condition inside the flight envelope")
+        raise TrimError(
+            f"trim of '{fdm.spec.name}' at {where} did not converge: {held} is not enough; choose a condition inside the flight envelope"
+        )
     raise TrimError(
         f"trim of '{fdm.spec.name}' at {where} did not converge: largest acceleration {found.residual:.2g}"
         f"{f' with {held}' if held else ''} against a limit of {_TOLERANCE:g}; choose a condition inside the flight envelope"

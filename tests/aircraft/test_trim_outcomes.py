@@ -96,7 +96,7 @@ def test_a_condition_that_takes_more_than_the_throttle_gives_says_so(x8_fdm, con
     assert found.limits == ("throttle at its upper limit",)
     # The equilibrium that would be there lies past the limit.
     assert found.inputs["throttle"] > 1.0
-    with pytest.raises(TrimError, match="with throttle at its upper limit"):
+    with pytest.raises(TrimError, match="throttle at its upper limit is not enough"):
         trim(x8_fdm, altitude=100.0, **condition)
 
 

@@ -50,7 +50,7 @@ def test_a_design_is_made_once_and_found_again_whole(asked, designs):
     assert second is not first
     # What is found is what was made, to the last bit: tables, gains, models, checks and record.
     assert second.record == first.record
-    assert second.design.checks == first.design.checks
+    assert repr(second.design.checks) == repr(first.design.checks)  # all controls at once have margins that are nan
     assert second.design.speeds == first.design.speeds
     one, two = first.design.schedule, second.design.schedule
     assert (repr(one.spec), one.weights, one.trims) == (repr(two.spec), two.weights, two.trims)  # a stall of nan is not itself
