@@ -130,7 +130,8 @@ def trim(
     held = " and ".join(found.limits)
     if found.residual < _TOLERANCE and held:
         raise TrimError(
-            f"trim of '{fdm.spec.name}' at {where} did not converge: {held} is not enough; choose a condition inside the flight envelope"
+            f"trim of '{fdm.spec.name}' at {where} did not converge: {held} is not enough; choose a condition inside the flight"
+            " envelope"
         )
     raise TrimError(
         f"trim of '{fdm.spec.name}' at {where} did not converge: largest acceleration {found.residual:.2g}"
