@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.command_line import BAD_INPUT, run_command
+from reports.command_line import BAD_INPUT, INTERRUPTED, run_command
 
 if TYPE_CHECKING:
     from innerloop.record import Record
@@ -51,9 +51,13 @@ def _list(altitude: float) -> None:
 
     print("designing every aircraft that is not remembered; the first time, some minutes", file=sys.stderr)
     flown = 0
-    for found in discover(altitude, os.cpu_count() or 1):
-        flown += found.flies
-        print(f"{'flies' if found.flies else '-':6}{found.name:18}{found.text}", flush=True)
+    try:
+        for found in discover(altitude, os.cpu_count() or 1):
+            flown += found.flies
+            print(f"{'flies' if found.flies else '-':6}{found.name:18}{found.text}", flush=True)
+    except KeyboardInterrupt:
+        print("interrupted; what was designed is remembered, and the list goes on from there", file=sys.stderr)
+        raise typer.Exit(INTERRUPTED) from None
     print(f"{flown} can be flown", file=sys.stderr)
 
 

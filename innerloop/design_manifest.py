@@ -23,7 +23,7 @@ def design_manifest(record: Record, *, wall_time: float) -> dict[str, Any]:
         "state": "complete",
         "config": {
             "study": "design",
-            "description": f"Designed at {record['altitude_m']:g} m of altitude for {airspeeds[0]:g} to {airspeeds[-1]:g} m/s:"
+            "description": f"Designed at {record['altitude_m']:g} m of altitude for {airspeeds[0]:.4g} to {airspeeds[-1]:.4g} m/s:"
             " equilibria, linear models, gains, margins, and what JSBSim flies.",
             "aircraft": record["aircraft"],
             "altitude_m": record["altitude_m"],

@@ -50,8 +50,10 @@ def discover(altitude: float, jobs: int) -> Iterator[Discovered]:
             except BrokenProcessPool:
                 yield _alone(name, altitude)
     finally:
-        # Interrupted, the list ends with the aircraft that are being designed, and those are remembered.
-        pool.shutdown(wait=True, cancel_futures=True)
+        # Interrupted, the list leaves what is being designed: an aircraft that does not trim can take a minute to say so.
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in multiprocessing.active_children():
+            process.terminate()
 
 
 def _ignore_interrupt() -> None:
@@ -85,7 +87,7 @@ def examine(name: str, altitude: float) -> Discovered:
     phase = min(check.worst_phase.phase_deg for check in nominal)
     text = (
         f"{envelope.airspeed_min:.0f} to {envelope.airspeed_max:.0f} m/s, {math.degrees(envelope.bank):.0f} deg of bank,"
-        f" margins {gain:.1f} dB and {phase:.0f} deg"
+        f" margins {math.floor(10.0 * gain) / 10.0:.1f} dB and {math.floor(phase):.0f} deg"
     )
     return Discovered(name=name, title=title, flies=True, text=text)
 

@@ -120,5 +120,11 @@ def _elsewhere(root: Path) -> Section:
     scripts = [path for what, path in named if what == "a script"]
     if scripts:
         commands = "; ".join(f"JSBSim --root=model --script={path}" for path in scripts)
-        blocks.append(Text(f"To fly it in any JSBSim, from the directory of this report: {commands}"))
+        written = "; ".join(f"model/{Path(path).stem}.csv" for path in scripts)
+        blocks.append(
+            Text(
+                f"To fly it in any JSBSim, from the directory of this report: {commands}. With JSBSim's Python package the program"
+                f" is called jsbsim. It writes {written}; the script says how to write elsewhere."
+            )
+        )
     return Section(anchor="elsewhere", title="Fly it elsewhere", blocks=blocks)

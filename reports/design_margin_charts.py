@@ -43,8 +43,8 @@ def margin_charts(design: Record) -> list[Chart]:
             design,
             "classicalmargins",
             classical,
-            "Classical margins: gain alone or phase alone, of one loop, all others closed. A loop without a curve has none: no"
-            " change of its gain makes it unstable.",
+            "Classical margins: gain alone or phase alone, of one loop, all others closed. A loop without a curve has a margin"
+            " beyond the scale, or none: no change of its gain makes it unstable.",
         ),
     ]
 

@@ -186,10 +186,10 @@ def _words(name: str) -> str:
 
 def weight_table(design: Record) -> Table:
     """Return the acceptable deviations that the gains follow from, in two columns of pairs."""
-    pairs = [[_words(name), f"{value:g}"] for name, value in design["weights"].items()]
+    pairs = [[_words(name), f"{value:.3g}"] for name, value in design["weights"].items()]
     if "model_frequency_rad_s" in design and "model_frequency" not in design["weights"]:
         pairs += [
-            ["heading-rate model: frequency [rad/s]", f"{design['model_frequency_rad_s']:g}"],
+            ["heading-rate model: frequency [rad/s]", f"{design['model_frequency_rad_s']:.3g}"],
             ["heading-rate model: damping [-]", f"{design['model_damping']:g}"],
         ]
     half = -(-len(pairs) // 2)
@@ -201,8 +201,8 @@ def envelope_table(envelope: Record) -> Table:
     """Return where the aircraft may be flown, and where the study flies it."""
     stall = envelope.get("stall_airspeed_mps")
     rows = [
-        ["Airspeed that may be commanded", f"{envelope['airspeed_min_mps']:g} to {envelope['airspeed_max_mps']:g} m/s"],
-        ["Airspeed of the study", f"{envelope['airspeed_mps']:g} m/s"],
+        ["Airspeed that may be commanded", f"{envelope['airspeed_min_mps']:.4g} to {envelope['airspeed_max_mps']:.4g} m/s"],
+        ["Airspeed of the study", f"{envelope['airspeed_mps']:.4g} m/s"],
         ["Stall", "not known" if stall is None else f"{stall:.1f} m/s"],
         ["Largest bank commanded", f"{envelope['bank_max_deg']:g}°"],
         ["Bank of the study", f"{envelope['bank_deg']:g}°"],

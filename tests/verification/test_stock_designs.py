@@ -26,11 +26,12 @@ def test_margins_hold_at_every_grid_point_and_between_as_modelled_and_changed(st
         assert check.stable
         # MIL-F-9490D's 6 dB and 45 degrees; of a changed aircraft, 4 dB and 30 degrees.
         gain_db, phase_deg = (6.0, 45.0) if check.case == "as modelled" else (4.0, 30.0)
-        assert {margin.loop for margin in check.margins} == {
+        single = [margin for margin in check.margins if margin.loop != "all controls"]
+        assert {margin.loop for margin in single} == {
             "elevator", "aileron", "throttle", "rudder", "airspeed", "altitude", "heading_rate", "sideslip",
         }  # fmt: skip
-        assert min(margin.gain_db for margin in check.margins) >= gain_db, check.describe()
-        assert min(margin.phase_deg for margin in check.margins) >= phase_deg, check.describe()
+        assert min(margin.gain_db for margin in single) >= gain_db, check.describe()
+        assert min(margin.phase_deg for margin in single) >= phase_deg, check.describe()
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
