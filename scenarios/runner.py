@@ -119,13 +119,9 @@ def run_scenario(
     design, refusal = None, ""
     if spec is not None:
         progress("designing the autopilot", 0, len(scenario.sweep.nu))
-        try:
-            design = designed(spec, scenario.plume.source_height_m)
-        except AircraftError as error:
-            refusal = str(error)
+        design, refusal = _design(spec, scenario)
         envelope = design.design.schedule.envelope if design else spec.envelope
-        if envelope is not None:
-            scenario = fitted(scenario, envelope)
+        scenario = fitted(scenario, envelope) if envelope else scenario
     requests = flight_requests(scenario)
     if design is not None:
         _check_flights(requests, design.design.schedule.spec, design.design.schedule.envelope)
@@ -144,11 +140,8 @@ def run_scenario(
     try:
         # A kinematic flight is only fitted to the aircraft: it has none of its autopilot, nor its lag.
         six_dof = _six_dof(design, scenario, run) if design and scenario.fidelity != "kinematic" else None
-        for request in requests if refusal else ():
-            # A kinematic flight needs only an envelope to be fitted to; where the spec has none, that too comes from the design.
-            lacking = request.scenario.fidelity == "six_dof" or (spec is not None and spec.envelope is None)
-            if lacking and request.flight_id not in ledger.done:
-                ledger.add(failed(request, Outcome.TRIM_FAILED, refusal))
+        if refusal and spec is not None:
+            _fail_without_design(spec, refusal, requests, ledger)
         manifest["guidance_lag_s"] = guidance_lag(scenario, six_dof)
         _fly_all([r for r in requests if r.flight_id not in ledger.done], ledger, run.path, six_dof, jobs, progress)
         if scenario.study == "paper":
@@ -186,6 +179,25 @@ def _aircraft(scenario: Scenario) -> AircraftSpec | None:
         return find_spec(scenario.aircraft)
     except AircraftError as error:
         raise InputError(f"aircraft: {error}") from None
+
+
+def _design(spec: AircraftSpec, scenario: Scenario) -> tuple[Designed | None, str]:
+    """Return the autopilot for a scenario, or nothing and why there is none."""
+    try:
+        return designed(spec, scenario.plume.source_height_m), ""
+    except AircraftError as error:
+        return None, str(error)
+
+
+def _fail_without_design(spec: AircraftSpec, refusal: str, requests: list[FlightRequest], ledger: "_Ledger") -> None:
+    """Make a row with the reason of every flight that a refused design keeps on the ground.
+
+    A kinematic flight needs only an envelope to be fitted to; where the spec has none, that too comes from the design.
+    """
+    for request in requests:
+        lacking = request.scenario.fidelity == "six_dof" or spec.envelope is None
+        if lacking and request.flight_id not in ledger.done:
+            ledger.add(failed(request, Outcome.TRIM_FAILED, refusal))
 
 
 def _check_flights(requests: list[FlightRequest], spec: AircraftSpec, envelope: Envelope) -> None:

@@ -191,7 +191,8 @@ def test_perturbations_and_checks_of_the_linear_model_are_listed(report):
 def test_how_to_fly_it_elsewhere_names_the_files_that_are_there(report, tmp_path):
     files, order = (text.text for text in blocks_of(report, Text, "elsewhere"))
     assert "aircraft/c172x/c172x.xml; its autopilot, systems/c172x_autopilot.xml; a script, scripts/c172x.xml" in files
-    assert order.endswith("JSBSim --root=model --script=scripts/c172x.xml")
+    assert "from the directory of this report: JSBSim --root=model --script=scripts/c172x.xml." in order
+    assert "writes model/c172x.csv" in order
     path = write_design(tmp_path / "run")
     (path / "model" / "scripts" / "c172x.xml").unlink()
     assert len(blocks_of(content(read_run(path)), Text, "elsewhere")) == 1
