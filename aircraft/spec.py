@@ -135,21 +135,35 @@ class AircraftSpec:
         raise AircraftError(f"aircraft '{self.name}' has no input '{name}'; it has {', '.join(i.name for i in self.inputs)}")
 
 
+def surface(name: str) -> ControlInput:
+    """Return the command of a control surface by the name that JSBSim gives it: elevator, aileron, rudder."""
+    return ControlInput(name=name, commands=(f"fcs/{name}-cmd-norm",), lower=-1.0, upper=1.0)
+
+
+def throttle(engines: int) -> ControlInput:
+    """Return the one throttle of a number of engines."""
+    commands = tuple(f"fcs/throttle-cmd-norm{numbered(engine)}" for engine in range(engines))
+    return ControlInput(name="throttle", commands=commands, lower=0.0, upper=1.0)
+
+
+def numbered(engine: int) -> str:
+    """Return what JSBSim adds to an engine's properties: nothing for the first."""
+    return f"[{engine}]" if engine else ""
+
+
+def _servo(name: str) -> DrivenState:
+    return DrivenState(name=f"{name}_position", position=f"fcs/{name}-pos-rad", input=name)
+
+
+_PROPELLER = DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM)
+
 X8 = AircraftSpec(
     name="x8",
     title="Skywalker X8",
     root=MODELS,
     model="x8",
-    inputs=(
-        ControlInput(name="elevator", commands=("fcs/elevator-cmd-norm",), lower=-1.0, upper=1.0),
-        ControlInput(name="aileron", commands=("fcs/aileron-cmd-norm",), lower=-1.0, upper=1.0),
-        ControlInput(name="throttle", commands=("fcs/throttle-cmd-norm",), lower=0.0, upper=1.0),
-    ),
-    driven_states=(
-        DrivenState(name="elevator_position", position="fcs/elevator-pos-rad", input="elevator"),
-        DrivenState(name="aileron_position", position="fcs/aileron-pos-rad", input="aileron"),
-        DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM),
-    ),
+    inputs=(surface("elevator"), surface("aileron"), throttle(1)),
+    driven_states=(_servo("elevator"), _servo("aileron"), _PROPELLER),
     envelope=Envelope(airspeed_min=15.0, airspeed_max=25.0, airspeed=19.42, bank=math.radians(45.0)),
     source="Gryte et al., ICUAS 2018; inertia and propulsion as explained in the model file",
 )
@@ -159,18 +173,8 @@ AEROSONDE = AircraftSpec(
     title="Aerosonde",
     root=MODELS,
     model="aerosonde",
-    inputs=(
-        ControlInput(name="elevator", commands=("fcs/elevator-cmd-norm",), lower=-1.0, upper=1.0),
-        ControlInput(name="aileron", commands=("fcs/aileron-cmd-norm",), lower=-1.0, upper=1.0),
-        ControlInput(name="throttle", commands=("fcs/throttle-cmd-norm",), lower=0.0, upper=1.0),
-        ControlInput(name="rudder", commands=("fcs/rudder-cmd-norm",), lower=-1.0, upper=1.0),
-    ),
-    driven_states=(
-        DrivenState(name="elevator_position", position="fcs/elevator-pos-rad", input="elevator"),
-        DrivenState(name="aileron_position", position="fcs/aileron-pos-rad", input="aileron"),
-        DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM),
-        DrivenState(name="rudder_position", position="fcs/rudder-pos-rad", input="rudder"),
-    ),
+    inputs=(surface("elevator"), surface("aileron"), throttle(1), surface("rudder")),
+    driven_states=(_servo("elevator"), _servo("aileron"), _PROPELLER, _servo("rudder")),
     envelope=Envelope(airspeed_min=21.0, airspeed_max=30.0, airspeed=25.0, bank=math.radians(45.0)),
     source="Beard and McLain, Small Unmanned Aircraft, supplement; servos and rotor inertia as explained in the model files",
 )

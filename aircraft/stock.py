@@ -10,9 +10,9 @@ from pathlib import Path
 import jsbsim
 
 from aircraft.errors import AircraftError
-from aircraft.spec import AircraftSpec, ControlInput
+from aircraft.spec import AircraftSpec, numbered, surface, throttle
 
-_CONTROLS = {"elevator": "fcs/elevator-cmd-norm", "aileron": "fcs/aileron-cmd-norm", "rudder": "fcs/rudder-cmd-norm"}
+_ELEVATOR, _AILERON, _RUDDER = surface("elevator"), surface("aileron"), surface("rudder")
 _RUNNING_ENGINES = ("piston_engine", "turbine_engine", "turboprop_engine")
 """Kinds of engine that have to be started and then run; electric ones turn when they get current."""
 
@@ -42,23 +42,20 @@ def stock_spec(name: str) -> AircraftSpec:
     engines = _engine_kinds(config, folder)
     if reason := _no_aeroplane(config, folder, engines):
         raise AircraftError(f"aircraft '{name}' cannot be flown: {reason}")
-    numbered = [f"[{i}]" if i else "" for i in range(len(engines))]
-    controls = [ControlInput(name=key, commands=(command,), lower=-1.0, upper=1.0) for key, command in _CONTROLS.items()]
-    throttle = ControlInput(name="throttle", commands=tuple(f"fcs/throttle-cmd-norm{i}" for i in numbered), lower=0.0, upper=1.0)
     return AircraftSpec(
         name=name,
         title=_title(config, name),
         root=_root(),
         model=name,
-        inputs=(*controls[:2], throttle, controls[2]),
+        inputs=(_ELEVATOR, _AILERON, throttle(len(engines)), _RUDDER),
         configuration=(
             ("gear/gear-cmd-norm", 0.0),
             ("gear/gear-pos-norm", 0.0),
             ("propulsion/fuel_freeze", 1.0),
-            *((f"fcs/{lever}-cmd-norm{i}", 1.0) for lever in ("mixture", "advance") for i in numbered),
+            *((f"fcs/{lever}-cmd-norm{numbered(i)}", 1.0) for lever in ("mixture", "advance") for i in range(len(engines))),
         ),
         engine_flags=tuple(
-            f"propulsion/engine{i}/set-running" for i, kind in zip(numbered, engines, strict=True) if kind in _RUNNING_ENGINES
+            f"propulsion/engine{numbered(i)}/set-running" for i, kind in enumerate(engines) if kind in _RUNNING_ENGINES
         ),
         settle_time=_STAND_STILL,
         source=f"JSBSim's own model '{name}', gear up, fuel held, its own autopilot off",
@@ -93,7 +90,7 @@ def _no_aeroplane(config: ET.Element, folder: Path, engines: list[str]) -> str:
     thrusters = [_kind(thruster, folder) for thruster in config.iterfind("propulsion/engine/thruster")]
     text = _text(config, folder)
     odd = [kind for kind in engines if kind not in (*_RUNNING_ENGINES, *_ELECTRIC)]
-    missing = [name for name, command in _CONTROLS.items() if command not in text]
+    missing = [i.name for i in (_ELEVATOR, _AILERON, _RUDDER) if i.commands[0] not in text]
     reasons = (
         (config.find("buoyant_forces") is not None, "it is lighter than air"),
         ("rotor" in thrusters, "it is a rotorcraft"),

@@ -166,16 +166,15 @@ def search_trim(
     if not abs(bank) < 0.5 * math.pi:
         raise TrimError(f"trim of '{fdm.spec.name}': bank is {math.degrees(bank):g} deg; it must lie within -90 and 90 deg")
     problem = _TrimProblem(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle)
-    nearest: Trim | None = None
+    tried: list[Trim] = []
     with fdm.frozen():
         for i, guess in enumerate(problem.guesses(start)):
             # Near a known equilibrium the engines are as that left them.
             found = problem.solve(guess, run_up=start is None or i > 0)
             if found.outcome is TrimOutcome.CONVERGED:
                 return found
-            if nearest is None or found.residual < nearest.residual:
-                nearest = found
-        return problem.nearest(nearest)
+            tried.append(found)
+        return problem.nearest(min(tried, key=lambda t: t.residual))
 
 
 class _FoundError(Exception):
@@ -242,9 +241,8 @@ class _TrimProblem:
         full = [self._upper[3 + k] if i.name == "throttle" else guess[3 + k] for k, i in enumerate(self._fdm.spec.inputs)]
         self.residual(np.array([*guess[:3], *full]))
 
-    def nearest(self, found: Trim | None) -> Trim:
-        """Return the point within all limits where the accelerations are least."""
-        best = found
+    def nearest(self, best: Trim) -> Trim:
+        """Return the point within all limits where the accelerations are least, or the best found without limits."""
         for guess in self.guesses(None):
             solution = least_squares(
                 self.residual,
@@ -260,10 +258,8 @@ class _TrimProblem:
             result = self._result(solution.x)
             if result.outcome is TrimOutcome.CONVERGED:
                 return result
-            if best is None or best.outcome is TrimOutcome.NOT_CONVERGED or result.residual < best.residual:
+            if best.outcome is TrimOutcome.NOT_CONVERGED or result.residual < best.residual:
                 best = result
-        if best is None:
-            raise TrimError(f"trim of '{self._fdm.spec.name}': no search was made")
         return best
 
     def _jacobian(self, unknowns: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -126,7 +126,6 @@ class ControlLaw:
 
 def gain_vector(gains: Gains) -> Array:
     """Return every gain in one vector; ``_Named`` takes it apart."""
-
     return np.concatenate(
         [
             gains.longitudinal.ravel(),

@@ -2,7 +2,6 @@
 
 import math
 import multiprocessing
-import signal
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -12,6 +11,7 @@ from aircraft.errors import AircraftError
 from aircraft.find import aircraft_names, find_spec
 from innerloop.cache import designed
 from innerloop.robustness import NOMINAL
+from reports.interrupt import ignore_interrupt
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,7 +41,7 @@ def discover(altitude: float, jobs: int) -> Iterator[Discovered]:
     """
     names = aircraft_names()
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=_ignore_interrupt)
+    pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=ignore_interrupt)
     try:
         futures = {name: pool.submit(examine, name, altitude) for name in names}
         for name, future in futures.items():
@@ -54,11 +54,6 @@ def discover(altitude: float, jobs: int) -> Iterator[Discovered]:
         pool.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():
             process.terminate()
-
-
-def _ignore_interrupt() -> None:
-    """Leave Ctrl-C to the parent process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _alone(name: str, altitude: float) -> Discovered:

@@ -1,7 +1,6 @@
 """The flights of a scenario, and flying one of them in a process of its own."""
 
 import math
-import signal
 import time
 import traceback
 from dataclasses import dataclass
@@ -230,8 +229,3 @@ def _fly(request: FlightRequest, plan: FlightPlan, run: RunDirectory, six_dof: S
         for i, crossing in enumerate(crossings, start=1)
     ]
     return figures, rows
-
-
-def ignore_interrupt() -> None:
-    """Leave Ctrl-C to the parent process, which lets flights under way finish and keeps what is done."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)

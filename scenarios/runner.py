@@ -15,6 +15,7 @@ from gnc.oscillation import bank_for_heading_rate
 from innerloop.cache import Designed, designed
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim
+from reports.interrupt import ignore_interrupt
 from scenarios.bounds_record import bounds_record
 from scenarios.closed_loop import Outcome
 from scenarios.config import Scenario
@@ -29,7 +30,6 @@ from scenarios.flights import (
     flight_requests,
     fly_request,
     guidance_lag,
-    ignore_interrupt,
 )
 from scenarios.manifest import opening_manifest
 from scenarios.metrics import SUMMARY_COLUMNS, Row
