@@ -2,6 +2,7 @@
 
 import copy
 import math
+from collections import deque
 from dataclasses import dataclass
 from enum import Enum
 
@@ -54,6 +55,21 @@ class GuidanceParameters:
     airspeed_trim_max: float
 
 
+class PlacedReference:
+    """Where a reference is, put there from outside.
+
+    Attributes
+    ----------
+    north, east, course, heading_rate, speed : as of ``gnc.reference.Reference``
+    """
+
+    __slots__ = ("course", "east", "heading_rate", "north", "speed")
+
+    def __init__(self, reference: Reference) -> None:
+        self.north, self.east = reference.north, reference.east
+        self.course, self.heading_rate, self.speed = reference.course, reference.heading_rate, reference.speed
+
+
 class Guidance:
     """The outer loop of one flight, stepped at a fixed rate.
 
@@ -69,6 +85,7 @@ class Guidance:
     Attributes
     ----------
     reference : the reference point now
+    ahead : the reference point as far ahead of time as the preview looks; where it is steered, the reference follows
     heading_rate_wanted : what the law asked for last, before omega_max and guard had their say [rad/s]
     heading_rate_command : last command [rad/s]
     airspeed_command : last command [m/s]
@@ -76,13 +93,14 @@ class Guidance:
     """
 
     __slots__ = (
-        "_ahead",
         "_guard",
         "_guard_squared",
         "_lag",
         "_parameters",
         "_speed",
         "_steps",
+        "_until_ahead",
+        "ahead",
         "airspeed_command",
         "heading_rate_command",
         "heading_rate_wanted",
@@ -93,11 +111,13 @@ class Guidance:
     def __init__(self, parameters: GuidanceParameters, reference: Reference, *, guard: KeepoutGuard | None = None) -> None:
         self._parameters = parameters
         self._speed = reference.speed
-        self.reference = copy.copy(reference)
-        self._ahead = copy.copy(reference)
+        self.reference = PlacedReference(reference)
+        self.ahead = copy.copy(reference)
+        # The reference moves once, ahead of time; until then its places wait in line.
+        self._until_ahead: deque[tuple[float, float, float, float]] = deque()
         lead = round(parameters.lag / parameters.time_step)
         for _ in range(lead):
-            self._ahead.step()
+            self._move_ahead()
         self._lag = lead * parameters.time_step
         self._guard = guard
         self._guard_squared = parameters.guard_distance**2
@@ -117,7 +137,7 @@ class Guidance:
         heading_rate : measured rate of the course [rad/s]
         """
         p = self._parameters
-        reference, ahead = self.reference, self._ahead
+        reference, ahead = self.reference, self.ahead
         if p.airspeed_gain > 0.0:
             along = (reference.north - north) * math.cos(reference.course) + (reference.east - east) * math.sin(reference.course)
             trim = p.airspeed_gain * along
@@ -142,8 +162,13 @@ class Guidance:
         self.heading_rate_wanted = wanted
         self.heading_rate_command = command
         self._steps += 1
-        reference.step()
+        self._move_ahead()
+        reference.north, reference.east, reference.course, reference.heading_rate = self._until_ahead.popleft()
+
+    def _move_ahead(self) -> None:
+        ahead = self.ahead
         ahead.step()
+        self._until_ahead.append((ahead.north, ahead.east, ahead.course, ahead.heading_rate))
 
     def _steer(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
         p = self._parameters
