@@ -13,7 +13,7 @@ import jsbsim
 from aircraft.errors import AircraftError, ReadOnlyPropertyError, UnknownPropertyError
 from aircraft.model_copy import copy_model
 from aircraft.spec import AircraftSpec
-from aircraft.state import RigidBodyState
+from aircraft.state import RigidBodyState, with_wind
 from aircraft.units import METRES_PER_FOOT
 
 TIME_STEP = 1.0 / 120.0
@@ -37,6 +37,15 @@ INITIAL_STATE = (
 
 _ACCELERATION = "accelerations/{}dot-ft_sec2"
 _ANGULAR_ACCELERATION = "accelerations/{}dot-rad_sec2"
+
+WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
+"""Properties of the steady wind: the velocity of the air."""
+
+NORTH_WIND_MIN = 1e-6
+"""Least wind northward [ft/s]: JSBSim does not turn its turbulence into the wind where there is none."""
+
+RESET_ONLY = 2
+"""Resets every model of JSBSim to how it was loaded, without running it."""
 
 START_ENGINES = (("propulsion/set-running", -1.0),)
 """Property that starts every engine at once, where JSBSim can."""
@@ -105,13 +114,20 @@ class Fdm:
             raise AircraftError(f"aircraft '{name}': JSBSim refused its model '{model}'; run JSBSim on it to see why")
         return executive
 
+    def has(self, name: str) -> bool:
+        """Return whether there is a property of this name."""
+        return self._find(name) is not None
+
     def node(self, name: str) -> jsbsim.FGPropertyNode:
         """Return the node of an existing property, for repeated access at the least cost."""
-        # A name that is not one ends the whole process in JSBSim's property tree.
-        node = self._properties.get_node(name) if _PROPERTY_NAME.fullmatch(name) else None
+        node = self._find(name)
         if node is None:
             raise UnknownPropertyError(f"aircraft '{self.spec.name}' has no JSBSim property '{name}'; check its spelling")
         return node
+
+    def _find(self, name: str) -> jsbsim.FGPropertyNode | None:
+        # A name that is not one ends the whole process in JSBSim's property tree.
+        return self._properties.get_node(name) if _PROPERTY_NAME.fullmatch(name) else None
 
     def writable_node(self, name: str) -> jsbsim.FGPropertyNode:
         """Return the node of an existing property that takes writes."""
@@ -128,18 +144,30 @@ class Fdm:
         """Set a property in JSBSim's own unit."""
         self.writable_node(name).set_double_value(value)
 
-    def place(self, state: RigidBodyState) -> None:
-        """Put the aircraft into ``state``, configured as its spec says. Engines go on as they were; the first time they start."""
-        self._initialise(state)
+    def place(self, state: RigidBodyState, wind: tuple[float, float] | None = None) -> None:
+        """Put the aircraft into ``state``, configured as its spec says. Engines go on as they were; the first time they start.
+
+        Parameters
+        ----------
+        state : against the air
+        wind : velocity of the air, north and east [m/s]; none for still air
+        """
+        self._initialise(state, wind)
         if not self._engines_run and self._start_engines():
-            self._initialise(state)
+            self._initialise(state, wind)
+
+    def renew(self) -> None:
+        """Make every model of JSBSim as it was loaded, to be placed next: filters of turbulence, gusts and engines forget."""
+        self._exec.reset_to_initial_conditions(RESET_ONLY)
+        self._engines_run = False
 
     def revive(self) -> None:
         """Let engines that have stopped start again when the aircraft is placed next: too little throttle can stall them."""
         self._engines_run = self._engines_run and self._running()
 
-    def _initialise(self, state: RigidBodyState) -> None:
-        for node, (_, value) in zip(self._initial, initial_conditions(state), strict=True):
+    def _initialise(self, state: RigidBodyState, wind: tuple[float, float] | None) -> None:
+        over_ground = with_wind(state, wind) if wind else state
+        for node, (_, value) in zip(self._initial, initial_conditions(over_ground), strict=True):
             node.set_double_value(value)
         try:
             with contextlib.nullcontext() if self._engines_run else _silence():
@@ -151,6 +179,11 @@ class Fdm:
             raise AircraftError(f"aircraft '{self.spec.name}': JSBSim refused the initial state {state}")
         for name, value in self.spec.configuration:
             self.write(name, value)
+        if wind:
+            # JSBSim sets the wind of its initial conditions when it runs them, which is none.
+            north, east = (speed / METRES_PER_FOOT for speed in wind)
+            for name, value in zip(WIND, (north if abs(north) > NORTH_WIND_MIN else NORTH_WIND_MIN, east, 0.0), strict=True):
+                self.write(name, value)
 
     def _start_engines(self) -> bool:
         """Start every engine, at once or as a pilot does, and run them up, the body held; return whether that took any time.
@@ -210,10 +243,17 @@ class Fdm:
             for name, value in before.items():
                 self.write(name, value)
 
-    def hold(self, state: RigidBodyState, steps: int) -> None:
-        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else at rest."""
+    def hold(self, state: RigidBodyState, steps: int, wind: tuple[float, float] | None = None) -> None:
+        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else at rest.
+
+        Parameters
+        ----------
+        state : against the air
+        steps : long enough for servos and engines to stand still
+        wind : velocity of the air, north and east [m/s]; none for still air
+        """
         self.revive()
-        self.place(before_hold(state, steps * self.time_step))
+        self.place(before_hold(state, steps * self.time_step), wind)
         with self.frozen():
             self.step(steps)
 

@@ -40,6 +40,20 @@ class ControlInput:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Actuator:
+    """What moves one surface or every engine's throttle, and can stick (``aircraft.faults``).
+
+    Attributes
+    ----------
+    name : what the user calls it, e.g. ``left_elevon``
+    commands : JSBSim properties that tell it where to go: those of a control input, or one that an ``<actuator>`` reads
+    """
+
+    name: str
+    commands: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DrivenState:
     """A state outside the rigid body that follows one input: a servo's deflection, a propeller's speed.
 
@@ -107,6 +121,7 @@ class AircraftSpec:
     root : JSBSim root directory that holds ``aircraft/`` and ``engine/``
     model : JSBSim model name
     inputs : control inputs; ``elevator``, ``aileron`` and ``throttle`` at least
+    own_actuators : where they are not one for each control input: a flying wing's elevons
     driven_states : servo and propeller states that have a property of their own; lags that have none are measured
     envelope : where its maker or its model's author says that it flies; none where that is to be found by trimming it
     configuration : JSBSim properties and the values they have in every flight, such as a retracted gear
@@ -120,12 +135,18 @@ class AircraftSpec:
     root: Path
     model: str
     inputs: tuple[ControlInput, ...]
+    own_actuators: tuple[Actuator, ...] = ()
     driven_states: tuple[DrivenState, ...] = ()
     envelope: Envelope | None = None
     configuration: tuple[tuple[str, float], ...] = ()
     engine_flags: tuple[str, ...] = ()
     settle_time: float = 2.0
     source: str
+
+    @property
+    def actuators(self) -> tuple[Actuator, ...]:
+        """Return what can stick: its own actuators, or one for each control input."""
+        return self.own_actuators or tuple(Actuator(name=i.name, commands=i.commands) for i in self.inputs)
 
     def input(self, name: str) -> ControlInput:
         """Return the control input called ``name``; raises AircraftError where there is none."""
@@ -157,12 +178,15 @@ def _servo(name: str) -> DrivenState:
 
 _PROPELLER = DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM)
 
+_ELEVONS = tuple(Actuator(name=f"{side}_elevon", commands=(f"fcs/{side}-elevon-cmd-rad",)) for side in ("left", "right"))
+
 X8 = AircraftSpec(
     name="x8",
     title="Skywalker X8",
     root=MODELS,
     model="x8",
     inputs=(surface("elevator"), surface("aileron"), throttle(1)),
+    own_actuators=(*_ELEVONS, Actuator(name="throttle", commands=throttle(1).commands)),
     driven_states=(_servo("elevator"), _servo("aileron"), _PROPELLER),
     envelope=Envelope(airspeed_min=15.0, airspeed_max=25.0, airspeed=19.42, bank=math.radians(45.0)),
     source="Gryte et al., ICUAS 2018; inertia and propulsion as explained in the model file",

@@ -1,12 +1,12 @@
 """The rigid body's state and its kinematics, in SI and radians."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RigidBodyState:
-    """Position, attitude and motion of an aircraft in still air.
+    """Position, attitude and motion of an aircraft, against still air unless it says otherwise.
 
     Attributes
     ----------
@@ -43,6 +43,30 @@ def level(vector: tuple[float, float, float], roll: float, pitch: float) -> tupl
     sin_pitch, cos_pitch = math.sin(pitch), math.cos(pitch)
     lifted = y * sin_roll + z * cos_roll
     return x * cos_pitch + lifted * sin_pitch, y * cos_roll - z * sin_roll, -x * sin_pitch + lifted * cos_pitch
+
+
+def with_wind(state: RigidBodyState, wind: tuple[float, float]) -> RigidBodyState:
+    """Return the state over the ground of an aircraft whose ``state`` is that in still air.
+
+    Parameters
+    ----------
+    state : against the air
+    wind : velocity of the air, north and east [m/s]
+    """
+    north, east = wind
+    sin_roll, cos_roll = math.sin(state.roll), math.cos(state.roll)
+    sin_pitch, cos_pitch = math.sin(state.pitch), math.cos(state.pitch)
+    ahead = north * math.cos(state.yaw) + east * math.sin(state.yaw)
+    right = east * math.cos(state.yaw) - north * math.sin(state.yaw)
+    u, v, w = state.velocity_body
+    return replace(
+        state,
+        velocity_body=(
+            u + ahead * cos_pitch,
+            v + ahead * sin_roll * sin_pitch + right * cos_roll,
+            w + ahead * cos_roll * sin_pitch - right * sin_roll,
+        ),
+    )
 
 
 def course_rate(

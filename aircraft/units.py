@@ -5,6 +5,9 @@ import math
 METRES_PER_FOOT = 0.3048
 """International foot, exact by definition [m/ft]."""
 
+METRES_PER_SECOND_PER_KNOT = 1852.0 / 3600.0
+"""Knot: one nautical mile of 1,852 m an hour, exact by definition [m/s per kt]."""
+
 NEWTONS_PER_POUND = 4.4482216152605
 """Pound-force, exact by definition [N/lbf]."""
 

@@ -13,6 +13,7 @@ from aircraft.errors import AircraftError
 from aircraft.find import find_spec
 from aircraft.spec import Envelope
 from aircraft.trim import Trim
+from aircraft.weather import Weather
 from gnc.errors import InfeasibleError
 from innerloop.flight import AutopilotedAircraft
 from scenarios.closed_loop import Outcome, fly
@@ -189,7 +190,15 @@ def guidance_lag(scenario: Scenario, six_dof: SixDof | None) -> float:
     return (six_dof.lag if six_dof else scenario.kinematic.heading_rate_lag_s) + 0.5 / scenario.guidance.rate_hz
 
 
-def place_vehicle(scenario: Scenario, plan: FlightPlan, model: Path, six_dof: SixDof | None) -> Vehicle:
+def place_vehicle(
+    scenario: Scenario,
+    plan: FlightPlan,
+    model: Path,
+    six_dof: SixDof | None,
+    *,
+    weather: Weather | None = None,
+    failable: bool = False,
+) -> Vehicle:
     """Return the scenario's vehicle at the start of a flight.
 
     Parameters
@@ -198,14 +207,17 @@ def place_vehicle(scenario: Scenario, plan: FlightPlan, model: Path, six_dof: Si
     plan : the flight
     model : JSBSim root of the aircraft with its autopilot
     six_dof : what the aircraft needs, if it is to fly
+    weather : the air it flies in; none for still air. A kinematic vehicle feels the steady wind alone
+    failable : whether the aircraft is to have faults on the way
     """
     where = {"north": plan.start_north, "east": plan.start_east, "altitude": plan.altitude, "course": plan.start_course}
     time_step = plan.guidance.time_step
     if scenario.fidelity == "kinematic" or six_dof is None:
         lag = scenario.kinematic.heading_rate_lag_s
-        return KinematicVehicle(**where, speed=plan.reference.speed, time_step=time_step, lag=lag)
-    aircraft = AutopilotedAircraft(find_spec(scenario.aircraft), model)
-    return JsbsimVehicle(aircraft, six_dof.start, six_dof.envelope, **where, time_step=time_step)
+        north, east = weather.wind if weather else (0.0, 0.0)
+        return KinematicVehicle(**where, speed=plan.reference.speed, time_step=time_step, lag=lag, wind_north=north, wind_east=east)
+    aircraft = AutopilotedAircraft(find_spec(scenario.aircraft), model, failable=failable)
+    return JsbsimVehicle(aircraft, six_dof.start, six_dof.envelope, **where, time_step=time_step, weather=weather)
 
 
 def _fly(request: FlightRequest, plan: FlightPlan, run: RunDirectory, six_dof: SixDof | None) -> tuple[Row, list[Row]]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from aircraft.local_frame import LocalFrame
 from aircraft.spec import Envelope
 from aircraft.trim import Trim
+from aircraft.weather import Weather
 from innerloop.flight import AutopilotedAircraft
 from scenarios.telemetry import Telemetry
 
@@ -21,15 +22,19 @@ class JsbsimVehicle:
 
     Parameters
     ----------
-    aircraft : with its autopilot; whatever it flew before is over
+    aircraft : with its autopilot; whatever it flew before is over. What is to fail on the way takes one made ``failable``
     start : straight and level equilibrium
     envelope : where the autopilot may fly it
     north, east, altitude : where it is released [m]
-    course : of its velocity over the ground [rad]
+    course : of its velocity against the air, which without wind is that over the ground [rad]
     time_step : of the guidance, a multiple of the simulation's [s]
+    weather : the air it flies in; none for still air
     """
 
-    __slots__ = ("_airspeed_limits", "_command_airspeed", "_command_heading_rate", "_run", "_runs", "motion", "sample")
+    __slots__ = (
+        "_airspeed_limits", "_command_airspeed", "_command_heading_rate", "_run", "_runs", "air_data", "command_altitude", "fail",
+        "motion", "sample",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -42,18 +47,22 @@ class JsbsimVehicle:
         altitude: float,
         course: float,
         time_step: float,
+        weather: Weather | None = None,
     ) -> None:
         frame = LocalFrame(altitude=altitude)
         latitude, longitude = frame.to_geodetic(north, east)
         state = replace(start.state(latitude, longitude, course - start.course_offset()), altitude=altitude)
-        aircraft.release(state, airspeed=start.airspeed, altitude=altitude)
+        aircraft.release(state, airspeed=start.airspeed, altitude=altitude, weather=weather)
         telemetry = Telemetry(aircraft.fdm, frame)
         self.motion = telemetry.motion
+        self.air_data = telemetry.air_data
         self.sample = telemetry.sample
+        self.command_altitude = aircraft.command_altitude
+        self.fail = aircraft.fail
         self._command_airspeed = aircraft.command_airspeed
         self._command_heading_rate = aircraft.command_heading_rate
         self._airspeed_limits = (_AIRSPEED_LIMITS[0] * envelope.airspeed_min, _AIRSPEED_LIMITS[1] * envelope.airspeed_max)
-        self._run = aircraft.fdm.run
+        self._run = aircraft.run
         self._runs = range(round(time_step / aircraft.fdm.time_step))
 
     def advance(self, heading_rate: float, airspeed: float) -> None:

@@ -31,7 +31,10 @@ class Telemetry:
     frame : local frame, with its origin at zero latitude and longitude
     """
 
-    __slots__ = ("_east", "_east_scale", "_heading_rate", "_latitude", "_longitude", "_north", "_north_scale", "_sampled")
+    __slots__ = (
+        "_airspeed", "_east", "_east_scale", "_heading", "_heading_rate", "_latitude", "_longitude", "_north", "_north_scale",
+        "_roll", "_sampled",
+    )  # fmt: skip
 
     def __init__(self, fdm: Fdm, frame: LocalFrame) -> None:
         self._latitude = fdm.node("position/lat-geod-rad").get_double_value
@@ -39,6 +42,9 @@ class Telemetry:
         self._north = fdm.node("velocities/v-north-fps").get_double_value
         self._east = fdm.node("velocities/v-east-fps").get_double_value
         self._heading_rate = fdm.node(HEADING_RATE).get_double_value
+        self._airspeed = fdm.node("velocities/vt-fps").get_double_value
+        self._heading = fdm.node("attitude/psi-rad").get_double_value
+        self._roll = fdm.node("attitude/phi-rad").get_double_value
         self._north_scale, self._east_scale = frame.north_scale, frame.east_scale
         controls = {i.name for i in fdm.spec.inputs}
         self._sampled = [(fdm.node(name).get_double_value, scale) for name, scale in _SAMPLED]
@@ -47,7 +53,7 @@ class Telemetry:
             self._sampled.append((read, 1.0))
 
     def motion(self) -> tuple[float, float, float, float, float]:
-        """Return north, east [m], north and east velocity [m/s] and heading rate [rad/s]."""
+        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate against the air [rad/s]."""
         return (
             self._latitude() * self._north_scale,
             self._longitude() * self._east_scale,
@@ -55,6 +61,10 @@ class Telemetry:
             self._east() * METRES_PER_FOOT,
             self._heading_rate(),
         )
+
+    def air_data(self) -> tuple[float, float, float]:
+        """Return true airspeed with turbulence and gusts [m/s], heading from 0 to 2 pi, and roll [rad]."""
+        return self._airspeed() * METRES_PER_FOOT, self._heading(), self._roll()
 
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``."""

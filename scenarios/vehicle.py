@@ -22,13 +22,22 @@ class Vehicle(Protocol):
     """A vehicle under way, stepped at the rate of the guidance."""
 
     def motion(self) -> tuple[float, float, float, float, float]:
-        """Return north, east [m], north and east velocity [m/s] and heading rate [rad/s]."""
+        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate against the air [rad/s]."""
+
+    def air_data(self) -> tuple[float, float, float]:
+        """Return what sensors on board measure: airspeed, gusts and all [m/s], heading, not wrapped, and roll [rad]."""
 
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``."""
 
     def advance(self, heading_rate: float, airspeed: float) -> None:
         """Fly one guidance step with these commands [rad/s, m/s]."""
+
+    def command_altitude(self, altitude: float, /) -> object:
+        """Let it climb or sink to an altitude [m] from now on."""
+
+    def fail(self, name: str) -> None:
+        """Let a part of it fail from now on; raises ValueError where there is no such part that can."""
 
     def fault(self, sample: tuple[float, ...]) -> str:
         """Return why a vehicle with this ``sample`` is out of control, or nothing."""
