@@ -19,7 +19,7 @@ ENGINE = "engine"
 
 _FAILED, _HELD = "fault/{}/failed", "fault/{}/held"
 _SHUT_DOWN = (("propulsion/magneto_cmd", 0.0), ("propulsion/cutoff_cmd", 1.0))
-"""Properties that stop engines for good, where there are such engines."""
+"""Properties that stop engines for good, where there are such engines: one that is only told not to run wind-mills back to life."""
 
 
 def fault_names(spec: AircraftSpec) -> tuple[str, ...]:
@@ -117,13 +117,9 @@ class Faults:
         if name == ENGINE:
             for property_name, value in self._engine_properties:
                 self._fdm.write(property_name, value)
-            for flag in self._fdm.spec.engine_flags:
-                self._fdm.write(flag, 0.0)
 
     def mend(self) -> None:
         """Undo every fault, before the aircraft is placed for another flight; engines are started by its being placed."""
         for name in self.failed:
             self._fdm.write(_FAILED.format(name), 0.0)
-        if ENGINE in self.failed and ("propulsion/cutoff_cmd", 1.0) in self._engine_properties:
-            self._fdm.write("propulsion/cutoff_cmd", 0.0)
         self.failed.clear()

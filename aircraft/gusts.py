@@ -21,7 +21,7 @@ _DIRECTION = ("X-velocity-ft_sec", "Y-velocity-ft_sec", "Z-velocity-ft_sec")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gust:
-    """A gust that rises as 1 - cosine, holds, and falls as it rose (MIL-F-8785C, 3.7.2.3, has the rise alone).
+    """A gust that rises as 1 - cosine, holds, and falls as it rose: the discrete gust of MIL-F-8785C, which has the rise alone.
 
     Attributes
     ----------

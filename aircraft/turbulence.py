@@ -1,6 +1,6 @@
 """Low-altitude turbulence of MIL-F-8785C: how strong it is and how long its waves are.
 
-Source: MIL-F-8785C, section 3.7.3.4, figures 10 and 11: between 10 and 1,000 ft, with the height h [ft] and the wind at 20 ft,
+Source: MIL-F-8785C, figures 10 and 11: between 10 and 1,000 ft, with the height h [ft] and the wind at 20 ft,
 sigma_w = 0.1 W20, sigma_u = sigma_v = sigma_w / (0.177 + 0.000823 h)^0.4, L_w = h and L_u = L_v = h / (0.177 + 0.000823 h)^1.2.
 
 JSBSim computes the same from the height above mean sea level, and shapes them with a filter that ``atmosphere/turb-type`` chooses.
@@ -54,7 +54,7 @@ TURBULENCE = {
     "moderate": Turbulence(wind_at_20ft=30.0 * METRES_PER_SECOND_PER_KNOT, severity=4),
     "severe": Turbulence(wind_at_20ft=45.0 * METRES_PER_SECOND_PER_KNOT, severity=6),
 }
-"""Turbulence by name: W20 of 15, 30 and 45 knots (MIL-F-8785C, 3.7.3.4), and the severities that JSBSim's manual gives them."""
+"""Turbulence by name: W20 of 15, 30 and 45 knots (MIL-F-8785C, figure 9), and the severities that JSBSim's manual gives them."""
 
 
 def intensities(altitude: float, wind_at_20ft: float) -> tuple[float, float, float]:

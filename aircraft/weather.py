@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from aircraft.errors import AircraftError
 from aircraft.fdm import Fdm
-from aircraft.gusts import Gust
+from aircraft.gusts import Gust, end_gust
 from aircraft.turbulence import JSBSIM_TYPE, Turbulence
 from aircraft.units import METRES_PER_FOOT
 
@@ -62,6 +62,11 @@ def begin_turbulence(fdm: Fdm, weather: Weather) -> None:
     fdm.write(f"{_MILSPEC}/severity", weather.turbulence.severity)
 
 
-def end_turbulence(fdm: Fdm) -> None:
-    """Stop drawing turbulence. Its filters keep what they held until the aircraft is renewed (``Fdm.renew``)."""
+def end_weather(fdm: Fdm) -> None:
+    """End turbulence and gusts and forget them; the aircraft is to be placed next.
+
+    Turbulence has to end before: JSBSim places an aircraft with a time step of 0, by which its turbulence divides.
+    """
     fdm.write(f"{_MILSPEC}/severity", 0)
+    end_gust(fdm)
+    fdm.renew()

@@ -7,10 +7,10 @@ from pathlib import Path
 from aircraft.errors import AircraftError
 from aircraft.faults import Faults, failable_root
 from aircraft.fdm import Fdm
-from aircraft.gusts import end_gust, gusty_run
+from aircraft.gusts import gusty_run
 from aircraft.spec import AircraftSpec
 from aircraft.state import RigidBodyState
-from aircraft.weather import Weather, begin_turbulence, end_turbulence
+from aircraft.weather import Weather, begin_turbulence, end_weather
 from innerloop.jsbsim_system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND, RESET
 
 
@@ -54,9 +54,7 @@ class AutopilotedAircraft:
             the times of gusts count from it.
         """
         if self._weathered or (self._faults and self._faults.failed):
-            end_turbulence(self.fdm)
-            end_gust(self.fdm)
-            self.fdm.renew()
+            end_weather(self.fdm)
         if self._faults:
             self._faults.mend()
         self._weathered = weather is not None

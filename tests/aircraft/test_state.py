@@ -1,14 +1,16 @@
 """Kinematics of the rigid body: identities, and numerical differentiation of a path."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import x8_published as x8
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
-from aircraft.state import body_velocity, course_rate, euler_rates, level, turn_rates
+from aircraft.state import RigidBodyState, body_velocity, course_rate, euler_rates, level, turn_rates, with_wind
 
 components = st.floats(-50.0, 50.0)
 vectors = st.tuples(components, components, components)
@@ -125,3 +127,14 @@ def test_while_the_bank_changes_the_course_rate_is_not_the_rate_of_yaw_and_sides
     # alpha sin(bank) = 0.06 rad. Tolerance: its one digit.
     ahead, right, _ = level(body_velocity(20.0, 0.08, 0.0), math.radians(45.0), 0.06)
     assert abs(math.atan2(right, ahead)) == pytest.approx(0.06, abs=0.005)
+
+
+def test_with_wind_adds_the_wind_whatever_the_attitude():
+    state = RigidBodyState(altitude=60.0, roll=0.4, pitch=-0.2, yaw=2.1, velocity_body=(19.0, 1.0, -2.0))
+    # Scipy's intrinsic z-y'-x'' rotation takes body vectors to north, east, down. Roundings.
+    to_ned = Rotation.from_euler("ZYX", [state.yaw, state.pitch, state.roll])
+    over_ground = with_wind(state, (-7.0, 4.0))
+    assert to_ned.apply(over_ground.velocity_body) == pytest.approx(
+        to_ned.apply(state.velocity_body) + np.array([-7.0, 4.0, 0.0]), abs=1e-12
+    )
+    assert replace(over_ground, velocity_body=state.velocity_body) == state

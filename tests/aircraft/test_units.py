@@ -12,6 +12,12 @@ def test_a_nautical_mile_of_6076_feet_is_1852_metres():
     assert pytest.approx(1852.0, abs=0.005 * 0.3048) == 6076.12 * units.METRES_PER_FOOT
 
 
+def test_a_knot_is_1_6878_feet_a_second():
+    # MIL-F-8785C gives the winds of its turbulence in knots; 1.68781 ft/s is the conversion of NIST SP 811, appendix B (half its
+    # last digit).
+    assert pytest.approx(1.68781 * 0.3048, abs=5e-6 * 0.3048) == units.METRES_PER_SECOND_PER_KNOT
+
+
 def test_a_foot_is_twelve_inches_of_25_4_millimetres():
     # Inch of 25.4 mm exactly: international yard and pound agreement, 1959.
     assert pytest.approx(12 * 0.0254, rel=1e-15) == units.METRES_PER_FOOT  # rounding of one product

@@ -7,6 +7,7 @@ import pytest
 
 from gnc.guidance import Guidance
 from scenarios.closed_loop import COLUMNS, Outcome, fly
+from scenarios.errors import InputError
 from scenarios.flights import flight_requests, guidance_lag, place_vehicle
 from scenarios.kinematic_vehicle import KinematicVehicle
 from scenarios.load import load_scenario
@@ -16,8 +17,8 @@ from scenarios.vehicle import SAMPLE_COLUMNS
 SPEED = 19.42
 
 
-def make(lag=0.0, time_step=0.05, course=0.5):
-    return KinematicVehicle(north=10.0, east=-20.0, altitude=60.0, course=course, speed=SPEED, time_step=time_step, lag=lag)
+def make(lag=0.0, time_step=0.05, course=0.5, **wind):
+    return KinematicVehicle(north=10.0, east=-20.0, altitude=60.0, course=course, speed=SPEED, time_step=time_step, lag=lag, **wind)
 
 
 def fly_scenario(*overrides, nu=0.5, scenario="sweep_nu"):
@@ -53,6 +54,31 @@ def test_without_a_lag_it_turns_at_once_and_with_one_it_takes_its_time():
     assert prompt.motion()[4] == 0.4
     # After one time constant, 6 steps of 0.05 s: 1 - 1/e of the command.
     assert late.motion()[4] == pytest.approx(0.4 * (1.0 - math.exp(-1.0)), rel=1e-12)
+
+
+@pytest.mark.parametrize("lag", [0.0, 0.3])
+def test_in_wind_it_flies_the_calm_path_carried_along(lag):
+    calm, windy = make(lag), make(lag, wind_north=-6.0, wind_east=2.5)
+    for _ in range(200):
+        calm.advance(0.3, SPEED)
+        windy.advance(0.3, SPEED)
+    # 200 steps of 0.05 s in a wind of (-6, 2.5) m/s; roundings of 200 sums.
+    difference = np.subtract(windy.motion(), calm.motion())
+    assert difference == pytest.approx([-60.0, 25.0, -6.0, 2.5, 0.0], abs=1e-9)
+    assert windy.air_data() == calm.air_data()
+
+
+def test_its_sensors_read_airspeed_heading_and_the_bank_of_a_coordinated_turn():
+    vehicle = make(course=0.5, wind_north=5.0)
+    vehicle.advance(0.3, SPEED)
+    # tan(bank) = speed times heading rate over 9.80665 m/s^2; the heading after 0.05 s.
+    expected = (SPEED, 0.5 + 0.3 * 0.05, math.atan(SPEED * 0.3 / 9.80665))
+    assert vehicle.air_data() == pytest.approx(expected, rel=1e-3)  # gravity to the three digits that paper and standard share
+
+
+def test_it_has_no_parts_that_fail():
+    with pytest.raises(InputError, match="'engine' cannot fail in a kinematic flight"):
+        make().fail("engine")
 
 
 def test_its_speed_is_the_commanded_airspeed():
