@@ -10,9 +10,6 @@ from gnc.keepout_guard import KeepoutGuard
 from gnc.laws import cascade_law, line_of_sight_law, lyapunov_law
 from gnc.reference import Reference
 
-_ALONGSIDE = math.cos(0.3)
-"""Cosine of the largest course difference from the reference at which a keep-out guard steps back."""
-
 
 class Law(Enum):
     """Which steering law flies."""
@@ -36,7 +33,6 @@ class GuidanceParameters:
     heading_rate_max : omega_max; no command exceeds it; infinite for a vehicle that can fly anything [rad/s]
     time_step : [s]
     lag : of the vehicle's heading rate behind its command [s]; above 0 the law runs that much ahead of time
-    guard_distance : a keep-out guard steps back within this distance of the reference, on its course: the orbit is clear [m]
     airspeed_gain : commanded airspeed per along-track error [1/s]; 0 switches trimming off
     airspeed_trim_max : largest change of commanded airspeed [m/s]
     """
@@ -49,7 +45,6 @@ class GuidanceParameters:
     heading_rate_max: float
     time_step: float
     lag: float
-    guard_distance: float
     airspeed_gain: float
     airspeed_trim_max: float
 
@@ -64,11 +59,12 @@ class Guidance:
     ----------
     parameters : of the loop
     reference : at time 0; it is copied
-    guard : of the keep-out area on the way to the reference, or none
+    guard : of the keep-out area, or none; it is copied
 
     Attributes
     ----------
     reference : the reference point now
+    guard : the copy
     heading_rate_wanted : what the law asked for last, before omega_max and guard had their say [rad/s]
     heading_rate_command : last command [rad/s]
     airspeed_command : last command [m/s]
@@ -77,13 +73,11 @@ class Guidance:
 
     __slots__ = (
         "_ahead",
-        "_guard",
-        "_guard_squared",
         "_lag",
         "_parameters",
         "_speed",
-        "_steps",
         "airspeed_command",
+        "guard",
         "heading_rate_command",
         "heading_rate_wanted",
         "reference",
@@ -99,14 +93,20 @@ class Guidance:
         for _ in range(lead):
             self._ahead.step()
         self._lag = lead * parameters.time_step
-        self._guard = guard
-        self._guard_squared = parameters.guard_distance**2
-        self._steps = 0
+        self.guard = copy.deepcopy(guard)
         self.heading_rate_wanted = self.heading_rate_command = 0.0
         self.airspeed_command = reference.speed
         self.saturated = False
 
-    def step(self, north: float, east: float, course: float, speed: float, heading_rate: float) -> None:
+    def step(
+        self,
+        north: float,
+        east: float,
+        course: float,
+        speed: float,
+        heading_rate: float,
+        disc: tuple[float, float, float, float] | None = None,
+    ) -> None:
         """Compute the commands from the vehicle's motion now, then move the reference on by one time step.
 
         Parameters
@@ -115,9 +115,15 @@ class Guidance:
         course : chi [rad]
         speed : horizontal speed [m/s]
         heading_rate : measured rate of the course [rad/s]
+        disc : north and east of the keep-out area's centre [m], and its velocity [m/s]; a guard has to be told
+
+        Raises
+        ------
+        ValueError : there is a guard, and no disc is given
         """
         p = self._parameters
         reference, ahead = self.reference, self._ahead
+        here = (north, east, course)
         if p.airspeed_gain > 0.0:
             along = (reference.north - north) * math.cos(reference.course) + (reference.east - east) * math.sin(reference.course)
             trim = p.airspeed_gain * along
@@ -135,13 +141,18 @@ class Guidance:
         limit = p.heading_rate_max
         command = min(max(wanted, -limit), limit)
         self.saturated = command != wanted
-        if self._guard is not None and not (
-            to_north * to_north + to_east * to_east < self._guard_squared and math.cos(course - ahead.course) > _ALONGSIDE
-        ):
-            command = self._guard.limit(command, self._steps * p.time_step + lag, north, east, course, speed)
+        if self.guard is not None:
+            if disc is None:
+                raise ValueError("the guidance has a keep-out guard and was not told where the disc is; give it to step()")
+            # The guard has the lag inside: it is asked about the motion now. A turn away is flown at V_r: what the trim has taken
+            # from the airspeed comes back in it.
+            x, y, velocity_north, velocity_east = here[0] - disc[0], here[1] - disc[1], disc[2], disc[3]
+            fastest = max(speed, self._speed)
+            command = self.guard.limit(command, x, y, velocity_north, velocity_east, here[2], fastest, heading_rate)
+            if self.guard.intervening:
+                self.airspeed_command = self._speed
         self.heading_rate_wanted = wanted
         self.heading_rate_command = command
-        self._steps += 1
         reference.step()
         ahead.step()
 
