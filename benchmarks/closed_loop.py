@@ -17,6 +17,7 @@ from innerloop.designer import design_autopilot
 from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim, measure_lag
+from innerloop.reversal import measure_reversal
 from scenarios.closed_loop import fly
 from scenarios.flights import SixDof, guidance_lag, place_vehicle
 from scenarios.load import load_scenario, with_values
@@ -47,10 +48,16 @@ def _loops(folder: Path) -> dict[str, Callable[[], float]]:
     root = write_root(schedule, folder)
     level = level_trim(X8, airspeed, altitude)
     bare, autopiloted = Fdm(X8), AutopilotedAircraft(X8, root)
-    six_dof = SixDof(start=level, lag=measure_lag(autopiloted, level, schedule.envelope.bank), envelope=schedule.envelope)
+    bank = schedule.envelope.bank
+    six_dof = SixDof(
+        start=level,
+        lag=measure_lag(autopiloted, level, bank),
+        reversal=measure_reversal(autopiloted, level, bank),
+        envelope=schedule.envelope,
+    )
     # No flight ends before its time: no number of crossings is enough.
     endless = with_values(scenario, {"flight.duration_max_s": FLOWN, "flight.crossings": 10_000})
-    plan = plan_flight(endless, flight_id="bench", nu=0.5, seed=1, lag=guidance_lag(endless, six_dof))
+    plan = plan_flight(endless, flight_id="bench", nu=0.5, seed=1, lag=guidance_lag(endless, six_dof), reversal=six_dof.reversal)
     steps = round(FLOWN / TIME_STEP)
 
     def fly_bare() -> float:

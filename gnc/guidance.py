@@ -5,14 +5,12 @@ import math
 from collections import deque
 from dataclasses import dataclass
 from enum import Enum
+from typing import Generic, TypeVar
 
 from gnc.delta import LookAhead, relative_state, relative_velocity
 from gnc.keepout_guard import KeepoutGuard
 from gnc.laws import cascade_law, line_of_sight_law, lyapunov_law
 from gnc.reference import Reference
-
-_ALONGSIDE = math.cos(0.3)
-"""Cosine of the largest course difference from the reference at which a keep-out guard steps back."""
 
 
 class Law(Enum):
@@ -37,7 +35,6 @@ class GuidanceParameters:
     heading_rate_max : omega_max; no command exceeds it; infinite for a vehicle that can fly anything [rad/s]
     time_step : [s]
     lag : of the vehicle's heading rate behind its command [s]; above 0 the law runs that much ahead of time
-    guard_distance : a keep-out guard steps back within this distance of the reference, on its course: the orbit is clear [m]
     airspeed_gain : commanded airspeed per along-track error [1/s]; 0 switches trimming off
     airspeed_trim_max : largest change of commanded airspeed [m/s]
     """
@@ -50,7 +47,6 @@ class GuidanceParameters:
     heading_rate_max: float
     time_step: float
     lag: float
-    guard_distance: float
     airspeed_gain: float
     airspeed_trim_max: float
 
@@ -70,7 +66,10 @@ class PlacedReference:
         self.course, self.heading_rate, self.speed = reference.course, reference.heading_rate, reference.speed
 
 
-class Guidance:
+AnyReference = TypeVar("AnyReference", bound=Reference)
+
+
+class Guidance(Generic[AnyReference]):
     """The outer loop of one flight, stepped at a fixed rate.
 
     Preview: a vehicle that answers ``lag`` seconds late is steered by the law as it will stand then. The reference is known in
@@ -80,11 +79,12 @@ class Guidance:
     ----------
     parameters : of the loop
     reference : at time 0; it is copied
-    guard : of the keep-out area on the way to the reference, or none
+    guard : of the keep-out area, or none; it is copied
 
     Attributes
     ----------
     reference : the reference point now
+    guard : the copy
     ahead : the reference point as far ahead of time as the preview looks; where it is steered, the reference follows
     heading_rate_wanted : what the law asked for last, before omega_max and guard had their say [rad/s]
     heading_rate_command : last command [rad/s]
@@ -93,22 +93,20 @@ class Guidance:
     """
 
     __slots__ = (
-        "_guard",
-        "_guard_squared",
         "_lag",
         "_parameters",
         "_speed",
-        "_steps",
         "_until_ahead",
         "ahead",
         "airspeed_command",
+        "guard",
         "heading_rate_command",
         "heading_rate_wanted",
         "reference",
         "saturated",
     )
 
-    def __init__(self, parameters: GuidanceParameters, reference: Reference, *, guard: KeepoutGuard | None = None) -> None:
+    def __init__(self, parameters: GuidanceParameters, reference: AnyReference, *, guard: KeepoutGuard | None = None) -> None:
         self._parameters = parameters
         self._speed = reference.speed
         self.reference = PlacedReference(reference)
@@ -119,14 +117,20 @@ class Guidance:
         for _ in range(lead):
             self._move_ahead()
         self._lag = lead * parameters.time_step
-        self._guard = guard
-        self._guard_squared = parameters.guard_distance**2
-        self._steps = 0
+        self.guard = copy.deepcopy(guard)
         self.heading_rate_wanted = self.heading_rate_command = 0.0
         self.airspeed_command = reference.speed
         self.saturated = False
 
-    def step(self, north: float, east: float, course: float, speed: float, heading_rate: float) -> None:
+    def step(
+        self,
+        north: float,
+        east: float,
+        course: float,
+        speed: float,
+        heading_rate: float,
+        disc: tuple[float, float, float, float] | None = None,
+    ) -> None:
         """Compute the commands from the vehicle's motion now, then move the reference on by one time step.
 
         Parameters
@@ -135,9 +139,15 @@ class Guidance:
         course : chi [rad]
         speed : horizontal speed [m/s]
         heading_rate : measured rate of the course [rad/s]
+        disc : north and east of the keep-out area's centre [m], and its velocity [m/s]; a guard has to be told
+
+        Raises
+        ------
+        ValueError : there is a guard, and no disc is given
         """
         p = self._parameters
         reference, ahead = self.reference, self.ahead
+        here = (north, east, course)
         if p.airspeed_gain > 0.0:
             along = (reference.north - north) * math.cos(reference.course) + (reference.east - east) * math.sin(reference.course)
             trim = p.airspeed_gain * along
@@ -155,13 +165,18 @@ class Guidance:
         limit = p.heading_rate_max
         command = min(max(wanted, -limit), limit)
         self.saturated = command != wanted
-        if self._guard is not None and not (
-            to_north * to_north + to_east * to_east < self._guard_squared and math.cos(course - ahead.course) > _ALONGSIDE
-        ):
-            command = self._guard.limit(command, self._steps * p.time_step + lag, north, east, course, speed)
+        if self.guard is not None:
+            if disc is None:
+                raise ValueError("the guidance has a keep-out guard and was not told where the disc is; give it to step()")
+            # The guard has the lag inside: it is asked about the motion now. A turn away is flown at V_r: what the trim has taken
+            # from the airspeed comes back in it.
+            x, y, velocity_north, velocity_east = here[0] - disc[0], here[1] - disc[1], disc[2], disc[3]
+            fastest = max(speed, self._speed)
+            command = self.guard.limit(command, x, y, velocity_north, velocity_east, here[2], fastest, heading_rate)
+            if self.guard.intervening:
+                self.airspeed_command = self._speed
         self.heading_rate_wanted = wanted
         self.heading_rate_command = command
-        self._steps += 1
         self._move_ahead()
         reference.north, reference.east, reference.course, reference.heading_rate = self._until_ahead.popleft()
 

@@ -1,108 +1,321 @@
-"""Keeping out of the area on the way to the reference, where nothing in the paper's law does.
+"""Keeping out of a moving disc whatever the guidance asks: a filter of heading-rate commands, after docs/keepout_guard.md.
 
-The reference's orbit is clear of the keep-out area, but the way to it may not be. The guard asks, at each step, how close the
-vehicle would come if it flew the law's command for another moment and then turned away at nearly its full rate, to the better
-side. While that keeps the distance the law is free; otherwise as much of the turn is mixed in as is needed. Since the turn away
-always stays possible, so does staying out (a backup-manoeuvre safety filter: Gurriet et al., "An Online Approach to Active Set
-Invariance", CDC 2018).
+The guard predicts, at each step, the vehicle's path if it flew the wanted command for that step and then turned away at omega_max,
+to the left or to the right, with the vehicle's own lag. While one of the two keeps the radius the guidance is free. Otherwise as
+much of the turn that was safe at the last step is mixed in as is needed: that turn is still possible, and so is staying out (a
+backup-manoeuvre safety filter: Gurriet et al., "An Online Approach to Active Set Invariance", CDC 2018).
 
-It keeps the vehicle out and no more: it plans no way round. From astern every flight measured gets to the reference; from ahead of
-the vessel the law and the guard can hold each other in balance, and the flight never settles.
+Everything is posed in the air mass, relative to the disc: the vehicle's course and speed are those of its motion through the air.
+The guard plans no way round; it keeps out and no more.
 """
 
 import math
+from collections import deque
 
-from gnc.unicycle import unicycle_move
+_TURN = 0.125
+"""Course turned between two looks at a turn away [rad]."""
+_TURN_MAX = 2.5 * math.pi
+"""Course after which a turn away is over: the whole way round, and what heading rate the other way and a moving disc add [rad]."""
+_CHORD = math.sin(0.5 * _TURN) / (0.5 * _TURN)
+"""Chord over arc between two looks [-]."""
+_RESOLUTION = 1e-3
+"""Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
+_BISECTIONS = 5
+"""The share of the turn away is within 1/32 of the least."""
 
-_STEP = 0.25
-_MOMENT = 0.5
-_TURN_SHARE = 0.9
-_SHARES = (0.25, 0.5, 0.75)
+_Motion = tuple[float, float, float, float, float, float, float]
+"""Arguments of ``KeepoutGuard.limit`` from x to heading_rate."""
+_Start = tuple[float, float, float, float]
+"""x, y, course and heading rate."""
 
 
 class KeepoutGuard:
-    """A moving disc that commands must not lead into.
+    """A moving disc that commands must not lead into. It has a memory, and is to be asked once per time step.
 
     Parameters
     ----------
-    north, east : of the disc's centre at time 0 [m]
-    velocity_north, velocity_east : of the centre [m/s]
-    radius : that the vehicle's path must keep, margin included [m]
-    heading_rate_max : omega_max [rad/s]
-    speed : of the vehicle, for the distance beyond which there is nothing to check [m/s]
+    radius : that the vehicle's path must keep from the disc's centre [m]
+    heading_rate_max : omega_max, the largest command [rad/s]
+    lag : time constant of the vehicle's heading rate behind its command; 0 if it follows at once [s]
+    delay : dead time before that; the command's next whole step counts [s]
+    time_step : for which a command is held [s]
+    speed_error : b, bound on the error of the relative velocity that is given, airspeed, wind and disc together [m/s]
+    acceleration : a, bound on how fast that velocity changes other than by turning the vehicle [m/s2]
+
+    Attributes
+    ----------
+    intervening : whether the last command was changed
+    interventions : how often that began
+    lost : whether neither turn away held the radius at the last step; the better one is flown
     """
 
-    __slots__ = ("_east", "_far_squared", "_half_turn_steps", "_north", "_radius", "_rate", "_velocity_east", "_velocity_north")
+    __slots__ = (
+        "_acceleration",
+        "_delay",
+        "_free_extra",
+        "_free_steps",
+        "_hold",
+        "_lag",
+        "_look",
+        "_looks_max",
+        "_radius",
+        "_rate",
+        "_side",
+        "_speed_error",
+        "_time_step",
+        "_turn_time",
+        "_under_way",
+        "intervening",
+        "interventions",
+        "lost",
+    )
 
     def __init__(
         self,
         *,
-        north: float,
-        east: float,
-        velocity_north: float,
-        velocity_east: float,
         radius: float,
         heading_rate_max: float,
-        speed: float,
+        lag: float,
+        time_step: float,
+        delay: float = 0.0,
+        speed_error: float = 0.0,
+        acceleration: float = 0.0,
     ) -> None:
-        self._north, self._east = north, east
-        self._velocity_north, self._velocity_east = velocity_north, velocity_east
-        self._radius = radius
-        self._rate = _TURN_SHARE * heading_rate_max
-        self._half_turn_steps = math.ceil(math.pi / self._rate / _STEP)
-        # A turn away takes at most half a turn; nothing farther than both can close in that time needs a look.
-        closing = speed + math.hypot(velocity_north, velocity_east)
-        self._far_squared = (radius + closing * math.pi / self._rate) ** 2
+        self._radius, self._rate = radius, heading_rate_max
+        self._lag, self._time_step = lag, time_step
+        self._delay = round(delay / time_step) * time_step
+        self._under_way: deque[float] = deque(maxlen=round(delay / time_step))
+        self._speed_error, self._acceleration = speed_error, acceleration
+        self._hold = _held(time_step, lag)
+        self._look = _held(_TURN / heading_rate_max, lag)
+        self._looks_max = math.ceil(_TURN_MAX / _TURN)
+        # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
+        self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * lag + self._delay + time_step
+        self._side = 0.0
+        self._free_steps, self._free_extra = 0, 0.0
+        self.intervening = self.lost = False
+        self.interventions = 0
 
-    def limit(self, command: float, time: float, north: float, east: float, course: float, speed: float) -> float:
-        """Return the command, or as much of the turn away as is needed [rad/s].
-
-        Parameters
-        ----------
-        command : what the law wants [rad/s]
-        time : [s]
-        north, east, course, speed : of the vehicle when the command takes effect [m, m, rad, m/s]
-        """
-        x = north - self._north - self._velocity_north * time
-        y = east - self._east - self._velocity_east * time
-        if x * x + y * y > self._far_squared:
-            return command
-        rate, radius = self._rate, self._radius
-        if max(self.clearance(x, y, course, speed, command, turn) for turn in (rate, -rate)) >= radius:
-            return command
-        # The side that is better without flying the command first: on that side the last step left room.
-        turn = max((rate, -rate), key=lambda way: self.clearance(x, y, course, speed, way, way))
-        for share in _SHARES:
-            mixed = command + share * (turn - command)
-            if self.clearance(x, y, course, speed, mixed, turn) >= radius:
-                return mixed
-        return turn
-
-    def clearance(self, x: float, y: float, course: float, speed: float, first: float, turn: float) -> float:
-        """Return the closest approach to the disc's centre [m], or infinity for a vehicle that does not approach at all.
+    def limit(
+        self,
+        command: float,
+        x: float,
+        y: float,
+        velocity_north: float,
+        velocity_east: float,
+        course: float,
+        speed: float,
+        heading_rate: float,
+        *,
+        extra_radius: float = 0.0,
+    ) -> float:
+        """Return the command, or as much of a turn away as is needed [rad/s].
 
         Parameters
         ----------
-        x, y : north and east of the centre [m]
-        course, speed : of the vehicle [rad, m/s]
-        first, turn : heading rate for a moment, and from then on [rad/s]
+        command : what the guidance wants [rad/s]
+        x, y : of the vehicle, north and east of the disc's centre [m]
+        velocity_north, velocity_east : of the disc in the air mass [m/s]
+        course, speed : of the vehicle in the air mass [rad, m/s]
+        heading_rate : rate of that course now [rad/s]
+        extra_radius : added to the radius, e.g. for a disc not heard of for a while [m]
         """
-        start = x * x + y * y
-        x, y, course = unicycle_move(x, y, course, speed, first, _MOMENT)
-        x -= self._velocity_north * _MOMENT
-        y -= self._velocity_east * _MOMENT
-        chord = 2.0 * speed * math.sin(0.5 * turn * _STEP) / turn
-        drift_north, drift_east = self._velocity_north * _STEP, self._velocity_east * _STEP
-        middle = course + 0.5 * turn * _STEP
-        closest = x * x + y * y
-        if closest >= start:
-            return math.inf
-        for _ in range(self._half_turn_steps):
-            x += chord * math.cos(middle) - drift_north
-            y += chord * math.sin(middle) - drift_east
-            distance = x * x + y * y
-            if distance >= closest:
+        bounded = -self._rate <= command <= self._rate
+        if self._free_steps > 0 and bounded and extra_radius <= self._free_extra:
+            self._free_steps -= 1
+            self._under_way.append(command)
+            return command
+        self._free_steps, self._free_extra = 0, extra_radius
+        motion = (x, y, velocity_north, velocity_east, course, speed, heading_rate)
+        free = self._free_when_far(motion, extra_radius)
+        if free <= 0.0:
+            then = self._then(motion)
+            free = self._free_by_turning_away(command, then, extra_radius)
+        if free >= 0.0:
+            self.intervening = self.lost = False
+            if bounded:
+                self._free_steps = max(0, int(free / self._time_step) - 1)
+        else:
+            self.interventions += not self.intervening
+            self.intervening = True
+            command = self._mix(command, then, extra_radius)
+        self._under_way.append(command)
+        return command
+
+    def clearance(
+        self,
+        x: float,
+        y: float,
+        velocity_north: float,
+        velocity_east: float,
+        course: float,
+        speed: float,
+        heading_rate: float,
+        *,
+        extra_radius: float = 0.0,
+    ) -> float:
+        """Return by how much the better turn away, begun now, keeps the radius [m]; negative if no command can hold it.
+
+        Parameters are those of ``limit``. That no other commands do better is argued in docs/keepout_guard.md.
+        """
+        then = self._then((x, y, velocity_north, velocity_east, course, speed, heading_rate))
+        start = (then[0], then[1], then[4], then[6])
+        return max(self._turn_away(side, start, then, self._delay, extra_radius, -math.inf)[0] for side in (1.0, -1.0))
+
+    def _then(self, motion: _Motion) -> _Motion:
+        """Return the motion when a command given now begins to act: those before it cannot be taken back."""
+        sent = self._under_way
+        x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
+        # Commands that were given before the first that this guard has seen are taken to be the turn that is flown.
+        for command in (*[heading_rate] * ((sent.maxlen or 0) - len(sent)), *sent):
+            x, y, course, heading_rate = self._after(command, motion)
+            motion = (x, y, velocity_north, velocity_east, course, speed, heading_rate)
+        return motion
+
+    def _free_when_far(self, motion: _Motion, extra_radius: float) -> float:
+        """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
+        x, y, velocity_north, velocity_east, _, speed, _ = motion
+        duration, acceleration = self._turn_time, self._acceleration
+        closing = speed + math.hypot(velocity_north, velocity_east) + self._speed_error
+        gap = math.hypot(x, y) - self._radius - extra_radius - (closing + 0.5 * acceleration * duration) * duration
+        return min(gap / (closing + 1.5 * acceleration * duration), duration)
+
+    def _free_by_turning_away(self, command: float, motion: _Motion, extra_radius: float) -> float:
+        """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
+        after = self._after(command, motion)
+        x, y, course, _ = after
+        floor = _RESOLUTION * motion[5] / self._rate
+        nearer = 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
+        for side in (nearer, -nearer):
+            slack, free = self._turn_away(side, after, motion, self._delay + self._time_step, extra_radius, floor)
+            if slack >= floor:
+                self._side = side
+                return free
+        return -1.0
+
+    def _mix(self, command: float, motion: _Motion, extra_radius: float) -> float:
+        """Return the command with the least of a turn away that keeps the radius, or the better turn if none does [rad/s]."""
+        x, y, _, _, course, speed, heading_rate = motion
+        floor = _RESOLUTION * speed / self._rate
+        begun = self._delay + self._time_step
+        slacks = []
+        for side in (self._side, -self._side) if self._side else (1.0, -1.0):
+            turn = side * self._rate
+            slack, _ = self._turn_away(side, self._after(turn, motion), motion, begun, extra_radius, -math.inf)
+            slacks.append((slack, side))
+            if self._side and slack >= 0.0:
                 break
-            closest = distance
-            middle += turn * _STEP
-        return math.sqrt(closest)
+        slack, side = max(slacks)
+        self._side = side
+        turn = side * self._rate
+        self.lost = slack < 0.0
+        if self.lost:
+            # Away from the disc and no farther, in case it is the radius that has overtaken a vehicle that flies away from it.
+            left = math.remainder(math.atan2(y, x) - course - self._lag * heading_rate, 2.0 * math.pi)
+            return left / self._time_step if abs(left) < self._rate * self._time_step else turn
+        mixed = turn
+        low, high = 0.0, 1.0
+        for _ in range(_BISECTIONS):
+            share = 0.5 * (low + high)
+            trial = command + share * (turn - command)
+            slack, _ = self._turn_away(side, self._after(trial, motion), motion, begun, extra_radius, floor)
+            if slack >= floor:
+                high, mixed = share, trial
+            else:
+                low = share
+        return mixed
+
+    def _after(self, command: float, motion: _Motion) -> _Start:
+        """Return where a command held for one time step leads."""
+        x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
+        duration, turned, mean, kept = self._hold
+        middle = course + mean * heading_rate + (0.5 * duration - mean) * command
+        return (
+            x + (speed * math.cos(middle) - velocity_north) * duration,
+            y + (speed * math.sin(middle) - velocity_east) * duration,
+            course + turned * heading_rate + (duration - turned) * command,
+            kept * heading_rate + (1.0 - kept) * command,
+        )
+
+    def _turn_away(
+        self, side: float, start: _Start, motion: _Motion, time: float, extra_radius: float, floor: float
+    ) -> tuple[float, float]:
+        """Return by how much a full turn away keeps the radius [m], and for how long [s] no command before it can change that.
+
+        It is over once the vehicle recedes and its turn makes it recede faster: by going on until it heads straight away, and
+        straight on then, it recedes for good. The search ends early below ``floor``.
+
+        Parameters
+        ----------
+        side : 1 to the right, -1 to the left
+        start : of the turn
+        motion : when the command that is judged begins to act
+        time : from now to the start [s]
+        extra_radius, floor : [m]
+        """
+        x, y, course, heading_rate = start
+        _, _, velocity_north, velocity_east, _, speed, _ = motion
+        duration, turned, mean, kept = self._look
+        turn = side * self._rate
+        ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - kept) * turn
+        chord = speed * duration * _CHORD
+        north, east = velocity_north * duration, velocity_east * duration
+        error, half, lag = self._speed_error, 0.5 * self._acceleration, self._lag
+        fixed = self._radius + extra_radius
+        least = slack = math.sqrt(x * x + y * y) - fixed - (error + half * time) * time
+        outward = side * (y * math.cos(course) - x * math.sin(course))
+        acting = time - self._delay
+        share, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
+        for look in range(self._looks_max):
+            if least < floor:
+                break
+            middle = course + mean * heading_rate + ahead
+            cos_m, sin_m = math.cos(middle), math.sin(middle)
+            x += chord * cos_m - north
+            y += chord * sin_m - east
+            course += turned * heading_rate + gained
+            heading_rate = kept * heading_rate + won
+            time += duration
+            acting += duration
+            fade *= kept
+            last, before, before_outward = slack, rise, outward
+            outward = side * (y * cos_m - x * sin_m)
+            slack = math.sqrt(x * x + y * y) - fixed - (error + half * time) * time
+            rise = slack - last
+            share = min(share, slack / (acting - lag * (1.0 - fade)))
+            if rise < 0.0:
+                least = min(least, slack)
+                continue
+            if look == 0:
+                # There is no look before; the rate at the start stands in for it.
+                before = 2.0 * duration * (_range_rate(start, motion) - error) - rise
+            if before < 0.0:
+                # The vertex of the parabola through three looks.
+                least = min(least, last - (before + rise) ** 2 / (8.0 * (rise - before)))
+            # Also if it came past straight away between two looks: it would have stopped there.
+            if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
+                break
+        return least, min(share, rise / duration) / (2.0 * speed * self._rate)
+
+
+def _range_rate(start: _Start, motion: _Motion) -> float:
+    """Return the rate at which the distance from the disc's centre grows [m/s]."""
+    x, y, course, _ = start
+    _, _, velocity_north, velocity_east, _, speed, _ = motion
+    return ((speed * math.cos(course) - velocity_north) * x + (speed * math.sin(course) - velocity_east) * y) / math.hypot(x, y)
+
+
+def _held(duration: float, lag: float) -> tuple[float, float, float, float]:
+    """Return what a vehicle with a lag makes of a heading rate that it has, while a command is held.
+
+    Returns
+    -------
+    duration : of the command [s]
+    turned : course, per heading rate at the start [s]; the rest of the duration is course per command
+    mean : course on the mean of the duration, per heading rate at the start [s]; the rest of its half is per command
+    kept : heading rate at the end, per heading rate at the start [-]; the rest of 1 is per command
+    """
+    if lag == 0.0:
+        return duration, 0.0, 0.0, 0.0
+    turned = -lag * math.expm1(-duration / lag)
+    return duration, turned, lag * (1.0 - turned / duration), math.exp(-duration / lag)

@@ -39,6 +39,7 @@ COLUMNS = (
     "heading_rate_command_rad_s",
     "airspeed_command_mps",
     "command_saturated",
+    "guard_intervening",
     *SAMPLE_COLUMNS,
 )
 """Columns of a flight's record. Course is that of the horizontal motion, from -pi to pi."""
@@ -55,6 +56,8 @@ class FlightRecord:
     saturation_fraction : share of guidance steps whose command was cut at omega_max [-]
     heading_rate_wanted_max, heading_rate_command_max : largest heading rate that the law asked for, and that was commanded, at any
         step of the guidance [rad/s]
+    guard_interventions : how often the keep-out guard began to change commands
+    guard_time : for how long it did, altogether [s]
     """
 
     outcome: Outcome
@@ -63,6 +66,8 @@ class FlightRecord:
     saturation_fraction: float
     heading_rate_wanted_max: float
     heading_rate_command_max: float
+    guard_interventions: int
+    guard_time: float
 
 
 def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
@@ -72,33 +77,40 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
     one it lasts as long as planned.
     """
     guidance = Guidance(plan.guidance, plan.reference, guard=plan.mission.guard if plan.mission else None)
+    guard = guidance.guard
+    vessel_north, vessel_east = plan.mission.vessel.velocity_ned if plan.mission else (0.0, 0.0)
     counter = _CrossingCounter(plan.mission, plan.settling_band) if plan.mission else None
     reference, time_step = guidance.reference, plan.guidance.time_step
     steps_max = round(plan.duration_max / time_step)
     rows: list[tuple[float, ...]] = []
     outcome, message = (Outcome.NOT_SETTLED if counter else Outcome.COMPLETED), ""
     wanted_max = command_max = 0.0
-    saturated = finished_at = step = 0
-    done = False
+    saturated = guarded = finished_at = step = 0
+    done = guarding = False
     while step <= steps_max:
         motion = north, east, velocity_north, velocity_east, heading_rate = vehicle.motion()
         course = math.atan2(velocity_east, velocity_north)
         at = (reference.north, reference.east, reference.course, reference.heading_rate)
-        guidance.step(north, east, course, math.sqrt(velocity_north**2 + velocity_east**2), heading_rate)
+        time = step * time_step
+        disc = (vessel_north * time, vessel_east * time, vessel_north, vessel_east)
+        guidance.step(north, east, course, math.sqrt(velocity_north**2 + velocity_east**2), heading_rate, disc)
         wanted, command = guidance.heading_rate_wanted, guidance.heading_rate_command
         wanted_max = max(wanted_max, wanted, -wanted)
         command_max = max(command_max, command, -command)
         saturated += guidance.saturated
+        if guard:
+            guarding = guard.intervening
+            guarded += guarding
         if counter:
-            done = counter.update(step * time_step, north, east, at[0] - north, at[1] - east)
+            done = counter.update(time, north, east, at[0] - north, at[1] - east)
         if step % plan.log_interval == 0:
             sample = vehicle.sample()
             rows.append((
-                step * time_step, *motion, course, *at, wanted, command, guidance.airspeed_command, guidance.saturated, *sample,
+                time, *motion, course, *at, wanted, command, guidance.airspeed_command, guidance.saturated, guarding, *sample,
             ))  # fmt: skip
             message = vehicle.fault(sample)
             if message:
-                outcome, message = Outcome.DIVERGED, f"{message} at {step * time_step:.1f} s"
+                outcome, message = Outcome.DIVERGED, f"{message} at {time:.1f} s"
                 break
             if done and step > finished_at:
                 outcome = Outcome.COMPLETED
@@ -119,6 +131,8 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
         saturation_fraction=saturated / max(1, step),
         heading_rate_wanted_max=wanted_max,
         heading_rate_command_max=command_max,
+        guard_interventions=guard.interventions if guard else 0,
+        guard_time=guarded * time_step,
     )
 
 

@@ -122,11 +122,7 @@ class Guidance(Section):
     airspeed_trim_max_mps: Positive = 1.0
     """Largest change of commanded airspeed [m/s]."""
     keepout_guard: bool = True
-    """Turn away from the keep-out area on the way to the reference, where the paper's law knows nothing of it."""
-    guard_margin_m: NonNegative = 2.0
-    """Distance the guard keeps beyond r_min; wider than the orbit's own clearance, it would hold the UAV off its reference [m]."""
-    guard_distance_m: Positive = 15.0
-    """The guard steps back once the UAV is this close to the reference and on its course; the orbit is clear of r_min [m]."""
+    """Turn away from the keep-out area, of which the paper's law knows nothing."""
     rate_hz: Annotated[float, Field(ge=1.0, le=120.0)] = 20.0
     """Guidance rate [Hz]; must divide the 120 Hz of the simulation."""
 

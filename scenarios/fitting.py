@@ -39,8 +39,6 @@ _FITTED: dict[str, Callable[[Units], float]] = {
     "guidance.lyapunov_gain_per_m2": lambda unit: 1.0 / unit.length**2,
     "guidance.airspeed_gain_per_s": lambda unit: 1.0 / unit.time,
     "guidance.airspeed_trim_max_mps": lambda unit: unit.speed,
-    "guidance.guard_margin_m": lambda unit: unit.length,
-    "guidance.guard_distance_m": lambda unit: unit.length,
     "start.distance_m": lambda unit: unit.length,
     "flight.duration_max_s": lambda unit: unit.time,
     "flight.settling_band_m": lambda unit: unit.length,

@@ -16,6 +16,7 @@ from aircraft.trim import Trim
 from aircraft.weather import Weather
 from gnc.errors import InfeasibleError
 from innerloop.flight import AutopilotedAircraft
+from innerloop.reversal import Reversal
 from scenarios.closed_loop import Outcome, fly
 from scenarios.config import Case, Scenario
 from scenarios.errors import InputError
@@ -69,11 +70,13 @@ class SixDof:
     ----------
     start : equilibrium to start from
     lag : of the autopilot's heading rate behind its command [s]
+    reversal : how the heading rate follows a reversal of the turn
     envelope : where the autopilot may fly it
     """
 
     start: Trim
     lag: float
+    reversal: Reversal
     envelope: Envelope
 
 
@@ -144,7 +147,10 @@ def fly_request(request: FlightRequest, directory: Path, six_dof: SixDof | None)
     crossings: list[Row] = []
     try:
         lag = guidance_lag(request.scenario, six_dof)
-        plan = plan_flight(request.scenario, flight_id=request.flight_id, nu=request.nu, seed=request.seed, lag=lag)
+        reversal = six_dof.reversal if six_dof else None
+        plan = plan_flight(
+            request.scenario, flight_id=request.flight_id, nu=request.nu, seed=request.seed, lag=lag, reversal=reversal
+        )
         row |= plan_row(plan)
         figures, crossings = _fly(request, plan, run, six_dof)
         if figures["outcome"] == Outcome.COMPLETED.value:

@@ -25,7 +25,8 @@ SUMMARY_COLUMNS = (
     "airspeed_error_max_mps", "airspeed_trim_rms_mps", "altitude_error_rms_m", "altitude_error_max_m",
     "heading_rate_error_rms_rad_s", "heading_rate_wanted_max_rad_s", "heading_rate_command_max_rad_s",
     "heading_rate_limit_rad_s", "heading_rate_bound_rad_s", "heading_rate_flown_max_rad_s", "epsilon_per_m", "look_ahead_m",
-    "steering_max_rad_s", "speed_max_mps", "bank_max_deg", "saturation_fraction", "duration_s", "wall_time_s",
+    "steering_max_rad_s", "speed_max_mps", "bank_max_deg", "saturation_fraction", "guard_interventions", "guard_time_s",
+    "duration_s", "wall_time_s",
 )  # fmt: skip
 """Columns of ``summary.csv``, in order. A figure that a flight does not have is empty."""
 
@@ -118,6 +119,8 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
         row |= _settled_figures(plan, history[settled], to_reference[settled])
     if plan.mission is None:
         return row, []
+    if plan.mission.guard:
+        row |= {"guard_interventions": record.guard_interventions, "guard_time_s": record.guard_time}
     figures, crossings = _mission_figures(plan.mission, history, settled)
     return row | figures, crossings
 

@@ -11,9 +11,13 @@ from gnc.keepout_guard import KeepoutGuard
 from gnc.oscillation import Oscillation, design_oscillation, heading_rate_for_bank
 from gnc.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
 from gnc.reference import CirclingReference, Reference, ReferencePoint, ReferenceStart, start_reference
+from innerloop.reversal import Reversal
 from scenarios.config import Scenario
 from scenarios.steering import plan_steering
 from scenarios.vessel import Vessel
+
+_GUARD_SHARE = 0.75
+"""The guard keeps this share of the tracking allowance beyond r_min: what an aircraft does that the guard does not predict [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,7 +31,7 @@ class Mission:
     oscillation : of the reference point
     centre_distance : r_CO [m]
     keepout_radius : r_min [m]
-    guard : of the keep-out area on the way to the reference, or none
+    guard : of the keep-out area, as it is at the start, or none
     crossings : to be flown after settling
     """
 
@@ -72,18 +76,21 @@ class FlightPlan:
     log_interval: int
 
 
-def plan_flight(scenario: Scenario, *, flight_id: str, nu: float, seed: int, lag: float) -> FlightPlan:
+def plan_flight(
+    scenario: Scenario, *, flight_id: str, nu: float, seed: int, lag: float, reversal: Reversal | None = None
+) -> FlightPlan:
     """Resolve one flight of a scenario.
 
     Parameters
     ----------
     scenario, flight_id, nu : the flight; a circle has no use for nu
     seed : of its random start
-    lag : of the vehicle's heading rate [s]
+    lag : of the vehicle's heading rate, half a step of holding commands included [s]
+    reversal : how its heading rate follows a reversal of the turn; with that lag alone if not given
 
     Raises
     ------
-    InfeasibleError : the flight has no solution
+    InfeasibleError : the flight has no solution, or starts where no command keeps it out of the keep-out area
     """
     time_step = 1.0 / scenario.guidance.rate_hz
     if scenario.reference.path == "circle":
@@ -92,12 +99,15 @@ def plan_flight(scenario: Scenario, *, flight_id: str, nu: float, seed: int, lag
         heading_rate = reference.heading_rate
         vessel = Vessel(speed=0.0, course=0.0, plume_heading=math.pi, plume_elevation=0.0, source_height=altitude)
     else:
-        mission, centre = _mission(scenario, nu)
+        turning = reversal or Reversal(delay=0.0, lag=max(0.0, lag - 0.5 * time_step))
+        mission, centre = _mission(scenario, nu, turning)
         vessel, heading_rate = mission.vessel, mission.oscillation.amplitude
         altitude = vessel.source_height + centre[2]
         reference = _oscillating(scenario, mission, centre, time_step)
     guidance, bound = _guidance(scenario, heading_rate, lag)
     north, east, course = _start(scenario, vessel, seed)
+    if mission:
+        _check_start(scenario, mission, north, east, course)
     return FlightPlan(
         flight_id=flight_id,
         mission=mission,
@@ -133,7 +143,7 @@ def plan_oscillation(scenario: Scenario, nu: float) -> Oscillation:
     )
 
 
-def _mission(scenario: Scenario, nu: float) -> tuple[Mission, tuple[float, float, float]]:
+def _mission(scenario: Scenario, nu: float, turning: Reversal) -> tuple[Mission, tuple[float, float, float]]:
     """Return the mission, and its CO ahead of, right of and above the plume's origin [m]."""
     g = scenario.guidance
     axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
@@ -154,7 +164,7 @@ def _mission(scenario: Scenario, nu: float) -> tuple[Mission, tuple[float, float
         oscillation=oscillation,
         centre_distance=distance,
         keepout_radius=scenario.keepout.radius_m,
-        guard=_guard(scenario, vessel, centre[2]),
+        guard=_guard(scenario, centre[2], turning),
         crossings=scenario.flight.crossings,
     )
     return mission, centre
@@ -194,28 +204,37 @@ def _guidance(scenario: Scenario, reference_heading_rate: float, lag: float) -> 
         heading_rate_max=heading_rate_max(scenario) if g.command_limit else math.inf,
         time_step=1.0 / g.rate_hz,
         lag=lag if g.preview else 0.0,
-        guard_distance=g.guard_distance_m,
         airspeed_gain=g.airspeed_gain_per_s if g.airspeed_trim else 0.0,
         airspeed_trim_max=g.airspeed_trim_max_mps,
     )
     return parameters, steering.bound
 
 
-def _guard(scenario: Scenario, vessel: Vessel, above: float) -> KeepoutGuard | None:
+def _guard(scenario: Scenario, above: float, turning: Reversal) -> KeepoutGuard | None:
     """Return the guard of the disc that the keep-out sphere cuts out at ``above`` [m] over its centre, if any."""
-    radius = scenario.keepout.radius_m + scenario.guidance.guard_margin_m
+    radius = scenario.keepout.radius_m + _GUARD_SHARE * scenario.guidance.tracking_allowance_m
     if not scenario.guidance.keepout_guard or radius <= abs(above):
         return None
-    velocity_north, velocity_east = vessel.velocity_ned
     return KeepoutGuard(
-        north=0.0,
-        east=0.0,
-        velocity_north=velocity_north,
-        velocity_east=velocity_east,
         radius=math.sqrt(radius**2 - above**2),
         heading_rate_max=heading_rate_max(scenario),
-        speed=scenario.guidance.airspeed_mps,
+        lag=turning.lag,
+        delay=turning.delay,
+        time_step=1.0 / scenario.guidance.rate_hz,
     )
+
+
+def _check_start(scenario: Scenario, mission: Mission, north: float, east: float, course: float) -> None:
+    """Refuse a start from which no command keeps the aircraft out of the keep-out area."""
+    if mission.guard is None:
+        return
+    clearance = mission.guard.clearance(north, east, *mission.vessel.velocity_ned, course, scenario.guidance.airspeed_mps, 0.0)
+    if clearance < 0.0:
+        raise InfeasibleError(
+            f"the start lies {math.hypot(north, east):.1f} m from the vessel on course {math.degrees(course):.0f} deg, where the"
+            f" best turn away is {-clearance:.1f} m short of keepout.radius_m, {scenario.keepout.radius_m:g} m, and what the guard"
+            " adds; start farther away (start.distance_m) or on another course (start.course_deg)"
+        )
 
 
 def _start(scenario: Scenario, vessel: Vessel, seed: int) -> tuple[float, float, float]:

@@ -13,8 +13,10 @@ from aircraft.find import find_spec
 from aircraft.spec import AircraftSpec, Envelope
 from gnc.oscillation import bank_for_heading_rate
 from innerloop.cache import Designed, designed
+from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim
+from innerloop.reversal import measure_reversal
 from reports.interrupt import ignore_interrupt
 from scenarios.bounds_record import bounds_record
 from scenarios.closed_loop import Outcome
@@ -233,7 +235,13 @@ def _six_dof(found: Designed, scenario: Scenario, run: RunDirectory) -> SixDof:
     run.write_json(run.innerloop, found.record)
     near = schedule.level(schedule.middle)
     start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, near)
-    return SixDof(start=start, lag=float(found.record["heading_rate_lag_s"]), envelope=schedule.envelope)
+    aircraft = AutopilotedAircraft(schedule.spec, run.model)
+    return SixDof(
+        start=start,
+        lag=float(found.record["heading_rate_lag_s"]),
+        reversal=measure_reversal(aircraft, start, schedule.envelope.bank),
+        envelope=schedule.envelope,
+    )
 
 
 class _Ledger:

@@ -8,8 +8,10 @@ import pytest
 
 from aircraft.spec import X8
 from innerloop.cache import designed
+from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim
+from innerloop.reversal import measure_reversal
 from scenarios.flights import SixDof, flight_requests, fly_request
 from scenarios.load import load_scenario
 
@@ -30,9 +32,10 @@ def run_directory(design, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def six_dof(design):
-    lag = design.record["heading_rate_lag_s"]
-    return SixDof(start=level_trim(X8, SPEED, 60.0), lag=lag, envelope=design.design.schedule.envelope)
+def six_dof(design, run_directory):
+    start, envelope = level_trim(X8, SPEED, 60.0), design.design.schedule.envelope
+    reversal = measure_reversal(AutopilotedAircraft(X8, run_directory / "model"), start, envelope.bank)
+    return SixDof(start=start, lag=design.record["heading_rate_lag_s"], reversal=reversal, envelope=envelope)
 
 
 @pytest.fixture
