@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 
-def _check_divides(name: str, rate: float, whole: float) -> None:
+def check_divides(name: str, rate: float, whole: float) -> None:
+    """Raise a ValueError unless ``rate`` [Hz], called ``name``, divides ``whole`` [Hz]."""
     ratio = whole / rate
     if abs(ratio - round(ratio)) > 1e-9:
         fitting = [n for n in range(1, int(whole) + 1) if whole % n == 0.0]
@@ -134,7 +135,7 @@ class Guidance(Section):
 
     @model_validator(mode="after")
     def _whole_steps(self) -> "Guidance":
-        _check_divides("rate_hz", self.rate_hz, 120.0)
+        check_divides("rate_hz", self.rate_hz, 120.0)
         return self
 
 
@@ -246,7 +247,7 @@ class Scenario(Section):
 
     @model_validator(mode="after")
     def _rates(self) -> "Scenario":
-        _check_divides("flight.log_rate_hz", self.flight.log_rate_hz, self.guidance.rate_hz)
+        check_divides("flight.log_rate_hz", self.flight.log_rate_hz, self.guidance.rate_hz)
         return self
 
     @model_validator(mode="after")

@@ -2,7 +2,7 @@
 
 import json
 import multiprocessing
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from typing import Any
@@ -17,6 +17,7 @@ from gnc.ensemble_motion import Steering, Vehicle
 from gnc.turning_reference import TurningReferences
 from scenarios.convergence_cases import CIRCLE_HEADING_RATES, REFERENCES, Case, draw_case, references_of
 from scenarios.errors import InputError
+from scenarios.pool import Progress
 
 BLOCK = 1250
 """Trajectories that one process flies before the next are handed out, at most."""
@@ -36,7 +37,6 @@ COLUMNS = (
 """Columns of the table, in order. A settling time that a trajectory does not have is empty."""
 
 Array = npt.NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

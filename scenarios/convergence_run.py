@@ -11,10 +11,11 @@ from gnc.delta import look_ahead
 from gnc.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED, Outcome
 from gnc.ensemble_motion import Vehicle
 from gnc.errors import InfeasibleError
-from scenarios.convergence import COLUMNS, Progress, counterexamples, run_convergence, trajectory_of
+from scenarios.convergence import COLUMNS, counterexamples, run_convergence, trajectory_of
 from scenarios.convergence_config import ConvergenceScenario
 from scenarios.errors import InputError
 from scenarios.manifest import opening_manifest
+from scenarios.pool import Progress
 from scenarios.run_directory import RunDirectory
 
 _DONE = "done.parquet"

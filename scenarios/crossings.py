@@ -7,8 +7,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
-from scenarios.vessel import Vessel
-
 Array = npt.NDArray[np.float64]
 
 
@@ -32,7 +30,9 @@ class Crossing:
     height: float
 
 
-def find_crossings(time: Array, position: Array, velocity: Array, vessel: Vessel) -> list[Crossing]:
+def find_crossings(
+    time: Array, position: Array, velocity: Array, axis: tuple[float, float], elevation: float = 0.0
+) -> list[Crossing]:
     """Return every crossing, in time.
 
     The path between samples is the cubic through their positions and velocities; crossings are its roots, not samples.
@@ -42,9 +42,10 @@ def find_crossings(time: Array, position: Array, velocity: Array, vessel: Vessel
     time : shape (n,) [s]
     position : shape (n, 3), north, east and up from the plume's origin, which moves with the vessel [m]
     velocity : shape (n, 3), its rate [m/s]
-    vessel : direction of the plume
+    axis : unit vector along the plume, north and east
+    elevation : alpha_P [rad]
     """
-    axis_north, axis_east = vessel.plume_direction_ned
+    axis_north, axis_east = axis
     across = axis_north * position[:, 1] - axis_east * position[:, 0]
     path = CubicHermiteSpline(time, position, velocity)
     rate = path.derivative()
@@ -63,10 +64,10 @@ def find_crossings(time: Array, position: Array, velocity: Array, vessel: Vessel
         crossings.append(
             Crossing(
                 time=float(moment),
-                axis_distance=along / math.cos(vessel.plume_elevation),
+                axis_distance=along / math.cos(elevation),
                 distance=math.sqrt(north * north + east * east + up * up),
                 angle=abs(math.atan2(abs(v_across), v_along)),
-                height=up - along * math.tan(vessel.plume_elevation),
+                height=up - along * math.tan(elevation),
             )
         )
     return crossings

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from aircraft.spec import Envelope
 from gnc.oscillation import heading_rate_for_bank
-from scenarios.config import Guidance, Scenario
-from scenarios.load import with_values
+from scenarios.config import Guidance
+from scenarios.load import Flown, with_values
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +42,12 @@ _FITTED: dict[str, Callable[[Units], float]] = {
     "start.distance_m": lambda unit: unit.length,
     "flight.duration_max_s": lambda unit: unit.time,
     "flight.settling_band_m": lambda unit: unit.length,
+    "following.margin_min_m": lambda unit: unit.length,
+    "following.standoff_m": lambda unit: unit.length,
+    "following.join_distance_m": lambda unit: unit.length,
+    "following.tracked_m": lambda unit: unit.length,
+    "following.airspeed_range_mps": lambda unit: unit.speed,
+    "following.along_gain_per_s": lambda unit: 1.0 / unit.time,
     "criteria.tracking_error_rms_m": lambda unit: unit.length,
     "criteria.airspeed_error_rms_mps": lambda unit: unit.speed,
     "criteria.altitude_error_max_m": lambda unit: unit.speed,
@@ -49,7 +55,7 @@ _FITTED: dict[str, Callable[[Units], float]] = {
 """Keys that are fitted, and by what their defaults are multiplied. Altitude follows pitch at a given speed, not the turn."""
 
 
-def fitted(scenario: Scenario, envelope: Envelope) -> Scenario:
+def fitted(scenario: Flown, envelope: Envelope) -> Flown:
     """Return the scenario with every key that it does not set itself fitted to an aircraft.
 
     Parameters
@@ -68,7 +74,9 @@ def fitted(scenario: Scenario, envelope: Envelope) -> Scenario:
     }
     for key, factor in _FITTED.items():
         section, name = key.split(".")
-        default = getattr(getattr(scenario, section), name)
+        default = getattr(getattr(scenario, section, None), name, None)
+        if default is None:
+            continue
         values[key] = tuple(x * factor(unit) for x in default) if isinstance(default, tuple) else default * factor(unit)
     return with_values(scenario, {key: value for key, value in values.items() if not _is_set(scenario, key)})
 
@@ -82,6 +90,6 @@ def units(envelope: Envelope) -> Units:
     return Units(time=time, length=envelope.airspeed / default.airspeed_mps * time)
 
 
-def _is_set(scenario: Scenario, key: str) -> bool:
+def _is_set(scenario: Flown, key: str) -> bool:
     section, name = key.split(".")
     return name in getattr(scenario, section).model_fields_set

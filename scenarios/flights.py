@@ -143,6 +143,8 @@ def fly_request(request: FlightRequest, directory: Path, six_dof: SixDof | None)
     """
     began = time.perf_counter()
     run = RunDirectory(directory)
+    if request.scenario.fidelity == "kinematic":
+        six_dof = None
     row = _request_row(request)
     crossings: list[Row] = []
     try:

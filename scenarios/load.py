@@ -10,8 +10,17 @@ from pydantic import ValidationError
 from scenarios.config import Scenario
 from scenarios.convergence_config import ConvergenceScenario
 from scenarios.errors import InputError
+from scenarios.sea_config import SeaScenario, SeaTrial
 
-Study = TypeVar("Study", Scenario, ConvergenceScenario)
+Flown = TypeVar("Flown", Scenario, SeaScenario)
+Study = TypeVar("Study", Scenario, ConvergenceScenario, SeaScenario, SeaTrial)
+
+AnyStudy = Scenario | ConvergenceScenario | SeaScenario | SeaTrial
+
+KINDS = ("flights", "paper", "convergence", "sea", "sea_trial")
+"""What a file may say of ``study``."""
+
+_KEYS: dict[type, str] = {Scenario: "config", ConvergenceScenario: "convergence_config"}
 
 CATALOG = Path(__file__).parent / "catalog"
 
@@ -34,7 +43,7 @@ def load_scenario(name: str, overrides: Sequence[str] = ()) -> Scenario:
     return study
 
 
-def load_study(name: str, overrides: Sequence[str] = ()) -> Scenario | ConvergenceScenario:
+def load_study(name: str, overrides: Sequence[str] = ()) -> AnyStudy:
     """Read a study by catalog name or file path.
 
     Parameters
@@ -61,15 +70,23 @@ def load_study(name: str, overrides: Sequence[str] = ()) -> Scenario | Convergen
         raise InputError(f"{path}: not valid TOML: {error}; mend the file") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}; check the path and its permissions") from None
+    if document.get("study") == "sea_trial":
+        own = [override for override in overrides if override.partition("=")[0].strip() in SeaTrial.model_fields]
+        document["set"] = [*document.get("set", []), *(override for override in overrides if override not in own)]
+        overrides = own
     for override in overrides:
         key, value = _parse_override(override)
         _set(document, key, value)
         _take_from_cases(document, key)
     study = document.get("study", "flights")
+    if study not in KINDS:
+        raise InputError(f"study is {study!r}; it must be one of {', '.join(KINDS)}")
     if study == "convergence":
         return _validate(document, ConvergenceScenario)
-    if study not in ("flights", "paper"):
-        raise InputError(f"study is {study!r}; it must be 'flights', 'paper' or 'convergence'")
+    if study == "sea":
+        return _validate(document, SeaScenario)
+    if study == "sea_trial":
+        return _validate(document, SeaTrial)
     return _validate(document, Scenario)
 
 
@@ -82,16 +99,16 @@ def _validate(document: Mapping[str, Any], kind: type[Study]) -> Study:
         key = ".".join(str(part) for part in first["loc"])
         more = len({entry["loc"] for entry in error.errors()}) - 1
         others = f" (and {more} more keys)" if more else ""
-        keys = "scenarios/config.py" if kind is Scenario else "scenarios/convergence_config.py"
+        keys = f"scenarios/{_KEYS.get(kind, 'sea_config')}.py"
         raise InputError(f"{_explain(key, first['type'], first['msg'], first.get('input'), keys)}{others}") from None
 
 
-def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
+def with_values(scenario: Flown, values: Mapping[str, object]) -> Flown:
     """Return the scenario with dotted keys set to new values, checked again."""
     document = scenario.model_dump()
     for key, value in values.items():
         _set(document, key, value)
-    return _validate(document, Scenario)
+    return _validate(document, type(scenario))
 
 
 def _explain(key: str, kind: str, message: str, value: object, keys: str) -> str:

@@ -156,7 +156,9 @@ def _mission_figures(mission: Mission, history: Array, settled: slice | None) ->
     }
     if settled is None:
         return row, []
-    crossings = find_crossings(time[settled], position[settled], velocity[settled], mission.vessel)
+    crossings = find_crossings(
+        time[settled], position[settled], velocity[settled], mission.vessel.plume_direction_ned, mission.vessel.plume_elevation
+    )
     row["crossing_count"] = len(crossings)
     if crossings:
         distances = [crossing.distance for crossing in crossings]

@@ -8,11 +8,12 @@ import numpy as np
 from gnc.errors import InfeasibleError
 from gnc.guidance import GuidanceParameters, Law
 from gnc.keepout_guard import KeepoutGuard
-from gnc.oscillation import Oscillation, design_oscillation, heading_rate_for_bank
+from gnc.oscillation import Oscillation, design_oscillation
 from gnc.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
 from gnc.reference import CirclingReference, Reference, ReferencePoint, ReferenceStart, start_reference
 from innerloop.reversal import Reversal
 from scenarios.config import Scenario
+from scenarios.flyable import omega_max
 from scenarios.steering import plan_steering
 from scenarios.vessel import Vessel
 
@@ -127,8 +128,7 @@ def plan_flight(
 
 def heading_rate_max(scenario: Scenario) -> float:
     """Return omega_max [rad/s]."""
-    g = scenario.guidance
-    return g.heading_rate_max_rad_s or heading_rate_for_bank(math.radians(g.bank_deg), g.airspeed_mps)
+    return omega_max(scenario.guidance)
 
 
 def plan_oscillation(scenario: Scenario, nu: float) -> Oscillation:

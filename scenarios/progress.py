@@ -4,19 +4,20 @@ import contextlib
 from collections.abc import Iterator
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bar
 
 from scenarios.errors import InputError
-from scenarios.runner import Progress as Report
+from scenarios.pool import Progress
 
 
 @contextlib.contextmanager
-def progress_bar() -> Iterator[Report]:
+def progress_bar() -> Iterator[Progress]:
     """Yield a function to call with what is being done, the number of flights done, and their total.
 
     The bar appears at the first call, and goes again where input is refused: that leaves nothing but its message.
     """
-    bar = Progress(
+    bar = Bar(
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),

@@ -14,6 +14,7 @@ from reports.command_line import BAD_INPUT, INTERRUPTED, run_command
 if TYPE_CHECKING:
     from scenarios.convergence_run import ConvergenceResult
     from scenarios.runner import RunResult
+    from scenarios.sea_run import SeaRunResult
 
 MET, NOT_MET = 0, 1
 
@@ -70,6 +71,7 @@ def _run(
     from scenarios.config import Scenario
     from scenarios.errors import InputError
     from scenarios.load import catalog, load_study
+    from scenarios.sea_config import SeaScenario, SeaTrial
 
     if name is None:
         raise InputError(f"no scenario given; name a TOML file or one of: {', '.join(catalog())}")
@@ -83,7 +85,7 @@ def _run(
 
     from scenarios.progress import progress_bar
 
-    result: RunResult | ConvergenceResult
+    result: RunResult | ConvergenceResult | SeaRunResult
     with progress_bar() as progress:
         options: dict[str, Any] = {
             "jobs": jobs or os.cpu_count() or 1,
@@ -95,6 +97,10 @@ def _run(
             from scenarios.runner import run_scenario
 
             result = run_scenario(study, stem, directory, **options)
+        elif isinstance(study, SeaScenario | SeaTrial):
+            from scenarios.sea_run import run_sea
+
+            result = run_sea(study, stem, directory, **options)
         else:
             from scenarios.convergence_run import run_study
 

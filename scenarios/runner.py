@@ -1,23 +1,19 @@
 """Run a scenario: design the autopilot, fly every flight in parallel, keep what is done after each."""
 
-import math
 import time
-from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from aircraft.errors import AircraftError
 from aircraft.find import find_spec
 from aircraft.spec import AircraftSpec, Envelope
-from gnc.oscillation import bank_for_heading_rate
 from innerloop.cache import Designed, designed
 from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim
 from innerloop.reversal import measure_reversal
-from reports.interrupt import ignore_interrupt
 from scenarios.bounds_record import bounds_record
 from scenarios.closed_loop import Outcome
 from scenarios.config import Scenario
@@ -33,15 +29,14 @@ from scenarios.flights import (
     fly_request,
     guidance_lag,
 )
+from scenarios.flyable import check_flyable
+from scenarios.ledger import Ledger, Table
 from scenarios.manifest import opening_manifest
 from scenarios.metrics import SUMMARY_COLUMNS, Row
-from scenarios.plan import heading_rate_max
+from scenarios.pool import DIED, Progress, fly_all
 from scenarios.run_directory import RunDirectory
 
 CROSSING_COLUMNS = ("flight_id", "variant", "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
-
-Progress = Callable[[str, int, int], None]
-"""Called with what is being done, how many flights are done and how many there are."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,11 +124,18 @@ def run_scenario(
         _check_flights(requests, design.design.schedule.spec, design.design.schedule.envelope)
     manifest = opening_manifest(scenario, name, overrides)
     run.open(manifest["config_hash"], resume=resume)
-    ledger = _Ledger(run, requests)
+    study = Table(
+        name="summary.csv",
+        columns=SUMMARY_COLUMNS,
+        flights=frozenset(request.flight_id for request in requests if request.variant == STUDY),
+    )
+    every = [request.flight_id for request in requests]
+    others = Table(name="comparison.csv", columns=SUMMARY_COLUMNS, flights=frozenset(every) - study.flights)
+    ledger = Ledger(run, every, tables=[study, others], crossing_columns=CROSSING_COLUMNS)
     manifest |= {
         "seeds": {request.flight_id: request.seed for request in requests},
         "variants": {request.flight_id: request.variant for request in requests},
-        "flights_planned": sum(request.variant == STUDY for request in requests),
+        "flights_planned": len(study.flights),
     }
     run.write_json(run.manifest, manifest)
     began = time.perf_counter()
@@ -145,15 +147,17 @@ def run_scenario(
         if refusal and spec is not None:
             _fail_without_design(spec, refusal, requests, ledger)
         manifest["guidance_lag_s"] = guidance_lag(scenario, six_dof)
-        _fly_all([r for r in requests if r.flight_id not in ledger.done], ledger, run.path, six_dof, jobs, progress)
+        _fly_rest(requests, ledger, run.path, six_dof, jobs, progress)
         if scenario.study == "paper":
             progress("bounding commands", len(ledger.done), len(requests))
             run.write_json(run.bounds, bounds_record(requests, scenario.seed))
     except KeyboardInterrupt:
         interrupted = True
+    finally:
+        ledger.flush()
     result = RunResult(
         directory=directory,
-        rows=ledger.study_rows(),
+        rows=ledger.rows(study),
         planned=manifest["flights_planned"],
         interrupted=interrupted,
     )
@@ -191,7 +195,7 @@ def _design(spec: AircraftSpec, scenario: Scenario) -> tuple[Designed | None, st
         return None, str(error)
 
 
-def _fail_without_design(spec: AircraftSpec, refusal: str, requests: list[FlightRequest], ledger: "_Ledger") -> None:
+def _fail_without_design(spec: AircraftSpec, refusal: str, requests: list[FlightRequest], ledger: Ledger) -> None:
     """Make a row with the reason of every flight that a refused design keeps on the ground.
 
     A kinematic flight needs only an envelope to be fitted to; where the spec has none, that too comes from the design.
@@ -199,7 +203,7 @@ def _fail_without_design(spec: AircraftSpec, refusal: str, requests: list[Flight
     for request in requests:
         lacking = request.scenario.fidelity == "six_dof" or spec.envelope is None
         if lacking and request.flight_id not in ledger.done:
-            ledger.add(failed(request, Outcome.TRIM_FAILED, refusal))
+            _add(ledger, failed(request, Outcome.TRIM_FAILED, refusal))
 
 
 def _check_flights(requests: list[FlightRequest], spec: AircraftSpec, envelope: Envelope) -> None:
@@ -214,18 +218,8 @@ def _check_flights(requests: list[FlightRequest], spec: AircraftSpec, envelope: 
         return
     if len({(s.aircraft, s.guidance.airspeed_mps, s.plume.source_height_m) for s in flown}) > 1 or flown[0].aircraft != spec.name:
         raise InputError("flights differ in aircraft, guidance.airspeed_mps or plume.source_height_m; give each a run of its own")
-    airspeed = flown[0].guidance.airspeed_mps
-    if not envelope.airspeed_min <= airspeed <= envelope.airspeed_max:
-        raise InputError(
-            f"guidance.airspeed_mps is {airspeed:g}; {spec.title} flies {envelope.airspeed_min:.1f} to"
-            f" {envelope.airspeed_max:.1f} m/s: choose an airspeed in between, or leave it out"
-        )
-    bank = max(bank_for_heading_rate(heading_rate_max(s), airspeed) for s in flown)
-    if bank > envelope.bank_max:
-        raise InputError(
-            f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {spec.title} stops at"
-            f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or guidance.heading_rate_max_rad_s"
-        )
+    for scenario in flown:
+        check_flyable(scenario.guidance, spec.title, envelope)
 
 
 def _six_dof(found: Designed, scenario: Scenario, run: RunDirectory) -> SixDof:
@@ -244,65 +238,23 @@ def _six_dof(found: Designed, scenario: Scenario, run: RunDirectory) -> SixDof:
     )
 
 
-class _Ledger:
-    """What is done, on disk after every flight."""
-
-    def __init__(self, run: RunDirectory, requests: list[FlightRequest]) -> None:
-        self._run = run
-        self._order = {request.flight_id: i for i, request in enumerate(requests)}
-        self._study = {request.flight_id for request in requests if request.variant == STUDY}
-        found = [*run.read_rows("summary.csv"), *run.read_rows("comparison.csv")]
-        self._rows = {row["flight_id"]: row for row in found if row.get("flight_id") in self._order}
-        self._crossings = [row for row in run.read_rows("crossings.csv") if row.get("flight_id") in self._rows]
-
-    @property
-    def done(self) -> set[str]:
-        return set(self._rows)
-
-    def study_rows(self) -> list[Row]:
-        return self._sorted(study=True)
-
-    def add(self, result: FlightResult) -> None:
-        self._rows[result.request.flight_id] = result.row
-        self._crossings += result.crossings
-        self._crossings.sort(key=lambda row: (self._order[row["flight_id"]], row["crossing"]))
-        # The summary last: a flight counts as done when it is in there, and its crossings are on disk by then.
-        self._run.write_rows("crossings.csv", self._crossings, CROSSING_COLUMNS)
-        if result.request.flight_id in self._study:
-            self._run.write_rows("summary.csv", self._sorted(study=True), SUMMARY_COLUMNS)
-        else:
-            self._run.write_rows("comparison.csv", self._sorted(study=False), SUMMARY_COLUMNS)
-
-    def _sorted(self, *, study: bool) -> list[Row]:
-        rows = [row for row in self._rows.values() if (row["flight_id"] in self._study) == study]
-        return sorted(rows, key=lambda row: self._order[row["flight_id"]])
-
-
-def _fly_all(
-    requests: list[FlightRequest], ledger: _Ledger, directory: Path, six_dof: SixDof | None, jobs: int, progress: Progress
+def _fly_rest(
+    requests: list[FlightRequest], ledger: Ledger, directory: Path, six_dof: SixDof | None, jobs: int, progress: Progress
 ) -> None:
-    total = len(requests) + len(ledger.done)
-    pool = ProcessPoolExecutor(max_workers=min(jobs, max(1, len(requests))), initializer=ignore_interrupt)
-    futures: dict[Future[FlightResult], FlightRequest] = {}
-    try:
-        for request in requests:
-            needed = six_dof if request.scenario.fidelity == "six_dof" else None
-            futures[pool.submit(fly_request, request, directory, needed)] = request
-        for future in as_completed(futures):
-            ledger.add(_result(future, futures[future]))
-            progress("flying", len(ledger.done), total)
-    except KeyboardInterrupt:
-        pool.shutdown(wait=True, cancel_futures=True)
-        for future, request in futures.items():
-            if future.done() and not future.cancelled() and request.flight_id not in ledger.done:
-                ledger.add(_result(future, request))
-        raise
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+    """Fly what is not done yet."""
+
+    def done(result: FlightResult) -> None:
+        _add(ledger, result)
+        progress("flying", len(ledger.done), len(requests))
+
+    fly_all(
+        [request for request in requests if request.flight_id not in ledger.done],
+        partial(fly_request, directory=directory, six_dof=six_dof),
+        died=lambda request: failed(request, Outcome.FAILED, DIED),
+        done=done,
+        jobs=jobs,
+    )
 
 
-def _result(future: Future[FlightResult], request: FlightRequest) -> FlightResult:
-    try:
-        return future.result()
-    except BrokenProcessPool:
-        return failed(request, Outcome.FAILED, "the process that flew it died; run again with --resume and --jobs 1")
+def _add(ledger: Ledger, result: FlightResult) -> None:
+    ledger.add(result.request.flight_id, result.row, result.crossings)

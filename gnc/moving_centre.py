@@ -1,0 +1,141 @@
+"""The centre of oscillation of a vessel that manoeuvres: where it is, and how it moves.
+
+The centre lies on the plume's axis, at the distance from the vessel that keeps the whole orbit out of the keep-out area. The axis
+turns with the vessel, or with its motion through the air: a vessel that turns moves the centre by omega_V x r_CO (paper-notes, 11).
+Everything is in the frame of the air mass.
+"""
+
+import math
+from dataclasses import dataclass
+
+from gnc.angles import wrap
+
+_AXIS_GAIN = 0.05
+"""Rate at which the axis goes where it should, per difference [1/s]; slow enough to even out what reports of the vessel scatter."""
+
+_IN_PLACE = 0.01
+"""Distance from its place within which the centre counts as being there, over r_CO [-]."""
+
+_AXIS_SPEED = 0.7
+"""Share of the vehicle's speed at which the centre may be swung round the vessel [-]: it must be followed."""
+
+_DISTANCE_GAIN = 0.06
+"""Rate at which the centre's distance goes where it should, per difference [1/s]."""
+
+_DISTANCE_SHARE = 0.3
+"""Share of the speed that the vehicle has over the vessel at which the centre's distance may change [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CentreParameters:
+    """How a centre is placed.
+
+    Attributes
+    ----------
+    distance_min : that the orbit keeps from the vessel [m]
+    speed_ratio_max : up to which the half-widths reach [-]
+    along, across : |d_x|max and |d_y|max of the orbit, equation (12), at equal steps of nu from 0 [m]
+    plume_heading : chi_P from the vessel's bow, or none where the plume trails behind the vessel's motion through the air [rad]
+    apparent_wind_min : below this a plume has no direction that could be known [m/s]
+    speed : V_r [m/s]
+    """
+
+    distance_min: float
+    speed_ratio_max: float
+    along: tuple[float, ...]
+    across: tuple[float, ...]
+    plume_heading: float | None
+    apparent_wind_min: float
+    speed: float
+
+
+class MovingCentre:
+    """The centre, moved in steps.
+
+    Attributes
+    ----------
+    x, y : north and east of the vessel [m]
+    velocity_north, velocity_east : in the frame of the air mass [m/s]
+    axis : course along which the plume trails, in that frame [rad]
+    distance : r_CO [m]
+    speed_ratio : nu, vessel through the air over the vehicle's speed [-]
+    in_place : whether its distance is what it should be
+    plume_known : whether the apparent wind is enough to tell the plume's direction
+    """
+
+    __slots__ = (
+        "_parameters", "_started", "axis", "distance", "in_place", "plume_known", "speed_ratio", "velocity_east",
+        "velocity_north", "x", "y",
+    )  # fmt: skip
+
+    def __init__(self, parameters: CentreParameters) -> None:
+        self._parameters = parameters
+        self._started = False
+        self.axis = math.pi
+        self.distance = self.x = self.y = self.velocity_north = self.velocity_east = self.speed_ratio = 0.0
+        self.plume_known = self.in_place = True
+
+    def move(
+        self,
+        time_step: float,
+        *,
+        vessel_north: float,
+        vessel_east: float,
+        acceleration_north: float,
+        acceleration_east: float,
+        wind_north: float,
+        wind_east: float,
+        further: float,
+    ) -> None:
+        """Move on by ``time_step`` [s].
+
+        Parameters
+        ----------
+        vessel_north, vessel_east : its velocity over the ground [m/s]
+        acceleration_north, acceleration_east : of the vessel [m/s^2]
+        wind_north, wind_east : velocity of the air mass [m/s]
+        further : how much further off than its distance the centre has to be, for now [m]
+        """
+        p = self._parameters
+        air_north, air_east = vessel_north - wind_north, vessel_east - wind_east
+        through_air = math.hypot(air_north, air_east)
+        self.speed_ratio = through_air / p.speed
+        wanted, turn = self.axis, 0.0
+        if p.plume_heading is None:
+            self.plume_known = through_air >= p.apparent_wind_min
+            if self.plume_known:
+                wanted = math.atan2(-air_east, -air_north)
+                turn = (air_north * acceleration_east - air_east * acceleration_north) / through_air**2
+        else:
+            over_ground = math.hypot(vessel_north, vessel_east)
+            if over_ground >= p.apparent_wind_min or not self._started:
+                wanted = math.atan2(vessel_east, vessel_north) + p.plume_heading
+                turn = (vessel_north * acceleration_east - vessel_east * acceleration_north) / max(over_ground, 0.1) ** 2
+        if not self._started:
+            self._started, self.axis, self.distance = True, wanted, self._target(through_air, 0.0) + further
+        fastest = _AXIS_SPEED * p.speed / self.distance
+        turn = min(max(turn + _AXIS_GAIN * wrap(wanted - self.axis), -fastest), fastest)
+        target = self._target(through_air, turn * self.distance) + further
+        fastest = _DISTANCE_SHARE * max(0.05, 1.0 - self.speed_ratio) * p.speed
+        recede = min(max(_DISTANCE_GAIN * (target - self.distance), -fastest), fastest)
+        self.axis = wrap(self.axis + turn * time_step)
+        self.distance += recede * time_step
+        self.in_place = abs(target - self.distance) < _IN_PLACE * target
+        cos_a, sin_a = math.cos(self.axis), math.sin(self.axis)
+        self.x, self.y = self.distance * cos_a, self.distance * sin_a
+        self.velocity_north = air_north + recede * cos_a - turn * self.y
+        self.velocity_east = air_east + recede * sin_a + turn * self.x
+
+    def _target(self, ahead: float, sideways: float) -> float:
+        """Return r_CO [m] by equations (10) and (11).
+
+        The orbit lies across the way of the centre, which moves ``ahead`` and ``sideways`` of the axis [m/s].
+        """
+        p = self._parameters
+        last = len(p.along) - 1
+        moving = math.hypot(ahead, sideways)
+        place = min(moving / p.speed / p.speed_ratio_max, 1.0) * last
+        i = min(int(place), last - 1)
+        along = p.along[i] + (place - i) * (p.along[i + 1] - p.along[i])
+        across = p.across[i] + (place - i) * (p.across[i + 1] - p.across[i])
+        return p.distance_min + along + (across - along) * abs(sideways) / max(moving, 0.01)

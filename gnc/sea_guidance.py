@@ -1,0 +1,370 @@
+"""The outer loop over a real sea: from what the sensors and the vessel say to commanded heading rate and airspeed.
+
+Everything is posed in the frame of the estimated air mass (paper-notes, 12), where the vehicle flies at its airspeed and the plume
+trails behind the vessel. A reference oscillates about a centre that follows the vessel; on the way to it the vehicle is steered
+round the keep-out area; whatever is asked for passes the keep-out guard.
+"""
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from gnc.angles import wrap
+from gnc.guidance import Guidance, GuidanceParameters
+from gnc.health import Health, Trouble
+from gnc.keepout_guard import KeepoutGuard
+from gnc.moving_centre import CentreParameters, MovingCentre
+from gnc.navigation import Navigation, NavigationParameters
+from gnc.steered_reference import SteeredReference
+from gnc.transit import Transit
+from gnc.vessel_filter import VesselFilter, VesselMotion
+
+_CENTRE_GAIN = 0.1
+"""Wanted drift of the orbit's centre per distance from where it should be, in units of omega_max [-]."""
+
+_ALONG_SHARE = 0.3
+"""Largest share of the vehicle's speed that such a drift takes along the centre's motion [-]; that changes the amplitude alone."""
+
+_ACROSS_SHARE = 0.4
+"""Largest share of the centre's speed that it takes across [-]: more would turn the orbit instead of moving it."""
+
+_STILL = 0.05
+"""Speed ratio below which a centre's motion gives no direction to an orbit [-]: then it lies across the plume."""
+
+_SLOW = 0.25
+"""Speed ratio below which that gain falls in proportion [-]: turning the mean course by a little moves a slow orbit by much."""
+
+_TRANSIT_GAIN = 2.0
+"""Heading rate per course error on the way to the reference, in units of omega_max [-]."""
+
+_UNCONTROLLED = 0.4
+"""Mean difference of heading rate from what was asked for, over omega_max, at which control counts as lost [-]."""
+
+_POWERLESS = 0.8
+"""Mean lack of airspeed, over what its command may change by, at which thrust counts as lost [-]."""
+
+_PATIENCE = 2.0
+"""Time constant of the means by which trouble is found [s]."""
+
+_DEEP = -1000.0
+"""Altitude that a gliding vehicle is told [m]: so far below that the autopilot holds its airspeed by pitch, and sinks."""
+
+_STALE = 12.0
+"""Age of vessel data beyond which the vessel may be elsewhere than its filter takes it to be [s]."""
+
+
+class Mode(Enum):
+    """What the guidance is doing."""
+
+    APPROACH = "approach"
+    TRACKING = "tracking"
+    HOLDING = "holding off"
+    DEAD_RECKONING = "dead reckoning"
+    OUTRUN = "outrun"
+    NO_PLUME = "no plume"
+    GLIDING = "gliding"
+    TERMINATING = "terminating"
+
+
+_MODES = {mode: i for i, mode in enumerate(Mode)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeaParameters:
+    """Parameters of the outer loop over a real sea.
+
+    Attributes
+    ----------
+    guidance : of the tracking law; it trims no airspeed and has no guard
+    navigation, centre : of own motion and of the centre of oscillation
+    reference_heading_rate : what the reference may turn at most [rad/s]
+    roll_rate_max : that the reference may ask for [rad/s]
+    speed_ratio_max : above it the vessel outruns the vehicle [-]
+    blocked_radius, round_radius : a way to the centre that comes closer to the vessel than the first goes round by the second [m]
+    join_distance : from the centre, within which the reference is tracked [m]
+    standoff : how much further off the centre stays until it is [m]
+    tracked : distance from the reference that counts as tracked [m]
+    airspeed_range : largest change of commanded airspeed [m/s]
+    along_gain : wanted speed per along-track error [1/s]
+    vessel_acceleration : largest, of a vessel that is not heard [m/s^2]
+    drift_rate : how fast dead reckoning goes wrong [m/s]
+    plan_interval : guidance steps between looks at vessel and wind
+    altitude, glide_airspeed : commanded as long as all is well, and while gliding [m, m/s]
+    """
+
+    guidance: GuidanceParameters
+    navigation: NavigationParameters
+    centre: CentreParameters
+    reference_heading_rate: float
+    roll_rate_max: float
+    speed_ratio_max: float
+    blocked_radius: float
+    round_radius: float
+    join_distance: float
+    standoff: float
+    tracked: float
+    airspeed_range: float
+    along_gain: float
+    vessel_acceleration: float
+    drift_rate: float
+    plan_interval: int
+    altitude: float
+    glide_airspeed: float
+
+
+class SeaGuidance:
+    """The outer loop of one flight, stepped at a fixed rate.
+
+    Parameters
+    ----------
+    parameters : of the loop
+    vessel : the filter of its motion, which has had its first report; further ones go straight to it
+    guard : of the keep-out area, or none
+
+    Attributes
+    ----------
+    navigation, vessel, centre, guard : what it consists of
+    guidance : the tracking law, from the first step on
+    reference : its steered reference, ahead of time by the preview
+    mode : what it is doing
+    heading_rate_command, airspeed_command, altitude_command : last commands [rad/s, m/s, m]
+    health : of the vehicle
+    vessel_north, vessel_east : where the vessel is taken to be [m]
+    centre_error : how far the orbit's centre is from where it should be [m]
+    """
+
+    __slots__ = (
+        "_closing_in", "_further", "_parameters", "_speed", "_steps", "_tracking", "_transit", "_vessel_v_east", "_vessel_v_north",
+        "airspeed_command", "altitude_command", "centre", "centre_error", "guard", "guidance", "heading_rate_command", "health",
+        "mode", "navigation", "reference", "vessel", "vessel_east", "vessel_north",
+    )  # fmt: skip
+
+    def __init__(self, parameters: SeaParameters, vessel: VesselFilter, guard: KeepoutGuard | None) -> None:
+        self._parameters = parameters
+        self._speed = parameters.centre.speed
+        self.navigation = Navigation(parameters.navigation)
+        self.vessel = vessel
+        self.centre = MovingCentre(parameters.centre)
+        self.guard = guard
+        self._transit = Transit(self._speed / parameters.guidance.heading_rate_max)
+        self._tracking = self._closing_in = False
+        self._further = 0.0
+        self._steps = 0
+        self.vessel_north = self.vessel_east = self._vessel_v_north = self._vessel_v_east = self.centre_error = 0.0
+        self.mode = Mode.APPROACH
+        self.heading_rate_command = 0.0
+        self.airspeed_command = self._speed
+        self.altitude_command = parameters.altitude
+        self.health = Health(
+            airspeed_error=_POWERLESS * parameters.airspeed_range,
+            heading_rate_error=_UNCONTROLLED * parameters.guidance.heading_rate_max,
+            lag=parameters.guidance.lag,
+            time_step=parameters.guidance.time_step,
+            patience=_PATIENCE,
+        )
+        self.guidance: Guidance[SteeredReference]
+        self.reference: SteeredReference
+
+    @property
+    def reference_place(self) -> tuple[float, float]:
+        """Return where the reference is, north and east over the ground [m]."""
+        reference, navigation = self.guidance.reference, self.navigation
+        return reference.north + navigation.drift_north, reference.east + navigation.drift_east
+
+    @property
+    def mode_number(self) -> int:
+        """Return the mode's place among all modes."""
+        return _MODES[self.mode]
+
+    @property
+    def in_place(self) -> bool:
+        """Return whether the centre is as near as it will come."""
+        return self._closing_in and self.centre.in_place
+
+    def step(
+        self,
+        time: float,
+        position: tuple[float, float, float, float] | None,
+        airspeed: float,
+        heading: float,
+        roll: float,
+        heading_rate: float,
+    ) -> None:
+        """Compute the commands from what is sensed now, then move the reference on by one time step.
+
+        Parameters
+        ----------
+        time : [s]
+        position : north, east [m], north and east velocity over the ground [m/s], if there is satellite navigation
+        airspeed, heading, roll : measured [m/s, rad, rad]
+        heading_rate : of the course through the air [rad/s]
+        """
+        p, navigation = self._parameters, self.navigation
+        navigation.update(position, airspeed, heading, roll)
+        if self._steps % p.plan_interval == 0:
+            self._look(time)
+        else:
+            self.vessel_north += p.guidance.time_step * self._vessel_v_north
+            self.vessel_east += p.guidance.time_step * self._vessel_v_east
+        self._steps += 1
+        wind = navigation.wind
+        v_north, v_east = navigation.velocity_north - wind.north, navigation.velocity_east - wind.east
+        course, speed = math.atan2(v_east, v_north), math.hypot(v_north, v_east)
+        x, y = navigation.north - self.vessel_north, navigation.east - self.vessel_east
+        away_north, away_east = self._vessel_v_north - wind.north, self._vessel_v_east - wind.east
+        guidance, reference = self.guidance, self.guidance.reference
+        north, east = navigation.north - navigation.drift_north, navigation.east - navigation.drift_east
+        if self._tracking:
+            along = (reference.north - north) * math.cos(reference.course) + (reference.east - east) * math.sin(reference.course)
+            wanted_speed = self._speed + p.along_gain * along
+        else:
+            wanted_speed = self._speed + p.airspeed_range
+        trouble = self.health.look(self.airspeed_command - airspeed, heading_rate, self.heading_rate_command)
+        guidance.step(north, east, course, speed, heading_rate)
+        command = guidance.heading_rate_command
+        if trouble is not Trouble.NONE:
+            command = self._away(x, y, course, heading_rate)
+        elif not self._tracking:
+            command = self._to_centre(x, y, away_north, away_east, course, speed, heading_rate)
+        guard = self.guard
+        if guard is not None:
+            # A turn away is flown at V_r at least: see ``gnc.guidance``.
+            turning = max(speed, self._speed)
+            command = guard.limit(command, x, y, away_north, away_east, course, turning, heading_rate, extra_radius=self._further)
+            if guard.intervening:
+                wanted_speed = self._speed
+        guidance.heading_rate_command = self.heading_rate_command = command
+        # The autopilot holds the airspeed, gusts and all; the path through the mean air wants a steady speed there.
+        slowest, fastest = self._speed - p.airspeed_range, self._speed + p.airspeed_range
+        self.airspeed_command = min(max(airspeed + wanted_speed - speed, slowest), fastest)
+        if trouble is not Trouble.NONE:
+            self.airspeed_command, self.altitude_command = p.glide_airspeed, _DEEP
+            self.mode = Mode.GLIDING if trouble is Trouble.NO_THRUST else Mode.TERMINATING
+
+    def _away(self, x: float, y: float, course: float, heading_rate: float) -> float:
+        """Return the heading rate that leads straight away from the vessel [rad/s]."""
+        limit = self._parameters.guidance.heading_rate_max
+        ahead = course + 0.5 * self._parameters.guidance.lag * (heading_rate + self.heading_rate_command)
+        return min(max(_TRANSIT_GAIN * limit * wrap(math.atan2(y, x) - ahead), -limit), limit)
+
+    def _to_centre(
+        self, x: float, y: float, away_north: float, away_east: float, course: float, speed: float, heading_rate: float
+    ) -> float:
+        """Return the heading rate that leads to the centre of oscillation, round the vessel [rad/s]."""
+        p, centre = self._parameters, self.centre
+        to = self._transit.course(
+            x,
+            y,
+            centre.x,
+            centre.y,
+            blocked_radius=min(p.blocked_radius + self._further, 0.97 * centre.distance),
+            round_radius=p.round_radius + self._further,
+            velocity_north=away_north,
+            velocity_east=away_east,
+            course=course,
+            speed=speed,
+        )
+        limit = p.guidance.heading_rate_max
+        ahead = course + 0.5 * p.guidance.lag * (heading_rate + self.heading_rate_command)
+        return min(max(_TRANSIT_GAIN * limit * wrap(to - ahead), -limit), limit)
+
+    def _look(self, time: float) -> None:
+        """Look where the vessel is, move the centre, steer the reference, and decide what to do."""
+        p, navigation, centre = self._parameters, self.navigation, self.centre
+        vessel = self.vessel.at(time)
+        self.vessel_north, self.vessel_east = vessel.north, vessel.east
+        self._vessel_v_north, self._vessel_v_east = vessel.velocity_north, vessel.velocity_east
+        started = self._steps > 0
+        time_step = p.plan_interval * p.guidance.time_step if started else 0.0
+        age = time - self.vessel.time
+        self._open(time_step, age)
+        centre.move(
+            time_step,
+            vessel_north=vessel.velocity_north,
+            vessel_east=vessel.velocity_east,
+            acceleration_north=vessel.acceleration_north,
+            acceleration_east=vessel.acceleration_east,
+            wind_north=navigation.wind.north,
+            wind_east=navigation.wind.east,
+            further=self._further + (0.0 if self._closing_in else p.standoff),
+        )
+        if not started:
+            self._start_reference(vessel)
+        self._steer(vessel)
+        self._decide(vessel)
+        if navigation.lost > 0.0:
+            self.mode = Mode.DEAD_RECKONING
+        elif age > _STALE:
+            self.mode = Mode.HOLDING
+        elif centre.speed_ratio >= p.speed_ratio_max:
+            self.mode = Mode.OUTRUN
+        elif not centre.plume_known:
+            self.mode = Mode.NO_PLUME
+        else:
+            self.mode = Mode.TRACKING if self._tracking else Mode.APPROACH
+
+    def _open(self, time_step: float, age: float) -> None:
+        """Keep further off while the vessel may be elsewhere, by no more than the vehicle can flee, until it is heard again."""
+        p = self._parameters
+        lost = self.navigation.lost
+        if age > _STALE:
+            fleeing = max(0.05, 1.0 - self.centre.speed_ratio) * self._speed
+            self._further += min(p.vessel_acceleration * (age - _STALE), 0.5 * fleeing) * time_step
+        elif lost > 0.0:
+            self._further = p.drift_rate * lost
+        else:
+            self._further = 0.0
+
+    def _start_reference(self, vessel: VesselMotion) -> None:
+        """Place the reference on the centre of oscillation."""
+        p, centre = self._parameters, self.centre
+        reference = SteeredReference(
+            north=vessel.north - self.navigation.drift_north + centre.x,
+            east=vessel.east - self.navigation.drift_east + centre.y,
+            mean_course=math.atan2(centre.velocity_east, centre.velocity_north),
+            speed_ratio=min(centre.speed_ratio, p.speed_ratio_max),
+            phase=0.0,
+            speed=self._speed,
+            heading_rate=p.reference_heading_rate,
+            roll_rate_max=p.roll_rate_max,
+            time_step=p.guidance.time_step,
+        )
+        self.guidance = Guidance(p.guidance, reference)
+        self.reference = self.guidance.ahead
+
+    def _steer(self, vessel: VesselMotion) -> None:
+        """Steer the reference's mean velocity: that of the centre, and what takes its orbit there."""
+        p, navigation, centre = self._parameters, self.navigation, self.centre
+        ahead = self.reference
+        lag = p.guidance.lag
+        orbit_north, orbit_east = ahead.centre()
+        off_north = vessel.north - navigation.drift_north + centre.x + lag * centre.velocity_north - orbit_north
+        off_east = vessel.east - navigation.drift_east + centre.y + lag * centre.velocity_east - orbit_east
+        self.centre_error = math.hypot(off_north, off_east)
+        moving = math.hypot(centre.velocity_north, centre.velocity_east)
+        if moving > _STILL * self._speed:
+            cos_m, sin_m = centre.velocity_north / moving, centre.velocity_east / moving
+        else:
+            cos_m, sin_m = -math.cos(centre.axis), -math.sin(centre.axis)
+        gain = _CENTRE_GAIN * p.guidance.heading_rate_max
+        most = _ALONG_SHARE * self._speed
+        along = moving + min(max(gain * (off_north * cos_m + off_east * sin_m), -most), most)
+        gain *= min(1.0, max(_CENTRE_GAIN, moving / (_SLOW * self._speed)))
+        most = _ACROSS_SHARE * max(moving, 0.1 * self._speed)
+        across = min(max(gain * (off_east * cos_m - off_north * sin_m), -most), most)
+        turned = math.atan2(across, max(along, 2.0 * _STILL * self._speed))
+        ahead.steer(math.atan2(sin_m, cos_m) + turned, min(along / math.cos(turned) / self._speed, p.speed_ratio_max))
+
+    def _decide(self, vessel: VesselMotion) -> None:
+        """Decide whether to track the reference, and whether the orbit may close in."""
+        p, navigation, centre = self._parameters, self.navigation, self.centre
+        x, y = navigation.north - vessel.north, navigation.east - vessel.east
+        off = math.hypot(centre.x - x, centre.y - y)
+        aspect = abs(wrap(math.atan2(y, x) - centre.axis))
+        if self._tracking:
+            self._tracking = off < 1.5 * p.join_distance and aspect < 1.9
+        else:
+            self._tracking = off < p.join_distance and aspect < 1.2
+        r_north, r_east = self.reference_place
+        error = math.hypot(r_north - navigation.north, r_east - navigation.east)
+        self._closing_in = self._tracking and error < (3.0 if self._closing_in else 1.0) * p.tracked

@@ -1,0 +1,213 @@
+"""A reference point whose mean velocity is steered, so that it can follow a centre of oscillation that manoeuvres.
+
+The course is that of equation (3), chi_r = chi_m + eta cos(theta), but the mean course chi_m, the amplitude eta and the frequency
+omega_0 change with time. Their rates share the heading rate that the vehicle can fly: whatever turning the mean course takes is
+taken from the frequency, so that |chi_m'| + |eta'| + eta omega_0 never exceeds it.
+
+Where the orbit's centre is follows from the present parameters in closed form, the series of equation (12). Turning the mean course
+by dchi moves the centre by dchi times its distance from the reference, up to a hundred metres per radian, and so does a change of
+eta. Both therefore move mostly while the reference passes the centre.
+"""
+
+import bisect
+import math
+from functools import lru_cache
+
+import numpy as np
+from scipy.special import j0, jv
+
+from gnc.angles import wrap
+from gnc.oscillation import GRAVITY
+
+_ORDERS = 4
+"""Pairs of Bessel functions in the series of the orbit; what is left out is below 1e-4 of its width at the largest eta."""
+
+_ETA_TOP = 2.9
+_ETA_STEP = 0.005
+_ETA_FREQUENCY = 0.2
+"""Amplitude below which the frequency no longer rises [rad]: nearly straight flight needs no fast weave."""
+
+_GATE = 0.2
+"""Share of their rates that mean course and amplitude keep where the reference is farthest from the centre [-]."""
+
+_RATE_GAIN = 0.4
+"""Rate of mean course and amplitude per difference from what is wanted [1/s]."""
+
+_RATE_SHARE = 0.3
+"""Share of the heading rate that either of them may take [-]."""
+
+_SMOOTHING = 0.5
+"""Time constant of their rates [s]: the heading rate of a rolling aircraft does not jump."""
+
+
+class SteeredReference:
+    """The reference point, moved in equal time steps, with a mean velocity that ``steer`` sets.
+
+    Parameters
+    ----------
+    north, east : where it starts, in the frame in which it moves [m]
+    mean_course : chi_m [rad]
+    speed_ratio : its mean speed over its speed [-]
+    phase : theta [rad]
+    speed : V_r [m/s]
+    heading_rate : what it may turn at most, reserve taken off [rad/s]
+    roll_rate_max : of the vehicle; bounds eta omega_0^2 by g/V times it [rad/s]
+    time_step : [s]
+
+    Attributes
+    ----------
+    north, east, course, heading_rate, speed : as of ``gnc.reference.Reference``
+    mean_course, eta, omega_0, phase : of the oscillation [rad, rad, rad/s, rad]
+    """
+
+    __slots__ = (
+        "_acceleration",
+        "_available",
+        "_eta_rate",
+        "_eta_wanted",
+        "_mean_rate",
+        "_mean_wanted",
+        "_rate_max",
+        "_smoothing",
+        "_time_step",
+        "course",
+        "east",
+        "eta",
+        "heading_rate",
+        "mean_course",
+        "north",
+        "omega_0",
+        "phase",
+        "speed",
+    )
+
+    def __init__(
+        self,
+        *,
+        north: float,
+        east: float,
+        mean_course: float,
+        speed_ratio: float,
+        phase: float,
+        speed: float,
+        heading_rate: float,
+        roll_rate_max: float,
+        time_step: float,
+    ) -> None:
+        self.speed = speed
+        self._available = heading_rate
+        self._acceleration = GRAVITY * roll_rate_max / speed
+        self._time_step = time_step
+        self._rate_max = _RATE_SHARE * heading_rate
+        self._smoothing = min(1.0, time_step / _SMOOTHING)
+        self._mean_rate = self._eta_rate = 0.0
+        self.north, self.east = north, east
+        self.mean_course = self._mean_wanted = mean_course
+        self.eta = self._eta_wanted = eta_for_mean_speed(speed_ratio)
+        self.phase = phase
+        self.omega_0 = self._frequency()
+        self.course = mean_course + self.eta * math.cos(phase)
+        self.heading_rate = -self.eta * self.omega_0 * math.sin(phase)
+
+    def steer(self, mean_course: float, speed_ratio: float) -> None:
+        """Set the mean course [rad] and the mean speed over the speed [-] that are wanted from now on."""
+        self._mean_wanted = mean_course
+        self._eta_wanted = eta_for_mean_speed(speed_ratio)
+
+    def step(self) -> None:
+        """Advance one time step."""
+        dt, rate_max, smoothing = self._time_step, self._rate_max, self._smoothing
+        cos_phase = math.cos(self.phase)
+        gate = _GATE + (1.0 - _GATE) * cos_phase * cos_phase
+        turn = _RATE_GAIN * wrap(self._mean_wanted - self.mean_course)
+        self._mean_rate += smoothing * (gate * min(max(turn, -rate_max), rate_max) - self._mean_rate)
+        grow = _RATE_GAIN * (self._eta_wanted - self.eta)
+        self._eta_rate += smoothing * (gate * min(max(grow, -rate_max), rate_max) - self._eta_rate)
+        first = self.course
+        middle_eta = self.eta + 0.5 * dt * self._eta_rate
+        middle_mean = self.mean_course + 0.5 * dt * self._mean_rate
+        self.eta += dt * self._eta_rate
+        self.mean_course += dt * self._mean_rate
+        self.omega_0 = omega_0 = self._frequency()
+        middle = middle_mean + middle_eta * math.cos(self.phase + 0.5 * dt * omega_0)
+        self.phase = phase = self.phase + dt * omega_0
+        cos_phase = math.cos(phase)
+        last = self.mean_course + self.eta * cos_phase
+        distance = self.speed * dt / 6.0
+        self.north += distance * (math.cos(first) + 4.0 * math.cos(middle) + math.cos(last))
+        self.east += distance * (math.sin(first) + 4.0 * math.sin(middle) + math.sin(last))
+        self.course = last
+        self.heading_rate = self._mean_rate + self._eta_rate * cos_phase - self.eta * omega_0 * math.sin(phase)
+
+    @property
+    def speed_ratio(self) -> float:
+        """Return the mean speed over the speed, J_0(eta) [-]: equation (5)."""
+        x = 0.25 * self.eta * self.eta
+        return 1.0 - x * (1.0 - x / 4.0 * (1.0 - x / 9.0 * (1.0 - x / 16.0 * (1.0 - x / 25.0 * (1.0 - x / 36.0)))))
+
+    def centre(self) -> tuple[float, float]:
+        """Return north and east of the orbit's centre, if the parameters stayed as they are [m]."""
+        along, right = unit_offset(self.eta, self.phase)
+        scale = self.speed / self.omega_0
+        cos_m, sin_m = math.cos(self.mean_course), math.sin(self.mean_course)
+        return self.north - scale * (along * cos_m - right * sin_m), self.east - scale * (along * sin_m + right * cos_m)
+
+    def _frequency(self) -> float:
+        """Return omega_0 by the heading rate that is left and by the roll rate, as ``gnc.oscillation`` does [rad/s]."""
+        eta = max(self.eta, _ETA_FREQUENCY)
+        left = self._available - abs(self._mean_rate) - abs(self._eta_rate)
+        return min(left / eta, math.sqrt(self._acceleration / eta))
+
+
+def eta_for_mean_speed(speed_ratio: float) -> float:
+    """Return eta [rad] for a mean speed over speed, by a table of J_0: equation (6), within 1e-5.
+
+    Differs from ``gnc.bessel.eta_for_speed_ratio`` because a steered reference asks often, and may have to back away: ratios
+    down to -0.2 are those of eta beyond the first zero of J_0. Ratios outside -0.2 to 1 are those of the nearest end.
+    """
+    ratios, etas = _inverse_table()
+    if speed_ratio >= 1.0:
+        return 0.0
+    # Near 1 the ratio is 1 - eta^2/4, so that eta is smooth over the root of what is missing.
+    missing = math.sqrt(1.0 - speed_ratio)
+    i = min(max(bisect.bisect(ratios, missing), 1), len(ratios) - 1)
+    share = min(1.0, (missing - ratios[i - 1]) / (ratios[i] - ratios[i - 1]))
+    return etas[i - 1] + share * (etas[i] - etas[i - 1])
+
+
+def unit_offset(eta: float, phase: float) -> tuple[float, float]:
+    """Return where the reference is from the orbit's centre, along the mean course and to its right, in units of V_r/omega_0.
+
+    The series of ``gnc.orbit.offset`` with its Bessel functions from a table, and with theta = ``phase`` [rad].
+    """
+    table = _bessel_table()
+    place = min(max(eta, 0.0), _ETA_TOP - 2.0 * _ETA_STEP) / _ETA_STEP
+    i = int(place)
+    share = place - i
+    low, high = table[i], table[i + 1]
+    along = right = 0.0
+    for k in range(_ORDERS):
+        odd = low[2 * k] + share * (high[2 * k] - low[2 * k])
+        even = low[2 * k + 1] + share * (high[2 * k + 1] - low[2 * k + 1])
+        right += odd * math.sin((2 * k + 1) * phase)
+        along += even * math.sin((2 * k + 2) * phase)
+    return along, right
+
+
+@lru_cache(maxsize=1)
+def _inverse_table() -> tuple[list[float], list[float]]:
+    etas = np.arange(0.0, _ETA_TOP, _ETA_STEP)
+    missing = np.sqrt(np.maximum(0.0, 1.0 - j0(etas)))
+    kept = missing <= math.sqrt(1.2)
+    return missing[kept].tolist(), etas[kept].tolist()
+
+
+@lru_cache(maxsize=1)
+def _bessel_table() -> list[list[float]]:
+    """Coefficients of sin(theta), sin(2 theta), ... by eta, rightward and along in turn."""
+    etas = np.arange(0.0, _ETA_TOP + _ETA_STEP, _ETA_STEP)
+    columns = []
+    for k in range(1, _ORDERS + 1):
+        columns.append(2.0 * (-1.0) ** (k - 1) * jv(2 * k - 1, etas) / (2 * k - 1))
+        columns.append((-1.0) ** k * jv(2 * k, etas) / k)
+    return np.stack(columns, axis=-1).tolist()  # type: ignore[no-any-return]

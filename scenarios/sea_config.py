@@ -1,0 +1,273 @@
+"""What a scenario of the real sea may say: wind, vessel, reports, sensors, faults, and what is drawn by lot."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from scenarios.config import Guidance, Keepout, NonNegative, Positive, Section, check_divides
+
+Angle = Annotated[float, Field(ge=-360.0, le=360.0)]
+Range = tuple[float, float]
+
+
+class Manoeuvre(Section):
+    """A change of the vessel's course or speed, at a steady rate."""
+
+    at_s: NonNegative
+    """When it begins [s]."""
+    turn_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 0.0
+    """Change of course, positive to starboard [deg]."""
+    turn_rate_deg_s: Annotated[float, Field(gt=0.0, le=5.0)] = 0.5
+    """Rate of the turn [deg/s]."""
+    speed_mps: Annotated[float, Field(ge=0.0, le=30.0)] | None = None
+    """Speed through the water that it ends with; that before if not given [m/s]."""
+    acceleration_mps2: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+    """Rate of the change of speed [m/s2]."""
+
+
+class SeaVessel(Section):
+    """The ship."""
+
+    speed_mps: Annotated[float, Field(ge=0.0, le=300.0)] = 8.0
+    """Speed over the ground, before any manoeuvre [m/s]."""
+    course_deg: Angle = 0.0
+    """Course, clockwise from north [deg]."""
+    manoeuvres: tuple[Manoeuvre, ...] = ()
+    """What it does, one after the other."""
+
+    @model_validator(mode="after")
+    def _in_turn(self) -> "SeaVessel":
+        times = [m.at_s for m in self.manoeuvres]
+        if times != sorted(times):
+            raise ValueError(f"manoeuvres begin at {times} s; put them in their order")
+        return self
+
+
+class Wind(Section):
+    """The steady wind."""
+
+    speed_mps: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
+    """Wind speed [m/s]."""
+    from_deg: Angle = 0.0
+    """Where it comes from, clockwise from north [deg]."""
+
+
+class Turbulence(Section):
+    """Turbulence of MIL-F-8785C, and discrete gusts."""
+
+    level: Literal["none", "light", "moderate", "severe"] = "none"
+    """Light, moderate and severe are 15, 30 and 45 knots of wind at 20 feet."""
+    gusts: Annotated[int, Field(ge=0, le=100)] = 0
+    """Number of 1-cosine gusts, at random times and from random directions."""
+    gust_speed_mps: NonNegative = 0.0
+    """Their largest speed [m/s]."""
+    gust_length_s: Positive = 4.0
+    """How long each takes to rise, and to fall [s]."""
+
+
+class SeaPlume(Section):
+    """The axis of the smoke plume: a half-line from the funnel."""
+
+    direction: Literal["apparent_wind", "given"] = "apparent_wind"
+    """Behind the vessel's motion through the air, or, as in the paper, a free parameter."""
+    heading_deg: Angle = 180.0
+    """Direction from the bow, where it is given [deg]."""
+    source_height_m: Annotated[float, Field(ge=10.0, le=500.0)] = 60.0
+    """Height of the funnel's mouth above the sea, at which the UAV flies [m]."""
+
+
+class Reports(Section):
+    """What the vessel says of itself, as AIS does."""
+
+    interval_s: tuple[NonNegative, NonNegative] = (0.0, 0.0)
+    """Shortest and longest time between reports; 0 for exact knowledge at all times [s]."""
+    position_sigma_m: NonNegative = 5.0
+    """Error of each coordinate of a report, one sigma [m]."""
+    velocity_sigma_mps: NonNegative = 0.15
+    """Error of each component of the velocity, one sigma [m/s]."""
+    latency_max_s: NonNegative = 0.0
+    """Longest time from when a report is true to when it is heard [s]."""
+    missing: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
+    """Share of reports that are never heard [-]."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "Reports":
+        if self.interval_s[0] > self.interval_s[1]:
+            raise ValueError(f"interval_s is {list(self.interval_s)}; its first value must not exceed its second")
+        return self
+
+    @property
+    def exact(self) -> bool:
+        """Return whether the vessel's motion is known at all times."""
+        return self.interval_s[1] == 0.0
+
+
+class Sensors(Section):
+    """Errors of the UAV's sensors; none unless they are given. Biases are drawn for each flight, within these limits."""
+
+    position_sigma_m: NonNegative = 0.0
+    """Error of each coordinate by satellite navigation, one sigma, wandering with a time constant of a minute [m]."""
+    velocity_sigma_mps: NonNegative = 0.0
+    """Noise of each velocity component by satellite navigation [m/s]."""
+    airspeed_sigma_mps: NonNegative = 0.0
+    """Noise of the airspeed [m/s]."""
+    airspeed_bias_mps: NonNegative = 0.0
+    """Largest bias of the airspeed [m/s]."""
+    heading_sigma_deg: NonNegative = 0.0
+    """Noise of the heading [deg]."""
+    heading_bias_deg: NonNegative = 0.0
+    """Largest bias of the heading [deg]."""
+
+
+class Fault(Section):
+    """What fails in flight."""
+
+    kind: Annotated[str, Field(pattern=r"^[a-z_0-9]+$")] = "none"
+    """none, vessel_data, satellite_navigation, engine, or the name of an actuator of the aircraft (see the error for another)."""
+    at_s: tuple[NonNegative, NonNegative] = (100.0, 250.0)
+    """Earliest and latest time; drawn in between [s]."""
+    lasts_s: Positive = 60.0
+    """For how long vessel data or satellite navigation are gone [s]; anything else is gone for good."""
+
+
+class Following(Section):
+    """How the reference follows a vessel over a real sea, beyond what the paper's guidance says."""
+
+    touches_per_hour: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-4
+    """Chance of touching r_min per flight hour that the keep-out margin is planned for [1/h]."""
+    margin_min_m: NonNegative = 3.0
+    """Smallest keep-out margin, in calm air and with exact knowledge [m]."""
+    speed_ratio_max: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.97
+    """Speed ratio from which a vessel counts as one that outruns the UAV [-]."""
+    apparent_wind_min_mps: Positive = 1.0
+    """Apparent wind below which a plume has no direction that could be known [m/s]."""
+    standoff_m: Positive = 100.0
+    """How much further off than r_CO the centre of oscillation stays until the UAV tracks its reference [m]."""
+    join_distance_m: Positive = 150.0
+    """Distance from the centre of oscillation at which the way there ends and tracking begins [m]."""
+    tracked_m: Positive = 12.0
+    """Distance from the reference that counts as tracked: the centre closes in [m]."""
+    vessel_acceleration_mps2: NonNegative = 0.0
+    """Largest acceleration of the vessel that the keep-out guard allows for, and that a silent vessel may have [m/s2]."""
+    speed_error_mps: NonNegative = 0.0
+    """Error of the relative speed that the keep-out guard allows for [m/s]."""
+    drift_rate_mps: NonNegative = 1.0
+    """How fast dead reckoning may go wrong without satellite navigation [m/s]."""
+    airspeed_range_mps: Positive = 3.0
+    """Largest change of commanded airspeed [m/s]."""
+    along_gain_per_s: Positive = 0.4
+    """Wanted speed per along-track error [1/s]."""
+
+
+class SeaStart(Section):
+    """Where flights begin: a seeded random place about the vessel, on any course."""
+
+    distance_m: tuple[Positive, Positive] = (400.0, 800.0)
+    """Nearest and farthest distance from the vessel [m]."""
+    spread_deg: Annotated[float, Field(ge=0.0, le=180.0)] = 180.0
+    """Largest bearing from the plume's axis, either side [deg]."""
+
+
+class SeaFlight(Section):
+    """When a flight ends and what is recorded."""
+
+    crossings: Annotated[int, Field(ge=0, le=10_000)] = 30
+    """Crossings to fly after settling; 0 to fly for the whole duration [-]."""
+    duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 900.0
+    """Longest flight [s]."""
+    settling_band_m: Positive = 8.0
+    """Settled once the distance to the reference, and its orbit's from where it should be, stay below this for a period [m]."""
+    log_rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 10.0
+    """Recording rate [Hz], at least 5 so that keep-out figures are true to centimetres; must divide the guidance rate."""
+
+
+class SeaCriteria(Section):
+    """What a flight must show to count as met, beside keeping out; none where a key is left out."""
+
+    settles: bool = True
+    """Whether it must settle, and fly what crossings are asked for."""
+    crossing_interval_error: Positive | None = None
+    """Largest relative difference of the mean crossing interval from pi/omega_0 [-]."""
+    tracking_error_rms_m: Positive | None = None
+    """Largest rms distance to the reference after settling [m]."""
+    resumes_within_periods: Positive | None = None
+    """Largest time from the end of the last manoeuvre to the next crossing, in periods of the oscillation [-]."""
+    modes_at_end: tuple[str, ...] = ()
+    """Modes in which it may end; any if empty."""
+
+
+class Draw(Section):
+    """A key that is drawn for each flight."""
+
+    key: str
+    """Dotted key of the scenario."""
+    uniform: Range | None = None
+    """Drawn evenly between these."""
+    choice: Annotated[tuple[object, ...], Field(min_length=1)] | None = None
+    """Dealt in turn, so that each comes equally often."""
+
+    @model_validator(mode="after")
+    def _one(self) -> "Draw":
+        if (self.uniform is None) == (self.choice is None):
+            raise ValueError(f"draw of '{self.key}' has {'both' if self.choice else 'neither'} of uniform and choice; give one")
+        if self.uniform is not None and self.uniform[0] > self.uniform[1]:
+            raise ValueError(
+                f"draw of '{self.key}' is uniform over {list(self.uniform)}; its first value must not exceed its second"
+            )
+        return self
+
+
+class SeaScenario(Section):
+    """A trial over the real sea."""
+
+    study: Literal["sea"] = "sea"
+    title: str
+    description: str = ""
+    aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = "x8"
+    fidelity: Literal["six_dof", "kinematic"] = "six_dof"
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1
+    flights: Annotated[int, Field(ge=1, le=1_000_000)] = 1
+    speed_ratio: Range = (0.0, 1e9)
+    """Flights whose nu leaves this range, at the start or after a manoeuvre, are drawn again [-]."""
+    draws: tuple[Draw, ...] = ()
+    vessel: SeaVessel = SeaVessel()
+    wind: Wind = Wind()
+    turbulence: Turbulence = Turbulence()
+    plume: SeaPlume = SeaPlume()
+    keepout: Keepout = Keepout()
+    reports: Reports = Reports()
+    sensors: Sensors = Sensors()
+    fault: Fault = Fault()
+    guidance: Guidance = Guidance()
+    following: Following = Following()
+    start: SeaStart = SeaStart()
+    flight: SeaFlight = SeaFlight()
+    criteria: SeaCriteria = SeaCriteria()
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "SeaScenario":
+        check_divides("flight.log_rate_hz", self.flight.log_rate_hz, self.guidance.rate_hz)
+        if self.start.distance_m[0] > self.start.distance_m[1]:
+            raise ValueError(f"start.distance_m is {list(self.start.distance_m)}; its first value must not exceed its second")
+        if self.start.distance_m[0] <= self.keepout.radius_m:
+            raise ValueError(
+                f"start.distance_m begins at {self.start.distance_m[0]:g} m; it must exceed keepout.radius_m,"
+                f" {self.keepout.radius_m:g} m"
+            )
+        return self
+
+
+class SeaTrial(Section):
+    """A list of trials, flown and reported together."""
+
+    study: Literal["sea_trial"] = "sea_trial"
+    title: str
+    description: str = ""
+    trials: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Scenarios of the real sea, by their names in the catalog or their paths."""
+    share: Annotated[float, Field(gt=0.0, le=1.0)] = 1.0
+    """Share of each trial's flights that are flown, for a quick look [-]."""
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] | None = None
+    """Seed of every trial; each has its own if not given."""
+    set: tuple[str, ...] = ()
+    """Keys to set in every trial, as key=value; overrides of the command line that are not keys of this list come here."""

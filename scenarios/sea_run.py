@@ -1,0 +1,293 @@
+"""Run trials over the real sea: design the autopilot, draw and fly every flight in parallel, keep what is done as it goes."""
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from aircraft.errors import AircraftError
+from aircraft.faults import fault_names
+from aircraft.find import find_spec
+from aircraft.spec import Envelope
+from innerloop.cache import Designed, designed
+from innerloop.flight import AutopilotedAircraft
+from innerloop.jsbsim_root import write_root
+from innerloop.responses import level_trim
+from innerloop.reversal import Reversal, measure_reversal
+from scenarios.closed_loop import Outcome
+from scenarios.errors import InputError
+from scenarios.fitting import fitted
+from scenarios.flights import SixDof
+from scenarios.flyable import check_flyable
+from scenarios.ledger import Ledger, Row, Table
+from scenarios.load import load_study
+from scenarios.manifest import opening_manifest, parameters
+from scenarios.pool import DIED, Progress, fly_all
+from scenarios.run_directory import RunDirectory
+from scenarios.sea_config import SeaScenario, SeaTrial
+from scenarios.sea_draws import drawn_flight
+from scenarios.sea_flights import SEA_CROSSING_COLUMNS, SeaRequest, SeaResult, fly_sea_request, sea_failed
+from scenarios.sea_metrics import SEA_SUMMARY_COLUMNS
+from scenarios.sea_plan import KINEMATIC_LAG, Airframe
+from scenarios.sea_world import SATELLITES, VESSEL_DATA
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeaRunResult:
+    """How a run ended.
+
+    Attributes
+    ----------
+    directory : the run directory
+    rows : of the flights that are done
+    trials : number of planned flights, by trial
+    interrupted : whether it was stopped before all flights were done
+    """
+
+    directory: Path
+    rows: list[Row]
+    trials: dict[str, int]
+    interrupted: bool
+
+    what = "flights"
+
+    @property
+    def planned(self) -> int:
+        """Number of flights that were planned."""
+        return sum(self.trials.values())
+
+    @property
+    def done(self) -> int:
+        """Number of flights that are done."""
+        return len(self.rows)
+
+    @property
+    def all_met(self) -> bool:
+        """Whether every planned flight met what its trial asks for."""
+        return sum(bool(row["criteria_met"]) for row in self.rows) == self.planned
+
+    def lines(self) -> list[str]:
+        """Return what happened, in lines of text."""
+        lines = [f"{self.planned} flights planned, {self.done} done"]
+        for trial, planned in self.trials.items():
+            rows = [row for row in self.rows if row["trial"] == trial]
+            met = sum(bool(row["criteria_met"]) for row in rows)
+            entries = sum(int(row.get("keepout_violations") or 0) for row in rows)
+            nearest = min((float(row["min_distance_m"]) for row in rows if "min_distance_m" in row), default=math.nan)
+            kept = f"{entries} entries into the keep-out area, nearest {nearest:.1f} m"
+            lines.append(f"  {trial}: {met} of {planned} met every criterion; {kept}")
+        unmet = [row for row in self.rows if not row["criteria_met"]]
+        lines += [f"    {row['flight_id']}: {row['outcome']}: {row['message']}" for row in unmet[:_SHOWN]]
+        if len(unmet) > _SHOWN:
+            lines.append(f"    and {len(unmet) - _SHOWN} more, in summary.csv")
+        return lines
+
+
+_SHOWN = 20
+"""Flights that are named on the console, at most."""
+
+
+def run_sea(
+    study: SeaScenario | SeaTrial,
+    name: str,
+    directory: Path,
+    *,
+    jobs: int,
+    resume: bool,
+    progress: Progress,
+    overrides: Sequence[str] = (),
+) -> SeaRunResult:
+    """Fly a trial, or a list of them, into ``directory``.
+
+    Parameters
+    ----------
+    study, name : what to fly, and what it is called
+    directory : the run directory
+    jobs : number of processes
+    resume : go on with the unfinished run in ``directory``
+    progress : told what happens
+    overrides : how the study differs from the one of that name, for the record
+
+    Raises
+    ------
+    InputError : an unknown trial, aircraft or fault, a key that cannot be drawn, or a directory that cannot be used
+    """
+    run = RunDirectory(directory)
+    if not resume:
+        run.refuse_taken()
+    trials = _trials(study, name)
+    first = next(iter(trials.values()))
+    progress("designing the autopilot", 0, sum(scenario.flights for scenario in trials.values()))
+    design, refusal = _design(first)
+    envelope = design.design.schedule.envelope if design else None
+    if envelope is not None:
+        trials = {trial: fitted(scenario, envelope) for trial, scenario in trials.items()}
+    _check(trials, envelope)
+    requests = [
+        SeaRequest(flight_id=f"{trial}_{i:05d}", trial=trial, scenario=scenario, number=i)
+        for trial, scenario in trials.items()
+        for i in range(scenario.flights)
+    ]
+    manifest = opening_manifest(study, name, overrides)
+    manifest |= {
+        "study": "sea",
+        "trials": {trial: scenario.model_dump(mode="json") for trial, scenario in trials.items()},
+        "trial_parameters": {trial: parameters(scenario) for trial, scenario in trials.items()},
+    }
+    run.open(manifest["config_hash"], resume=resume)
+    every = [request.flight_id for request in requests]
+    table = Table(name="summary.csv", columns=SEA_SUMMARY_COLUMNS, flights=frozenset(every))
+    ledger = Ledger(run, every, tables=[table], crossing_columns=SEA_CROSSING_COLUMNS)
+    manifest["flights_planned"] = len(requests)
+    run.write_json(run.manifest, manifest)
+    began = time.perf_counter()
+    progress("flying", len(ledger.done), len(requests))
+    interrupted = False
+    try:
+        airframe = _airframe(first, design, run)
+        for request in requests:
+            if refusal and request.flight_id not in ledger.done:
+                _add(ledger, sea_failed(request, Outcome.TRIM_FAILED, refusal))
+        _fly_rest(requests, ledger, run.path, airframe, jobs, progress)
+    except KeyboardInterrupt:
+        interrupted = True
+    finally:
+        ledger.flush()
+    rows = ledger.rows(table)
+    result = SeaRunResult(
+        directory=directory,
+        rows=rows,
+        trials={trial: scenario.flights for trial, scenario in trials.items()},
+        interrupted=interrupted,
+    )
+    manifest |= {
+        "state": "interrupted" if interrupted else "complete",
+        "wall_time_s": time.perf_counter() - began,
+        "outcomes": {outcome.value: sum(row["outcome"] == outcome.value for row in rows) for outcome in Outcome},
+        "flights_met_criteria": sum(bool(row["criteria_met"]) for row in rows),
+    }
+    run.write_json(run.manifest, manifest)
+    return result
+
+
+def _trials(study: SeaScenario | SeaTrial, name: str) -> dict[str, SeaScenario]:
+    """Return the trials of a study by name.
+
+    Raises
+    ------
+    InputError : a listed one does not exist, or is none
+    """
+    if isinstance(study, SeaScenario):
+        return {name: study}
+    seed = [] if study.seed is None else [f"seed={study.seed}"]
+    trials = {}
+    for listed in study.trials:
+        trial = load_study(listed, [*study.set, *seed])
+        if not isinstance(trial, SeaScenario):
+            raise InputError(f"trials: '{listed}' is a study of {trial.study}; list trials over the real sea")
+        flights = math.ceil(study.share * trial.flights)
+        trials[Path(listed).stem] = trial.model_copy(update={"flights": flights})
+    return trials
+
+
+def _design(scenario: SeaScenario) -> tuple[Designed | None, str]:
+    """Return the autopilot of the aircraft that flies, or of the one that kinematic flights are fitted to, or why there is none.
+
+    Raises
+    ------
+    InputError : there is no such aircraft
+    """
+    if scenario.fidelity == "kinematic" and scenario.aircraft == SeaScenario.model_fields["aircraft"].default:
+        return None, ""
+    try:
+        spec = find_spec(scenario.aircraft)
+    except AircraftError as error:
+        raise InputError(f"aircraft: {error}") from None
+    try:
+        return designed(spec, scenario.plume.source_height_m), ""
+    except AircraftError as error:
+        return None, str(error)
+
+
+def _check(trials: dict[str, SeaScenario], envelope: Envelope | None) -> None:
+    """Check what can be checked before anything is flown.
+
+    Raises
+    ------
+    InputError : trials that differ in what the autopilot is designed for, an airspeed or a bank that the aircraft cannot fly, a
+        fault that it cannot have, a key that cannot be drawn
+    """
+    apart = {(s.aircraft, s.fidelity, s.guidance.airspeed_mps, s.plume.source_height_m) for s in trials.values()}
+    if len(apart) > 1:
+        raise InputError(
+            "trials differ in aircraft, fidelity, guidance.airspeed_mps or plume.source_height_m; give each a run of its own"
+        )
+    for trial, scenario in trials.items():
+        if envelope is not None and scenario.fidelity == "six_dof":
+            check_flyable(scenario.guidance, scenario.aircraft, envelope)
+        kinds = {scenario.fault.kind}
+        for draw in scenario.draws:
+            kinds |= {str(kind) for kind in draw.choice or ()} if draw.key == "fault.kind" else set()
+        known = {"none", VESSEL_DATA, SATELLITES}
+        if scenario.fidelity == "six_dof":
+            known |= set(fault_names(find_spec(scenario.aircraft)))
+        for kind in sorted(kinds - known):
+            raise InputError(f"fault.kind is '{kind}'; what can fail is {', '.join(sorted(known))}")
+        drawn_flight(trial, scenario, 0)
+
+
+def _airframe(scenario: SeaScenario, found: Designed | None, run: RunDirectory) -> Airframe:
+    """Return what flights need of the aircraft; write its autopilot into the run directory."""
+    half_step = 0.5 / scenario.guidance.rate_hz
+    if found is None or scenario.fidelity == "kinematic":
+        reversal = Reversal(delay=0.0, lag=KINEMATIC_LAG)
+        return Airframe(
+            lag=KINEMATIC_LAG + half_step,
+            reversal=reversal,
+            crab_banks=(-1.0, 1.0),
+            crab_offsets=(0.0, 0.0),
+            spreads={},
+            six_dof=None,
+            model=None,
+        )
+    schedule = found.design.schedule
+    write_root(schedule, run.model)
+    run.write_json(run.innerloop, found.record)
+    near = schedule.level(schedule.middle)
+    start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, near)
+    lag = float(found.record["heading_rate_lag_s"])
+    turns = schedule.trims[schedule.middle]
+    reversal = measure_reversal(AutopilotedAircraft(schedule.spec, run.model), start, schedule.envelope.bank)
+    return Airframe(
+        lag=lag + half_step,
+        reversal=reversal,
+        crab_banks=tuple(turn.roll for turn in turns),
+        crab_offsets=tuple(turn.course_offset() for turn in turns),
+        spreads={},
+        six_dof=SixDof(start=start, lag=lag, reversal=reversal, envelope=schedule.envelope),
+        model=run.model,
+    )
+
+
+def _fly_rest(
+    requests: list[SeaRequest], ledger: Ledger, directory: Path, airframe: Airframe, jobs: int, progress: Progress
+) -> None:
+    """Fly what is not done yet."""
+
+    def done(result: SeaResult) -> None:
+        _add(ledger, result)
+        progress("flying", len(ledger.done), len(requests))
+
+    fly_all(
+        [request for request in requests if request.flight_id not in ledger.done],
+        partial(fly_sea_request, directory=directory, airframe=airframe),
+        died=lambda request: sea_failed(request, Outcome.FAILED, DIED),
+        done=done,
+        jobs=jobs,
+    )
+
+
+def _add(ledger: Ledger, result: SeaResult) -> None:
+    ledger.add(result.flight_id, result.row, result.crossings)

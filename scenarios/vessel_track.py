@@ -1,0 +1,101 @@
+"""Where a vessel that manoeuvres is, and where its plume trails, at any time."""
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.sea_config import SeaVessel
+
+_STEP = 0.05
+"""Time step of the tabled track [s]; between its points the track is a parabola to 1e-5 m."""
+
+Array = npt.NDArray[np.float64]
+
+
+class VesselTrack:
+    """The track over the ground of a vessel that starts at the origin.
+
+    Course and speed change at the steady rates of its manoeuvres. One that begins before another has ended adds to it.
+
+    Parameters
+    ----------
+    vessel : what it does
+    duration : for how long it is followed [s]
+    wind_north, wind_east : velocity of the air mass [m/s]
+    plume_heading : of the plume from the bow, or none where it trails behind the motion through the air [rad]
+
+    Attributes
+    ----------
+    manoeuvres_end : when the last manoeuvre ends, not a number without any [s]
+    """
+
+    def __init__(
+        self, vessel: SeaVessel, duration: float, *, wind_north: float, wind_east: float, plume_heading: float | None
+    ) -> None:
+        times = _STEP * np.arange(math.ceil(duration / _STEP) + 3)
+        course = np.full_like(times, math.radians(vessel.course_deg))
+        speed, before = np.full_like(times, vessel.speed_mps), vessel.speed_mps
+        self.manoeuvres_end = math.nan
+        for m in vessel.manoeuvres:
+            turn, rate = math.radians(m.turn_deg), math.radians(m.turn_rate_deg_s)
+            since = np.maximum(0.0, times - m.at_s)
+            course += np.sign(turn) * np.minimum(abs(turn), rate * since)
+            change = 0.0 if m.speed_mps is None else m.speed_mps - before
+            speed += np.sign(change) * np.minimum(abs(change), m.acceleration_mps2 * since)
+            before += change
+            end = m.at_s + max(abs(turn) / rate, abs(change) / m.acceleration_mps2)
+            self.manoeuvres_end = end if math.isnan(self.manoeuvres_end) else max(self.manoeuvres_end, end)
+        speed = np.maximum(speed, 0.0)
+        velocity = np.stack([speed * np.cos(course), speed * np.sin(course)], axis=-1)
+        place = np.zeros_like(velocity)
+        place[1:] = np.cumsum(0.5 * _STEP * (velocity[1:] + velocity[:-1]), axis=0)
+        axis = course + plume_heading if plume_heading is not None else None
+        through_air = velocity - np.array([wind_north, wind_east])
+        if axis is None:
+            axis = np.unwrap(np.arctan2(-through_air[:, 1], -through_air[:, 0]))
+        axis_rate = np.gradient(axis, _STEP)
+        self._table = np.column_stack([place, velocity, axis, axis_rate, np.hypot(through_air[:, 0], through_air[:, 1])])
+
+    @cached_property
+    def _rows(self) -> list[list[float]]:
+        """The table as plain floats, for one look at a time."""
+        return self._table.tolist()  # type: ignore[no-any-return]
+
+    def motion(self, time: float) -> tuple[float, float, float, float]:
+        """Return north, east [m] and their rates [m/s]."""
+        i = min(int(time / _STEP), len(self._rows) - 2)
+        north, east, v_north, v_east, *_ = self._rows[i]
+        after = self._rows[i + 1]
+        since = time - i * _STEP
+        half = 0.5 * since * since / _STEP
+        share = since / _STEP
+        return (
+            north + since * v_north + half * (after[2] - v_north),
+            east + since * v_east + half * (after[3] - v_east),
+            v_north + share * (after[2] - v_north),
+            v_east + share * (after[3] - v_east),
+        )
+
+    def axis(self, time: float) -> float:
+        """Return the course along which the plume trails [rad]."""
+        i = min(int(time / _STEP), len(self._rows) - 2)
+        return self._rows[i][4] + (time / _STEP - i) * (self._rows[i + 1][4] - self._rows[i][4])
+
+    def sampled(self, times: Array) -> tuple[Array, Array, Array, Array]:
+        """Return place and velocity, shape (n, 2) [m, m/s], and the plume's course and its rate, shape (n,) [rad, rad/s]."""
+        moving = np.array([self.motion(float(t)) for t in times]).reshape(-1, 4)
+        at = np.clip(times / _STEP, 0, len(self._table) - 1)
+        axis, rate = (np.interp(at, np.arange(len(self._table)), self._table[:, j]) for j in (4, 5))
+        return moving[:, :2], moving[:, 2:], axis, rate
+
+    def apparent_wind(self, times: Sequence[float]) -> list[float]:
+        """Return the speed of the vessel through the air [m/s]."""
+        return [float(self._table[min(round(t / _STEP), len(self._table) - 1), 6]) for t in times]
+
+    @property
+    def apparent_wind_range(self) -> tuple[float, float]:
+        """Return the least and the greatest speed through the air over the whole track [m/s]."""
+        return float(self._table[:, 6].min()), float(self._table[:, 6].max())
