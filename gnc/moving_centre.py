@@ -13,7 +13,7 @@ from gnc.angles import wrap
 _AXIS_GAIN = 0.05
 """Rate at which the axis goes where it should, per difference [1/s]; slow enough to even out what reports of the vessel scatter."""
 
-_IN_PLACE = 0.01
+_IN_PLACE = 0.04
 """Distance from its place within which the centre counts as being there, over r_CO [-]."""
 
 _AXIS_SPEED = 0.7
