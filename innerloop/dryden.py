@@ -1,6 +1,6 @@
 """Low-altitude turbulence of MIL-F-8785C as filters that shape white noise: what the linear closed loop is shaken with.
 
-Intensities and scale lengths are those of figures 10 and 11 of the standard, below 1,000 ft; the filters are the factors of its
+Intensities and scale lengths are those of ``aircraft.turbulence``; the filters are the factors of its
 Dryden spectra, section 3.7.1.2, with the rotations as JSBSim has them (Yeager, NASA CR-1998-206937): p is on its own, q and r are
 the slopes along the path of w and v, seen by a wing of some span. JSBSim's ``atmosphere/turb-type`` 4 is this, in Tustin's steps.
 """
@@ -11,15 +11,12 @@ from dataclasses import dataclass
 import control
 import numpy as np
 
-from aircraft.units import METRES_PER_FOOT
+from aircraft.turbulence import intensities, scale_lengths
 from innerloop.gust_response import GUSTS
-
-ALTITUDE_MIN, ALTITUDE_MAX = 10.0 * METRES_PER_FOOT, 1000.0 * METRES_PER_FOOT
-"""Where these intensities and lengths hold [m]; below, those of the lowest altitude."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Turbulence:
+class GustStatistics:
     """Turbulence at one altitude.
 
     Attributes
@@ -34,29 +31,21 @@ class Turbulence:
     vertical_length: float
 
 
-def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> Turbulence:
-    """Return the turbulence at an altitude [m] over a surface with a mean wind [m/s] 20 ft above it: figures 10 and 11.
+def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatistics:
+    """Return the turbulence at an altitude [m] over a surface with a mean wind [m/s] 20 ft above it.
 
     Raises
     ------
-    ValueError : the altitude is above ``ALTITUDE_MAX``, or the wind below 0
+    AircraftError : as ``aircraft.turbulence.intensities``
     """
-    if not altitude <= ALTITUDE_MAX:
-        raise ValueError(f"altitude is {altitude:g} m; low-altitude turbulence holds up to {ALTITUDE_MAX:g} m: fly lower")
-    if not wind_at_20ft >= 0.0:
-        raise ValueError(f"wind at 20 ft is {wind_at_20ft:g} m/s; it must be at least 0")
-    height = max(altitude, ALTITUDE_MIN)
-    shape = 0.177 + 0.000823 * height / METRES_PER_FOOT
-    vertical = 0.1 * wind_at_20ft
-    return Turbulence(
-        horizontal=vertical / shape**0.4,
-        vertical=vertical,
-        horizontal_length=height / shape**1.2,
-        vertical_length=height,
+    horizontal, _, vertical = intensities(altitude, wind_at_20ft)
+    horizontal_length, _, vertical_length = scale_lengths(altitude)
+    return GustStatistics(
+        horizontal=horizontal, vertical=vertical, horizontal_length=horizontal_length, vertical_length=vertical_length
     )
 
 
-def dryden_filters(turbulence: Turbulence, *, airspeed: float, span: float) -> control.StateSpace:
+def dryden_filters(turbulence: GustStatistics, *, airspeed: float, span: float) -> control.StateSpace:
     """Return the filters from four white noises of intensity 1 (of u, v, w and p) to ``GUSTS``.
 
     The standard deviation of each output is that of the gust, so that the covariance is the Lyapunov equation's solution.

@@ -24,7 +24,7 @@ import numpy.typing as npt
 from gnc.guidance import GuidanceParameters
 from gnc.oscillation import Oscillation
 from gnc.speed_hold import SpeedHold
-from innerloop.dryden import Turbulence, dryden_filters
+from innerloop.dryden import GustStatistics, dryden_filters
 from innerloop.schedule import Schedule
 from scenarios.gusts_on_orbit import gusts_on_orbit
 from scenarios.tracking_response import RESPONSES, tracking_response
@@ -64,7 +64,7 @@ class Spread:
 
 def tracking_spread(
     schedule: Schedule,
-    turbulence: Turbulence,
+    turbulence: GustStatistics,
     oscillation: Oscillation,
     guidance: GuidanceParameters,
     hold: SpeedHold,

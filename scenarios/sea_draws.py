@@ -6,7 +6,7 @@ import numpy as np
 
 from scenarios.errors import InputError
 from scenarios.load import with_values
-from scenarios.sea_config import Draw, SeaScenario
+from scenarios.sea_config import SeaScenario
 from scenarios.sea_world import vessel_track
 
 _TRIES = 1000
@@ -30,7 +30,15 @@ def drawn_flight(trial: str, scenario: SeaScenario, number: int) -> tuple[SeaSce
     seed = int(sequence.generate_state(1)[0])
     low, high = scenario.speed_ratio
     for _ in range(_TRIES):
-        values = {draw.key: _value(draw, number, generator) for draw in scenario.draws}
+        values: dict[str, object] = {}
+        dealt = number
+        for draw in scenario.draws:
+            if draw.uniform is not None:
+                values[draw.key] = float(generator.uniform(*draw.uniform))
+            else:
+                # Several choices are dealt like the digits of a number: every combination comes equally often.
+                dealt, i = divmod(dealt, len(draw.choice or ()))
+                values[draw.key] = (draw.choice or ())[i]
         flight = with_values(scenario, values) if values else scenario
         track = vessel_track(flight)
         least, most = (wind / flight.guidance.airspeed_mps for wind in track.apparent_wind_range)
@@ -40,10 +48,3 @@ def drawn_flight(trial: str, scenario: SeaScenario, number: int) -> tuple[SeaSce
         f"trial '{trial}': {_TRIES} draws had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
         f" {most:.3f}: widen speed_ratio, or draw other winds and vessel speeds"
     )
-
-
-def _value(draw: Draw, number: int, generator: np.random.Generator) -> object:
-    if draw.uniform is not None:
-        return float(generator.uniform(*draw.uniform))
-    choices = draw.choice or ()
-    return choices[number % len(choices)]

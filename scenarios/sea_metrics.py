@@ -191,8 +191,8 @@ def sea_unmet(row: Row, criteria: SeaCriteria) -> list[str]:
             f"commanded {row['heading_rate_command_max_rad_s']:.4f} rad/s, above omega_max",
         ),
     ]
+    checks.append((row["outcome"] == Outcome.COMPLETED.value, "did not complete"))
     if criteria.settles:
-        checks.append((row["outcome"] == Outcome.COMPLETED.value, "did not settle and fly its crossings"))
         checks.append((math.isfinite(row["settling_time_s"]), "did not settle"))
     if criteria.crossing_interval_error is not None:
         interval, predicted = row.get("crossing_interval_mean_s", nothing), row["crossing_interval_predicted_s"]
