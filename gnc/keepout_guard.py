@@ -139,6 +139,8 @@ class KeepoutGuard:
             self.interventions += not self.intervening
             self.intervening = True
             command = self._mix(command, then, extra_radius)
+        if not self._under_way:
+            self._under_way.extend([heading_rate] * (self._under_way.maxlen or 0))
         self._under_way.append(command)
         return command
 
@@ -164,13 +166,24 @@ class KeepoutGuard:
 
     def _then(self, motion: _Motion) -> _Motion:
         """Return the motion when a command given now begins to act: those before it cannot be taken back."""
-        sent = self._under_way
+        count = self._under_way.maxlen
+        if not count:
+            return motion
         x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
-        # Commands that were given before the first that this guard has seen are taken to be the turn that is flown.
-        for command in (*[heading_rate] * ((sent.maxlen or 0) - len(sent)), *sent):
-            x, y, course, heading_rate = self._after(command, motion)
-            motion = (x, y, velocity_north, velocity_east, course, speed, heading_rate)
-        return motion
+        duration, turned, mean, kept = self._hold
+        turned_by, mean_by, kept_by = duration - turned, 0.5 * duration - mean, 1.0 - kept
+        begun, middles = course, 0.0
+        # Before the first call the commands under way are taken to be the turn that is flown.
+        for command in self._under_way or (heading_rate,) * count:
+            middles += course + mean * heading_rate + mean_by * command
+            course += turned * heading_rate + turned_by * command
+            heading_rate = kept * heading_rate + kept_by * command
+        middle, half = middles / count, 0.5 * (course - begun)
+        # One chord will do, with the sine over arc of half the course turned.
+        chord = speed * (1.0 - half * half / 6.0)
+        x += (chord * math.cos(middle) - velocity_north) * self._delay
+        y += (chord * math.sin(middle) - velocity_east) * self._delay
+        return x, y, velocity_north, velocity_east, course, speed, heading_rate
 
     def _free_when_far(self, motion: _Motion, extra_radius: float) -> float:
         """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
@@ -265,6 +278,7 @@ class KeepoutGuard:
         least = slack = math.sqrt(x * x + y * y) - fixed - (error + half * time) * time
         outward = side * (y * math.cos(course) - x * math.sin(course))
         acting = time - self._delay
+        gain = -1.0
         share, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
         for look in range(self._looks_max):
             if least < floor:
@@ -284,6 +298,8 @@ class KeepoutGuard:
             rise = slack - last
             share = min(share, slack / (acting - lag * (1.0 - fade)))
             if rise < 0.0:
+                if gain >= 0.0:
+                    break
                 least = min(least, slack)
                 continue
             if look == 0:
@@ -294,8 +310,11 @@ class KeepoutGuard:
                 least = min(least, last - (before + rise) ** 2 / (8.0 * (rise - before)))
             # Also if it came past straight away between two looks: it would have stopped there.
             if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
-                break
-        return least, min(share, rise / duration) / (2.0 * speed * self._rate)
+                # It is over. A look farther may put the next one off.
+                best, gain = gain, max(gain, min(share, rise / duration))
+                if gain == best or outward < 0.0:
+                    break
+        return least, gain / (2.0 * speed * self._rate)
 
 
 def _range_rate(start: _Start, motion: _Motion) -> float:
