@@ -13,11 +13,9 @@ import math
 from collections import deque
 
 _TURN = 0.125
-"""Course turned between two looks at a turn away [rad]."""
+"""Course turned between two looks at a turn away, at most; half of it where the lag is shorter than a look [rad]."""
 _TURN_MAX = 2.5 * math.pi
 """Course after which a turn away is over: the whole way round, and what heading rate the other way and a moving disc add [rad]."""
-_CHORD = math.sin(0.5 * _TURN) / (0.5 * _TURN)
-"""Chord over arc between two looks [-]."""
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
 _BISECTIONS = 5
@@ -51,6 +49,7 @@ class KeepoutGuard:
 
     __slots__ = (
         "_acceleration",
+        "_chord",
         "_delay",
         "_free_extra",
         "_free_steps",
@@ -87,8 +86,11 @@ class KeepoutGuard:
         self._under_way: deque[float] = deque(maxlen=round(delay / time_step))
         self._speed_error, self._acceleration = speed_error, acceleration
         self._hold = _held(time_step, lag)
-        self._look = _held(_TURN / heading_rate_max, lag)
-        self._looks_max = math.ceil(_TURN_MAX / _TURN)
+        look = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
+        self._look = _held(look, lag)
+        self._looks_max = math.ceil(_TURN_MAX / (heading_rate_max * look))
+        half = 0.5 * heading_rate_max * look
+        self._chord = math.sin(half) / half
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
         self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * lag + self._delay + time_step
         self._side = 0.0
@@ -271,7 +273,7 @@ class KeepoutGuard:
         duration, turned, mean, kept = self._look
         turn = side * self._rate
         ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - kept) * turn
-        chord = speed * duration * _CHORD
+        chord = speed * duration * self._chord
         north, east = velocity_north * duration, velocity_east * duration
         error, half, lag = self._speed_error, 0.5 * self._acceleration, self._lag
         fixed = self._radius + extra_radius
