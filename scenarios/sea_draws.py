@@ -42,8 +42,27 @@ def drawn_flight(trial: str, scenario: SeaScenario, number: int) -> tuple[SeaSce
     )
 
 
+def check_draws(trial: str, scenario: SeaScenario) -> None:
+    """Check every choice, and both ends of what is drawn evenly, before anything is flown.
+
+    Raises
+    ------
+    InputError : as of ``drawn_flight``
+    """
+    for number in range(max((len(draw.choice or ()) for draw in scenario.draws), default=0) or 1):
+        for end in (0, 1):
+            with_values(
+                scenario, {draw.key: draw.uniform[end] if draw.uniform else _dealt(draw, number) for draw in scenario.draws}
+            )
+    drawn_flight(trial, scenario, 0)
+
+
 def _value(draw: Draw, number: int, generator: np.random.Generator) -> object:
     if draw.uniform is not None:
         return float(generator.uniform(*draw.uniform))
+    return _dealt(draw, number)
+
+
+def _dealt(draw: Draw, number: int) -> object:
     choices = draw.choice or ()
     return choices[number % len(choices)]
