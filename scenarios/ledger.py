@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from scenarios.pool import DIED
 from scenarios.run_directory import RunDirectory
 
 Row = dict[str, Any]
@@ -34,7 +35,7 @@ class Ledger:
 
     Parameters
     ----------
-    run : the run directory; what it holds already is taken over
+    run : the run directory; what it holds already is taken over, but for flights whose process died: they are flown again
     flights : all that are planned, in their order
     tables : for their rows; each flight in one of them
     crossing_columns : of the table of crossings
@@ -45,7 +46,7 @@ class Ledger:
     ) -> None:
         self._run, self._tables, self._crossing_columns = run, tables, crossing_columns
         self._order = {flight: i for i, flight in enumerate(flights)}
-        found = [row for table in tables for row in run.read_rows(table.name)]
+        found = [row for table in tables for row in run.read_rows(table.name) if row.get("message") != DIED]
         self._rows: dict[str, Row] = {row["flight_id"]: row for row in found if row.get("flight_id") in self._order}
         self._crossings = [row for row in run.read_rows("crossings.csv") if row.get("flight_id") in self._rows]
         self._waiting: set[str] = set()

@@ -72,7 +72,10 @@ def load_study(name: str, overrides: Sequence[str] = ()) -> AnyStudy:
         raise InputError(f"{path}: cannot be read: {error.strerror}; check the path and its permissions") from None
     if document.get("study") == "sea_trial":
         own = [override for override in overrides if override.partition("=")[0].strip() in SeaTrial.model_fields]
-        document["set"] = [*document.get("set", []), *(override for override in overrides if override not in own)]
+        for_trials = [override for override in overrides if override not in own]
+        given = document.get("set", [])
+        if for_trials and isinstance(given, list):
+            document["set"] = [*given, *for_trials]
         overrides = own
     for override in overrides:
         key, value = _parse_override(override)

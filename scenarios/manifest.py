@@ -33,9 +33,9 @@ def opening_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -
     }
 
 
-def config_hash(scenario: BaseModel) -> str:
-    """Return a hash of everything in the scenario that the result depends on."""
-    text = json.dumps(scenario.model_dump(mode="json"), sort_keys=True)
+def config_hash(*scenarios: BaseModel) -> str:
+    """Return a hash of everything in the scenarios that the result depends on."""
+    text = "\n".join(json.dumps(scenario.model_dump(mode="json"), sort_keys=True) for scenario in scenarios)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 

@@ -53,7 +53,10 @@ def fly_all(
 
     try:
         for request in requests:
-            futures[pool.submit(fly, request)] = request
+            try:
+                futures[pool.submit(fly, request)] = request
+            except BrokenProcessPool:
+                done(died(request))
         for future in as_completed(futures):
             hand_over(future)
     except KeyboardInterrupt:

@@ -10,6 +10,12 @@ Angle = Annotated[float, Field(ge=-360.0, le=360.0)]
 Range = tuple[float, float]
 
 
+def check_ordered(name: str, values: Range) -> None:
+    """Raise a ValueError unless the first of ``values``, called ``name``, is at most the second."""
+    if values[0] > values[1]:
+        raise ValueError(f"{name} is {list(values)}; its first value must not exceed its second")
+
+
 class Manoeuvre(Section):
     """A change of the vessel's course or speed, at a steady rate."""
 
@@ -92,8 +98,7 @@ class Reports(Section):
 
     @model_validator(mode="after")
     def _ordered(self) -> "Reports":
-        if self.interval_s[0] > self.interval_s[1]:
-            raise ValueError(f"interval_s is {list(self.interval_s)}; its first value must not exceed its second")
+        check_ordered("interval_s", self.interval_s)
         return self
 
     @property
@@ -128,6 +133,11 @@ class Fault(Section):
     """Earliest and latest time; drawn in between [s]."""
     lasts_s: Positive = 60.0
     """For how long vessel data or satellite navigation are gone [s]; anything else is gone for good."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "Fault":
+        check_ordered("at_s", self.at_s)
+        return self
 
 
 class Following(Section):
@@ -206,10 +216,8 @@ class Draw(Section):
     def _one(self) -> "Draw":
         if (self.uniform is None) == (self.choice is None):
             raise ValueError(f"draw of '{self.key}' has {'both' if self.choice else 'neither'} of uniform and choice; give one")
-        if self.uniform is not None and self.uniform[0] > self.uniform[1]:
-            raise ValueError(
-                f"draw of '{self.key}' is uniform over {list(self.uniform)}; its first value must not exceed its second"
-            )
+        if self.uniform is not None:
+            check_ordered(f"uniform of the draw of '{self.key}'", self.uniform)
         return self
 
 
@@ -243,8 +251,8 @@ class SeaScenario(Section):
     @model_validator(mode="after")
     def _consistent(self) -> "SeaScenario":
         check_divides("flight.log_rate_hz", self.flight.log_rate_hz, self.guidance.rate_hz)
-        if self.start.distance_m[0] > self.start.distance_m[1]:
-            raise ValueError(f"start.distance_m is {list(self.start.distance_m)}; its first value must not exceed its second")
+        check_ordered("start.distance_m", self.start.distance_m)
+        check_ordered("speed_ratio", self.speed_ratio)
         if self.start.distance_m[0] <= self.keepout.radius_m:
             raise ValueError(
                 f"start.distance_m begins at {self.start.distance_m[0]:g} m; it must exceed keepout.radius_m,"

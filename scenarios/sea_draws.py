@@ -48,3 +48,22 @@ def drawn_flight(trial: str, scenario: SeaScenario, number: int) -> tuple[SeaSce
         f"trial '{trial}': {_TRIES} draws had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
         f" {most:.3f}: widen speed_ratio, or draw other winds and vessel speeds"
     )
+
+
+def check_draws(trial: str, scenario: SeaScenario) -> None:
+    """Check every choice, and both ends of what is drawn evenly, before anything is flown.
+
+    Raises
+    ------
+    InputError : as of ``drawn_flight``
+    """
+    for number in range(max((len(draw.choice or ()) for draw in scenario.draws), default=0) or 1):
+        for end in (0, 1):
+            with_values(
+                scenario,
+                {
+                    draw.key: draw.uniform[end] if draw.uniform else (draw.choice or ())[number % len(draw.choice or ())]
+                    for draw in scenario.draws
+                },
+            )
+    drawn_flight(trial, scenario, 0)

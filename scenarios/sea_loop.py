@@ -12,7 +12,7 @@ from gnc.vessel_filter import VesselReport
 from scenarios.closed_loop import Outcome
 from scenarios.sea_plan import SeaPlan
 from scenarios.sea_settling import Settling
-from scenarios.sea_world import SATELLITES
+from scenarios.sea_world import SATELLITES, VESSEL_DATA
 from scenarios.vehicle import SAMPLE_COLUMNS, Vehicle
 
 SEA_COLUMNS = (
@@ -118,7 +118,9 @@ class _Flight:
         self._motion = motion = vehicle.motion()
         airspeed, heading, roll = vehicle.air_data()
         if self._heard is None:
-            if step % plan.guidance.plan_interval == 0:
+            # The flight begins with a vessel that is known, whatever fails.
+            silent = step > 0 and plan.fault.lasts(VESSEL_DATA, time)
+            if step % plan.guidance.plan_interval == 0 and not silent:
                 guidance.vessel.report(VesselReport(time, *self._track.motion(time)))
         else:
             while self._heard and self._heard[-1][0] <= time:

@@ -29,11 +29,11 @@ from scenarios.flyable import check_flyable
 from scenarios.keepout_margin import tracking_spread
 from scenarios.ledger import Ledger, Row, Table
 from scenarios.load import load_study
-from scenarios.manifest import opening_manifest, parameters
+from scenarios.manifest import config_hash, opening_manifest, parameters
 from scenarios.pool import DIED, Progress, fly_all
 from scenarios.run_directory import RunDirectory
 from scenarios.sea_config import SeaScenario, SeaTrial
-from scenarios.sea_draws import drawn_flight
+from scenarios.sea_draws import check_draws
 from scenarios.sea_flights import SEA_CROSSING_COLUMNS, SeaRequest, SeaResult, fly_sea_request, sea_failed
 from scenarios.sea_margin import SpreadTable
 from scenarios.sea_metrics import SEA_SUMMARY_COLUMNS
@@ -136,7 +136,9 @@ def run_sea(
         trials = {trial: fitted(scenario, envelope) for trial, scenario in trials.items()}
     _check(trials, envelope)
     manifest = opening_manifest(study, name, overrides)
+    # A list of trials does not change with what it lists.
     manifest |= {
+        "config_hash": config_hash(study, *trials.values()),
         "study": "sea",
         "trials": {trial: scenario.model_dump(mode="json") for trial, scenario in trials.items()},
         "modes": [mode.value for mode in Mode],
@@ -184,7 +186,7 @@ def _trials(study: SeaScenario | SeaTrial, name: str) -> dict[str, SeaScenario]:
 
     Raises
     ------
-    InputError : a listed one does not exist, or is none
+    InputError : a listed one does not exist, or is none, or two have one name
     """
     if isinstance(study, SeaScenario):
         return {name: study}
@@ -194,6 +196,8 @@ def _trials(study: SeaScenario | SeaTrial, name: str) -> dict[str, SeaScenario]:
         trial = load_study(listed, [*study.set, *seed])
         if not isinstance(trial, SeaScenario):
             raise InputError(f"trials: '{listed}' is a study of {trial.study}; list trials over the real sea")
+        if Path(listed).stem in trials:
+            raise InputError(f"trials: two are called '{Path(listed).stem}'; list each once, and give files names of their own")
         flights = math.ceil(study.share * trial.flights)
         trials[Path(listed).stem] = trial.model_copy(update={"flights": flights})
     return trials
@@ -254,7 +258,7 @@ def _check(trials: dict[str, SeaScenario], envelope: Envelope | None) -> None:
             known |= set(fault_names(find_spec(scenario.aircraft)))
         for kind in sorted(kinds - known):
             raise InputError(f"fault.kind is '{kind}'; what can fail is {', '.join(sorted(known))}")
-        drawn_flight(trial, scenario, 0)
+        check_draws(trial, scenario)
 
 
 def _airframe(scenario: SeaScenario, found: Designed | None, run: RunDirectory) -> Airframe:

@@ -34,8 +34,8 @@ class SensorErrors:
         heading_bias = math.radians(float(generator.uniform(-1.0, 1.0)) * sensors.heading_bias_deg)
         white = generator.standard_normal((6, steps))
         kept = math.exp(-time_step / _WANDER)
-        first = np.array(white[:2, :1])
-        wander, _ = lfilter([math.sqrt(1.0 - kept**2)], [1.0, -kept], white[:2], axis=-1, zi=kept * first)
+        before = generator.standard_normal((2, 1))
+        wander, _ = lfilter([math.sqrt(1.0 - kept**2)], [1.0, -kept], white[:2], axis=-1, zi=kept * before)
         self._rows: list[tuple[float, ...]] = [
             tuple(row)
             for row in np.column_stack(

@@ -12,6 +12,9 @@ from scenarios.sea_config import SeaVessel
 _STEP = 0.05
 """Time step of the tabled track [s]; between its points the track is a parabola to 1e-5 m."""
 
+_AT_REST = 1e-9
+"""Speed through the air below which its direction is rounding alone [m/s]."""
+
 Array = npt.NDArray[np.float64]
 
 
@@ -55,7 +58,7 @@ class VesselTrack:
         axis = course + plume_heading if plume_heading is not None else None
         through_air = velocity - np.array([wind_north, wind_east])
         if axis is None:
-            axis = np.unwrap(np.arctan2(-through_air[:, 1], -through_air[:, 0]))
+            axis = np.unwrap(np.arctan2(-through_air[:, 1], -through_air[:, 0])[_last_moving(through_air)])
         axis_rate = np.gradient(axis, _STEP)
         self._table = np.column_stack([place, velocity, axis, axis_rate, np.hypot(through_air[:, 0], through_air[:, 1])])
 
@@ -99,3 +102,9 @@ class VesselTrack:
     def apparent_wind_range(self) -> tuple[float, float]:
         """Return the least and the greatest speed through the air over the whole track [m/s]."""
         return float(self._table[:, 6].min()), float(self._table[:, 6].max())
+
+
+def _last_moving(velocity: Array) -> npt.NDArray[np.intp]:
+    """Return which row of shape (n, 2) was the last that is not at rest, for each: in still air a plume stays put."""
+    moving = np.hypot(velocity[:, 0], velocity[:, 1]) > _AT_REST
+    return np.maximum.accumulate(np.where(moving, np.arange(len(velocity)), 0))

@@ -1,0 +1,53 @@
+"""What the tests of the real sea share: scenarios, and the kinematic vehicle that flies them."""
+
+import numpy as np
+
+from gnc.sea_guidance import Mode
+from innerloop.reversal import Reversal
+from scenarios.sea_config import SeaScenario
+from scenarios.sea_flights import SeaRequest, fly_sea_request
+from scenarios.sea_loop import SEA_COLUMNS
+from scenarios.sea_plan import KINEMATIC_LAG, Airframe
+from scenarios.vessel_track import VesselTrack
+
+SPEED = 19.42
+
+AIRFRAME = Airframe(
+    lag=KINEMATIC_LAG + 0.025,
+    reversal=Reversal(delay=0.0, lag=KINEMATIC_LAG),
+    crab_banks=(-1.0, 1.0),
+    crab_offsets=(0.0, 0.0),
+    spreads={},
+    six_dof=None,
+    model=None,
+)
+"""As ``scenarios.sea_run`` makes it at 20 Hz."""
+
+ASTERN = {"distance_m": (400.0, 400.0), "spread_deg": 10.0}
+
+
+def scenario(**changes):
+    """Return a kinematic trial: a vessel at 8 m/s in calm air unless ``changes`` say otherwise."""
+    values = {"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}}
+    return SeaScenario.model_validate(values | changes)
+
+
+def fly(directory, **changes):
+    """Fly one flight as a run does; return its result and its time history."""
+    request = SeaRequest(flight_id="a", trial="trial", scenario=scenario(**changes), number=0)
+    return fly_sea_request(request, directory, AIRFRAME)
+
+
+def modes(history):
+    """Return what the guidance did, one after the other, with the time at which it began [s]."""
+    numbers = history["mode"].to_numpy()
+    begins = np.flatnonzero(np.diff(numbers, prepend=-1.0))
+    return [(list(Mode)[int(numbers[i])], float(history["time_s"].iloc[i])) for i in begins]
+
+
+def track(vessel, duration=600.0, *, wind=(0.0, 0.0), plume_heading=None):
+    """Return the track of a vessel of a scenario."""
+    return VesselTrack(scenario(vessel=vessel).vessel, duration, wind_north=wind[0], wind_east=wind[1], plume_heading=plume_heading)
+
+
+__all__ = ["AIRFRAME", "ASTERN", "SEA_COLUMNS", "SPEED", "fly", "modes", "scenario", "track"]
