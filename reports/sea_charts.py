@@ -211,7 +211,8 @@ def _manoeuvres(trial: Trial) -> Chart | None:
     rows = trial.flown
     flown = trial.rows["min_distance_m"].notna()
     kinds = [manoeuvre_name(value) for value, shown in zip(trial.dealt("vessel.manoeuvres"), flown, strict=True) if shown]
-    limit = _limit(trial, "resumes_within_periods")
+    limit, periods = _limit(trial, "resumes_within_periods"), column(rows, "resume_periods")
+    known = bool(np.isfinite(periods).any())
     resumed = "Next crossing after the manoeuvre [periods]"
     groups = _every(trial)
     criterion = [] if math.isnan(limit) else [(limit, "criterion")]
@@ -221,8 +222,8 @@ def _manoeuvres(trial: Trial) -> Chart | None:
         "By what the vessel did: time from the end of its last manoeuvre to the next crossing, in periods of the oscillation, and"
         " closest approach of the whole flight.",
         [
-            strips(column(rows, "resume_periods"), kinds, resumed, "Manoeuvre [-]", groups, criterion, named=True),
-            strips(clearance(rows), kinds, _CLEARANCE, "Manoeuvre [-]", groups, [_R_MIN], named=False),
+            strips(periods, kinds, resumed, "Manoeuvre [-]", groups, criterion, named=True) if known else None,
+            strips(clearance(rows), kinds, _CLEARANCE, "Manoeuvre [-]", groups, [_R_MIN], named=not known),
         ],
         0.2 + 0.03 * len(set(kinds)),
     )
