@@ -109,7 +109,7 @@ def test_an_entry_is_counted_from_the_first_second_on(plan):
     # In and out along straight lines between samples: 10 of 60 m of each 0.1 s.
     assert row["keepout_time_s"] == pytest.approx(4.9 + 2.0 * STEP * 10.0 / 60.0, abs=1e-6)
     assert row["keepout_depth_m"] == pytest.approx(10.0, abs=1e-9)
-    assert sea_unmet(row | sea_plan_row(plan), scenario(criteria={"settles": False}).criteria) == [
+    assert sea_unmet(row | sea_plan_row(plan) | {"fault": "none"}, scenario(criteria={"settles": False}).criteria) == [
         "entered the keep-out area 1 times, by 10.0 m"
     ]
 
@@ -162,7 +162,7 @@ def test_the_guards_time_is_counted_and_its_losses_too(plan):
 
 
 def good_row(plan):
-    return sea_plan_row(plan) | figures(plan, weave(plan))[0]
+    return {"fault": "none"} | sea_plan_row(plan) | figures(plan, weave(plan))[0]
 
 
 @pytest.mark.parametrize(
@@ -174,6 +174,10 @@ def good_row(plan):
         ({"crossing_interval_mean_s": 12.0}, {"crossing_interval_error": 0.02}, "mean crossing interval 12.000 s"),
         ({"tracking_error_rms_m": 3.1}, {"tracking_error_rms_m": 3.0}, "rms tracking error 3.10 m"),
         ({"resume_periods": 2.1}, {"resumes_within_periods": 2.0}, "crossings resumed 2.10 periods"),
+        ({"outcome": "diverged"}, {"settles": False}, "went out of control"),
+        ({"outcome": "diverged", "fault": "left_elevon"}, {"settles": False}, "went out of control"),
+        ({"mode_at_end": "ditched"}, {"settles": False}, "ended ditched, though nothing of the aircraft failed"),
+        ({"mode_at_end": "gliding", "fault": "vessel_data"}, {"settles": False}, "ended gliding, though nothing"),
         ({"mode_at_end": "outrun"}, {"modes_at_end": ("tracking", "holding off")}, "ended outrun"),
     ],
 )
@@ -183,6 +187,11 @@ def test_every_criterion_is_missed_in_a_short_sentence(plan, change, criteria, w
     row["crossing_interval_mean_s"] = row["crossing_interval_predicted_s"]
     assert sea_unmet(row, limits) == []
     assert any(words in message for message in sea_unmet(row | change, limits))
+
+
+def test_a_flight_may_be_given_up_where_a_part_of_the_aircraft_has_failed(plan):
+    row = good_row(plan) | {"mode_at_end": "ditched", "fault": "engine"}
+    assert sea_unmet(row, scenario(criteria={"settles": False}).criteria) == []
 
 
 @pytest.mark.parametrize("key", ["crossing_interval_mean_s", "tracking_error_rms_m", "resume_periods"])
