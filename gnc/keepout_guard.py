@@ -13,11 +13,9 @@ import math
 from collections import deque
 
 _TURN = 0.125
-"""Course turned between two looks at a turn away [rad]."""
+"""Course turned between two looks at a turn away, at most; half of it where the lag is shorter than a look [rad]."""
 _TURN_MAX = 2.5 * math.pi
 """Course after which a turn away is over: the whole way round, and what heading rate the other way and a moving disc add [rad]."""
-_CHORD = math.sin(0.5 * _TURN) / (0.5 * _TURN)
-"""Chord over arc between two looks [-]."""
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
 _BISECTIONS = 5
@@ -51,6 +49,7 @@ class KeepoutGuard:
 
     __slots__ = (
         "_acceleration",
+        "_chord",
         "_delay",
         "_free_extra",
         "_free_steps",
@@ -87,8 +86,11 @@ class KeepoutGuard:
         self._under_way: deque[float] = deque(maxlen=round(delay / time_step))
         self._speed_error, self._acceleration = speed_error, acceleration
         self._hold = _held(time_step, lag)
-        self._look = _held(_TURN / heading_rate_max, lag)
-        self._looks_max = math.ceil(_TURN_MAX / _TURN)
+        look = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
+        self._look = _held(look, lag)
+        self._looks_max = math.ceil(_TURN_MAX / (heading_rate_max * look))
+        half = 0.5 * heading_rate_max * look
+        self._chord = math.sin(half) / half
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
         self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * lag + self._delay + time_step
         self._side = 0.0
@@ -139,6 +141,8 @@ class KeepoutGuard:
             self.interventions += not self.intervening
             self.intervening = True
             command = self._mix(command, then, extra_radius)
+        if not self._under_way:
+            self._under_way.extend([heading_rate] * (self._under_way.maxlen or 0))
         self._under_way.append(command)
         return command
 
@@ -164,13 +168,24 @@ class KeepoutGuard:
 
     def _then(self, motion: _Motion) -> _Motion:
         """Return the motion when a command given now begins to act: those before it cannot be taken back."""
-        sent = self._under_way
+        count = self._under_way.maxlen
+        if not count:
+            return motion
         x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
-        # Commands that were given before the first that this guard has seen are taken to be the turn that is flown.
-        for command in (*[heading_rate] * ((sent.maxlen or 0) - len(sent)), *sent):
-            x, y, course, heading_rate = self._after(command, motion)
-            motion = (x, y, velocity_north, velocity_east, course, speed, heading_rate)
-        return motion
+        duration, turned, mean, kept = self._hold
+        turned_by, mean_by, kept_by = duration - turned, 0.5 * duration - mean, 1.0 - kept
+        begun, middles = course, 0.0
+        # Before the first call the commands under way are taken to be the turn that is flown.
+        for command in self._under_way or (heading_rate,) * count:
+            middles += course + mean * heading_rate + mean_by * command
+            course += turned * heading_rate + turned_by * command
+            heading_rate = kept * heading_rate + kept_by * command
+        middle, half = middles / count, 0.5 * (course - begun)
+        # One chord will do, with the sine over arc of half the course turned.
+        chord = speed * (1.0 - half * half / 6.0)
+        x += (chord * math.cos(middle) - velocity_north) * self._delay
+        y += (chord * math.sin(middle) - velocity_east) * self._delay
+        return x, y, velocity_north, velocity_east, course, speed, heading_rate
 
     def _free_when_far(self, motion: _Motion, extra_radius: float) -> float:
         """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
@@ -258,13 +273,14 @@ class KeepoutGuard:
         duration, turned, mean, kept = self._look
         turn = side * self._rate
         ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - kept) * turn
-        chord = speed * duration * _CHORD
+        chord = speed * duration * self._chord
         north, east = velocity_north * duration, velocity_east * duration
         error, half, lag = self._speed_error, 0.5 * self._acceleration, self._lag
         fixed = self._radius + extra_radius
         least = slack = math.sqrt(x * x + y * y) - fixed - (error + half * time) * time
         outward = side * (y * math.cos(course) - x * math.sin(course))
         acting = time - self._delay
+        gain = -1.0
         share, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
         for look in range(self._looks_max):
             if least < floor:
@@ -284,6 +300,8 @@ class KeepoutGuard:
             rise = slack - last
             share = min(share, slack / (acting - lag * (1.0 - fade)))
             if rise < 0.0:
+                if gain >= 0.0:
+                    break
                 least = min(least, slack)
                 continue
             if look == 0:
@@ -294,8 +312,11 @@ class KeepoutGuard:
                 least = min(least, last - (before + rise) ** 2 / (8.0 * (rise - before)))
             # Also if it came past straight away between two looks: it would have stopped there.
             if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
-                break
-        return least, min(share, rise / duration) / (2.0 * speed * self._rate)
+                # It is over. A look farther may put the next one off.
+                best, gain = gain, max(gain, min(share, rise / duration))
+                if gain == best or outward < 0.0:
+                    break
+        return least, gain / (2.0 * speed * self._rate)
 
 
 def _range_rate(start: _Start, motion: _Motion) -> float:

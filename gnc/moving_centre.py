@@ -13,7 +13,7 @@ from gnc.angles import wrap
 _AXIS_GAIN = 0.05
 """Rate at which the axis goes where it should, per difference [1/s]; slow enough to even out what reports of the vessel scatter."""
 
-_IN_PLACE = 0.01
+_IN_PLACE = 0.04
 """Distance from its place within which the centre counts as being there, over r_CO [-]."""
 
 _AXIS_SPEED = 0.7
@@ -112,10 +112,13 @@ class MovingCentre:
                 wanted = math.atan2(vessel_east, vessel_north) + p.plume_heading
                 turn = (vessel_north * acceleration_east - vessel_east * acceleration_north) / max(over_ground, 0.1) ** 2
         if not self._started:
-            self._started, self.axis, self.distance = True, wanted, self._target(through_air, 0.0) + further
+            self._started, self.axis = True, wanted
+            self.distance = self._target(air_north, air_east) + further
         fastest = _AXIS_SPEED * p.speed / self.distance
         turn = min(max(turn + _AXIS_GAIN * wrap(wanted - self.axis), -fastest), fastest)
-        target = self._target(through_air, turn * self.distance) + further
+        swing = turn * self.distance
+        swung_north, swung_east = air_north - swing * math.sin(self.axis), air_east + swing * math.cos(self.axis)
+        target = self._target(swung_north, swung_east) + further
         fastest = _DISTANCE_SHARE * max(0.05, 1.0 - self.speed_ratio) * p.speed
         recede = min(max(_DISTANCE_GAIN * (target - self.distance), -fastest), fastest)
         self.axis = wrap(self.axis + turn * time_step)
@@ -126,16 +129,14 @@ class MovingCentre:
         self.velocity_north = air_north + recede * cos_a - turn * self.y
         self.velocity_east = air_east + recede * sin_a + turn * self.x
 
-    def _target(self, ahead: float, sideways: float) -> float:
-        """Return r_CO [m] by equations (10) and (11).
-
-        The orbit lies across the way of the centre, which moves ``ahead`` and ``sideways`` of the axis [m/s].
-        """
+    def _target(self, velocity_north: float, velocity_east: float) -> float:
+        """Return r_CO by equations (10) and (11) for a centre of some velocity, across which the orbit lies [m]."""
         p = self._parameters
         last = len(p.along) - 1
-        moving = math.hypot(ahead, sideways)
+        moving = math.hypot(velocity_north, velocity_east)
         place = min(moving / p.speed / p.speed_ratio_max, 1.0) * last
         i = min(int(place), last - 1)
         along = p.along[i] + (place - i) * (p.along[i + 1] - p.along[i])
         across = p.across[i] + (place - i) * (p.across[i + 1] - p.across[i])
-        return p.distance_min + along + (across - along) * abs(sideways) / max(moving, 0.01)
+        sideways = abs(velocity_east * math.cos(self.axis) - velocity_north * math.sin(self.axis)) / max(moving, 0.01)
+        return p.distance_min + along + (across - along) * sideways

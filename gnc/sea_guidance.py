@@ -15,6 +15,7 @@ from gnc.health import Health, Trouble
 from gnc.keepout_guard import KeepoutGuard
 from gnc.moving_centre import CentreParameters, MovingCentre
 from gnc.navigation import Navigation, NavigationParameters
+from gnc.speed_hold import SpeedHold, air_turn, airspeed_to_hold
 from gnc.steered_reference import SteeredReference
 from gnc.transit import Transit
 from gnc.vessel_filter import VesselFilter, VesselMotion
@@ -40,17 +41,11 @@ _TRANSIT_GAIN = 2.0
 _UNCONTROLLED = 0.4
 """Mean difference of heading rate from what was asked for, over omega_max, at which control counts as lost [-]."""
 
-_POWERLESS = 0.8
-"""Mean lack of airspeed, over what its command may change by, at which thrust counts as lost [-]."""
-
 _PATIENCE = 2.0
 """Time constant of the means by which trouble is found [s]."""
 
 _DEEP = -1000.0
 """Altitude that a gliding vehicle is told [m]: so far below that the autopilot holds its airspeed by pitch, and sinks."""
-
-_STALE = 12.0
-"""Age of vessel data beyond which the vessel may be elsewhere than its filter takes it to be [s]."""
 
 
 class Mode(Enum):
@@ -84,8 +79,10 @@ class SeaParameters:
     join_distance : from the centre, within which the reference is tracked [m]
     standoff : how much further off the centre stays until it is [m]
     tracked : distance from the reference that counts as tracked [m]
-    airspeed_range : largest change of commanded airspeed [m/s]
-    along_gain : wanted speed per along-track error [1/s]
+    hold : how it keeps pace with its reference
+    transit_airspeed : on the way to it [m/s]
+    powerless : mean lack of airspeed at which thrust counts as lost [m/s]
+    stale : age of vessel data beyond which the keep-out margin no longer covers where the vessel may be [s]
     vessel_acceleration : largest, of a vessel that is not heard [m/s^2]
     drift_rate : how fast dead reckoning goes wrong [m/s]
     plan_interval : guidance steps between looks at vessel and wind
@@ -103,8 +100,10 @@ class SeaParameters:
     join_distance: float
     standoff: float
     tracked: float
-    airspeed_range: float
-    along_gain: float
+    hold: SpeedHold
+    transit_airspeed: float
+    powerless: float
+    stale: float
     vessel_acceleration: float
     drift_rate: float
     plan_interval: int
@@ -156,7 +155,7 @@ class SeaGuidance:
         self.airspeed_command = self._speed
         self.altitude_command = parameters.altitude
         self.health = Health(
-            airspeed_error=_POWERLESS * parameters.airspeed_range,
+            airspeed_error=parameters.powerless,
             heading_rate_error=_UNCONTROLLED * parameters.guidance.heading_rate_max,
             lag=parameters.guidance.lag,
             time_step=parameters.guidance.time_step,
@@ -214,12 +213,12 @@ class SeaGuidance:
         away_north, away_east = self._vessel_v_north - wind.north, self._vessel_v_east - wind.east
         guidance, reference = self.guidance, self.guidance.reference
         north, east = navigation.north - navigation.drift_north, navigation.east - navigation.drift_east
+        heading_rate = air_turn(heading_rate, speed=airspeed, airspeed=speed)
+        along = 0.0
         if self._tracking:
             along = (reference.north - north) * math.cos(reference.course) + (reference.east - east) * math.sin(reference.course)
-            wanted_speed = self._speed + p.along_gain * along
-        else:
-            wanted_speed = self._speed + p.airspeed_range
-        trouble = self.health.look(self.airspeed_command - airspeed, heading_rate, self.heading_rate_command)
+        # An aircraft that is still speeding up beyond V_r lacks nothing.
+        trouble = self.health.look(min(self.airspeed_command, self._speed) - airspeed, heading_rate, self.heading_rate_command)
         guidance.step(north, east, course, speed, heading_rate)
         command = guidance.heading_rate_command
         if trouble is not Trouble.NONE:
@@ -231,12 +230,14 @@ class SeaGuidance:
             # A turn away is flown at V_r at least: see ``gnc.guidance``.
             turning = max(speed, self._speed)
             command = guard.limit(command, x, y, away_north, away_east, course, turning, heading_rate, extra_radius=self._further)
-            if guard.intervening:
-                wanted_speed = self._speed
-        guidance.heading_rate_command = self.heading_rate_command = command
-        # The autopilot holds the airspeed, gusts and all; the path through the mean air wants a steady speed there.
-        slowest, fastest = self._speed - p.airspeed_range, self._speed + p.airspeed_range
-        self.airspeed_command = min(max(airspeed + wanted_speed - speed, slowest), fastest)
+        guidance.heading_rate_command = command
+        limit = p.guidance.heading_rate_max
+        self.heading_rate_command = min(max(air_turn(command, speed=speed, airspeed=airspeed), -limit), limit)
+        if self._tracking or (guard is not None and guard.intervening):
+            pace = airspeed_to_hold(p.hold, along=along, reference_speed=self._speed, speed=speed, airspeed=airspeed)
+            self.airspeed_command = pace
+        else:
+            self.airspeed_command = p.transit_airspeed
         if trouble is not Trouble.NONE:
             self.airspeed_command, self.altitude_command = p.glide_airspeed, _DEEP
             self.mode = Mode.GLIDING if trouble is Trouble.NO_THRUST else Mode.TERMINATING
@@ -244,7 +245,7 @@ class SeaGuidance:
     def _away(self, x: float, y: float, course: float, heading_rate: float) -> float:
         """Return the heading rate that leads straight away from the vessel [rad/s]."""
         limit = self._parameters.guidance.heading_rate_max
-        ahead = course + 0.5 * self._parameters.guidance.lag * (heading_rate + self.heading_rate_command)
+        ahead = course + 0.5 * self._parameters.guidance.lag * (heading_rate + self.guidance.heading_rate_command)
         return min(max(_TRANSIT_GAIN * limit * wrap(math.atan2(y, x) - ahead), -limit), limit)
 
     def _to_centre(
@@ -265,7 +266,7 @@ class SeaGuidance:
             speed=speed,
         )
         limit = p.guidance.heading_rate_max
-        ahead = course + 0.5 * p.guidance.lag * (heading_rate + self.heading_rate_command)
+        ahead = course + 0.5 * p.guidance.lag * (heading_rate + self.guidance.heading_rate_command)
         return min(max(_TRANSIT_GAIN * limit * wrap(to - ahead), -limit), limit)
 
     def _look(self, time: float) -> None:
@@ -294,7 +295,7 @@ class SeaGuidance:
         self._decide(vessel)
         if navigation.lost > 0.0:
             self.mode = Mode.DEAD_RECKONING
-        elif age > _STALE:
+        elif age > p.stale:
             self.mode = Mode.HOLDING
         elif centre.speed_ratio >= p.speed_ratio_max:
             self.mode = Mode.OUTRUN
@@ -307,9 +308,9 @@ class SeaGuidance:
         """Keep further off while the vessel may be elsewhere, by no more than the vehicle can flee, until it is heard again."""
         p = self._parameters
         lost = self.navigation.lost
-        if age > _STALE:
+        if age > p.stale:
             fleeing = max(0.05, 1.0 - self.centre.speed_ratio) * self._speed
-            self._further += min(p.vessel_acceleration * (age - _STALE), 0.5 * fleeing) * time_step
+            self._further += min(p.vessel_acceleration * age, 0.5 * fleeing) * time_step
         elif lost > 0.0:
             self._further = p.drift_rate * lost
         else:
@@ -361,10 +362,12 @@ class SeaGuidance:
         x, y = navigation.north - vessel.north, navigation.east - vessel.east
         off = math.hypot(centre.x - x, centre.y - y)
         aspect = abs(wrap(math.atan2(y, x) - centre.axis))
-        if self._tracking:
-            self._tracking = off < 1.5 * p.join_distance and aspect < 1.9
-        else:
-            self._tracking = off < p.join_distance and aspect < 1.2
         r_north, r_east = self.reference_place
         error = math.hypot(r_north - navigation.north, r_east - navigation.east)
+        if self._tracking:
+            held_off = self.guard is not None and self.guard.intervening and error > 3.0 * p.tracked
+            self._tracking = off < 1.5 * p.join_distance and aspect < 1.9 and not held_off
+        else:
+            clear = self.guard is None or not self.guard.intervening
+            self._tracking = off < p.join_distance and aspect < 1.2 and clear
         self._closing_in = self._tracking and error < (3.0 if self._closing_in else 1.0) * p.tracked

@@ -9,6 +9,7 @@ from aircraft.control_shape import straightened
 from aircraft.envelope import find_envelope, first_trim
 from aircraft.errors import AircraftError
 from aircraft.fdm import Fdm
+from aircraft.flight_idle import flight_idle, idling_at
 from aircraft.linearise import linearise
 from aircraft.spec import AircraftSpec, Envelope
 from aircraft.trim import Trim, trim
@@ -104,6 +105,7 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
         )
         trims.append(row)
         models.append(tuple(linearise(fdm, row[TRIM_BANKS.index(share)]) for share in GAIN_BANKS))
+    spec = idling_at(spec, flight_idle(fdm, trims[len(trims) // 2][LEVEL]))
     return Grid(spec=spec, envelope=envelope, altitude=altitude, trims=tuple(trims), models=tuple(models))
 
 

@@ -209,8 +209,12 @@ def _ordered(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def closed_loop(aircraft: control.StateSpace, autopilot: control.StateSpace, delay: float = DELAY) -> control.StateSpace:
-    """Return the closed loop from the autopilot's commands to every output of the aircraft and to the controls."""
+    """Return the closed loop from the autopilot's commands to every output of the aircraft and to the controls.
+
+    What else the aircraft has for inputs, such as gusts, follows the commands.
+    """
     controls: Sequence[str] = autopilot.output_labels
+    others = [name for name in aircraft.input_labels if name not in controls]
     pade = control.ss(control.tf(*control.pade(delay, 2)))
     plant = control.ss(aircraft, inputs=aircraft.input_labels, outputs=aircraft.output_labels, name="aircraft")
     delays = [control.ss(pade, inputs=[f"{name}_delayed_in"], outputs=[name], name=f"{name}_delay") for name in controls]
@@ -225,9 +229,9 @@ def closed_loop(aircraft: control.StateSpace, autopilot: control.StateSpace, del
     return control.interconnect(
         [plant, autopilot, *delays],
         connections=connections,
-        inplist=[f"autopilot.{name}" for name in COMMANDS],
+        inplist=[*(f"autopilot.{name}" for name in COMMANDS), *(f"aircraft.{name}" for name in others)],
         outlist=[*(f"aircraft.{name}" for name in aircraft.output_labels), *(f"autopilot.{name}" for name in controls)],
-        inputs=list(COMMANDS),
+        inputs=[*COMMANDS, *others],
         outputs=[*aircraft.output_labels, *(f"{name}_command" for name in controls)],
         warn_duplicate=False,
         check_unused=False,

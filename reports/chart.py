@@ -78,6 +78,7 @@ class Panel:
     equal : one metre is as long both ways
     log_x, log_y : logarithmic abscissa, ordinate
     x_range, y_range : limits, or by the data
+    y_names : values that the ordinate marks, each by a name; none for figures
     notes : words among the curves; on linear axes only
     """
 
@@ -90,6 +91,7 @@ class Panel:
     log_y: bool = False
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
+    y_names: Sequence[tuple[float, str]] = ()
     notes: Sequence[Note] = ()
 
 

@@ -8,6 +8,7 @@ from reports.design_content import design_content
 from reports.errors import ReportError
 from reports.paper_content import paper_content
 from reports.run_data import RunData
+from reports.sea_content import sea_content
 from reports.sweep_content import sweep_content
 from reports.tables import provenance_table
 
@@ -16,6 +17,7 @@ KINDS: dict[str, Callable[[RunData], tuple[Verdict, list[Section]]]] = {
     "paper": paper_content,
     "convergence": convergence_content,
     "design": design_content,
+    "sea": sea_content,
 }
 """A study's kind, as its manifest names it, and what makes the verdict and the sections of its report."""
 

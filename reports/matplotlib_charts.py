@@ -86,6 +86,8 @@ def _dress(ax: Any, panel: Panel, *, last_row: bool) -> None:
         ax.set_yscale("log")
     for note in panel.notes:
         ax.text(note.x, note.y, note.text, color=COLOURS["grey"], fontsize=7.0, ha=note.align, va="center", clip_on=True)
+    if panel.y_names:
+        ax.set_yticks([value for value, _ in panel.y_names], [name for _, name in panel.y_names])
     if panel.x_range:
         ax.set_xlim(*panel.x_range)
     if panel.y_range:

@@ -86,6 +86,10 @@ def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bo
         x_options["range"] = _limits(panel.x_range, log=panel.log_x)
     if panel.y_range:
         y_options["range"] = _limits(panel.y_range, log=panel.log_y)
+    if panel.y_names:
+        # Names are wider than figures: the title stays clear of them only if it is told how far.
+        y_options["title"] = {"text": panel.y_label, "standoff": 8}
+        y_options |= {"tickvals": [value for value, _ in panel.y_names], "ticktext": [name for _, name in panel.y_names]}
     # Plotly would write 20k and 50µ, before a unit that has a prefix of its own. Decades are too many for plain figures.
     figure.update_xaxes(**({} if panel.log_x else {"exponentformat": "none"}), **x_options, row=row, col=column)
     figure.update_yaxes(**({} if panel.log_y else {"exponentformat": "none"}), **y_options, row=row, col=column)

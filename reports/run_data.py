@@ -36,6 +36,10 @@ class RunData:
         path = self.path / "flights" / f"{flight_id}.parquet"
         return pd.read_parquet(path) if path.is_file() else None
 
+    def has_history(self, flight_id: str) -> bool:
+        """Return whether a flight has a time history."""
+        return (self.path / "flights" / f"{flight_id}.parquet").is_file()
+
     def trajectory(self, law: str, number: int) -> pd.DataFrame | None:
         """Return the time history of a trajectory of a convergence study, or None if it was not kept."""
         path = self.path / "trajectories" / f"{law}_{number:05d}.parquet"

@@ -11,7 +11,7 @@ from reports.run_data import RunData
 
 def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
     """Return every parameter of the run with its unit and meaning, and rows for what follows from them."""
-    rows = [[p["key"], _value(p["value"], p["key"]), p["unit"], p["meaning"]] for p in run.manifest["parameters"]]
+    rows = [[p["key"], parameter_value(p["value"], p["key"]), p["unit"], p["meaning"]] for p in run.manifest["parameters"]]
     return Table(
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
         rows=[*rows, *derived],
@@ -26,11 +26,13 @@ def provenance_table(run: RunData) -> Table:
     """Return where the run comes from."""
     manifest = run.manifest
     design = manifest.get("study") == "design"
+    seed = manifest["config"].get("seed")
+    seeds = "each trial's own" if seed is None else str(seed)
     rows = [
         ["Design" if design else "Scenario", f"{manifest['name']}: {manifest['title']}"],
         *_vehicle(run),
         # A design is made without chance, and of no more than its title says.
-        *([] if design else [["Seed", str(manifest["config"]["seed"])], ["Configuration hash", manifest["config_hash"]]]),
+        *([] if design else [["Seed", seeds], ["Configuration hash", manifest["config_hash"]]]),
         ["Source revision", manifest["git_revision"]],
         ["Python", f"{manifest['python']} on {manifest['platform']}"],
         ["Packages", ", ".join(f"{name} {version}" for name, version in manifest["packages"].items())],
@@ -42,8 +44,8 @@ def provenance_table(run: RunData) -> Table:
 
 
 def _vehicle(run: RunData) -> list[list[str]]:
-    """Return the rows on what flew."""
-    config = run.manifest["config"]
+    """Return the rows on what flew; in all trials of one run that is the same."""
+    config = next(iter(run.manifest.get("trials", {}).values()), run.manifest["config"])
     rows = []
     if run.innerloop:
         rows.append(["Aircraft", f"{run.innerloop['title']}. {run.innerloop['source']}"])
@@ -95,10 +97,11 @@ def outcome(row: "pd.Series[Any]") -> str:
     return f"{ended}: {message}" if message else ended
 
 
-def _value(value: Any, key: str = "") -> str:
+def parameter_value(value: Any, key: str = "") -> str:
+    """Return the value of a parameter in words; some lists mean a range, which their key tells."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list):
         # Of all lists the starting distances alone are a range.
-        return (" to " if key == "start.distance_m" else ", ").join(_value(v) for v in value)
+        return (" to " if key == "start.distance_m" else ", ").join(parameter_value(v) for v in value)
     return "not set" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

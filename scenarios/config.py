@@ -97,7 +97,7 @@ class Guidance(Section):
     placement: Literal["paper", "exact"] = "paper"
     """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside."""
     tracking_allowance_m: Annotated[float, Field(ge=0.0, le=10_000.0)] = 1.0
-    """Added to r_min in the placement: what the UAV may stray from the reference, which may touch r_min itself [m]."""
+    """Added to r_min in the placement: what the UAV may stray from the reference. The guard adds three quarters of it [m]."""
     tuning: Literal["given", "bounded"] = "given"
     """Look-ahead and steering_max as given, or those that converge fastest while no state asks for more than omega_max."""
     bound_speed_margin_mps: NonNegative = 0.5

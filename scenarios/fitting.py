@@ -46,8 +46,6 @@ _FITTED: dict[str, Callable[[Units], float]] = {
     "following.standoff_m": lambda unit: unit.length,
     "following.join_distance_m": lambda unit: unit.length,
     "following.tracked_m": lambda unit: unit.length,
-    "following.airspeed_range_mps": lambda unit: unit.speed,
-    "following.along_gain_per_s": lambda unit: 1.0 / unit.time,
     "criteria.tracking_error_rms_m": lambda unit: unit.length,
     "criteria.airspeed_error_rms_mps": lambda unit: unit.speed,
     "criteria.altitude_error_max_m": lambda unit: unit.speed,

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from pydantic import BaseModel
+from pydantic_core import to_jsonable_python
 
 from reports.provenance import provenance
 
@@ -40,16 +41,19 @@ def config_hash(*scenarios: BaseModel) -> str:
 
 
 def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
-    """Return every key of the scenario that has a number, a word or a switch, with its value, meaning and unit."""
+    """Return every key of the scenario that has a number, a word or a switch, with its value, default if any, meaning and unit."""
     listed = []
     for section_name in type(scenario).model_fields:
         section = getattr(scenario, section_name)
         if not isinstance(section, BaseModel) or section_name in ("comparison", "sweep"):
             continue
+        values = section.model_dump(mode="json")
         for key, field in type(section).model_fields.items():
             meaning, unit = _split_unit(field.description or "")
-            value = getattr(section, key)
-            listed.append({"key": f"{section_name}.{key}", "value": value, "unit": unit, "meaning": meaning})
+            parameter = {"key": f"{section_name}.{key}", "value": values[key], "unit": unit, "meaning": meaning}
+            if not field.is_required():
+                parameter["default"] = to_jsonable_python(field.get_default(call_default_factory=True))
+            listed.append(parameter)
     return listed
 
 

@@ -163,10 +163,6 @@ class Following(Section):
     """Error of the relative speed that the keep-out guard allows for [m/s]."""
     drift_rate_mps: NonNegative = 1.0
     """How fast dead reckoning may go wrong without satellite navigation [m/s]."""
-    airspeed_range_mps: Positive = 3.0
-    """Largest change of commanded airspeed [m/s]."""
-    along_gain_per_s: Positive = 0.4
-    """Wanted speed per along-track error [1/s]."""
 
 
 class SeaStart(Section):
@@ -261,6 +257,17 @@ class SeaScenario(Section):
             raise ValueError(
                 f"start.distance_m begins at {self.start.distance_m[0]:g} m; it must exceed keepout.radius_m,"
                 f" {self.keepout.radius_m:g} m"
+            )
+        air, room = self.turbulence, self.flight.duration_max_s
+        if air.gusts * 2.0 * air.gust_length_s > room:
+            raise ValueError(
+                f"turbulence.gusts is {air.gusts}, each {2.0 * air.gust_length_s:g} s long; they do not fit into"
+                f" flight.duration_max_s, {room:g} s: give fewer or shorter ones"
+            )
+        if self.fidelity == "kinematic" and (air.level != "none" or air.gusts):
+            raise ValueError(
+                "turbulence.level or turbulence.gusts is set with fidelity 'kinematic', which feels the steady wind alone:"
+                " set fidelity to 'six_dof', or turbulence.level to 'none' and turbulence.gusts to 0"
             )
         return self
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from scenarios.errors import InputError
 from scenarios.load import with_values
-from scenarios.sea_config import Draw, SeaScenario
+from scenarios.sea_config import SeaScenario
 from scenarios.sea_world import vessel_track
 
 _TRIES = 1000
@@ -30,7 +30,15 @@ def drawn_flight(trial: str, scenario: SeaScenario, number: int) -> tuple[SeaSce
     seed = int(sequence.generate_state(1)[0])
     low, high = scenario.speed_ratio
     for _ in range(_TRIES):
-        values = {draw.key: _value(draw, number, generator) for draw in scenario.draws}
+        values: dict[str, object] = {}
+        dealt = number
+        for draw in scenario.draws:
+            if draw.uniform is not None:
+                values[draw.key] = float(generator.uniform(*draw.uniform))
+            else:
+                # Several choices are dealt like the digits of a number: every combination comes equally often.
+                dealt, i = divmod(dealt, len(draw.choice or ()))
+                values[draw.key] = (draw.choice or ())[i]
         flight = with_values(scenario, values) if values else scenario
         track = vessel_track(flight)
         least, most = (wind / flight.guidance.airspeed_mps for wind in track.apparent_wind_range)
@@ -52,17 +60,10 @@ def check_draws(trial: str, scenario: SeaScenario) -> None:
     for number in range(max((len(draw.choice or ()) for draw in scenario.draws), default=0) or 1):
         for end in (0, 1):
             with_values(
-                scenario, {draw.key: draw.uniform[end] if draw.uniform else _dealt(draw, number) for draw in scenario.draws}
+                scenario,
+                {
+                    draw.key: draw.uniform[end] if draw.uniform else (draw.choice or ())[number % len(draw.choice or ())]
+                    for draw in scenario.draws
+                },
             )
     drawn_flight(trial, scenario, 0)
-
-
-def _value(draw: Draw, number: int, generator: np.random.Generator) -> object:
-    if draw.uniform is not None:
-        return float(generator.uniform(*draw.uniform))
-    return _dealt(draw, number)
-
-
-def _dealt(draw: Draw, number: int) -> object:
-    choices = draw.choice or ()
-    return choices[number % len(choices)]

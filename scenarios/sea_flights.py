@@ -21,6 +21,7 @@ from scenarios.run_directory import RunDirectory
 from scenarios.sea_config import SeaScenario
 from scenarios.sea_draws import drawn_flight
 from scenarios.sea_loop import SEA_COLUMNS, fly_sea
+from scenarios.sea_margin import SpreadTable
 from scenarios.sea_metrics import Row, sea_figures, sea_plan_row, sea_unmet
 from scenarios.sea_plan import KINEMATIC_LAG, Airframe, SeaPlan, plan_sea_flight
 from scenarios.vehicle import Vehicle
@@ -38,12 +39,14 @@ class SeaRequest:
     trial : its name
     scenario : of the trial
     number : of the flight in it, from 0
+    spreads : predicted in the trial's turbulence, none in still air
     """
 
     flight_id: str
     trial: str
     scenario: SeaScenario
     number: int
+    spreads: SpreadTable | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +73,7 @@ def fly_sea_request(request: SeaRequest, directory: Path, airframe: Airframe) ->
     try:
         scenario, seed, nu = drawn_flight(request.trial, request.scenario, request.number)
         row |= _drawn_row(scenario, seed, nu)
-        plan = plan_sea_flight(scenario, flight_id=request.flight_id, seed=seed, airframe=airframe)
+        plan = plan_sea_flight(scenario, flight_id=request.flight_id, seed=seed, airframe=airframe, spreads=request.spreads)
         row |= sea_plan_row(plan)
         record = fly_sea(plan, _vehicle(scenario, plan, airframe))
         run = RunDirectory(directory)

@@ -1,12 +1,45 @@
 """The keep-out margin of a flight over the real sea: what turbulence, navigation and the vessel's reports may take from it."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from scenarios.sea_config import SeaScenario
+from gnc.vessel_filter import VesselFilter, VesselReport
+from scenarios.keepout_margin import Spread, planned_margin
+from scenarios.sea_config import Reports, SeaScenario
 
-SpreadTable = tuple[tuple[float, ...], tuple[float, ...]]
+_MANOEUVRE, _MANOEUVRE_MEMORY = 0.02, 40.0
+"""Standard deviation [m/s^2] and time constant [s] of the acceleration that the vessel's filter reckons with: a ship's."""
+
+_NAVIGATION_TIME = 60.0
+"""Time constant with which the error of satellite navigation wanders [s]."""
+
+_GUARD_SHARE = 0.5
+"""Share of what turbulence takes that the keep-out guard leaves to the orbit [-]: it is in the same air."""
+
+_STEADY = 40
+"""Reports after which the filter's covariance no longer changes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpreadTable:
+    """Predicted spread of the tracking error.
+
+    Attributes
+    ----------
+    speed_ratios : nu, ascending [-]
+    spreads : at each of them
+    """
+
+    speed_ratios: tuple[float, ...]
+    spreads: tuple[Spread, ...]
+
+    def at(self, nu: float) -> Spread:
+        """Return the spread at the nearest speed ratio."""
+        return min(zip(self.speed_ratios, self.spreads, strict=True), key=lambda entry: abs(entry[0] - nu))[1]
+
+
+STILL = Spread(along=0.0, across=0.0, radial=0.0, radial_rate=0.0, airspeed=0.0, airspeed_rate=0.0, airspeed_limit=1.0)
+"""The spread in air that does not move."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,23 +58,45 @@ class KeepoutMargin:
     guard: float
 
 
-def keepout_margin(scenario: SeaScenario, spreads: Mapping[str, SpreadTable], nu: float) -> KeepoutMargin:
-    """Return the margin of a flight at a speed ratio.
+def vessel_filter(reports: Reports) -> VesselFilter:
+    """Return a fresh filter for a vessel's reports."""
+    return VesselFilter(
+        position_sigma=0.0 if reports.exact else reports.position_sigma_m,
+        velocity_sigma=0.0 if reports.exact else reports.velocity_sigma_mps,
+        acceleration=_MANOEUVRE,
+        memory=_MANOEUVRE_MEMORY,
+    )
+
+
+def keepout_margin(scenario: SeaScenario, spreads: SpreadTable | None, nu: float) -> KeepoutMargin:
+    """Return the margin of a flight.
+
+    It is what random errors reach as often as is allowed, tracking, navigation and the vessel's place together; how far a vessel
+    gets that begins to manoeuvre just after a report; and what is kept at least.
 
     Parameters
     ----------
     scenario : the flight
-    spreads : of the tracking error over nu, by level of turbulence
-    nu : [-]
+    spreads : in its turbulence, none in still air
+    nu : speed ratio [-]
     """
-    table = spreads.get(scenario.turbulence.level)
-    sigma = 0.0 if table is None else table[1][min(range(len(table[0])), key=lambda i: abs(table[0][i] - nu))]
-    reports = scenario.reports
-    seen = scenario.sensors.position_sigma_m
-    drift = 0.0
-    if not reports.exact:
-        seen = math.hypot(seen, 2.3)
-        drift = 0.5 * scenario.following.vessel_acceleration_mps2 * (reports.interval_s[1] + reports.latency_max_s) ** 2
-    guard = 4.0 * seen + drift
-    total = guard + scenario.following.margin_min_m + 4.0 * sigma
-    return KeepoutMargin(tracking_sigma=sigma, total=total, guard=guard + 1.5 * sigma)
+    f, reports = scenario.following, scenario.reports
+    spread = spreads.at(nu) if spreads else STILL
+    navigation = scenario.sensors.position_sigma_m
+    seen, drift = _seen(reports), 0.5 * f.vessel_acceleration_mps2 * (reports.interval_s[1] + reports.latency_max_s) ** 2
+    between = max(1.0, 0.5 * sum(reports.interval_s))
+    sigma, rate = math.hypot(seen, navigation), math.hypot(seen / between, navigation / _NAVIGATION_TIME)
+    unseen = planned_margin(STILL, other_sigma=sigma, other_sigma_rate=rate, touches_per_hour=f.touches_per_hour)
+    random = planned_margin(spread, other_sigma=sigma, other_sigma_rate=rate, touches_per_hour=f.touches_per_hour)
+    guard = drift + unseen + (1.0 - _GUARD_SHARE) * (random - unseen)
+    return KeepoutMargin(tracking_sigma=spread.radial, total=drift + random + f.margin_min_m, guard=guard)
+
+
+def _seen(reports: Reports) -> float:
+    """Return the standard deviation of the vessel's place just before a report, after many at their longest interval [m]."""
+    if reports.exact:
+        return 0.0
+    found, interval = vessel_filter(reports), reports.interval_s[1]
+    for i in range(_STEADY):
+        found.report(VesselReport(i * interval, 0.0, 0.0, 0.0, 0.0))
+    return found.at(_STEADY * interval + reports.latency_max_s).sigma

@@ -203,8 +203,8 @@ def sea_unmet(row: Row, criteria: SeaCriteria) -> list[str]:
         (row["outcome"] != Outcome.DIVERGED.value, "went out of control"),
         (broken or row["mode_at_end"] not in _GIVEN_UP, f"ended {row['mode_at_end']}, though nothing of the aircraft failed"),
     ]
+    checks.append((row["outcome"] == Outcome.COMPLETED.value, "did not complete"))
     if criteria.settles:
-        checks.append((row["outcome"] == Outcome.COMPLETED.value, "did not settle and fly its crossings"))
         checks.append((math.isfinite(row["settling_time_s"]), "did not settle"))
     if criteria.crossing_interval_error is not None:
         interval, predicted = row.get("crossing_interval_mean_s", nothing), row["crossing_interval_predicted_s"]

@@ -1,7 +1,6 @@
 """From a scenario of the real sea to one flight: everything it needs, resolved to SI, and the reason where it cannot be flown."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,12 +17,13 @@ from gnc.navigation import NavigationParameters
 from gnc.orbit import half_widths
 from gnc.oscillation import Oscillation, design_oscillation
 from gnc.sea_guidance import SeaParameters
+from gnc.speed_hold import SpeedHold, design_speed_hold
 from gnc.vessel_filter import VesselFilter, VesselReport
 from innerloop.reversal import Reversal
 from scenarios.flights import SixDof
 from scenarios.flyable import omega_max
 from scenarios.sea_config import SeaScenario
-from scenarios.sea_margin import KeepoutMargin, SpreadTable, keepout_margin
+from scenarios.sea_margin import KeepoutMargin, SpreadTable, keepout_margin, vessel_filter
 from scenarios.sea_world import VESSEL_DATA, TimedFault, drawn_fault, drawn_weather, vessel_track
 from scenarios.sensors import SensorErrors
 from scenarios.vessel_reports import heard_reports, never
@@ -32,9 +32,18 @@ from scenarios.vessel_track import VesselTrack
 _RATIO_STEPS = 48
 """Steps of nu at which the orbit's half-widths are tabled."""
 
-_MANOEUVRE, _MANOEUVRE_MEMORY = 0.02, 40.0
-"""Standard deviation [m/s^2] and time constant [s] of the acceleration that the vessel's filter reckons with: a ship's."""
+_STALE_MIN = 2.0
+"""Shortest age at which vessel data count as stale [s]."""
 
+_TRANSIT_SHARE = 0.5
+"""Share of the airspeed beyond V_r that is used on the way to the reference [-]."""
+
+_POWERLESS_SHARE = 0.55
+"""Mean lack of airspeed at which thrust counts as lost, over what V_r lies above the slowest airspeed [-]."""
+
+
+KINEMATIC_BANDWIDTH = 1.0
+"""Bandwidth of a kinematic vehicle's airspeed that its guidance reckons with; it follows at once [rad/s]."""
 
 KINEMATIC_LAG = 0.4
 """Lag of a kinematic vehicle's heading rate over the real sea, where it stands for an aircraft [s]."""
@@ -47,17 +56,19 @@ class Airframe:
     Attributes
     ----------
     lag : of the heading rate behind the guidance [s]
+    airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
     reversal : how the heading rate follows a reversal of the turn
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
-    spreads : predicted spread of the tracking error over nu, by level of turbulence
     six_dof, model : the aircraft and the JSBSim root of its autopilot; neither for a kinematic vehicle
     """
 
     lag: float
+    airspeed_bandwidth: float
+    airspeed_min: float
+    airspeed_max: float
     reversal: Reversal
     crab_banks: tuple[float, ...]
     crab_offsets: tuple[float, ...]
-    spreads: Mapping[str, SpreadTable]
     six_dof: SixDof | None
     model: Path | None
 
@@ -119,6 +130,7 @@ def plan_sea_flight(
     flight_id: str,
     seed: int,
     airframe: Airframe,
+    spreads: SpreadTable | None,
 ) -> SeaPlan:
     """Resolve one flight.
 
@@ -126,6 +138,7 @@ def plan_sea_flight(
     ----------
     scenario, flight_id, seed : the flight
     airframe : what flies it
+    spreads : predicted in its turbulence
 
     Raises
     ------
@@ -138,8 +151,8 @@ def plan_sea_flight(
     _check_plume(scenario, track)
     fastest = omega_max(g)
     ratios = np.linspace(0.0, scenario.following.speed_ratio_max, _RATIO_STEPS + 1).tolist()
-    oscillations = [_oscillation(scenario, fastest, ratio) for ratio in ratios]
-    margin = keepout_margin(scenario, airframe.spreads, nu)
+    oscillations = [oscillation_at(scenario, ratio) for ratio in ratios]
+    margin = keepout_margin(scenario, spreads, nu)
     steps = round(scenario.flight.duration_max_s * g.rate_hz) + 2
     start = _start(scenario, track, world)
     fault = drawn_fault(scenario, world)
@@ -149,11 +162,11 @@ def plan_sea_flight(
     return SeaPlan(
         flight_id=flight_id,
         nu=nu,
-        oscillation=_oscillation(scenario, fastest, nu),
+        oscillation=oscillation_at(scenario, nu),
         periods=tuple(oscillation.period for oscillation in oscillations),
         guidance=_parameters(scenario, fastest, airframe, margin.total, [half_widths(oscillation) for oscillation in oscillations]),
         guard=_guard(scenario, fastest, airframe.reversal, margin),
-        vessel_filter=_filter(scenario),
+        vessel_filter=vessel_filter(scenario.reports),
         track=track,
         heard=None
         if scenario.reports.exact
@@ -190,39 +203,18 @@ def _check_plume(scenario: SeaScenario, track: VesselTrack) -> None:
         )
 
 
-def _oscillation(scenario: SeaScenario, fastest: float, nu: float) -> Oscillation:
-    g = scenario.guidance
-    return design_oscillation(
-        nu=nu,
-        speed=g.airspeed_mps,
-        heading_rate_max=fastest,
-        reserve=g.reserve,
-        roll_rate_max=math.radians(g.roll_rate_max_deg_s),
-    )
-
-
 def _parameters(
     scenario: SeaScenario, fastest: float, airframe: Airframe, margin: float, widths: list[tuple[float, float]]
 ) -> SeaParameters:
     g, f, time_step = scenario.guidance, scenario.following, 1.0 / scenario.guidance.rate_hz
-    radius = scenario.keepout.radius_m
+    radius, reports = scenario.keepout.radius_m, scenario.reports
     gust = 0.0
     if scenario.turbulence.level != "none":
         sigma = intensities(scenario.plume.source_height_m, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
         scale = scale_lengths(scenario.plume.source_height_m)[0]
-        gust = sigma * math.sqrt(2.0 * scale / g.airspeed_mps / (round(0.25 * g.rate_hz) / g.rate_hz))
-    guidance = GuidanceParameters(
-        law=Law(g.law),
-        look_ahead=look_ahead(g.epsilon_per_m, g.look_ahead_m),
-        gain=g.gain_per_s,
-        rate_max=g.steering_max_rad_s,
-        k_1=g.lyapunov_gain_per_m2,
-        heading_rate_max=fastest,
-        time_step=time_step,
-        lag=airframe.lag if g.preview else 0.0,
-        airspeed_gain=0.0,
-        airspeed_trim_max=0.0,
-    )
+        gust = sigma * math.sqrt(2.0 * scale / g.airspeed_mps / (max(1, round(0.25 * g.rate_hz)) / g.rate_hz))
+    guidance = tracking_parameters(scenario, airframe)
+    hold = speed_hold(scenario, airframe)
     navigation = NavigationParameters(
         crab_banks=airframe.crab_banks,
         crab_offsets=airframe.crab_offsets,
@@ -230,7 +222,7 @@ def _parameters(
         course_sigma=math.hypot(0.03, gust / g.airspeed_mps),
         wind_drift=0.02,
         wind_prior=10.0,
-        wind_interval=round(0.25 * g.rate_hz),
+        wind_interval=max(1, round(0.25 * g.rate_hz)),
         time_step=time_step,
     )
     centre = CentreParameters(
@@ -254,13 +246,55 @@ def _parameters(
         join_distance=f.join_distance_m,
         standoff=f.standoff_m,
         tracked=f.tracked_m,
-        airspeed_range=f.airspeed_range_mps,
-        along_gain=f.along_gain_per_s,
+        hold=hold,
+        transit_airspeed=g.airspeed_mps + _TRANSIT_SHARE * (hold.airspeed_max - g.airspeed_mps),
+        powerless=_POWERLESS_SHARE * (g.airspeed_mps - hold.airspeed_min),
+        stale=max(_STALE_MIN, reports.interval_s[1] + reports.latency_max_s),
         vessel_acceleration=f.vessel_acceleration_mps2,
         drift_rate=f.drift_rate_mps,
-        plan_interval=round(0.5 * g.rate_hz),
+        plan_interval=max(1, round(0.5 * g.rate_hz)),
         altitude=scenario.plume.source_height_m,
-        glide_airspeed=0.875 * g.airspeed_mps,
+        glide_airspeed=0.5 * (g.airspeed_mps + hold.airspeed_min),
+    )
+
+
+def tracking_parameters(scenario: SeaScenario, airframe: Airframe) -> GuidanceParameters:
+    """Return the parameters of the tracking law of a scenario."""
+    g = scenario.guidance
+    return GuidanceParameters(
+        law=Law(g.law),
+        look_ahead=look_ahead(g.epsilon_per_m, g.look_ahead_m),
+        gain=g.gain_per_s,
+        rate_max=g.steering_max_rad_s,
+        k_1=g.lyapunov_gain_per_m2,
+        heading_rate_max=omega_max(g),
+        time_step=1.0 / g.rate_hz,
+        lag=airframe.lag if g.preview else 0.0,
+        airspeed_gain=0.0,
+        airspeed_trim_max=0.0,
+    )
+
+
+def speed_hold(scenario: SeaScenario, airframe: Airframe) -> SpeedHold:
+    """Return how a scenario's flights keep pace with their reference."""
+    return design_speed_hold(
+        bandwidth=airframe.airspeed_bandwidth,
+        speed=scenario.guidance.airspeed_mps,
+        look_ahead=scenario.guidance.look_ahead_m,
+        airspeed_min=airframe.airspeed_min,
+        airspeed_max=airframe.airspeed_max,
+    )
+
+
+def oscillation_at(scenario: SeaScenario, nu: float) -> Oscillation:
+    """Return the reference's oscillation at a speed ratio, or raise an InfeasibleError."""
+    g = scenario.guidance
+    return design_oscillation(
+        nu=nu,
+        speed=g.airspeed_mps,
+        heading_rate_max=omega_max(g),
+        reserve=g.reserve,
+        roll_rate_max=math.radians(g.roll_rate_max_deg_s),
     )
 
 
@@ -277,16 +311,6 @@ def _guard(scenario: SeaScenario, fastest: float, reversal: Reversal, margin: Ke
         time_step=1.0 / g.rate_hz,
         speed_error=f.speed_error_mps,
         acceleration=f.vessel_acceleration_mps2,
-    )
-
-
-def _filter(scenario: SeaScenario) -> VesselFilter:
-    reports = scenario.reports
-    return VesselFilter(
-        position_sigma=0.0 if reports.exact else reports.position_sigma_m,
-        velocity_sigma=0.0 if reports.exact else reports.velocity_sigma_mps,
-        acceleration=_MANOEUVRE,
-        memory=_MANOEUVRE_MEMORY,
     )
 
 

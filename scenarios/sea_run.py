@@ -9,9 +9,14 @@ from pathlib import Path
 
 from aircraft.errors import AircraftError
 from aircraft.faults import fault_names
+from aircraft.fdm import Fdm
 from aircraft.find import find_spec
-from aircraft.spec import Envelope
+from aircraft.spec import AircraftSpec, Envelope
+from aircraft.turbulence import TURBULENCE
+from aircraft.units import METRES_PER_FOOT
+from gnc.sea_guidance import Mode
 from innerloop.cache import Designed, designed
+from innerloop.dryden import low_altitude_turbulence
 from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim
@@ -21,6 +26,7 @@ from scenarios.errors import InputError
 from scenarios.fitting import fitted
 from scenarios.flights import SixDof
 from scenarios.flyable import check_flyable
+from scenarios.keepout_margin import tracking_spread
 from scenarios.ledger import Ledger, Row, Table
 from scenarios.load import load_study
 from scenarios.manifest import config_hash, opening_manifest, parameters
@@ -29,8 +35,9 @@ from scenarios.run_directory import RunDirectory
 from scenarios.sea_config import SeaScenario, SeaTrial
 from scenarios.sea_draws import check_draws
 from scenarios.sea_flights import SEA_CROSSING_COLUMNS, SeaRequest, SeaResult, fly_sea_request, sea_failed
+from scenarios.sea_margin import SpreadTable
 from scenarios.sea_metrics import SEA_SUMMARY_COLUMNS
-from scenarios.sea_plan import KINEMATIC_LAG, Airframe
+from scenarios.sea_plan import KINEMATIC_BANDWIDTH, KINEMATIC_LAG, Airframe, oscillation_at, speed_hold, tracking_parameters
 from scenarios.sea_world import SATELLITES, VESSEL_DATA
 
 
@@ -85,6 +92,9 @@ class SeaRunResult:
         return lines
 
 
+SPREAD_RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)
+"""Speed ratios at which the spread is predicted [-]; it hardly depends on them."""
+
 _SHOWN = 20
 """Flights that are named on the console, at most."""
 
@@ -125,30 +135,27 @@ def run_sea(
     if envelope is not None:
         trials = {trial: fitted(scenario, envelope) for trial, scenario in trials.items()}
     _check(trials, envelope)
-    requests = [
-        SeaRequest(flight_id=f"{trial}_{i:05d}", trial=trial, scenario=scenario, number=i)
-        for trial, scenario in trials.items()
-        for i in range(scenario.flights)
-    ]
     manifest = opening_manifest(study, name, overrides)
     # A list of trials does not change with what it lists.
     manifest |= {
         "config_hash": config_hash(study, *trials.values()),
         "study": "sea",
         "trials": {trial: scenario.model_dump(mode="json") for trial, scenario in trials.items()},
+        "modes": [mode.value for mode in Mode],
         "trial_parameters": {trial: parameters(scenario) for trial, scenario in trials.items()},
     }
     run.open(manifest["config_hash"], resume=resume)
-    every = [request.flight_id for request in requests]
+    every = [_flight_id(trial, i) for trial, scenario in trials.items() for i in range(scenario.flights)]
     table = Table(name="summary.csv", columns=SEA_SUMMARY_COLUMNS, flights=frozenset(every))
     ledger = Ledger(run, every, tables=[table], crossing_columns=SEA_CROSSING_COLUMNS)
-    manifest["flights_planned"] = len(requests)
+    manifest["flights_planned"] = len(every)
     run.write_json(run.manifest, manifest)
     began = time.perf_counter()
-    progress("flying", len(ledger.done), len(requests))
+    progress("flying", len(ledger.done), len(every))
     interrupted = False
     try:
         airframe = _airframe(first, design, run)
+        requests = _requests(trials, {trial: _spreads(scenario, design, airframe) for trial, scenario in trials.items()})
         for request in requests:
             if refusal and request.flight_id not in ledger.done:
                 _add(ledger, sea_failed(request, Outcome.TRIM_FAILED, refusal))
@@ -194,6 +201,18 @@ def _trials(study: SeaScenario | SeaTrial, name: str) -> dict[str, SeaScenario]:
         flights = math.ceil(study.share * trial.flights)
         trials[Path(listed).stem] = trial.model_copy(update={"flights": flights})
     return trials
+
+
+def _flight_id(trial: str, number: int) -> str:
+    return f"{trial}_{number:05d}"
+
+
+def _requests(trials: dict[str, SeaScenario], spreads: dict[str, SpreadTable | None]) -> list[SeaRequest]:
+    return [
+        SeaRequest(flight_id=_flight_id(trial, i), trial=trial, scenario=scenario, number=i, spreads=spreads[trial])
+        for trial, scenario in trials.items()
+        for i in range(scenario.flights)
+    ]
 
 
 def _design(scenario: SeaScenario) -> tuple[Designed | None, str]:
@@ -249,10 +268,12 @@ def _airframe(scenario: SeaScenario, found: Designed | None, run: RunDirectory) 
         reversal = Reversal(delay=0.0, lag=KINEMATIC_LAG)
         return Airframe(
             lag=KINEMATIC_LAG + half_step,
+            airspeed_bandwidth=KINEMATIC_BANDWIDTH,
+            airspeed_min=0.7 * scenario.guidance.airspeed_mps,
+            airspeed_max=1.3 * scenario.guidance.airspeed_mps,
             reversal=reversal,
             crab_banks=(-1.0, 1.0),
             crab_offsets=(0.0, 0.0),
-            spreads={},
             six_dof=None,
             model=None,
         )
@@ -266,13 +287,35 @@ def _airframe(scenario: SeaScenario, found: Designed | None, run: RunDirectory) 
     reversal = measure_reversal(AutopilotedAircraft(schedule.spec, run.model), start, schedule.envelope.bank)
     return Airframe(
         lag=lag + half_step,
+        airspeed_bandwidth=found.design.speeds.airspeed,
+        airspeed_min=schedule.envelope.airspeed_min,
+        airspeed_max=schedule.envelope.airspeed_max,
         reversal=reversal,
         crab_banks=tuple(turn.roll for turn in turns),
         crab_offsets=tuple(turn.course_offset() for turn in turns),
-        spreads={},
         six_dof=SixDof(start=start, lag=lag, reversal=reversal, envelope=schedule.envelope),
         model=run.model,
     )
+
+
+def _spreads(scenario: SeaScenario, found: Designed | None, airframe: Airframe) -> SpreadTable | None:
+    """Return the predicted spread of the tracking error in a trial's turbulence, if it has any."""
+    level = scenario.turbulence.level
+    if level == "none" or found is None or scenario.fidelity == "kinematic":
+        return None
+    schedule = found.design.schedule
+    air = low_altitude_turbulence(scenario.plume.source_height_m, TURBULENCE[level].wind_at_20ft)
+    guidance, hold = tracking_parameters(scenario, airframe), speed_hold(scenario, airframe)
+    spreads = [
+        tracking_spread(schedule, air, oscillation_at(scenario, nu), guidance, hold, span=_span(schedule.spec))
+        for nu in SPREAD_RATIOS
+    ]
+    return SpreadTable(speed_ratios=SPREAD_RATIOS, spreads=tuple(spreads))
+
+
+def _span(spec: AircraftSpec) -> float:
+    """Return the wing's span [m]."""
+    return Fdm(spec).read("metrics/bw-ft") * METRES_PER_FOOT
 
 
 def _fly_rest(

@@ -110,7 +110,6 @@ def guidance_parameters(**changes):
                 "heading_rate_max": HEADING_RATE_MAX,
                 "time_step": 0.05,
                 "lag": 0.0,
-                "guard_distance": 15.0,
                 "airspeed_gain": 0.0,
                 "airspeed_trim_max": 1.0,
             }
@@ -135,15 +134,19 @@ class KinematicFlight:
     distance: np.ndarray
 
 
-def fly(guidance, start, *, duration, delay=0.0, time_step=0.05):
-    """Fly a unicycle that answers the guidance's heading rate exactly, ``delay`` seconds late."""
+def fly(guidance, start, *, duration, delay=0.0, time_step=0.05, vessel=(0.0, 0.0)):
+    """Fly a unicycle that answers the guidance's heading rate exactly, ``delay`` seconds late.
+
+    The vessel, the keep-out disc's centre, is at the origin at first and has a velocity [m/s].
+    """
     north, east, course = start
     pending = deque([0.0] * round(delay / time_step))
     rate = 0.0
     rows = []
-    for _ in range(round(duration / time_step)):
+    for step in range(round(duration / time_step)):
         distance = math.hypot(guidance.reference.north - north, guidance.reference.east - east)
-        guidance.step(north, east, course, SPEED, rate)
+        disc = (vessel[0] * step * time_step, vessel[1] * step * time_step, *vessel)
+        guidance.step(north, east, course, SPEED, rate, disc)
         rows.append((north, east, guidance.heading_rate_command, distance))
         pending.append(guidance.heading_rate_command)
         rate = pending.popleft()

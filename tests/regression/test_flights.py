@@ -86,7 +86,31 @@ def test_the_law_alone_flies_into_the_keep_out_area_where_the_guard_does_not(fly
     # The sweep's own start at nu = 0.15: 10 m inside without the guard.
     without, _ = fly("guidance.keepout_guard=false", nu=0.15)
     assert without["keepout_violations"] > 0
-    assert fly(nu=0.15)[0]["keepout_violations"] == 0
+    assert "guard_interventions" not in without
+    guarded, history = fly(nu=0.15)
+    assert guarded["keepout_violations"] == 0
+    assert guarded["guard_interventions"] > 0
+    # Recorded at half the rate of the guidance.
+    shown = history["guard_intervening"]
+    assert guarded["guard_time_s"] == pytest.approx(0.1 * shown.sum(), abs=0.1 * guarded["guard_interventions"])
+    # On the way to the orbit, never on it.
+    assert history["time_s"][shown > 0].max() < guarded["settling_time_s"]
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.95])
+def test_a_flight_that_needs_no_guard_flies_the_same_without_one_to_the_last_bit(fly, nu):
+    row, guarded = fly("flight.crossings=5", nu=nu)
+    assert row["guard_interventions"] == 0
+    _, alone = fly("flight.crossings=5", "guidance.keepout_guard=false", nu=nu)
+    pd.testing.assert_frame_equal(guarded, alone, check_exact=True)
+
+
+@pytest.mark.parametrize(("seed", "nu"), [(1, 0.0), (10, 0.9), (7, 0.75)])
+def test_from_anywhere_about_the_ship_nothing_enters(fly, seed, nu):
+    # Starts from which the law alone, or a guard that takes the lag of slow commands for that of a reversal, got 3 to 7 m in.
+    row, _ = fly("start.spread_deg=180", f"seed={seed}", "flight.duration_max_s=250", nu=nu)
+    assert row["guard_interventions"] > 0
+    assert row["keepout_violations"] == 0
 
 
 @pytest.mark.parametrize("course", [-150, -60, 30, 120])

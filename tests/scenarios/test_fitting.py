@@ -125,7 +125,7 @@ def fitted_keys():
 def test_what_a_scenario_sets_itself_is_never_touched(share):
     # Neither where it is another number than the default, nor where it is the same.
     scenario = load_scenario("sweep_nu")
-    assert len(fitted_keys()) >= 20
+    assert len(fitted_keys()) >= 18
     for key in fitted_keys():
         wanted = np.multiply(keys(scenario)[key], share).tolist()
         found = keys(fitted(load_scenario("sweep_nu", [f"{key}={wanted}"]), aircraft(time=2.0, length=3.0)))
@@ -169,16 +169,14 @@ def kinematic_flight(time, length, *overrides, nu, lag):
     return record.history[:, [COLUMNS.index(name) for name in flown]] / scale
 
 
-NO_GUARD = "guidance.keepout_guard=false"
-# The guard looks half a second ahead for every aircraft (gnc/keepout_guard.py), so flights that it turns are not similar.
 FLIGHTS = pytest.mark.parametrize(
     ("nu", "lag", "overrides"),
     [
         (0.5, 0.0, []),
-        (0.15, 0.3, [NO_GUARD]),
-        (0.95, 0.3, ["guidance.preview=false", NO_GUARD]),
+        (0.15, 0.3, []),
+        (0.95, 0.3, ["guidance.preview=false"]),
         (0.5, 0.0, ["guidance.law=lyapunov"]),
-        (0.3, 0.3, ["guidance.law=line_of_sight", NO_GUARD]),
+        (0.3, 0.3, ["guidance.law=line_of_sight"]),
         (0.5, 0.3, ["guidance.tuning=bounded", "guidance.reserve=0.4"]),
     ],
 )

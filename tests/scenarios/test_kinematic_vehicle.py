@@ -133,6 +133,6 @@ def test_the_guidance_is_the_same_object_for_both_vehicles():
     commands = []
     for plan in plans:
         guidance = Guidance(plan.guidance, plan.reference, guard=plan.mission.guard)
-        guidance.step(-400.0, 30.0, 0.3, SPEED, 0.1)
+        guidance.step(-400.0, 30.0, 0.3, SPEED, 0.1, (0.0, 0.0, *plan.mission.vessel.velocity_ned))
         commands.append((guidance.heading_rate_command, guidance.airspeed_command))
     assert commands[0] == commands[1]

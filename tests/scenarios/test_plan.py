@@ -54,6 +54,22 @@ def test_preview_and_airspeed_trim_can_be_switched_off():
     assert plan("guidance.keepout_guard=false").mission.guard is None
 
 
+def test_a_start_from_which_no_command_keeps_out_is_refused():
+    # 210 m astern of a vessel at rest, straight at it: a turn away takes 38 m, and its lag besides.
+    start = ["start.place_m=[-210.0, 0.0]", "start.course_deg=0"]
+    with pytest.raises(InfeasibleError, match=r"the start lies 210\.0 m from the vessel on course 0 deg, where the best turn away"):
+        plan(*start, nu=0.0)
+    # Away from it, or with nobody to mind, it is flown.
+    plan(start[0], "start.course_deg=180", nu=0.0)
+    plan(*start, "guidance.keepout_guard=false", nu=0.0)
+
+
+def test_the_guard_keeps_its_share_of_what_the_orbit_keeps():
+    # r_min and 0.75 of the allowance of 1 m: the clearance of a vehicle that recedes is its distance less that.
+    guard = plan(nu=0.0).mission.guard
+    assert guard.clearance(0.0, 300.0, 0.0, 0.0, math.pi / 2.0, 19.42, 0.0) == pytest.approx(300.0 - 200.75, abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("overrides", "nu", "words"),
     [

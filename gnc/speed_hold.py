@@ -1,0 +1,84 @@
+"""Keeping pace with the reference in gusts: hold the speed over the mean air, not the airspeed.
+
+An autopilot that holds airspeed follows every gust along its path. Here it is asked for the airspeed that it has, and what the
+speed over the mean air lacks; gusts drop out of the sum, and the airspeed varies with them instead.
+"""
+
+from typing import NamedTuple
+
+from gnc.errors import InfeasibleError
+
+_CRITICAL = 0.25
+"""Of a first-order loop's bandwidth, the gain of a position loop about it that has two equal poles: none faster, no overshoot."""
+
+
+class SpeedHold(NamedTuple):
+    """Parameters of the law.
+
+    Attributes
+    ----------
+    gain : speed per along-track error [1/s]
+    airspeed_min, airspeed_max : between which airspeed is commanded [m/s]
+    """
+
+    gain: float
+    airspeed_min: float
+    airspeed_max: float
+
+
+def design_speed_hold(*, bandwidth: float, speed: float, look_ahead: float, airspeed_min: float, airspeed_max: float) -> SpeedHold:
+    """Return the parameters for a vehicle and a look-ahead.
+
+    The steering law takes out an error across the path at the rate V_r/R. At the same rate along it, an error dies out on a
+    straight line, and it does not matter that the path turns meanwhile. A vehicle whose airspeed answers too slowly for that gets
+    a quarter of its bandwidth.
+
+    Parameters
+    ----------
+    bandwidth : of the vehicle's airspeed behind its command [rad/s]
+    speed : V_r [m/s]
+    look_ahead : R of equation (15) [m]
+    airspeed_min, airspeed_max : that the vehicle can fly [m/s]
+
+    Raises
+    ------
+    InfeasibleError : V_r is not between the airspeeds that the vehicle can fly, or one of the others is not above 0
+    """
+    if not airspeed_min < speed < airspeed_max:
+        raise InfeasibleError(
+            f"reference speed is {speed:g} m/s; to keep it in gusts it must lie between {airspeed_min:g} and {airspeed_max:g} m/s"
+        )
+    for name, value, unit in (("bandwidth", bandwidth, "rad/s"), ("look-ahead", look_ahead, "m")):
+        if not value > 0.0:
+            raise InfeasibleError(f"speed hold: {name} is {value:g} {unit}; it must be above 0")
+    return SpeedHold(min(speed / look_ahead, _CRITICAL * bandwidth), airspeed_min, airspeed_max)
+
+
+def airspeed_to_hold(hold: SpeedHold, *, along: float, reference_speed: float, speed: float, airspeed: float) -> float:
+    """Return the airspeed to command [m/s].
+
+    Parameters
+    ----------
+    hold : the law's parameters
+    along : how far the reference is ahead, along its course [m]
+    reference_speed : V_r [m/s]
+    speed : horizontal, over the mean air [m/s]
+    airspeed : as measured, against the gusty air [m/s]
+    """
+    wanted = airspeed + reference_speed + hold.gain * along - speed
+    return min(max(wanted, hold.airspeed_min), hold.airspeed_max)
+
+
+def air_turn(heading_rate: float, *, speed: float, airspeed: float) -> float:
+    """Return what to command [rad/s] of an autopilot that turns against the gusty air, for a turn of the motion over the mean air.
+
+    An autopilot knows the lateral acceleration and divides it by its airspeed. The same acceleration turns the motion over the mean
+    air by as much more as that is slower. The other way round, with speeds exchanged, it makes a measured turn one of that motion.
+
+    Parameters
+    ----------
+    heading_rate : of the motion over the mean air [rad/s]
+    speed : horizontal, over the mean air [m/s]
+    airspeed : as measured, against the gusty air [m/s]
+    """
+    return heading_rate * speed / airspeed

@@ -1,0 +1,332 @@
+"""Reports of trials over the real sea: of a small kinematic run, flown once for this file, and of what can become of one."""
+
+import json
+import math
+import re
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reports import matplotlib_charts, plotly_charts
+from reports.blocks import FlightPicker, Table, Text
+from reports.build import build_reports
+from reports.chart import Chart, Line, Panel
+from reports.content import content
+from reports.run_data import read_run
+from reports.sea_charts import trial_charts
+from reports.sea_content import PICKED_MAX, picked_flights
+from reports.sea_data import Kind, Trial, read_trials
+from reports.sea_flight_charts import sea_flight_charts
+from reports.sea_tables import UNMET_MAX
+from scenarios.load import load_study
+from scenarios.manifest import parameters
+from scenarios.sea_config import SeaTrial
+from scenarios.sea_run import run_sea
+
+# Both settle and cross a few times, within some 150 s; after that the vessel of the second turns, which takes it 40 s at most.
+STEADY = """
+study = "sea"
+title = "Steady"
+fidelity = "kinematic"
+flights = 2
+draws = [{ key = "wind.speed_mps", uniform = [2.0, 4.0] }]
+[flight]
+crossings = 3
+[criteria]
+crossing_interval_error = 0.0321
+"""
+TURNS = """
+study = "sea"
+title = "Turns"
+fidelity = "kinematic"
+flights = 2
+[wind]
+speed_mps = 3.0
+[reports]
+interval_s = [2.0, 10.0]
+[following]
+vessel_acceleration_mps2 = 0.1
+[[draws]]
+key = "vessel.manoeuvres"
+choice = [[{ at_s = 150.0, turn_deg = 20.0, turn_rate_deg_s = 0.5 }], [{ at_s = 150.0, turn_deg = -10.0, turn_rate_deg_s = 0.5 }]]
+[flight]
+crossings = 0
+duration_max_s = 220.0
+[criteria]
+settles = false
+"""
+
+
+@pytest.fixture(scope="module")
+def run_path(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sea_reports")
+    for name, text in (("steady", STEADY), ("turns", TURNS)):
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    study = SeaTrial(title="Small", trials=[str(folder / "steady.toml"), str(folder / "turns.toml")])
+    run_sea(study, "small", folder / "run", jobs=1, resume=False, progress=lambda *_: None)
+    return folder / "run"
+
+
+@pytest.fixture(scope="module")
+def run(run_path):
+    return read_run(run_path)
+
+
+@pytest.fixture(scope="module")
+def report(run):
+    return content(run)
+
+
+def with_values(run, number, **values):
+    """Return a run with other values in one row of its summary."""
+    summary = run.summary.copy()
+    for key, value in values.items():
+        summary.loc[number, key] = value
+    return replace(run, summary=summary)
+
+
+def blocks_of(report, kind, anchor):
+    (section,) = (section for section in report.sections if section.anchor == anchor)
+    return [block for block in section.blocks if isinstance(block, kind)]
+
+
+def charts_of(report):
+    blocks = [block for section in report.sections for block in section.blocks]
+    flights = [flight for block in blocks if isinstance(block, FlightPicker) for flight in block.flights]
+    return [*(block for block in blocks if isinstance(block, Chart)), *(chart for flight in flights for chart in flight.charts)]
+
+
+def rows_of(report, title):
+    """Return the cells of a trial in the tables of all trials, but for its title."""
+    return [row[1:] for table in blocks_of(report, Table, "trials") for row in table.rows if row[0] == title]
+
+
+def test_a_run_over_the_sea_is_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
+    # Drawing takes nearly all of this test's time: one flight tells whether they are.
+    monkeypatch.setattr("reports.sea_content.PICKED_MAX", 1)
+    html, pdf = build_reports(shutil.copytree(run_path, tmp_path / "copy"))
+    text = html.read_text(encoding="utf-8")
+    assert pdf.read_bytes().startswith(b"%PDF")
+    for anchor in re.findall(r'href="#(\w+)"', text):
+        assert f'id="{anchor}"' in text
+    figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])
+    assert [flight_id.rsplit("_", 1)[0] for flight_id in figures] == ["steady"]
+    assert all(len(charts) == 2 for charts in figures.values())
+    # The kinematic vehicle is no aircraft, and of a list of trials each has a seed of its own.
+    assert "Flown with the kinematic vehicle" in text
+    assert dict(blocks_of(report, Table, "provenance")[0].rows)["Seed"] == "each trial's own"
+
+
+def test_every_axis_of_the_sea_reads_quantity_and_unit_and_every_chart_shows_something(report):
+    names = [chart.name for chart in charts_of(report) if chart.name not in ("tracks", "histories")]
+    assert len(set(names)) == len(names)
+    for chart in charts_of(report):
+        for panel in chart.panels:
+            assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)
+            for label in (panel.x_label, panel.y_label):
+                assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)
+
+
+def test_flights_without_an_entry_are_safe_and_one_entry_makes_the_whole_run_unsafe(run):
+    assert content(run).verdict.safe
+    judged = content(with_values(run, 3, keepout_violations=2, keepout_depth_m=1.5, min_distance_m=198.5, criteria_met=False))
+    assert not judged.verdict.safe
+    assert judged.verdict.headline == "Not safe: 1 of 4 flights entered the keep-out area, 2 times in all"
+    assert ("Closest approach", "198.5 m", "≥ 200 m") in judged.verdict.figures
+    assert "Turns: 1 of 2 fell short (1 entered the keep-out area, by up to 1.5 m)" in judged.verdict.failures
+    (picker,) = blocks_of(judged, FlightPicker, "flights")
+    assert "deepest entry" in next(flight.title for flight in picker.flights if flight.flight_id == "turns_00001")
+    # Entries into the keep-out area and the closest approach, from r_min too, are in the trial's row.
+    assert rows_of(judged, "Turns")[0][1:4] == ["2", "198.5", "-1.5"]
+
+
+def test_nothing_flown_is_not_safe(run):
+    empty = replace(run, summary=run.summary.assign(min_distance_m=math.nan, criteria_met=False))
+    verdict = content(empty).verdict
+    assert (verdict.safe, verdict.headline) == (False, "Nothing was flown")
+
+
+def with_criterion(run, trial, key, value):
+    manifest = json.loads(json.dumps(run.manifest))
+    manifest["trials"][trial]["criteria"][key] = value
+    return replace(run, manifest=manifest)
+
+
+def test_the_limits_shown_are_those_of_the_manifest(run, report):
+    # 0.0321 stands in the scenario above.
+    asked = {row[0]: row for row in rows_of(report, "Steady")[1:]}
+    assert asked["Mean crossing interval off π/ω₀"][1] == "≤ 3.21 %"
+    # Far below what any flight can show, so that both fall short.
+    other = content(with_criterion(run, "steady", "crossing_interval_error", 1e-6))
+    row = next(row for row in rows_of(other, "Steady")[1:] if row[0].startswith("Mean"))
+    assert row[1] == "≤ 0.0001 %"
+    assert row[3] == "2"
+
+
+def test_the_worst_measured_value_of_a_criterion_is_that_of_the_summary(run, report):
+    rows = run.summary[run.summary["trial"] == "steady"]
+    worst = max(abs(rows["crossing_interval_mean_s"] / rows["crossing_interval_predicted_s"] - 1.0))
+    shown = next(row for row in rows_of(report, "Steady")[1:] if row[0].startswith("Mean"))[2]
+    # Three digits are shown.
+    assert float(shown.removesuffix(" %")) == pytest.approx(100.0 * worst, rel=5e-3)
+
+
+def test_a_criterion_without_a_figure_counts_as_missed(run):
+    steady = read_trials(with_values(run, 0, crossing_interval_mean_s=math.nan))[0]
+    row = next(row for row in rows_of(content(steady.run), "Steady")[1:] if row[0].startswith("Mean"))
+    assert row[2].endswith("; 1 without")
+    assert row[3] == "1"
+
+
+def test_a_criterion_that_the_report_does_not_know_is_shown_all_the_same(run):
+    rows = rows_of(content(with_criterion(run, "turns", "loops_per_hour", 7)), "Turns")
+    assert ["loops per hour", "7", "see the flights that fell short", "0"] in rows
+
+
+def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(run_path, tmp_path):
+    path = shutil.copytree(run_path, tmp_path / "copy")
+    (path / "flights" / "steady_00000.parquet").unlink()
+    bare = read_run(path)
+    shown = [str(row["flight_id"]) for _, row, _ in picked_flights(read_trials(bare))]
+    assert sorted(shown) == ["steady_00001", "turns_00000", "turns_00001"]
+    # A flight that entered is shown whatever is left of it; the page says that it has no time history.
+    deep = content(with_values(bare, 0, keepout_violations=1, keepout_depth_m=0.5, criteria_met=False))
+    (picker,) = blocks_of(deep, FlightPicker, "flights")
+    assert (picker.flights[0].flight_id, picker.flights[0].charts) == ("steady_00000", [])
+
+
+def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run_path, tmp_path):
+    path = shutil.copytree(run_path, tmp_path / "copy")
+    shutil.rmtree(path / "flights")
+    summary = pd.read_csv(path / "summary.csv")
+    summary[summary["trial"] == "steady"].to_csv(path / "summary.csv", index=False)
+    report = content(read_run(path))
+    assert not report.verdict.complete
+    assert "Turns: 2 of 2 fell short (2 not flown yet)" in report.verdict.failures
+    assert [section.anchor for section in report.sections if section.anchor in ("trial1", "trial2", "flights")] == ["trial1"]
+
+
+def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
+    for trial in read_trials(run):
+        for _, row in trial.rows.iterrows():
+            tracks = sea_flight_charts(trial, row)[0]
+            lines = {line.label: line for line in tracks.panels[0].lines}
+            uav, closest = lines["UAV"], lines["closest"]
+            # The summary's bearing from the plume's axis counts clockwise, so that it is positive to the right of the axis.
+            aspect, distance = math.radians(row["start_aspect_deg"]), row["start_distance_m"]
+            assert uav.x[0] == pytest.approx(distance * math.sin(aspect), abs=1e-6)
+            assert uav.y[0] == pytest.approx(distance * math.cos(aspect), abs=1e-6)
+            # The flight is level with the funnel. Between samples, 0.1 s apart at 28 m/s at most, the summary interpolates.
+            assert math.hypot(closest.x[0], closest.y[0]) == pytest.approx(row["min_distance_m"], abs=0.02)
+
+
+def test_flights_cross_the_axis_where_the_trial_found_crossings(run):
+    trial = read_trials(run)[0]
+    row = trial.rows.iloc[0]
+    tracks, histories = sea_flight_charts(trial, row)
+    uav = next(line for line in tracks.panels[0].lines if line.label == "UAV")
+    time = next(line for line in histories.panels[0].lines if line.label == "flown").x
+    crossings = run.crossings_of(str(row["flight_id"]))
+    assert len(crossings) == 3
+    # Interpolated over up to 0.2 s of turns of up to 1 g: 9.81 0.2^2 / 8, 0.05 m.
+    assert np.interp(crossings["time_s"], time, uav.x) == pytest.approx(np.zeros(3), abs=0.05)
+    assert np.interp(crossings["time_s"], time, uav.y) == pytest.approx(crossings["axis_distance_m"].to_numpy(), abs=0.05)
+
+
+def test_manoeuvres_are_named_as_the_vessel_was_seen_to_turn(run):
+    trial = read_trials(run)[1]
+    (chart,) = trial_charts(trial)
+    names = [name for _, name in chart.panels[1].y_names]
+    assert names == ["", ""]
+    assert [name for _, name in chart.panels[0].y_names] == ["20° to starboard at 0.5°/s", "10° to port at 0.5°/s"]
+    for flight_id, turned in zip(trial.rows["flight_id"], (20.0, -10.0), strict=True):
+        history = run.history(str(flight_id))
+        courses = [
+            math.degrees(math.atan2(history["vessel_velocity_east_mps"].iloc[i], history["vessel_velocity_north_mps"].iloc[i]))
+            for i in (0, -1)
+        ]
+        assert courses[1] - courses[0] == pytest.approx(turned, abs=1e-6)
+    # One marker per flight, in rows a unit apart of which the first manoeuvre's is the upper one.
+    marks = next(line for line in chart.panels[1].lines if line.style == "points")
+    assert list(marks.y) == [1.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("sea_wind", Kind.CROSSINGS),
+        ("sea_turbulence_light", Kind.TURBULENCE),
+        ("sea_turbulence_severe", Kind.TURBULENCE),
+        ("sea_manoeuvres", Kind.MANOEUVRES),
+        ("sea_approach", Kind.APPROACH),
+        ("sea_together", Kind.TOGETHER),
+        ("sea_faults", Kind.FAULTS),
+    ],
+)
+def test_a_trial_is_known_by_what_it_holds_not_by_its_name(run, name, kind):
+    config = load_study(name, []).model_dump(mode="json")
+    assert Trial(run=run, key="any", name="trial1", config=config, rows=run.summary).kind is kind
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+def test_every_kind_of_trial_has_figures_of_any_run(run, kind, monkeypatch):
+    monkeypatch.setattr(Trial, "kind", kind)
+    for trial in read_trials(run):
+        charts = trial_charts(trial)
+        # No vessel manoeuvres, and so no crossing resumes, but there is always a closest approach to show.
+        assert charts
+        assert all(len(line.x) for chart in charts for panel in chart.panels for line in panel.lines)
+
+
+def test_a_long_list_of_flights_that_fell_short_is_cut_and_says_so(run):
+    count = UNMET_MAX + 7
+    row = run.summary.iloc[[0]].assign(criteria_met=False)
+    many = replace(run, summary=pd.concat([row] * count, ignore_index=True))
+    report = content(many)
+    (table,) = blocks_of(report, Table, "unmet")
+    (text,) = blocks_of(report, Text, "unmet")
+    assert len(table.rows) == UNMET_MAX
+    assert f"{count} flights fell short" in text.text
+    assert "7 more are in summary.csv" in text.text
+
+
+def test_no_more_flights_are_shown_than_stated_and_every_trial_has_its_share(run):
+    trials = [replace(trial, key=f"{trial.key}{i}") for i in range(5) for trial in read_trials(run)]
+    picked = picked_flights(trials)
+    assert len(picked) == PICKED_MAX
+    assert {trial.key for trial, _, _ in picked} == {trial.key for trial in trials}
+
+
+def test_parameters_say_what_a_trial_sets_and_draws_and_nothing_else(report):
+    *tables, defaults = blocks_of(report, Table, "parameters")
+    steady, turns = ({row[0]: row[1:3] for row in table.rows} for table in tables)
+    assert steady["wind.speed_mps"] == ["drawn from 2 to 4", "0"]
+    assert steady["criteria.crossing_interval_error"] == ["0.0321", "not set"]
+    assert turns["vessel.manoeuvres"] == ["in turn: 20° to starboard at 0.5°/s; 10° to port at 0.5°/s", "none"]
+    assert turns["reports.interval_s"] == ["2 to 10", "0 to 0"]
+    assert set(steady) == {
+        "flights, seed", "speed_ratio", "wind.speed_mps", "flight.crossings", "criteria.crossing_interval_error",
+    }  # fmt: skip
+    assert ["wind.speed_mps", "0"] in [row[:2] for row in defaults.rows]
+
+
+def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
+    scenario = load_study("sea_wind", ["vessel.manoeuvres=[{at_s = 10.0, turn_deg = 20.0}]"])
+    listed = {parameter["key"]: parameter for parameter in json.loads(json.dumps(parameters(scenario)))}
+    assert listed["vessel.manoeuvres"]["value"][0]["turn_deg"] == 20.0
+    assert listed["vessel.manoeuvres"]["default"] == []
+
+
+def test_an_ordinate_of_names_is_marked_alike_on_screen_and_in_print():
+    line = Line(x=np.array([0.0, 1.0]), y=np.array([0.0, 1.0]), label="", colour="blue")
+    names = [(0.0, "approach"), (1.0, "tracking")]
+    chart = Chart(
+        name="c", caption="", panels=[Panel(x_label="Time [s]", y_label="Mode [-]", lines=[line], y_names=names)]
+    )  # fmt: skip
+    printed = matplotlib_charts.draw(chart).axes[0]
+    assert [(tick, text.get_text()) for tick, text in zip(printed.get_yticks(), printed.get_yticklabels(), strict=True)] == names
+    screen = plotly_charts.draw(chart).layout.yaxis
+    assert list(zip(screen.tickvals, screen.ticktext, strict=True)) == names
