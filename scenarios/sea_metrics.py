@@ -185,7 +185,7 @@ def _crossing_figures(plan: SeaPlan, crossings: list[Crossing], speed_ratio: flo
 def sea_unmet(row: Row, criteria: SeaCriteria) -> list[str]:
     """Return what a flight's row fails, each as a short sentence; empty when all is met.
 
-    Beside the criteria every flight has to keep out, to stay under control, and not to be given up where nothing of the aircraft
+    Beside the criteria every flight has to keep out, to complete, and not to be given up where nothing of the aircraft
     has failed: a false alarm would end it safely, and measure nothing.
     """
     nothing = math.nan
@@ -200,10 +200,9 @@ def sea_unmet(row: Row, criteria: SeaCriteria) -> list[str]:
             row["heading_rate_command_max_rad_s"] <= limit,
             f"commanded {row['heading_rate_command_max_rad_s']:.4f} rad/s, above omega_max",
         ),
-        (row["outcome"] != Outcome.DIVERGED.value, "went out of control"),
+        (row["outcome"] == Outcome.COMPLETED.value, "did not complete"),
         (broken or row["mode_at_end"] not in _GIVEN_UP, f"ended {row['mode_at_end']}, though nothing of the aircraft failed"),
     ]
-    checks.append((row["outcome"] == Outcome.COMPLETED.value, "did not complete"))
     if criteria.settles:
         checks.append((math.isfinite(row["settling_time_s"]), "did not settle"))
     if criteria.crossing_interval_error is not None:

@@ -72,7 +72,7 @@ def test_speed_ratios_that_no_draw_has_are_refused_in_a_line():
         ({"key": "vessel.speed_mps", "uniform": [5.0, 500.0]}, "vessel.speed_mps: value is 500.0"),
         ({"key": "vessel.speed_mps", "uniform": [-5.0, 10.0]}, "vessel.speed_mps: value is -5.0"),
         # Only the third flight would have met it.
-        ({"key": "turbulence.level", "choice": ["none", "light", "hurricane"]}, "turbulence.level: value is 'hurricane'"),
+        ({"key": "plume.direction", "choice": ["given", "apparent_wind", "up"]}, "plume.direction: value is 'up'"),
         ({"key": "title.first", "choice": ["a"]}, "'title' is a value, not a section"),
     ],
 )

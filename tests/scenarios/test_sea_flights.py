@@ -196,13 +196,15 @@ def test_a_flight_that_does_not_settle_in_time_says_so(tmp_path):
 
 def test_an_error_that_nobody_thought_of_is_a_row_too(tmp_path):
     # The directory of the run is gone.
-    request = SeaRequest(flight_id="a", trial="trial", scenario=scenario(start=ASTERN, flight={"duration_max_s": 5.0}), number=0)
+    request = SeaRequest(
+        flight_id="a", trial="trial", scenario=scenario(start=ASTERN, flight={"duration_max_s": 5.0}), number=0, spreads=None
+    )
     row = fly_sea_request(request, tmp_path / "gone", AIRFRAME).row
     assert (row["outcome"], row["criteria_met"]) == ("failed", False)
     assert "FileNotFoundError" in row["message"]
 
 
 def test_a_flight_that_never_began_is_a_row():
-    request = SeaRequest(flight_id="a", trial="trial", scenario=scenario(), number=0)
+    request = SeaRequest(flight_id="a", trial="trial", scenario=scenario(), number=0, spreads=None)
     result = sea_failed(request, Outcome.FAILED, "why")
     assert result.row == {"flight_id": "a", "trial": "trial", "outcome": "failed", "message": "why", "criteria_met": False}
