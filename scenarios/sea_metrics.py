@@ -6,15 +6,20 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from gnc.sea_guidance import Mode
 from scenarios.closed_loop import Outcome
 from scenarios.crossings import Crossing, find_crossings
 from scenarios.keepout import keepout_figures
 from scenarios.sea_config import SeaCriteria
-from scenarios.sea_loop import SEA_COLUMNS, SeaRecord
+from scenarios.sea_loop import DITCHED, SEA_COLUMNS, SeaRecord
 from scenarios.sea_plan import SeaPlan
+from scenarios.sea_world import SATELLITES, VESSEL_DATA
 
 Array = npt.NDArray[np.float64]
 Row = dict[str, Any]
+
+_GIVEN_UP = (Mode.GLIDING.value, Mode.TERMINATING.value, DITCHED)
+"""Modes of a flight that is over for its task."""
 
 SEA_SUMMARY_COLUMNS = (
     "flight_id", "trial", "outcome", "message", "criteria_met", "aircraft", "fidelity", "seed", "nu", "nu_min", "nu_max",
@@ -178,8 +183,13 @@ def _crossing_figures(plan: SeaPlan, crossings: list[Crossing], speed_ratio: flo
 
 
 def sea_unmet(row: Row, criteria: SeaCriteria) -> list[str]:
-    """Return what a flight's row fails, each as a short sentence; empty when all is met."""
+    """Return what a flight's row fails, each as a short sentence; empty when all is met.
+
+    Beside the criteria every flight has to keep out, to complete, and not to be given up where nothing of the aircraft
+    has failed: a false alarm would end it safely, and measure nothing.
+    """
     nothing = math.nan
+    broken = row["fault"] not in ("none", VESSEL_DATA, SATELLITES)
     limit = row["heading_rate_limit_rad_s"] * (1.0 + 1e-12)
     checks = [
         (
@@ -190,8 +200,9 @@ def sea_unmet(row: Row, criteria: SeaCriteria) -> list[str]:
             row["heading_rate_command_max_rad_s"] <= limit,
             f"commanded {row['heading_rate_command_max_rad_s']:.4f} rad/s, above omega_max",
         ),
+        (row["outcome"] == Outcome.COMPLETED.value, "did not complete"),
+        (broken or row["mode_at_end"] not in _GIVEN_UP, f"ended {row['mode_at_end']}, though nothing of the aircraft failed"),
     ]
-    checks.append((row["outcome"] == Outcome.COMPLETED.value, "did not complete"))
     if criteria.settles:
         checks.append((math.isfinite(row["settling_time_s"]), "did not settle"))
     if criteria.crossing_interval_error is not None:

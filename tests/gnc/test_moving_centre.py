@@ -63,7 +63,6 @@ def test_behind_a_steady_vessel_it_is_where_equations_9_to_11_put_it(nu):
 
 
 @pytest.mark.parametrize("heading_deg", [90.0, -90.0, 135.0])
-@pytest.mark.xfail(reason="the centre's motion counts as straight ahead of the axis, whatever chi_P is", strict=True)
 def test_with_a_given_plume_the_distance_knows_its_heading(heading_deg):
     heading = math.radians(heading_deg)
     centre = make(plume_heading=heading)

@@ -7,17 +7,19 @@ from innerloop.reversal import Reversal
 from scenarios.sea_config import SeaScenario
 from scenarios.sea_flights import SeaRequest, fly_sea_request
 from scenarios.sea_loop import SEA_COLUMNS
-from scenarios.sea_plan import KINEMATIC_LAG, Airframe
+from scenarios.sea_plan import KINEMATIC_BANDWIDTH, KINEMATIC_LAG, Airframe
 from scenarios.vessel_track import VesselTrack
 
 SPEED = 19.42
 
 AIRFRAME = Airframe(
     lag=KINEMATIC_LAG + 0.025,
+    airspeed_bandwidth=KINEMATIC_BANDWIDTH,
+    airspeed_min=0.7 * SPEED,
+    airspeed_max=1.3 * SPEED,
     reversal=Reversal(delay=0.0, lag=KINEMATIC_LAG),
     crab_banks=(-1.0, 1.0),
     crab_offsets=(0.0, 0.0),
-    spreads={},
     six_dof=None,
     model=None,
 )
@@ -34,7 +36,7 @@ def scenario(**changes):
 
 def fly(directory, **changes):
     """Fly one flight as a run does; return its result and its time history."""
-    request = SeaRequest(flight_id="a", trial="trial", scenario=scenario(**changes), number=0)
+    request = SeaRequest(flight_id="a", trial="trial", scenario=scenario(**changes), number=0, spreads=None)
     return fly_sea_request(request, directory, AIRFRAME)
 
 

@@ -70,6 +70,7 @@ def test_help_and_list_answer():
         (["sweep_nu", "--resume"], ["--resume needs --out"]),
         (["sweep_nu", "--jobs", "0"], ["--jobs", "greater than or equal to 1"]),
         (["sweep_nu", "--sed", "5"], ["--sed", "--help"]),
+        (["sea_trial", "--set", "trials=['sea_nowhere']"], ["unknown scenario 'sea_nowhere'", "sea_wind"]),
     ],
 )
 def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path):
@@ -138,3 +139,17 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
         pd.read_csv(broken / "summary.csv")[columns], pd.read_csv(whole / "summary.csv")[columns], check_exact=True
     )
     assert (broken / "crossings.csv").read_bytes() == (whole / "crossings.csv").read_bytes()
+
+
+def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tmp_path):
+    # 0.005 of 200 flights, with the seed and the duration that the trials are told; too short to settle.
+    keys = ["trials=['sea_wind']", "share=0.005", "fidelity=kinematic", "flight.duration_max_s=10", "start.spread_deg=0"]
+    settings = [word for key in keys for word in ("--set", key)]
+    result = run("sea_trial", *settings, "--seed", "7", "--no-report", "--jobs", "1", "--out", tmp_path / "run")
+    assert result.returncode == 1, result.stderr
+    assert "1 flights planned, 1 done" in result.stdout
+    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
+    assert manifest["trials"]["sea_wind"]["seed"] == 7
+    summary = pd.read_csv(tmp_path / "run" / "summary.csv")
+    assert list(summary["outcome"]) == ["not_settled"]
+    assert summary["duration_s"][0] == 10.0

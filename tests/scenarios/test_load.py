@@ -60,7 +60,7 @@ def test_overrides_set_any_key(override, value):
         ("guidance.command_limit=false", ["command_limit is false", "set fidelity=kinematic"]),
         ("start.place_m=[-100, 0]", ["start.place_m lies at 100 m", "must exceed keepout.radius_m, 200 m"]),
         ("guidance={tuning='bounded', law='lyapunov'}", ["tuning is 'bounded' with law 'lyapunov'", "set law to 'cascade'"]),
-        ("study=magic", ["study is 'magic'", "'flights', 'paper' or 'convergence'"]),
+        ("study=magic", ["study is 'magic'", "flights, paper, convergence, sea, sea_trial"]),
         ("study=paper", ["study is 'paper' with 0 cases"]),
     ],
 )

@@ -38,7 +38,7 @@ def test_a_part_fails_for_good():
 
 def test_gusts_come_one_after_the_other_and_are_no_stronger_than_they_may():
     turbulence = {"gusts": 5, "gust_speed_mps": 8.0, "gust_length_s": 4.0}
-    weather = drawn_weather(scenario(turbulence=turbulence, flight={"duration_max_s": 500.0}), generator())
+    weather = drawn_weather(scenario(fidelity="six_dof", turbulence=turbulence, flight={"duration_max_s": 500.0}), generator())
     assert len(weather.gusts) == 5
     for i, gust in enumerate(weather.gusts):
         # A hundred seconds for each, of which it takes four to rise and four to fall.
@@ -50,7 +50,8 @@ def test_gusts_come_one_after_the_other_and_are_no_stronger_than_they_may():
 
 
 def test_the_air_is_drawn_by_the_seed():
-    blown = scenario(turbulence={"level": "light", "gusts": 2, "gust_speed_mps": 4.0}, wind={"speed_mps": 5.0, "from_deg": 30.0})
+    turbulence = {"level": "light", "gusts": 2, "gust_speed_mps": 4.0}
+    blown = scenario(fidelity="six_dof", turbulence=turbulence, wind={"speed_mps": 5.0, "from_deg": 30.0})
     assert drawn_weather(blown, generator()) == drawn_weather(blown, generator())
     assert drawn_weather(blown, np.random.default_rng(10)) != drawn_weather(blown, generator())
     assert drawn_weather(blown, generator()).wind == wind_ned(blown)

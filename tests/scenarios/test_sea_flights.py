@@ -1,0 +1,210 @@
+"""Whole flights over the real sea, with the kinematic vehicle: what each mode of the guidance is there for."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from sea_cases import AIRFRAME, ASTERN, SPEED, fly, modes, scenario
+
+from gnc.sea_guidance import Mode
+from scenarios.closed_loop import Outcome
+from scenarios.sea_flights import SEA_CROSSING_COLUMNS, SeaRequest, fly_sea_request, sea_failed
+from scenarios.sea_metrics import SEA_SUMMARY_COLUMNS
+
+HEARD = {"interval_s": (2.0, 10.0), "latency_max_s": 2.0, "missing": 0.1}
+
+
+def history_of(directory, flight="a"):
+    return pd.read_parquet(directory / "flights" / f"{flight}.parquet")
+
+
+def apart(history, one, other):
+    """Return the horizontal distance between two of the places that a history holds [m]; the vehicle's own has no name."""
+    return np.hypot(*(history[f"{one}{axis}_m"] - history[f"{other}{axis}_m"] for axis in ("north", "east")))
+
+
+@pytest.fixture(scope="module")
+def windy(tmp_path_factory):
+    """A flight that tracks the reference in wind, from astern."""
+    directory = tmp_path_factory.mktemp("windy")
+    result = fly(directory, wind={"speed_mps": 6.0, "from_deg": 70.0}, start=ASTERN, flight={"crossings": 6})
+    return result, history_of(directory)
+
+
+def test_a_flight_in_wind_tracks_and_crosses_at_the_interval_of_the_apparent_wind(windy):
+    result, history = windy
+    row = result.row
+    assert (row["outcome"], row["criteria_met"], row["message"]) == ("completed", True, "")
+    assert [mode for mode, _ in modes(history)] == [Mode.TRACKING]
+    # The vessel moves 8 m/s north, the wind 6 m/s towards 250 degrees; nu by the triangle, and the interval by equations (6), (8).
+    north, east = 8.0 - 6.0 * math.cos(math.radians(250.0)), -6.0 * math.sin(math.radians(250.0))
+    assert row["nu"] == pytest.approx(math.hypot(north, east) / SPEED, rel=1e-9)
+    # Settled within 3 bands of 8 m the orbit still moves into place: a centimetre per second of the 19 m/s that cross it.
+    assert row["crossing_interval_mean_s"] == pytest.approx(row["crossing_interval_predicted_s"], rel=2e-3)
+    assert row["crossing_count"] == len(result.crossings) == 6
+    assert row["keepout_violations"] == 0
+    # Exact sensors.
+    assert row["wind_error_rms_mps"] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_what_a_flight_records_is_what_the_tables_have_columns_for(windy):
+    result, _ = windy
+    assert set(result.row) <= set(SEA_SUMMARY_COLUMNS)
+    assert set(result.crossings[0]) == set(SEA_CROSSING_COLUMNS)
+    assert np.all(np.diff([crossing["time_s"] for crossing in result.crossings]) > 0.0)
+
+
+def test_crossings_lie_on_the_plumes_axis_beyond_the_keep_out_radius(windy):
+    result, history = windy
+    for crossing in result.crossings:
+        at = crossing["time_s"]
+        north = np.interp(at, history["time_s"], history["north_m"] - history["vessel_north_m"])
+        east = np.interp(at, history["time_s"], history["east_m"] - history["vessel_east_m"])
+        axis = history["plume_axis_rad"].iloc[0]
+        # Straight lines between samples at 10 Hz: (0.1 s)^2/8 of 9.8 m/s^2, 1.2 cm.
+        assert math.cos(axis) * east - math.sin(axis) * north == pytest.approx(0.0, abs=0.02)
+        assert math.hypot(north, east) == pytest.approx(crossing["distance_m"], abs=0.02)
+        assert crossing["distance_m"] > 200.0
+
+
+@pytest.mark.xfail(reason="the reference is recorded one step later than the vehicle: V dt = 0.97 m", strict=True)
+def test_the_reference_is_recorded_for_the_time_of_the_vehicle(windy):
+    _, history = windy
+    settled = history.iloc[-100:]
+    to_north = settled["reference_north_m"] - settled["north_m"]
+    to_east = settled["reference_east_m"] - settled["east_m"]
+    course = settled["reference_course_rad"]
+    along = to_north * np.cos(course) + to_east * np.sin(course)
+    # A vehicle with exact sensors keeps pace within decimetres; a step of 0.05 s at 19.42 m/s is 0.97 m.
+    assert abs(along.mean()) < 0.3
+
+
+def test_from_ahead_it_goes_round_the_keep_out_area(tmp_path):
+    # This seed starts it nearly straight ahead of the vessel, which comes towards it.
+    result = fly(tmp_path, start={"distance_m": (600.0, 700.0), "spread_deg": 180.0}, seed=25, flight={"crossings": 1})
+    history = history_of(tmp_path)
+    assert abs(result.row["start_aspect_deg"]) > 170.0
+    assert [mode for mode, _ in modes(history)] == [Mode.APPROACH, Mode.TRACKING]
+    assert result.row["outcome"] == "completed"
+    assert apart(history, "", "vessel_").min() > 200.0
+    # Seen from the vessel it passes abeam: on the way to the other side, its bearing goes round, and not through the middle.
+    bearing = np.unwrap(np.arctan2(history["east_m"] - history["vessel_east_m"], history["north_m"] - history["vessel_north_m"]))
+    assert np.ptp(bearing) > math.radians(120.0)
+
+
+def test_while_nothing_is_heard_of_the_vessel_it_holds_off_and_then_resumes(tmp_path):
+    result = fly(
+        tmp_path,
+        reports=HEARD,
+        fault={"kind": "vessel_data", "at_s": (80.0, 80.0), "lasts_s": 60.0},
+        following={"vessel_acceleration_mps2": 0.1, "speed_error_mps": 0.5},
+        start=ASTERN,
+        flight={"crossings": 0, "duration_max_s": 260.0},
+        criteria={"settles": False},
+    )
+    history = history_of(tmp_path)
+    during = history[(history["time_s"] > 110.0) & (history["time_s"] < 140.0)]
+    assert set(during["mode"]) == {float(list(Mode).index(Mode.HOLDING))}
+    # 12 s without a word, and then a vessel that may speed up by 0.1 m/s^2: the later, the further off.
+    place = apart(during, "centre_", "vessel_seen_")
+    assert place.iloc[-1] > place.iloc[0] + 20.0
+    assert np.diff(place).min() > -0.1
+    assert result.row["mode_at_end"] == "tracking"
+    assert result.row["keepout_violations"] == 0
+    after = history[history["time_s"] > 200.0]
+    assert apart(after, "centre_", "vessel_seen_").min() < place.iloc[-1] - 50.0
+
+
+def test_vessel_data_fail_also_where_they_are_exact(tmp_path):
+    fly(
+        tmp_path,
+        fault={"kind": "vessel_data", "at_s": (0.0, 0.0), "lasts_s": 30.0},
+        vessel={"speed_mps": 8.0, "manoeuvres": [{"at_s": 5.0, "turn_deg": 90.0, "turn_rate_deg_s": 3.0}]},
+        start=ASTERN,
+        flight={"crossings": 0, "duration_max_s": 45.0},
+        criteria={"settles": False},
+    )
+    history = history_of(tmp_path).set_index("time_s")
+    off = apart(history, "vessel_seen_", "vessel_")
+    # The flight begins with a vessel that is known, and takes it to go straight on; it turned.
+    assert off.loc[4.0] < 0.01
+    assert off.loc[29.0] > 50.0
+    assert off.loc[31.0] < 1.0
+    assert [mode for mode, _ in modes(history.reset_index())][-2:] == [Mode.HOLDING, Mode.TRACKING]
+
+
+def test_without_satellites_it_reckons_and_stays_outside(tmp_path):
+    result = fly(
+        tmp_path,
+        wind={"speed_mps": 6.0, "from_deg": 70.0},
+        fault={"kind": "satellite_navigation", "at_s": (80.0, 80.0), "lasts_s": 20.0},
+        start=ASTERN,
+        flight={"crossings": 0, "duration_max_s": 150.0},
+        criteria={"settles": False},
+    )
+    history = history_of(tmp_path)
+    sequence = modes(history)
+    assert (Mode.DEAD_RECKONING, 80.0) in [(mode, round(time, 1)) for mode, time in sequence]
+    assert sequence[-1][0] is Mode.TRACKING
+    assert result.row["keepout_violations"] == 0
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"vessel": {"speed_mps": 19.0}}, "nu = 0.98; the UAV at 19.42 m/s follows up to nu = 0.97: fly faster"),
+        # Not at first, but once the vessel has turned against the wind.
+        (
+            {
+                "vessel": {"speed_mps": 10.0, "manoeuvres": [{"at_s": 60.0, "turn_deg": 180.0, "turn_rate_deg_s": 2.0}]},
+                "wind": {"speed_mps": 9.5, "from_deg": 180.0},
+            },
+            "the vessel moves at up to 19.5 m/s through the air",
+        ),
+        ({"vessel": {"speed_mps": 0.0}}, "the apparent wind is 0.00 m/s; below 1 the plume has no direction"),
+        ({"wind": {"speed_mps": 8.0, "from_deg": 180.0}}, "the apparent wind is 0.00 m/s"),
+    ],
+)
+def test_what_cannot_be_flown_is_an_infeasible_row_with_one_clear_line(tmp_path, changes, words):
+    result = fly(tmp_path, **changes)
+    assert (result.row["outcome"], result.row["criteria_met"]) == ("infeasible", False)
+    assert words in result.row["message"]
+    assert "\n" not in result.row["message"]
+    assert set(result.row) <= set(SEA_SUMMARY_COLUMNS)
+    assert not (tmp_path / "flights").exists()
+
+
+def test_a_vessel_at_rest_in_wind_can_be_flown_and_one_without_any_where_the_plume_is_given(tmp_path):
+    for number, changes in enumerate(
+        [{"wind": {"speed_mps": 5.0, "from_deg": 30.0}}, {"plume": {"direction": "given", "heading_deg": 180.0}}]
+    ):
+        directory = tmp_path / str(number)
+        directory.mkdir()
+        result = fly(
+            directory, vessel={"speed_mps": 0.0}, start=ASTERN, flight={"crossings": 0, "duration_max_s": 60.0},
+            criteria={"settles": False}, **changes,
+        )  # fmt: skip
+        assert (result.row["outcome"], result.row["keepout_violations"]) == ("completed", 0), result.row["message"]
+
+
+def test_a_flight_that_does_not_settle_in_time_says_so(tmp_path):
+    row = fly(tmp_path, start=ASTERN, flight={"crossings": 5, "duration_max_s": 20.0}).row
+    assert (row["outcome"], row["criteria_met"]) == ("not_settled", False)
+    assert "0 of 5 crossings flown after settling within 20 s; allow more time (flight.duration_max_s)" in row["message"]
+
+
+def test_an_error_that_nobody_thought_of_is_a_row_too(tmp_path):
+    # The directory of the run is gone.
+    request = SeaRequest(
+        flight_id="a", trial="trial", scenario=scenario(start=ASTERN, flight={"duration_max_s": 5.0}), number=0, spreads=None
+    )
+    row = fly_sea_request(request, tmp_path / "gone", AIRFRAME).row
+    assert (row["outcome"], row["criteria_met"]) == ("failed", False)
+    assert "FileNotFoundError" in row["message"]
+
+
+def test_a_flight_that_never_began_is_a_row():
+    request = SeaRequest(flight_id="a", trial="trial", scenario=scenario(), number=0, spreads=None)
+    result = sea_failed(request, Outcome.FAILED, "why")
+    assert result.row == {"flight_id": "a", "trial": "trial", "outcome": "failed", "message": "why", "criteria_met": False}
