@@ -154,7 +154,8 @@ def run_sea(
     progress("flying", len(ledger.done), len(every))
     interrupted = False
     try:
-        airframe = _airframe(first, design, run)
+        # Of a trial that has been fitted to the aircraft: its airspeed is where flights start.
+        airframe = _airframe(next(iter(trials.values())), design, run)
         requests = _requests(trials, {trial: _spreads(scenario, design, airframe) for trial, scenario in trials.items()})
         for request in requests:
             if refusal and request.flight_id not in ledger.done:
