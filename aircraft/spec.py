@@ -40,6 +40,21 @@ class ControlInput:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Feedback:
+    """What a servo reports.
+
+    Attributes
+    ----------
+    told, position : JSBSim properties of what it is told [-] and of where it is
+    travel : position of a servo that has been told 1
+    """
+
+    told: str
+    position: str
+    travel: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Actuator:
     """What moves one surface or every engine's throttle, and can stick (``aircraft.faults``).
 
@@ -47,10 +62,12 @@ class Actuator:
     ----------
     name : what the user calls it, e.g. ``left_elevon``
     commands : JSBSim properties that tell it where to go: those of a control input, or one that an ``<actuator>`` reads
+    feedback : what it reports, if it is none of a control input's own
     """
 
     name: str
     commands: tuple[str, ...]
+    feedback: Feedback | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,7 +195,14 @@ def _servo(name: str) -> DrivenState:
 
 _PROPELLER = DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM)
 
-_ELEVONS = tuple(Actuator(name=f"{side}_elevon", commands=(f"fcs/{side}-elevon-cmd-rad",)) for side in ("left", "right"))
+_ELEVONS = tuple(
+    Actuator(
+        name=f"{side}_elevon",
+        commands=(f"fcs/{side}-elevon-cmd-rad",),
+        feedback=Feedback(told=f"fcs/{side}-elevon-mixer", position=f"fcs/{side}-elevon-pos-rad", travel=0.5236),
+    )
+    for side in ("left", "right")
+)
 
 X8 = AircraftSpec(
     name="x8",

@@ -11,7 +11,15 @@ from aircraft.gusts import gusty_run
 from aircraft.spec import AircraftSpec
 from aircraft.state import RigidBodyState
 from aircraft.weather import Weather, begin_turbulence, end_weather
-from innerloop.jsbsim_system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND, RESET
+from innerloop.jsbsim_system import (
+    AIRSPEED_COMMAND,
+    ALTITUDE_COMMAND,
+    CONTROL_COMMAND,
+    ELEVATOR_HELD,
+    HEADING_RATE_COMMAND,
+    HELD_ELEVATOR,
+    RESET,
+)
 
 
 class AutopilotedAircraft:
@@ -61,15 +69,24 @@ class AutopilotedAircraft:
         self.command_airspeed(airspeed)
         self.command_altitude(altitude)
         self.command_heading_rate(0.0)
+        self.fdm.write(ELEVATOR_HELD, 0.0)
         self.fdm.write(RESET, -1.0)
         self.fdm.hold(state, round(self.fdm.spec.settle_time / self.fdm.time_step), weather.wind if weather else None)
         self.fdm.write(RESET, 0.0)
+        self.fdm.write(HELD_ELEVATOR, self.fdm.read(CONTROL_COMMAND.format("elevator")))
         if self._faults:
             self._faults.note_trim()
         self.run = self.fdm.run
         if weather:
             begin_turbulence(self.fdm, weather)
             self.run = gusty_run(self.fdm, weather.gusts)
+
+    def hold_elevator(self) -> None:
+        """Hold the elevator where it was at the release from now on; pitch is then left to the aircraft's own stability.
+
+        What is left of the controls after one has failed then has one task instead of two that contradict each other.
+        """
+        self.fdm.write(ELEVATOR_HELD, 1.0)
 
     def fail(self, name: str) -> None:
         """Let a part fail from the next time step on, by a name from ``aircraft.faults.fault_names``.

@@ -39,6 +39,9 @@ CONTROL_COMMAND = "autopilot/{}-command"
 RESET = "autopilot/reset"
 """Negative to hold every integrator at 0, otherwise 0."""
 
+ELEVATOR_HELD, HELD_ELEVATOR = "autopilot/elevator-held", "autopilot/held-elevator"
+"""1 to hold the elevator instead of flying with it, otherwise 0; and where to hold it [-]."""
+
 _AIRSPEED = "autopilot/airspeed-mps"
 _SIDESLIP = "aero/beta-rad"
 _CLIMB_RATE = "autopilot/climb-rate-mps"
@@ -68,6 +71,8 @@ def system_xml(schedule: Schedule) -> str:
             (ALTITUDE_COMMAND, schedule.altitude),
             (HEADING_RATE_COMMAND, 0.0),
             (RESET, 0.0),
+            (ELEVATOR_HELD, 0.0),
+            (HELD_ELEVATOR, 0.0),
         )
     )
     body = "\n".join(f'<channel name="{name}">\n' + "\n".join(components) + "\n</channel>" for name, components in channels.items())
@@ -88,16 +93,21 @@ def _by_bank(schedule: Schedule, quantity: str, bank: str = _ROLL) -> str:
     return table_2d(bank, _SCHEDULE, schedule.banks, schedule.airspeeds, schedule.over_bank(quantity))
 
 
-def _commanded(control_input: ControlInput, unlimited: str) -> list[str]:
+def told_property(control_input: ControlInput) -> str:
+    """Return the property that holds what the autopilot tells JSBSim for a control input [-]."""
+    return f"autopilot/{control_input.name}-told" if control_input.shape else CONTROL_COMMAND.format(control_input.name)
+
+
+def _commanded(control_input: ControlInput, wanted: str) -> list[str]:
     """Return components that keep a control within its range and hand it to JSBSim."""
     name = CONTROL_COMMAND.format(control_input.name)
-    value = clipped(read(unlimited), control_input.lower, control_input.upper)
+    value = clipped(wanted, control_input.lower, control_input.upper)
     if not control_input.shape:
         return [function(name, value, control_input.commands)]
     effects, commands = zip(*control_input.shape, strict=True)
     return [
         function(name, value),
-        function(f"autopilot/{control_input.name}-told", table_1d(name, effects, commands), control_input.commands),
+        function(told_property(control_input), table_1d(name, effects, commands), control_input.commands),
     ]
 
 
@@ -162,10 +172,11 @@ def _longitudinal(schedule: Schedule) -> list[str]:
             times(_by_point(schedule, lambda g, at=(row, j): g.longitudinal[at]), errors[state])  # type: ignore[misc]
             for j, state in enumerate(LONGITUDINAL)
         ]
+        held = operation("ifthen", read(ELEVATOR_HELD), read(HELD_ELEVATOR), read(unlimited))
         parts += [
             # The integral of the last step enters here; back-calculation then holds it to what the control can give.
             function(unlimited, total(_by_bank(schedule, name), read(integral), *feedback)),
-            *_commanded(schedule.spec.input(name), unlimited),
+            *_commanded(schedule.spec.input(name), held if name == "elevator" else read(unlimited)),
             function(
                 growth,
                 total(
@@ -229,7 +240,7 @@ def _lateral(schedule: Schedule) -> list[str]:
         unlimited = f"autopilot/{name}-unlimited"
         parts += [
             function(unlimited, total(_by_bank(schedule, name, BANK_COMMAND), *integral, *feedback, *ahead)),
-            *_commanded(schedule.spec.input(name), unlimited),
+            *_commanded(schedule.spec.input(name), read(unlimited)),
         ]
     return parts + (_rudder_integral(schedule) if rudder else [])
 
