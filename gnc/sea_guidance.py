@@ -38,11 +38,20 @@ _SLOW = 0.25
 _TRANSIT_GAIN = 2.0
 """Heading rate per course error on the way to the reference, in units of omega_max [-]."""
 
-_UNCONTROLLED = 0.4
-"""Mean difference of heading rate from what was asked for, over omega_max, at which control counts as lost [-]."""
+_UNCONTROLLED = 0.8
+"""Mean difference of heading rate from what was asked for, over omega_max, at which control counts as lost [-].
+
+Severe turbulence makes it up to 0.58, over 28 flights of 500 s that stayed in control.
+"""
 
 _PATIENCE = 2.0
 """Time constant of the means by which trouble is found [s]."""
+
+_STUCK, _SERVO_PATIENCE = 0.1, 0.1
+"""Mean error of a control surface, over its travel [-], at which it counts as stuck, and time constant of that mean [s].
+
+Of sound ones it is up to 0.03, in severe and in light turbulence.
+"""
 
 _DEEP = -1000.0
 """Altitude that a gliding vehicle is told [m]: so far below that the autopilot holds its airspeed by pitch, and sinks."""
@@ -157,9 +166,11 @@ class SeaGuidance:
         self.health = Health(
             airspeed_error=parameters.powerless,
             heading_rate_error=_UNCONTROLLED * parameters.guidance.heading_rate_max,
+            servo_error=_STUCK,
             lag=parameters.guidance.lag,
             time_step=parameters.guidance.time_step,
             patience=_PATIENCE,
+            servo_patience=_SERVO_PATIENCE,
         )
         self.guidance: Guidance[SteeredReference]
         self.reference: SteeredReference
@@ -188,6 +199,7 @@ class SeaGuidance:
         heading: float,
         roll: float,
         heading_rate: float,
+        servo_error: float = 0.0,
     ) -> None:
         """Compute the commands from what is sensed now, then move the reference on by one time step.
 
@@ -197,6 +209,7 @@ class SeaGuidance:
         position : north, east [m], north and east velocity over the ground [m/s], if there is satellite navigation
         airspeed, heading, roll : measured [m/s, rad, rad]
         heading_rate : of the course through the air [rad/s]
+        servo_error : of the control surface that is farthest from what it was told, over its travel [-]
         """
         p, navigation = self._parameters, self.navigation
         navigation.update(position, airspeed, heading, roll)
@@ -218,7 +231,8 @@ class SeaGuidance:
         if self._tracking:
             along = (reference.north - north) * math.cos(reference.course) + (reference.east - east) * math.sin(reference.course)
         # An aircraft that is still speeding up beyond V_r lacks nothing.
-        trouble = self.health.look(min(self.airspeed_command, self._speed) - airspeed, heading_rate, self.heading_rate_command)
+        lack = min(self.airspeed_command, self._speed) - airspeed
+        trouble = self.health.look(lack, heading_rate, self.heading_rate_command, servo_error)
         guidance.step(north, east, course, speed, heading_rate)
         command = guidance.heading_rate_command
         if trouble is not Trouble.NONE:

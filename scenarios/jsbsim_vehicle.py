@@ -8,6 +8,7 @@ from aircraft.spec import Envelope
 from aircraft.trim import Trim
 from aircraft.weather import Weather
 from innerloop.flight import AutopilotedAircraft
+from innerloop.servo_watch import ServoWatch
 from scenarios.telemetry import Telemetry
 
 _BANK_LIMIT = 1.4
@@ -33,7 +34,7 @@ class JsbsimVehicle:
 
     __slots__ = (
         "_airspeed_limits", "_command_airspeed", "_command_heading_rate", "_run", "_runs", "air_data", "command_altitude", "fail",
-        "motion", "sample",
+        "hold_elevator", "motion", "sample", "servo_error",
     )  # fmt: skip
 
     def __init__(
@@ -59,6 +60,8 @@ class JsbsimVehicle:
         self.sample = telemetry.sample
         self.command_altitude = aircraft.command_altitude
         self.fail = aircraft.fail
+        self.hold_elevator = aircraft.hold_elevator
+        self.servo_error = ServoWatch(aircraft.fdm, time_step).error
         self._command_airspeed = aircraft.command_airspeed
         self._command_heading_rate = aircraft.command_heading_rate
         self._airspeed_limits = (_AIRSPEED_LIMITS[0] * envelope.airspeed_min, _AIRSPEED_LIMITS[1] * envelope.airspeed_max)

@@ -82,6 +82,13 @@ class KinematicVehicle:
     def command_altitude(self, altitude: float, /) -> None:
         """Do nothing: equation (1) has no altitude."""
 
+    def servo_error(self) -> float:
+        """Return 0: equation (1) has no servos."""
+        return 0.0
+
+    def hold_elevator(self) -> None:
+        """Do nothing: equation (1) has no elevator."""
+
     def fail(self, name: str) -> None:
         """Raise InputError: equation (1) has no parts."""
         raise InputError(f"'{name}' cannot fail in a kinematic flight, which has no parts; fly it with fidelity six_dof")

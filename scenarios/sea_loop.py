@@ -106,6 +106,7 @@ class _Flight:
         self._heard = None if plan.heard is None else list(reversed(plan.heard))
         self._motion = vehicle.motion()
         self._altitude = plan.altitude
+        self._held = False
         self._failing = plan.fault.of_aircraft()
         self.guidance = SeaGuidance(plan.guidance, plan.vessel_filter, plan.guard)
         self.settling = Settling(band=plan.settling_band, period=plan.oscillation.period, crossings=plan.crossings)
@@ -130,10 +131,14 @@ class _Flight:
             vehicle.fail(plan.fault.kind)
         satellites = not plan.fault.lasts(SATELLITES, time)
         position, measured_airspeed, measured_heading = plan.errors.read(step, motion, airspeed, heading, satellites=satellites)
-        guidance.step(time, position, measured_airspeed, measured_heading, roll, motion[4])
+        guidance.step(time, position, measured_airspeed, measured_heading, roll, motion[4], vehicle.servo_error())
         if guidance.altitude_command != self._altitude:
             self._altitude = guidance.altitude_command
             vehicle.command_altitude(self._altitude)
+        if not self._held and guidance.health.trouble is Trouble.STUCK:
+            # Where one surface is elevator and aileron, each would undo the other's work.
+            self._held = True
+            vehicle.hold_elevator()
         return measured_airspeed - airspeed
 
     def record(self, time: float, sample: tuple[float, ...]) -> bool:

@@ -36,6 +36,12 @@ class Vehicle(Protocol):
     def command_altitude(self, altitude: float, /) -> object:
         """Let it climb or sink to an altitude [m] from now on."""
 
+    def servo_error(self) -> float:
+        """Return how far the worst control surface is from all that it was told lately, over its travel [-]; once per step."""
+
+    def hold_elevator(self) -> object:
+        """Leave pitch to the vehicle's own stability from now on, so that turning has all the control that is left."""
+
     def fail(self, name: str) -> None:
         """Let a part of it fail from now on; raises ValueError where there is no such part that can."""
 

@@ -1,0 +1,53 @@
+"""The X8 in the plume of a ship when a part of it fails: it ends outside the keep-out area, in a stated mode."""
+
+import pandas as pd
+import pytest
+
+from gnc.sea_guidance import Mode
+from scenarios.sea_config import SeaScenario
+from scenarios.sea_loop import DITCHED
+from scenarios.sea_run import run_sea
+
+KINDS = ("engine", "throttle", "left_elevon", "right_elevon")
+FAILS, ENDS = 55.0, 130.0
+ENDS_IN = {"engine": DITCHED, "throttle": Mode.TRACKING.value, "left_elevon": DITCHED, "right_elevon": DITCHED}
+
+
+@pytest.fixture(scope="module")
+def flown(designs, tmp_path_factory):
+    """A flight for each kind of fault, by its kind: row and time history. The design is that of the other tests, at 100 m."""
+    designs("x8")
+    scenario = SeaScenario.model_validate({
+        "title": "test",
+        "flights": len(KINDS),
+        "vessel": {"speed_mps": 6.0},
+        "plume": {"source_height_m": 100.0},
+        "start": {"distance_m": (350.0, 350.0), "spread_deg": 10.0},
+        "fault": {"at_s": (FAILS, FAILS)},
+        "draws": ({"key": "fault.kind", "choice": KINDS},),
+        "guidance": {"reserve": 0.1},
+        "flight": {"crossings": 0, "duration_max_s": ENDS},
+        "criteria": {"settles": False},
+    })  # fmt: skip
+    path = tmp_path_factory.mktemp("faults") / "run"
+    result = run_sea(scenario, "faults", path, jobs=1, resume=False, progress=lambda *_: None)
+    return {row["fault"]: (row, pd.read_parquet(path / "flights" / f"{row['flight_id']}.parquet")) for row in result.rows}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_whatever_fails_the_flight_ends_outside_in_its_mode(flown, kind):
+    row, history = flown[kind]
+    assert row["outcome"] == "completed", row["message"]
+    assert row["keepout_violations"] == 0
+    assert row["mode_at_end"] == ENDS_IN[kind]
+    # It was in the plume until then: nothing had been found wrong with it.
+    before = history[history["time_s"] < FAILS]
+    assert list(Mode)[int(before["mode"].iloc[-1])] is Mode.TRACKING
+
+
+@pytest.mark.parametrize("kind", ["left_elevon", "right_elevon"])
+def test_a_stuck_elevon_is_found_within_seconds_and_the_flight_leads_away_from_then_on(flown, kind):
+    row, history = flown[kind]
+    found = history["time_s"][history["mode"] == list(Mode).index(Mode.TERMINATING)].iloc[0]
+    assert FAILS < found < FAILS + 5.0  # once its command has been a tenth of its travel from trim for as long as it may take
+    assert row["end_distance_m"] > row["min_distance_m"] + 100.0
