@@ -38,6 +38,9 @@ _SLOW = 0.25
 _TRANSIT_GAIN = 2.0
 """Heading rate per course error on the way to the reference, in units of omega_max [-]."""
 
+_EITHER_WAY = 0.95 * math.pi
+"""Course left to turn beyond which it is as far either way, and the turn that is flown already is the quicker one [rad]."""
+
 _UNCONTROLLED = 0.8
 """Mean difference of heading rate from what was asked for, over omega_max, at which control counts as lost [-].
 
@@ -142,9 +145,10 @@ class SeaGuidance:
     """
 
     __slots__ = (
-        "_closing_in", "_further", "_parameters", "_speed", "_steps", "_tracking", "_transit", "_vessel_v_east", "_vessel_v_north",
-        "airspeed_command", "altitude_command", "centre", "centre_error", "guard", "guidance", "heading_rate_command", "health",
-        "mode", "navigation", "reference", "vessel", "vessel_east", "vessel_north",
+        "_away_side", "_closing_in", "_further", "_parameters", "_speed", "_steps", "_tracking", "_transit",
+        "_vessel_v_east", "_vessel_v_north", "airspeed_command", "altitude_command", "centre", "centre_error", "guard",
+        "guidance", "heading_rate_command", "health", "mode", "navigation", "reference", "vessel", "vessel_east",
+        "vessel_north",
     )  # fmt: skip
 
     def __init__(self, parameters: SeaParameters, vessel: VesselFilter, guard: KeepoutGuard | None) -> None:
@@ -156,7 +160,7 @@ class SeaGuidance:
         self.guard = guard
         self._transit = Transit(self._speed / parameters.guidance.heading_rate_max)
         self._tracking = self._closing_in = False
-        self._further = 0.0
+        self._further = self._away_side = 0.0
         self._steps = 0
         self.vessel_north = self.vessel_east = self._vessel_v_north = self._vessel_v_east = self.centre_error = 0.0
         self.mode = Mode.APPROACH
@@ -257,10 +261,20 @@ class SeaGuidance:
             self.mode = Mode.GLIDING if trouble is Trouble.NO_THRUST else Mode.TERMINATING
 
     def _away(self, x: float, y: float, course: float, heading_rate: float) -> float:
-        """Return the heading rate that leads straight away from the vessel [rad/s]."""
+        """Return the heading rate that leads straight away from the vessel [rad/s].
+
+        From a course towards it either turn would do, and the vehicle keeps to the one that it has begun: to decide at every step
+        would lead straight on.
+        """
         limit = self._parameters.guidance.heading_rate_max
         ahead = course + 0.5 * self._parameters.guidance.lag * (heading_rate + self.guidance.heading_rate_command)
-        return min(max(_TRANSIT_GAIN * limit * wrap(math.atan2(y, x) - ahead), -limit), limit)
+        left = wrap(math.atan2(y, x) - ahead)
+        if abs(left) < 0.5 * math.pi:
+            self._away_side = 0.0
+            return min(max(_TRANSIT_GAIN * limit * left, -limit), limit)
+        if not self._away_side:
+            self._away_side = math.copysign(1.0, heading_rate if abs(left) > _EITHER_WAY else left)
+        return self._away_side * limit
 
     def _to_centre(
         self, x: float, y: float, away_north: float, away_east: float, course: float, speed: float, heading_rate: float
