@@ -14,7 +14,7 @@ _NAVIGATION_TIME = 60.0
 """Time constant with which the error of satellite navigation wanders [s]."""
 
 _GUARD_SHARE = 0.5
-"""Share of what turbulence takes that the keep-out guard leaves to the orbit [-]: it is in the same air."""
+"""Share of what turbulence takes, and of what is kept at least, that the keep-out guard leaves to the orbit [-]."""
 
 _STEADY = 40
 """Reports after which the filter's covariance no longer changes."""
@@ -88,7 +88,7 @@ def keepout_margin(scenario: SeaScenario, spreads: SpreadTable | None, nu: float
     sigma, rate = math.hypot(seen, navigation), math.hypot(seen / between, navigation / _NAVIGATION_TIME)
     unseen = planned_margin(STILL, other_sigma=sigma, other_sigma_rate=rate, touches_per_hour=f.touches_per_hour)
     random = planned_margin(spread, other_sigma=sigma, other_sigma_rate=rate, touches_per_hour=f.touches_per_hour)
-    guard = drift + unseen + (1.0 - _GUARD_SHARE) * (random - unseen)
+    guard = drift + unseen + (1.0 - _GUARD_SHARE) * (random - unseen + f.margin_min_m)
     return KeepoutMargin(tracking_sigma=spread.radial, total=drift + random + f.margin_min_m, guard=guard)
 
 
