@@ -46,7 +46,9 @@ class Navigation:
 
     __slots__ = (
         "_parameters",
-        "_steps",
+        "_step_east",
+        "_step_north",
+        "_until_measured",
         "drift_east",
         "drift_north",
         "east",
@@ -67,7 +69,8 @@ class Navigation:
         )
         self.north = self.east = self.velocity_north = self.velocity_east = 0.0
         self.drift_north = self.drift_east = self.lost = 0.0
-        self._steps = 0
+        self._step_north = self._step_east = 0.0
+        self._until_measured = 0
 
     def update(self, position: tuple[float, float, float, float] | None, airspeed: float, heading: float, roll: float) -> None:
         """Take in what the sensors say now.
@@ -78,24 +81,30 @@ class Navigation:
         airspeed : [m/s]
         heading, roll : of the body [rad]
         """
-        p, wind = self._parameters, self.wind
-        due = self._steps % p.wind_interval == 0
-        self._steps += 1
         if position is None:
-            course = heading + self._crab(roll)
-            self.velocity_north = wind.north + airspeed * math.cos(course)
-            self.velocity_east = wind.east + airspeed * math.sin(course)
-            self.north += p.time_step * self.velocity_north
-            self.east += p.time_step * self.velocity_east
-            self.lost += p.time_step
+            self._reckon(airspeed, heading + self._crab(roll))
         else:
             self.north, self.east, self.velocity_north, self.velocity_east = position
             self.lost = 0.0
-            if due:
-                time_step = p.wind_interval * p.time_step
-                wind.update(airspeed, heading + self._crab(roll), self.velocity_north, self.velocity_east, time_step)
-        self.drift_north += p.time_step * wind.north
-        self.drift_east += p.time_step * wind.east
+            self._until_measured -= 1
+            if self._until_measured < 0:
+                self._measure(airspeed, heading + self._crab(roll))
+        self.drift_north += self._step_north
+        self.drift_east += self._step_east
+
+    def _measure(self, airspeed: float, air_course: float) -> None:
+        p, wind = self._parameters, self.wind
+        self._until_measured = p.wind_interval - 1
+        wind.update(airspeed, air_course, self.velocity_north, self.velocity_east, p.wind_interval * p.time_step)
+        self._step_north, self._step_east = p.time_step * wind.north, p.time_step * wind.east
+
+    def _reckon(self, airspeed: float, air_course: float) -> None:
+        time_step, wind = self._parameters.time_step, self.wind
+        self.velocity_north = wind.north + airspeed * math.cos(air_course)
+        self.velocity_east = wind.east + airspeed * math.sin(air_course)
+        self.north += time_step * self.velocity_north
+        self.east += time_step * self.velocity_east
+        self.lost += time_step
 
     def _crab(self, roll: float) -> float:
         banks, offsets = self._parameters.crab_banks, self._parameters.crab_offsets

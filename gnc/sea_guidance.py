@@ -15,7 +15,7 @@ from gnc.health import Health, Trouble
 from gnc.keepout_guard import KeepoutGuard
 from gnc.moving_centre import CentreParameters, MovingCentre
 from gnc.navigation import Navigation, NavigationParameters
-from gnc.speed_hold import SpeedHold, air_turn, airspeed_to_hold
+from gnc.speed_hold import SpeedHold, airspeed_to_hold
 from gnc.steered_reference import SteeredReference
 from gnc.transit import Transit
 from gnc.vessel_filter import VesselFilter, VesselMotion
@@ -46,6 +46,9 @@ _UNCONTROLLED = 0.8
 
 Severe turbulence makes it up to 0.58, over 28 flights of 500 s that stayed in control.
 """
+
+_HEALTH_INTERVAL = 4
+"""Guidance steps between looks at the vehicle's health."""
 
 _PATIENCE = 2.0
 """Time constant of the means by which trouble is found [s]."""
@@ -145,10 +148,10 @@ class SeaGuidance:
     """
 
     __slots__ = (
-        "_away_side", "_closing_in", "_further", "_parameters", "_speed", "_steps", "_tracking", "_transit",
-        "_vessel_v_east", "_vessel_v_north", "airspeed_command", "altitude_command", "centre", "centre_error", "guard",
-        "guidance", "heading_rate_command", "health", "mode", "navigation", "reference", "vessel", "vessel_east",
-        "vessel_north",
+        "_away_side", "_closing_in", "_further", "_limit", "_parameters", "_speed", "_steps", "_time_step", "_tracking", "_transit",
+        "_troubled", "_vessel_gain_east", "_vessel_gain_north", "_vessel_v_east", "_vessel_v_north", "airspeed_command",
+        "altitude_command", "centre", "centre_error", "guard", "guidance", "heading_rate_command", "health", "mode", "navigation",
+        "reference", "vessel", "vessel_east", "vessel_north",
     )  # fmt: skip
 
     def __init__(self, parameters: SeaParameters, vessel: VesselFilter, guard: KeepoutGuard | None) -> None:
@@ -159,7 +162,9 @@ class SeaGuidance:
         self.centre = MovingCentre(parameters.centre)
         self.guard = guard
         self._transit = Transit(self._speed / parameters.guidance.heading_rate_max)
-        self._tracking = self._closing_in = False
+        self._limit, self._time_step = parameters.guidance.heading_rate_max, parameters.guidance.time_step
+        self._tracking = self._closing_in = self._troubled = False
+        self._vessel_gain_north = self._vessel_gain_east = 0.0
         self._further = self._away_side = 0.0
         self._steps = 0
         self.vessel_north = self.vessel_east = self._vessel_v_north = self._vessel_v_east = self.centre_error = 0.0
@@ -172,18 +177,12 @@ class SeaGuidance:
             heading_rate_error=_UNCONTROLLED * parameters.guidance.heading_rate_max,
             servo_error=_STUCK,
             lag=parameters.guidance.lag,
-            time_step=parameters.guidance.time_step,
+            time_step=_HEALTH_INTERVAL * parameters.guidance.time_step,
             patience=_PATIENCE,
             servo_patience=_SERVO_PATIENCE,
         )
         self.guidance: Guidance[SteeredReference]
         self.reference: SteeredReference
-
-    @property
-    def reference_place(self) -> tuple[float, float]:
-        """Return where the reference is, north and east over the ground [m]."""
-        reference, navigation = self.guidance.reference, self.navigation
-        return reference.north + navigation.drift_north, reference.east + navigation.drift_east
 
     @property
     def mode_number(self) -> int:
@@ -215,49 +214,63 @@ class SeaGuidance:
         heading_rate : of the course through the air [rad/s]
         servo_error : of the control surface that is farthest from what it was told, over its travel [-]
         """
-        p, navigation = self._parameters, self.navigation
+        p, navigation, step = self._parameters, self.navigation, self._steps
+        self._steps += 1
         navigation.update(position, airspeed, heading, roll)
-        if self._steps % p.plan_interval == 0:
+        if step % p.plan_interval == 0:
             self._look(time)
         else:
-            self.vessel_north += p.guidance.time_step * self._vessel_v_north
-            self.vessel_east += p.guidance.time_step * self._vessel_v_east
-        self._steps += 1
-        wind = navigation.wind
-        v_north, v_east = navigation.velocity_north - wind.north, navigation.velocity_east - wind.east
+            self.vessel_north += self._time_step * self._vessel_v_north
+            self.vessel_east += self._time_step * self._vessel_v_east
+            self._vessel_v_north += self._vessel_gain_north
+            self._vessel_v_east += self._vessel_gain_east
+        wind, guidance, guard = navigation.wind, self.guidance, self.guard
+        wind_north, wind_east = wind.north, wind.east
+        v_north, v_east = navigation.velocity_north - wind_north, navigation.velocity_east - wind_east
         course, speed = math.atan2(v_east, v_north), math.hypot(v_north, v_east)
         x, y = navigation.north - self.vessel_north, navigation.east - self.vessel_east
-        away_north, away_east = self._vessel_v_north - wind.north, self._vessel_v_east - wind.east
-        guidance, reference = self.guidance, self.guidance.reference
+        away_north, away_east = self._vessel_v_north - wind_north, self._vessel_v_east - wind_east
         north, east = navigation.north - navigation.drift_north, navigation.east - navigation.drift_east
-        heading_rate = air_turn(heading_rate, speed=airspeed, airspeed=speed)
-        along = 0.0
-        if self._tracking:
-            along = (reference.north - north) * math.cos(reference.course) + (reference.east - east) * math.sin(reference.course)
-        # An aircraft that is still speeding up beyond V_r lacks nothing.
-        lack = min(self.airspeed_command, self._speed) - airspeed
-        trouble = self.health.look(lack, heading_rate, self.heading_rate_command, servo_error)
+        reference, tracking = guidance.reference, self._tracking
+        reference_north, reference_east, reference_course = reference.north, reference.east, reference.course
+        # The autopilot turns against the gusty air, the guidance over the mean air: ``gnc.speed_hold.air_turn``.
+        faster = max(airspeed, 1.0) / max(speed, 1.0)
+        heading_rate *= faster
+        if step % _HEALTH_INTERVAL == 0:
+            self._watch(airspeed, heading_rate, servo_error)
         guidance.step(north, east, course, speed, heading_rate)
         command = guidance.heading_rate_command
-        if trouble is not Trouble.NONE:
+        if self._troubled:
             command = self._away(x, y, course, heading_rate)
-        elif not self._tracking:
+        elif not tracking:
             command = self._to_centre(x, y, away_north, away_east, course, speed, heading_rate)
-        guard = self.guard
         if guard is not None:
             # A turn away is flown at V_r at least: see ``gnc.guidance``.
-            turning = max(speed, self._speed)
+            turning = speed if speed > self._speed else self._speed
             command = guard.limit(command, x, y, away_north, away_east, course, turning, heading_rate, extra_radius=self._further)
         guidance.heading_rate_command = command
-        limit = p.guidance.heading_rate_max
-        self.heading_rate_command = min(max(air_turn(command, speed=speed, airspeed=airspeed), -limit), limit)
-        if self._tracking or (guard is not None and guard.intervening):
+        command /= faster
+        limit = self._limit
+        self.heading_rate_command = command if -limit <= command <= limit else math.copysign(limit, command)
+        if self._troubled:
+            self.airspeed_command, self.altitude_command = p.glide_airspeed, _DEEP
+        elif tracking:
+            along = (reference_north - north) * math.cos(reference_course) + (reference_east - east) * math.sin(reference_course)
             pace = airspeed_to_hold(p.hold, along=along, reference_speed=self._speed, speed=speed, airspeed=airspeed)
+            self.airspeed_command = pace
+        elif guard is not None and guard.intervening:
+            pace = airspeed_to_hold(p.hold, along=0.0, reference_speed=self._speed, speed=speed, airspeed=airspeed)
             self.airspeed_command = pace
         else:
             self.airspeed_command = p.transit_airspeed
+
+    def _watch(self, airspeed: float, heading_rate: float, servo_error: float) -> None:
+        """Look whether the vehicle does as it is told; from the first trouble on it leaves."""
+        # An aircraft that is still speeding up beyond V_r lacks nothing.
+        lack = min(self.airspeed_command, self._speed) - airspeed
+        trouble = self.health.look(lack, airspeed, heading_rate, self.guidance.heading_rate_command, servo_error)
         if trouble is not Trouble.NONE:
-            self.airspeed_command, self.altitude_command = p.glide_airspeed, _DEEP
+            self._troubled = True
             self.mode = Mode.GLIDING if trouble is Trouble.NO_THRUST else Mode.TERMINATING
 
     def _away(self, x: float, y: float, course: float, heading_rate: float) -> float:
@@ -303,7 +316,9 @@ class SeaGuidance:
         vessel = self.vessel.at(time)
         self.vessel_north, self.vessel_east = vessel.north, vessel.east
         self._vessel_v_north, self._vessel_v_east = vessel.velocity_north, vessel.velocity_east
-        started = self._steps > 0
+        self._vessel_gain_north = self._time_step * vessel.acceleration_north
+        self._vessel_gain_east = self._time_step * vessel.acceleration_east
+        started = self._steps > 1
         time_step = p.plan_interval * p.guidance.time_step if started else 0.0
         age = time - self.vessel.time
         self._open(time_step, age)
@@ -321,7 +336,9 @@ class SeaGuidance:
             self._start_reference(vessel)
         self._steer(vessel)
         self._decide(vessel)
-        if navigation.lost > 0.0:
+        if self._troubled:
+            pass
+        elif navigation.lost > 0.0:
             self.mode = Mode.DEAD_RECKONING
         elif age > p.stale:
             self.mode = Mode.HOLDING
@@ -390,8 +407,9 @@ class SeaGuidance:
         x, y = navigation.north - vessel.north, navigation.east - vessel.east
         off = math.hypot(centre.x - x, centre.y - y)
         aspect = abs(wrap(math.atan2(y, x) - centre.axis))
-        r_north, r_east = self.reference_place
-        error = math.hypot(r_north - navigation.north, r_east - navigation.east)
+        to_north = self.guidance.reference.north + navigation.drift_north - navigation.north
+        to_east = self.guidance.reference.east + navigation.drift_east - navigation.east
+        error = math.hypot(to_north, to_east)
         if self._tracking:
             held_off = self.guard is not None and self.guard.intervening and error > 3.0 * p.tracked
             self._tracking = off < 1.5 * p.join_distance and aspect < 1.9 and not held_off

@@ -116,28 +116,32 @@ class SteeredReference:
 
     def step(self) -> None:
         """Advance one time step."""
-        dt, rate_max, smoothing = self._time_step, self._rate_max, self._smoothing
-        cos_phase = math.cos(self.phase)
+        cos, sin, dt, rate_max, smoothing = math.cos, math.sin, self._time_step, self._rate_max, self._smoothing
+        phase, eta, mean_course = self.phase, self.eta, self.mean_course
+        cos_phase = cos(phase)
         gate = _GATE + (1.0 - _GATE) * cos_phase * cos_phase
-        turn = _RATE_GAIN * wrap(self._mean_wanted - self.mean_course)
-        self._mean_rate += smoothing * (gate * min(max(turn, -rate_max), rate_max) - self._mean_rate)
-        grow = _RATE_GAIN * (self._eta_wanted - self.eta)
-        self._eta_rate += smoothing * (gate * min(max(grow, -rate_max), rate_max) - self._eta_rate)
-        first = self.course
-        middle_eta = self.eta + 0.5 * dt * self._eta_rate
-        middle_mean = self.mean_course + 0.5 * dt * self._mean_rate
-        self.eta += dt * self._eta_rate
-        self.mean_course += dt * self._mean_rate
+        turn = _RATE_GAIN * wrap(self._mean_wanted - mean_course)
+        if not -rate_max < turn < rate_max:
+            turn = math.copysign(rate_max, turn)
+        self._mean_rate = mean_rate = self._mean_rate + smoothing * (gate * turn - self._mean_rate)
+        grow = _RATE_GAIN * (self._eta_wanted - eta)
+        if not -rate_max < grow < rate_max:
+            grow = math.copysign(rate_max, grow)
+        self._eta_rate = eta_rate = self._eta_rate + smoothing * (gate * grow - self._eta_rate)
+        half = 0.5 * dt
+        middle_eta, middle_mean = eta + half * eta_rate, mean_course + half * mean_rate
+        self.eta = eta = eta + dt * eta_rate
+        self.mean_course = mean_course = mean_course + dt * mean_rate
         self.omega_0 = omega_0 = self._frequency()
-        middle = middle_mean + middle_eta * math.cos(self.phase + 0.5 * dt * omega_0)
-        self.phase = phase = self.phase + dt * omega_0
-        cos_phase = math.cos(phase)
-        last = self.mean_course + self.eta * cos_phase
+        middle = middle_mean + middle_eta * cos(phase + half * omega_0)
+        self.phase = phase = phase + dt * omega_0
+        cos_phase = cos(phase)
+        first, last = self.course, mean_course + eta * cos_phase
         distance = self.speed * dt / 6.0
-        self.north += distance * (math.cos(first) + 4.0 * math.cos(middle) + math.cos(last))
-        self.east += distance * (math.sin(first) + 4.0 * math.sin(middle) + math.sin(last))
+        self.north += distance * (cos(first) + 4.0 * cos(middle) + cos(last))
+        self.east += distance * (sin(first) + 4.0 * sin(middle) + sin(last))
         self.course = last
-        self.heading_rate = self._mean_rate + self._eta_rate * cos_phase - self.eta * omega_0 * math.sin(phase)
+        self.heading_rate = mean_rate + eta_rate * cos_phase - eta * omega_0 * sin(phase)
 
     @property
     def speed_ratio(self) -> float:
@@ -154,9 +158,10 @@ class SteeredReference:
 
     def _frequency(self) -> float:
         """Return omega_0 by the heading rate that is left and by the roll rate, as ``gnc.oscillation`` does [rad/s]."""
-        eta = max(self.eta, _ETA_FREQUENCY)
-        left = self._available - abs(self._mean_rate) - abs(self._eta_rate)
-        return min(left / eta, math.sqrt(self._acceleration / eta))
+        eta = self.eta if self.eta > _ETA_FREQUENCY else _ETA_FREQUENCY
+        by_heading_rate = (self._available - abs(self._mean_rate) - abs(self._eta_rate)) / eta
+        by_roll_rate = math.sqrt(self._acceleration / eta)
+        return by_heading_rate if by_heading_rate < by_roll_rate else by_roll_rate
 
 
 def eta_for_mean_speed(speed_ratio: float) -> float:

@@ -106,6 +106,7 @@ class _Flight:
         self._heard = None if plan.heard is None else list(reversed(plan.heard))
         self._motion = vehicle.motion()
         self._altitude = plan.altitude
+        self._reference = (0.0, 0.0, 0.0, 0.0)
         self._held = False
         self._failing = plan.fault.of_aircraft()
         self.guidance = SeaGuidance(plan.guidance, plan.vessel_filter, plan.guard)
@@ -130,8 +131,13 @@ class _Flight:
             self._failing = False
             vehicle.fail(plan.fault.kind)
         satellites = not plan.fault.lasts(SATELLITES, time)
+        if step > 0:
+            self._note_reference()
         position, measured_airspeed, measured_heading = plan.errors.read(step, motion, airspeed, heading, satellites=satellites)
         guidance.step(time, position, measured_airspeed, measured_heading, roll, motion[4], vehicle.servo_error())
+        if step == 0:
+            # There is no reference before the guidance has looked for the first time.
+            self._note_reference()
         if guidance.altitude_command != self._altitude:
             self._altitude = guidance.altitude_command
             vehicle.command_altitude(self._altitude)
@@ -141,16 +147,22 @@ class _Flight:
             vehicle.hold_elevator()
         return measured_airspeed - airspeed
 
+    def _note_reference(self) -> None:
+        """Note where the reference is now, in the air mass: the guidance moves it on as it computes its commands."""
+        reference = self.guidance.guidance.reference
+        self._reference = reference.north, reference.east, reference.course, reference.heading_rate
+
     def record(self, time: float, sample: tuple[float, ...]) -> bool:
         """Keep a row; return whether the flight has all it wants."""
         guidance, motion = self.guidance, self._motion
         vessel, axis = self._track.motion(time), self._track.axis(time)
-        reference, wind, centre = guidance.guidance.reference, guidance.navigation.wind, guidance.centre
-        north, east = guidance.reference_place
+        air_north, air_east, course, turning = self._reference
+        navigation, wind, centre = guidance.navigation, guidance.navigation.wind, guidance.centre
+        north, east = air_north + navigation.drift_north, air_east + navigation.drift_east
         guard = guidance.guard
         self.rows.append((
             time, *motion, *vessel, axis,
-            north, east, reference.course, reference.heading_rate,
+            north, east, course, turning,
             guidance.vessel_north + centre.x, guidance.vessel_east + centre.y, guidance.centre_error, wind.north, wind.east,
             guidance.vessel_north, guidance.vessel_east, centre.speed_ratio, guidance.mode_number,
             guidance.guidance.heading_rate_wanted, guidance.heading_rate_command, guidance.airspeed_command,

@@ -32,6 +32,9 @@ from scenarios.vessel_track import VesselTrack
 _RATIO_STEPS = 48
 """Steps of nu at which the orbit's half-widths are tabled."""
 
+_LOOK = 0.5
+"""Time between looks at vessel and wind [s]."""
+
 _STALE_MIN = 2.0
 """Shortest age at which vessel data count as stale [s]."""
 
@@ -212,7 +215,7 @@ def _parameters(
     if scenario.turbulence.level != "none":
         sigma = intensities(scenario.plume.source_height_m, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
         scale = scale_lengths(scenario.plume.source_height_m)[0]
-        gust = sigma * math.sqrt(2.0 * scale / g.airspeed_mps / (max(1, round(0.25 * g.rate_hz)) / g.rate_hz))
+        gust = sigma * math.sqrt(2.0 * scale / g.airspeed_mps / _LOOK)
     guidance = tracking_parameters(scenario, airframe)
     hold = speed_hold(scenario, airframe)
     navigation = NavigationParameters(
@@ -222,7 +225,7 @@ def _parameters(
         course_sigma=math.hypot(0.03, gust / g.airspeed_mps),
         wind_drift=0.02,
         wind_prior=10.0,
-        wind_interval=max(1, round(0.25 * g.rate_hz)),
+        wind_interval=max(1, round(_LOOK * g.rate_hz)),
         time_step=time_step,
     )
     centre = CentreParameters(
@@ -252,7 +255,7 @@ def _parameters(
         stale=max(_STALE_MIN, reports.interval_s[1] + reports.latency_max_s),
         vessel_acceleration=f.vessel_acceleration_mps2,
         drift_rate=f.drift_rate_mps,
-        plan_interval=max(1, round(0.5 * g.rate_hz)),
+        plan_interval=max(1, round(_LOOK * g.rate_hz)),
         altitude=scenario.plume.source_height_m,
         glide_airspeed=0.5 * (g.airspeed_mps + hold.airspeed_min),
     )
