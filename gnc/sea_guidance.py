@@ -230,13 +230,14 @@ class SeaGuidance:
         away_north, away_east = self._vessel_v_north - wind.north, self._vessel_v_east - wind.east
         guidance, reference = self.guidance, self.guidance.reference
         north, east = navigation.north - navigation.drift_north, navigation.east - navigation.drift_east
-        heading_rate = air_turn(heading_rate, speed=airspeed, airspeed=speed)
+        flown, heading_rate = heading_rate, air_turn(heading_rate, speed=airspeed, airspeed=speed)
         along = 0.0
         if self._tracking:
             along = (reference.north - north) * math.cos(reference.course) + (reference.east - east) * math.sin(reference.course)
         # An aircraft that is still speeding up beyond V_r lacks nothing.
         lack = min(self.airspeed_command, self._speed) - airspeed
-        trouble = self.health.look(lack, heading_rate, self.heading_rate_command, servo_error)
+        # The command was for the airspeed; only the heading rate that is flown at it compares.
+        trouble = self.health.look(lack, flown, self.heading_rate_command, servo_error)
         guidance.step(north, east, course, speed, heading_rate)
         command = guidance.heading_rate_command
         if trouble is not Trouble.NONE:
