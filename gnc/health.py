@@ -16,9 +16,9 @@ class Trouble(Enum):
 class Health:
     """Watches speed, heading rate and servos. Trouble, once found, stays.
 
-    Thrust is gone when the airspeed stays below its command and does not rise. Control is gone when the heading rate stays away from
-    what a vehicle with its lag would make of the commands. A control surface is stuck when it stays away from where it was told to
-    go; that shows before the vehicle's turning does, by seconds, and turbulence does not look like it.
+    Thrust is gone when the airspeed stays below its command and does not rise. Control is gone when the heading rate stays away
+    from what a vehicle with its lag would make of the commands. A control surface is stuck when it stays away from where it was
+    told to go; that shows before the vehicle's turning does, by seconds, and turbulence does not look like it.
 
     Parameters
     ----------

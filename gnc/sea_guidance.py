@@ -235,9 +235,9 @@ class SeaGuidance:
         reference_north, reference_east, reference_course = reference.north, reference.east, reference.course
         # The autopilot turns against the gusty air, the guidance over the mean air: ``gnc.speed_hold.air_turn``.
         faster = max(airspeed, 1.0) / max(speed, 1.0)
-        heading_rate *= faster
         if step % _HEALTH_INTERVAL == 0:
             self._watch(airspeed, heading_rate, servo_error)
+        heading_rate *= faster
         guidance.step(north, east, course, speed, heading_rate)
         command = guidance.heading_rate_command
         if self._troubled:
@@ -268,7 +268,7 @@ class SeaGuidance:
         """Look whether the vehicle does as it is told; from the first trouble on it leaves."""
         # An aircraft that is still speeding up beyond V_r lacks nothing.
         lack = min(self.airspeed_command, self._speed) - airspeed
-        trouble = self.health.look(lack, airspeed, heading_rate, self.guidance.heading_rate_command, servo_error)
+        trouble = self.health.look(lack, airspeed, heading_rate, self.heading_rate_command, servo_error)
         if trouble is not Trouble.NONE:
             self._troubled = True
             self.mode = Mode.GLIDING if trouble is Trouble.NO_THRUST else Mode.TERMINATING
