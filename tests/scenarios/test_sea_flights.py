@@ -68,7 +68,6 @@ def test_crossings_lie_on_the_plumes_axis_beyond_the_keep_out_radius(windy):
         assert crossing["distance_m"] > 200.0
 
 
-@pytest.mark.xfail(reason="the reference is recorded one step later than the vehicle: V dt = 0.97 m", strict=True)
 def test_the_reference_is_recorded_for_the_time_of_the_vehicle(windy):
     _, history = windy
     settled = history.iloc[-100:]
