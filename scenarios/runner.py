@@ -131,7 +131,7 @@ def run_scenario(
     )
     every = [request.flight_id for request in requests]
     others = Table(name="comparison.csv", columns=SUMMARY_COLUMNS, flights=frozenset(every) - study.flights)
-    ledger = Ledger(run, every, tables=[study, others], crossing_columns=CROSSING_COLUMNS)
+    ledger = Ledger(run, every, tables=[study, others], details={"crossings.csv": CROSSING_COLUMNS})
     manifest |= {
         "seeds": {request.flight_id: request.seed for request in requests},
         "variants": {request.flight_id: request.variant for request in requests},
@@ -257,4 +257,4 @@ def _fly_rest(
 
 
 def _add(ledger: Ledger, result: FlightResult) -> None:
-    ledger.add(result.request.flight_id, result.row, result.crossings)
+    ledger.add(result.request.flight_id, result.row, {"crossings.csv": result.crossings})

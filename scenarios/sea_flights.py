@@ -15,6 +15,7 @@ from innerloop.flight import AutopilotedAircraft
 from scenarios.closed_loop import Outcome
 from scenarios.crossings import Crossing
 from scenarios.errors import InputError
+from scenarios.interventions import INTERVENTION_COLUMNS
 from scenarios.jsbsim_vehicle import JsbsimVehicle
 from scenarios.kinematic_vehicle import KinematicVehicle
 from scenarios.run_directory import RunDirectory
@@ -22,11 +23,14 @@ from scenarios.sea_config import SeaScenario
 from scenarios.sea_draws import drawn_flight
 from scenarios.sea_loop import SEA_COLUMNS, fly_sea
 from scenarios.sea_margin import SpreadTable
-from scenarios.sea_metrics import Row, sea_figures, sea_plan_row, sea_unmet
+from scenarios.sea_metrics import Row, sea_figures, sea_interventions, sea_plan_row, sea_unmet
 from scenarios.sea_plan import KINEMATIC_LAG, Airframe, SeaPlan, plan_sea_flight
 from scenarios.vehicle import Vehicle
 
-SEA_CROSSING_COLUMNS = ("flight_id", "trial", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
+_CROSSING_COLUMNS = ("flight_id", "trial", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
+
+DETAILS = {"crossings.csv": _CROSSING_COLUMNS, "interventions.csv": INTERVENTION_COLUMNS}
+"""Tables with several rows of a flight, and their columns."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,11 +55,11 @@ class SeaRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeaResult:
-    """A flown flight: its row and the rows of its crossings."""
+    """A flown flight: its row, and its rows in the tables of ``DETAILS``."""
 
     flight_id: str
     row: Row
-    crossings: list[Row]
+    details: dict[str, list[Row]]
 
 
 def fly_sea_request(request: SeaRequest, directory: Path, airframe: Airframe) -> SeaResult:
@@ -69,7 +73,7 @@ def fly_sea_request(request: SeaRequest, directory: Path, airframe: Airframe) ->
     """
     began = time.perf_counter()
     row: Row = {"flight_id": request.flight_id, "trial": request.trial}
-    crossings: list[Row] = []
+    details: dict[str, list[Row]] = {}
     try:
         scenario, seed, nu = drawn_flight(request.trial, request.scenario, request.number)
         row |= _drawn_row(scenario, seed, nu)
@@ -79,7 +83,9 @@ def fly_sea_request(request: SeaRequest, directory: Path, airframe: Airframe) ->
         run = RunDirectory(directory)
         run.write_history(request.flight_id, pd.DataFrame(record.history, columns=list(SEA_COLUMNS)))
         figures, found = sea_figures(plan, record)
-        crossings = [_crossing_row(request, i, crossing) for i, crossing in enumerate(found, start=1)]
+        named: Row = {"flight_id": request.flight_id, "trial": request.trial}
+        details["crossings.csv"] = [_crossing_row(request, i, crossing) for i, crossing in enumerate(found, start=1)]
+        details["interventions.csv"] = [named | entry for entry in sea_interventions(record)]
         row |= figures
         unmet = sea_unmet(row, scenario.criteria)
         row |= {"criteria_met": not unmet, "message": "; ".join([*unmet, *([record.message] if record.message else [])])}
@@ -95,13 +101,13 @@ def fly_sea_request(request: SeaRequest, directory: Path, airframe: Airframe) ->
         }
     row.setdefault("criteria_met", False)
     row["wall_time_s"] = time.perf_counter() - began
-    return SeaResult(flight_id=request.flight_id, row=row, crossings=crossings)
+    return SeaResult(flight_id=request.flight_id, row=row, details=details)
 
 
 def sea_failed(request: SeaRequest, outcome: Outcome, message: str) -> SeaResult:
     """Return the result of a flight that was never begun, or whose process died."""
     row = {"flight_id": request.flight_id, "trial": request.trial, "outcome": outcome.value, "message": message}
-    return SeaResult(flight_id=request.flight_id, row={**row, "criteria_met": False}, crossings=[])
+    return SeaResult(flight_id=request.flight_id, row={**row, "criteria_met": False}, details={})
 
 
 def _drawn_row(scenario: SeaScenario, seed: int, nu: float) -> Row:

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from gnc.sea_guidance import Mode
 from scenarios.closed_loop import Outcome
 from scenarios.crossings import Crossing, find_crossings
+from scenarios.interventions import interventions
 from scenarios.keepout import keepout_figures
 from scenarios.sea_config import SeaCriteria
 from scenarios.sea_loop import DITCHED, SEA_COLUMNS, SeaRecord
@@ -23,7 +24,7 @@ _GIVEN_UP = (Mode.GLIDING.value, Mode.TERMINATING.value, DITCHED)
 
 SEA_SUMMARY_COLUMNS = (
     "flight_id", "trial", "outcome", "message", "criteria_met", "aircraft", "fidelity", "seed", "nu", "nu_min", "nu_max",
-    "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "turbulence", "fault", "fault_time_s", "mode_at_end",
+    "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "turbulence", "fault", "fault_time_s", "modes", "mode_at_end",
     "start_distance_m", "start_aspect_deg", "eta", "omega_0_rad_s", "keepout_radius_m", "keepout_margin_m",
     "keepout_violations", "keepout_time_s", "keepout_depth_m", "min_distance_m", "end_distance_m", "settling_time_s",
     "crossing_count", "crossing_interval_mean_s", "crossing_interval_std_s", "crossing_interval_predicted_s",
@@ -84,6 +85,7 @@ def sea_figures(plan: SeaPlan, record: SeaRecord) -> tuple[Row, list[Crossing]]:
     row: Row = {
         "outcome": record.outcome.value,
         "message": record.message,
+        "modes": ", ".join(_modes(history)),
         "mode_at_end": record.mode,
         "keepout_violations": keepout.violations,
         "keepout_time_s": keepout.time_inside,
@@ -111,6 +113,13 @@ def sea_figures(plan: SeaPlan, record: SeaRecord) -> tuple[Row, list[Crossing]]:
     return row | _crossing_figures(plan, crossings, float(sea_column(history, "speed_ratio")[-1])), crossings
 
 
+def sea_interventions(record: SeaRecord) -> list[Row]:
+    """Return a row for each time that the keep-out guard had its hands on; see ``scenarios.interventions``."""
+    history = record.history
+    north, east = (sea_column(history, f"{axis}_m") - sea_column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
+    return interventions(sea_column(history, "time_s"), sea_column(history, "guard"), np.hypot(north, east))
+
+
 def _in_vessel_frame(history: Array, source_height: float) -> tuple[Array, Array]:
     """Return position and velocity from the plume's origin, each shape (n, 3): north, east, up [m, m/s]."""
     up = sea_column(history, "altitude_m") - source_height
@@ -120,6 +129,12 @@ def _in_vessel_frame(history: Array, source_height: float) -> tuple[Array, Array
         for axis in ("north", "east")
     ]
     return np.column_stack([*position, up]), np.column_stack([*velocity, sea_column(history, "climb_rate_mps")])
+
+
+def _modes(history: Array) -> list[str]:
+    """Return the modes that a flight went through, each once, in the order of their first time."""
+    names = [mode.value for mode in Mode]
+    return [names[int(number)] for number in dict.fromkeys(sea_column(history, "mode").tolist())]
 
 
 def _vessel_error(history: Array) -> Array:

@@ -24,7 +24,7 @@ from scenarios.flights import SixDof
 from scenarios.flyable import omega_max
 from scenarios.sea_config import SeaScenario
 from scenarios.sea_margin import KeepoutMargin, SpreadTable, keepout_margin, vessel_filter
-from scenarios.sea_world import VESSEL_DATA, TimedFault, drawn_fault, drawn_weather, vessel_track
+from scenarios.sea_world import VESSEL_DATA, TimedFault, drawn_fault, drawn_weather, vessel_track, wind_ned
 from scenarios.sensors import SensorErrors
 from scenarios.vessel_reports import heard_reports, never
 from scenarios.vessel_track import VesselTrack
@@ -162,13 +162,15 @@ def plan_sea_flight(
     weather = drawn_weather(scenario, world)
     silence = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else never()
     duration = scenario.flight.duration_max_s
+    guard = _guard(scenario, fastest, airframe.reversal, margin)
+    _check_start(scenario, guard, margin, track, start)
     return SeaPlan(
         flight_id=flight_id,
         nu=nu,
         oscillation=oscillation_at(scenario, nu),
         periods=tuple(oscillation.period for oscillation in oscillations),
         guidance=_parameters(scenario, fastest, airframe, margin.total, [half_widths(oscillation) for oscillation in oscillations]),
-        guard=_guard(scenario, fastest, airframe.reversal, margin),
+        guard=guard,
         vessel_filter=vessel_filter(scenario.reports),
         track=track,
         heard=None
@@ -203,6 +205,25 @@ def _check_plume(scenario: SeaScenario, track: VesselTrack) -> None:
         raise InfeasibleError(
             f"the apparent wind is {track.apparent_wind([0.0])[0]:.2f} m/s; below {f.apparent_wind_min_mps:g} the plume has no"
             " direction: give wind or vessel another speed, or the plume a direction (plume.direction=given)"
+        )
+
+
+def _check_start(
+    scenario: SeaScenario, guard: KeepoutGuard | None, margin: KeepoutMargin, track: VesselTrack, start: tuple[float, float, float]
+) -> None:
+    """Raise an InfeasibleError for a start from which no command keeps the aircraft out of r_min."""
+    if guard is None:
+        return
+    north, east, course = start
+    wind_north, wind_east = wind_ned(scenario)
+    _, _, v_north, v_east = track.motion(0.0)
+    airspeed = scenario.guidance.airspeed_mps
+    kept = margin.guard + guard.clearance(north, east, v_north - wind_north, v_east - wind_east, course, airspeed, 0.0)
+    if kept < 0.0:
+        radius = scenario.keepout.radius_m
+        raise InfeasibleError(
+            f"from its start, {math.hypot(north, east):.0f} m from the vessel, the UAV cannot turn away in time: it would come"
+            f" within {radius + kept:.0f} m, inside keepout.radius_m, {radius:g} m: start farther away"
         )
 
 

@@ -34,7 +34,7 @@ from scenarios.pool import DIED, Progress, fly_all
 from scenarios.run_directory import RunDirectory
 from scenarios.sea_config import SeaScenario, SeaTrial
 from scenarios.sea_draws import check_draws
-from scenarios.sea_flights import SEA_CROSSING_COLUMNS, SeaRequest, SeaResult, fly_sea_request, sea_failed
+from scenarios.sea_flights import DETAILS, SeaRequest, SeaResult, fly_sea_request, sea_failed
 from scenarios.sea_margin import SpreadTable
 from scenarios.sea_metrics import SEA_SUMMARY_COLUMNS
 from scenarios.sea_plan import KINEMATIC_BANDWIDTH, KINEMATIC_LAG, Airframe, oscillation_at, speed_hold, tracking_parameters
@@ -147,7 +147,7 @@ def run_sea(
     run.open(manifest["config_hash"], resume=resume)
     every = [_flight_id(trial, i) for trial, scenario in trials.items() for i in range(scenario.flights)]
     table = Table(name="summary.csv", columns=SEA_SUMMARY_COLUMNS, flights=frozenset(every))
-    ledger = Ledger(run, every, tables=[table], crossing_columns=SEA_CROSSING_COLUMNS)
+    ledger = Ledger(run, every, tables=[table], details=DETAILS)
     manifest["flights_planned"] = len(every)
     run.write_json(run.manifest, manifest)
     began = time.perf_counter()
@@ -338,4 +338,4 @@ def _fly_rest(
 
 
 def _add(ledger: Ledger, result: SeaResult) -> None:
-    ledger.add(result.flight_id, result.row, result.crossings)
+    ledger.add(result.flight_id, result.row, result.details)

@@ -18,7 +18,7 @@ def run(tmp_path):
 
 
 def ledger_of(run, flights=FLIGHTS):
-    return Ledger(run, flights, tables=[TABLE], crossing_columns=CROSSINGS)
+    return Ledger(run, flights, tables=[TABLE], details={"crossings.csv": CROSSINGS})
 
 
 def crossing(flight, number):
@@ -27,13 +27,13 @@ def crossing(flight, number):
 
 def test_what_is_done_is_on_disk_and_taken_over_in_the_order_of_the_flights(run):
     ledger = ledger_of(run)
-    ledger.add("c", {"flight_id": "c", "nu": 0.3}, [crossing("c", 1), crossing("c", 2)])
-    ledger.add("a", {"flight_id": "a", "nu": 0.1}, [crossing("a", 1)])
+    ledger.add("c", {"flight_id": "c", "nu": 0.3}, {"crossings.csv": [crossing("c", 1), crossing("c", 2)]})
+    ledger.add("a", {"flight_id": "a", "nu": 0.1}, {"crossings.csv": [crossing("a", 1)]})
     ledger.flush()
     again = ledger_of(run)
     assert again.done == {"a", "c"}
     assert again.rows(TABLE) == [{"flight_id": "a", "nu": 0.1}, {"flight_id": "c", "nu": 0.3}]
-    again.add("b", {"flight_id": "b", "nu": 0.2}, [crossing("b", 1)])
+    again.add("b", {"flight_id": "b", "nu": 0.2}, {"crossings.csv": [crossing("b", 1)]})
     again.flush()
     assert [row["flight_id"] for row in run.read_rows("summary.csv")] == FLIGHTS
     assert [(row["flight_id"], row["crossing"]) for row in run.read_rows("crossings.csv")] == [
@@ -47,8 +47,8 @@ def test_what_is_done_is_on_disk_and_taken_over_in_the_order_of_the_flights(run)
 def test_rows_wait_to_be_written_and_flush_writes_them(run):
     ledger = ledger_of(run)
     # The first is written at once, the second within two seconds: the tables are written whole each time.
-    ledger.add("a", {"flight_id": "a"}, [])
-    ledger.add("b", {"flight_id": "b"}, [])
+    ledger.add("a", {"flight_id": "a"}, {"crossings.csv": []})
+    ledger.add("b", {"flight_id": "b"}, {"crossings.csv": []})
     assert [row["flight_id"] for row in run.read_rows("summary.csv")] == ["a"]
     ledger.flush()
     assert [row["flight_id"] for row in run.read_rows("summary.csv")] == ["a", "b"]
@@ -60,7 +60,7 @@ def test_crossings_of_a_flight_whose_row_was_not_written_any_more_are_dropped(ru
     run.write_rows("summary.csv", [{"flight_id": "a"}], COLUMNS)
     ledger = ledger_of(run)
     assert ledger.done == {"a"}
-    ledger.add("b", {"flight_id": "b"}, [crossing("b", 1)])
+    ledger.add("b", {"flight_id": "b"}, {"crossings.csv": [crossing("b", 1)]})
     ledger.flush()
     assert len(run.read_rows("crossings.csv")) == 2
 

@@ -9,7 +9,7 @@ from sea_cases import AIRFRAME, ASTERN, SPEED, fly, modes, scenario
 
 from gnc.sea_guidance import Mode
 from scenarios.closed_loop import Outcome
-from scenarios.sea_flights import SEA_CROSSING_COLUMNS, SeaRequest, fly_sea_request, sea_failed
+from scenarios.sea_flights import DETAILS, SeaRequest, fly_sea_request, sea_failed
 from scenarios.sea_metrics import SEA_SUMMARY_COLUMNS
 
 HEARD = {"interval_s": (2.0, 10.0), "latency_max_s": 2.0, "missing": 0.1}
@@ -42,7 +42,7 @@ def test_a_flight_in_wind_tracks_and_crosses_at_the_interval_of_the_apparent_win
     assert row["nu"] == pytest.approx(math.hypot(north, east) / SPEED, rel=1e-9)
     # Settled within 3 bands of 8 m the orbit still moves into place: a centimetre per second of the 19 m/s that cross it.
     assert row["crossing_interval_mean_s"] == pytest.approx(row["crossing_interval_predicted_s"], rel=2e-3)
-    assert row["crossing_count"] == len(result.crossings) == 6
+    assert row["crossing_count"] == len(result.details["crossings.csv"]) == 6
     assert row["keepout_violations"] == 0
     # Exact sensors.
     assert row["wind_error_rms_mps"] == pytest.approx(0.0, abs=1e-3)
@@ -51,13 +51,13 @@ def test_a_flight_in_wind_tracks_and_crosses_at_the_interval_of_the_apparent_win
 def test_what_a_flight_records_is_what_the_tables_have_columns_for(windy):
     result, _ = windy
     assert set(result.row) <= set(SEA_SUMMARY_COLUMNS)
-    assert set(result.crossings[0]) == set(SEA_CROSSING_COLUMNS)
-    assert np.all(np.diff([crossing["time_s"] for crossing in result.crossings]) > 0.0)
+    assert set(result.details["crossings.csv"][0]) == set(DETAILS["crossings.csv"])
+    assert np.all(np.diff([crossing["time_s"] for crossing in result.details["crossings.csv"]]) > 0.0)
 
 
 def test_crossings_lie_on_the_plumes_axis_beyond_the_keep_out_radius(windy):
     result, history = windy
-    for crossing in result.crossings:
+    for crossing in result.details["crossings.csv"]:
         at = crossing["time_s"]
         north = np.interp(at, history["time_s"], history["north_m"] - history["vessel_north_m"])
         east = np.interp(at, history["time_s"], history["east_m"] - history["vessel_east_m"])
