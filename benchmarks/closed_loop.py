@@ -13,6 +13,7 @@ from pathlib import Path
 
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.spec import X8
+from benchmarks.sea_guidance import report_sea_guidance
 from innerloop.designer import design_autopilot
 from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
@@ -39,6 +40,7 @@ def main() -> None:
             for name, run in runs.items():
                 times[name].append(run())
     _report(times)
+    report_sea_guidance(ROUNDS)
 
 
 def _loops(folder: Path) -> dict[str, Callable[[], float]]:

@@ -262,6 +262,16 @@ def _check(trials: dict[str, SeaScenario], envelope: Envelope | None) -> None:
         check_draws(trial, scenario)
 
 
+def airframe_for(scenario: SeaScenario, directory: Path) -> Airframe:
+    """Return what flights of one scenario need of its aircraft, with its autopilot written into a run directory.
+
+    Raises
+    ------
+    InputError : there is no such aircraft
+    """
+    return _airframe(scenario, _design(scenario)[0], RunDirectory(directory))
+
+
 def _airframe(scenario: SeaScenario, found: Designed | None, run: RunDirectory) -> Airframe:
     """Return what flights need of the aircraft; write its autopilot into the run directory."""
     half_step = 0.5 / scenario.guidance.rate_hz
