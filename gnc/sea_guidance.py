@@ -41,6 +41,9 @@ _TRANSIT_GAIN = 2.0
 _EITHER_WAY = 0.95 * math.pi
 """Course left to turn beyond which it is as far either way, and the turn that is flown already is the quicker one [rad]."""
 
+_FLEEING_SHARE = 0.8
+"""Share of the speed that the vehicle has over the vessel at which it keeps further off a silent one [-]."""
+
 _UNCONTROLLED = 0.8
 """Mean difference of heading rate from what was asked for, over omega_max, at which control counts as lost [-].
 
@@ -355,7 +358,7 @@ class SeaGuidance:
         lost = self.navigation.lost
         if age > p.stale:
             fleeing = max(0.05, 1.0 - self.centre.speed_ratio) * self._speed
-            self._further += min(p.vessel_acceleration * age, 0.5 * fleeing) * time_step
+            self._further += min(p.vessel_acceleration * age, _FLEEING_SHARE * fleeing) * time_step
         elif lost > 0.0:
             self._further = p.drift_rate * lost
         else:

@@ -16,6 +16,9 @@ _NAVIGATION_TIME = 60.0
 _GUARD_SHARE = 0.5
 """Share of what turbulence takes, and of what is kept at least, that the keep-out guard leaves to the orbit [-]."""
 
+_GUARD_AHEAD = 3.0
+"""How far ahead the keep-out guard looks from the near side of the orbit [s]: the UAV then turns already."""
+
 _STEADY = 40
 """Reports after which the filter's covariance no longer changes."""
 
@@ -72,7 +75,7 @@ def keepout_margin(scenario: SeaScenario, spreads: SpreadTable | None, nu: float
     """Return the margin of a flight.
 
     It is what random errors reach as often as is allowed, tracking, navigation and the vessel's place together; how far a vessel
-    gets that begins to manoeuvre just after a report; and what is kept at least.
+    gets that begins to manoeuvre just after a report; what is kept at least; and room for the guard to look ahead.
 
     Parameters
     ----------
@@ -89,7 +92,9 @@ def keepout_margin(scenario: SeaScenario, spreads: SpreadTable | None, nu: float
     unseen = planned_margin(STILL, other_sigma=sigma, other_sigma_rate=rate, touches_per_hour=f.touches_per_hour)
     random = planned_margin(spread, other_sigma=sigma, other_sigma_rate=rate, touches_per_hour=f.touches_per_hour)
     guard = drift + unseen + (1.0 - _GUARD_SHARE) * (random - unseen + f.margin_min_m)
-    return KeepoutMargin(tracking_sigma=spread.radial, total=drift + random + f.margin_min_m, guard=guard)
+    # The guard's disc swells as it looks ahead; the orbit leaves it that much room where it turns.
+    room = (f.speed_error_mps + 0.5 * f.vessel_acceleration_mps2 * _GUARD_AHEAD) * _GUARD_AHEAD
+    return KeepoutMargin(tracking_sigma=spread.radial, total=drift + random + f.margin_min_m + room, guard=guard)
 
 
 def _seen(reports: Reports) -> float:
