@@ -41,8 +41,14 @@ _TRANSIT_GAIN = 2.0
 _EITHER_WAY = 0.95 * math.pi
 """Course left to turn beyond which it is as far either way, and the turn that is flown already is the quicker one [rad]."""
 
+_EARLY = 0.6
+"""Share of the age at which vessel data are stale from which the orbit moves off already [-]."""
+
 _FLEEING_SHARE = 0.8
 """Share of the speed that the vehicle has over the vessel at which it keeps further off a silent one [-]."""
+
+_MANOEUVRE_ROOM, _STEADY = 200.0, 0.03
+"""Distance that the orbit is moved off per acceleration of the vessel [s^2], and what its reports scatter by [m/s^2]."""
 
 _UNCONTROLLED = 0.8
 """Mean difference of heading rate from what was asked for, over omega_max, at which control counts as lost [-].
@@ -151,10 +157,10 @@ class SeaGuidance:
     """
 
     __slots__ = (
-        "_away_side", "_closing_in", "_further", "_limit", "_parameters", "_speed", "_steps", "_time_step", "_tracking", "_transit",
-        "_troubled", "_vessel_gain_east", "_vessel_gain_north", "_vessel_v_east", "_vessel_v_north", "airspeed_command",
-        "altitude_command", "centre", "centre_error", "guard", "guidance", "heading_rate_command", "health", "mode", "navigation",
-        "reference", "vessel", "vessel_east", "vessel_north",
+        "_away_side", "_closing_in", "_further", "_limit", "_orbit_further", "_parameters", "_speed", "_steps", "_time_step",
+        "_tracking", "_transit", "_troubled", "_vessel_gain_east", "_vessel_gain_north", "_vessel_v_east", "_vessel_v_north",
+        "airspeed_command", "altitude_command", "centre", "centre_error", "guard", "guidance", "heading_rate_command", "health",
+        "mode", "navigation", "reference", "vessel", "vessel_east", "vessel_north",
     )  # fmt: skip
 
     def __init__(self, parameters: SeaParameters, vessel: VesselFilter, guard: KeepoutGuard | None) -> None:
@@ -168,7 +174,7 @@ class SeaGuidance:
         self._limit, self._time_step = parameters.guidance.heading_rate_max, parameters.guidance.time_step
         self._tracking = self._closing_in = self._troubled = False
         self._vessel_gain_north = self._vessel_gain_east = 0.0
-        self._further = self._away_side = 0.0
+        self._further = self._orbit_further = self._away_side = 0.0
         self._steps = 0
         self.vessel_north = self.vessel_east = self._vessel_v_north = self._vessel_v_east = self.centre_error = 0.0
         self.mode = Mode.APPROACH
@@ -333,7 +339,7 @@ class SeaGuidance:
             acceleration_east=vessel.acceleration_east,
             wind_north=navigation.wind.north,
             wind_east=navigation.wind.east,
-            further=self._further + (0.0 if self._closing_in else p.standoff),
+            further=self._orbit_further + (0.0 if self._closing_in else p.standoff) + self._manoeuvre_room(vessel),
         )
         if not started:
             self._start_reference(vessel)
@@ -353,16 +359,21 @@ class SeaGuidance:
             self.mode = Mode.TRACKING if self._tracking else Mode.APPROACH
 
     def _open(self, time_step: float, age: float) -> None:
-        """Keep further off while the vessel may be elsewhere, by no more than the vehicle can flee, until it is heard again."""
-        p = self._parameters
-        lost = self.navigation.lost
-        if age > p.stale:
-            fleeing = max(0.05, 1.0 - self.centre.speed_ratio) * self._speed
-            self._further += min(p.vessel_acceleration * age, _FLEEING_SHARE * fleeing) * time_step
-        elif lost > 0.0:
-            self._further = p.drift_rate * lost
-        else:
-            self._further = 0.0
+        """Keep further off while the vessel may be elsewhere, by no more than the vehicle can flee, until it is heard again.
+
+        The orbit begins to move off before the guard asks for it.
+        """
+        p, lost = self._parameters, self.navigation.lost
+        fleeing = _FLEEING_SHARE * max(0.05, 1.0 - self.centre.speed_ratio) * self._speed
+        opening = min(p.vessel_acceleration * age, fleeing) * time_step
+        reckoned = p.drift_rate * lost
+        self._further = self._further + opening if age > p.stale else reckoned
+        self._orbit_further = self._orbit_further + opening if age > _EARLY * p.stale else reckoned
+
+    def _manoeuvre_room(self, vessel: VesselMotion) -> float:
+        """Return how much further off the orbit stays while the vessel manoeuvres: its centre follows late [m]."""
+        manoeuvring = math.hypot(vessel.acceleration_north, vessel.acceleration_east)
+        return _MANOEUVRE_ROOM * max(0.0, manoeuvring - _STEADY)
 
     def _start_reference(self, vessel: VesselMotion) -> None:
         """Place the reference on the centre of oscillation."""

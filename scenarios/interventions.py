@@ -1,37 +1,48 @@
-"""When the keep-out guard changed commands, one row for each time."""
+"""When the keep-out guard changed commands, one entry for each time."""
 
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
-
-Array = npt.NDArray[np.float64]
+from collections.abc import Sequence
+from typing import NamedTuple
 
 INTERVENTION_COLUMNS = ("flight_id", "trial", "time_s", "duration_s", "distance_min_m", "lost")
 
 
-def interventions(time: Array, guard: Array, distance: Array) -> list[dict[str, Any]]:
-    """Return the stretches of a flight in which the guard had its hands on.
+class Intervention(NamedTuple):
+    """A stretch of guidance steps in each of which the guard changed the command.
+
+    Attributes
+    ----------
+    time_s : when it began [s]
+    duration_s : for how long it lasted [s]
+    distance_min_m : how near the vessel was taken to be [m]
+    lost : whether the guard's radius could not be held at some step
+    """
+
+    time_s: float
+    duration_s: float
+    distance_min_m: float
+    lost: bool
+
+
+def interventions(guarding: Sequence[tuple[int, float, bool]], time_step: float) -> list[Intervention]:
+    """Return the stretches.
 
     Parameters
     ----------
-    time : of the samples, shape (n,) [s]
-    guard : 0 while it let commands through, 1 while it changed them, 2 while it could not hold its radius
-    distance : to the vessel [m]
-
-    Returns
-    -------
-    list of dict : when each began [s], for how long it lasted [s], how near the vessel was, whether its radius could not be held
+    guarding : of each step at which the guard changed the command: its number, the distance to the vessel [m], whether it was lost
+    time_step : of the guidance [s]
     """
-    on = np.concatenate([[False], guard > 0.0, [False]])
-    begins, ends = np.nonzero(~on[:-1] & on[1:])[0], np.nonzero(on[:-1] & ~on[1:])[0]
-    sample = float(time[1] - time[0]) if len(time) > 1 else 0.0
+    stretches: list[list[tuple[int, float, bool]]] = []
+    for entry in guarding:
+        if stretches and entry[0] == stretches[-1][-1][0] + 1:
+            stretches[-1].append(entry)
+        else:
+            stretches.append([entry])
     return [
-        {
-            "time_s": float(time[begin]),
-            "duration_s": sample * int(end - begin),
-            "distance_min_m": float(distance[begin:end].min()),
-            "lost": bool((guard[begin:end] > 1.0).any()),
-        }
-        for begin, end in zip(begins, ends, strict=True)
+        Intervention(
+            time_s=stretch[0][0] * time_step,
+            duration_s=len(stretch) * time_step,
+            distance_min_m=min(distance for _, distance, _ in stretch),
+            lost=any(lost for _, _, lost in stretch),
+        )
+        for stretch in stretches
     ]

@@ -81,6 +81,7 @@ def load_study(name: str, overrides: Sequence[str] = ()) -> AnyStudy:
         key, value = _parse_override(override)
         _set(document, key, value)
         _take_from_cases(document, key)
+        _take_from_draws(document, key)
     study = document.get("study", "flights")
     if study not in KINDS:
         raise InputError(f"study is {study!r}; it must be one of {', '.join(KINDS)}")
@@ -138,6 +139,15 @@ def _take_from_cases(document: dict[str, Any], key: str) -> None:
         for values in (case.get("set"), case.get("set_kinematic")) if isinstance(case, dict) else ():
             if isinstance(values, dict):
                 values.pop(key, None)
+
+
+def _take_from_draws(document: dict[str, Any], key: str) -> None:
+    """Let an override have its way in every flight: the key is no longer drawn."""
+    draws = document.get("draws", [])
+    if key != "draws" and isinstance(draws, list):
+        document["draws"] = [draw for draw in draws if not (isinstance(draw, dict) and draw.get("key") == key)]
+        if not draws and "draws" in document:
+            del document["draws"]
 
 
 def _parse_override(override: str) -> tuple[str, object]:

@@ -131,8 +131,10 @@ class Fault(Section):
     """none, vessel_data, satellite_navigation, engine, or the name of an actuator of the aircraft (see the error for another)."""
     at_s: tuple[NonNegative, NonNegative] = (100.0, 250.0)
     """Earliest and latest time; drawn in between [s]."""
-    lasts_s: Positive = 60.0
-    """For how long vessel data or satellite navigation are gone [s]; anything else is gone for good."""
+    vessel_data_s: Positive = 60.0
+    """For how long vessel data are gone [s]."""
+    satellite_navigation_s: Positive = 10.0
+    """For how long satellite navigation is gone [s]; anything else is gone for good."""
 
     @model_validator(mode="after")
     def _ordered(self) -> "Fault":
@@ -222,7 +224,12 @@ class Draw(Section):
 
 
 class SeaScenario(Section):
-    """A trial over the real sea."""
+    """A trial over the real sea.
+
+    Of ``guidance``, tuning and bound_speed_margin_mps, placement, phase_deg and tracking_allowance_m, airspeed_trim and what
+    belongs to it, and command_limit have no effect: the reference is steered, its distance planned with ``following``, its pace
+    held.
+    """
 
     study: Literal["sea"] = "sea"
     title: str
@@ -259,7 +266,16 @@ class SeaScenario(Section):
                 f" {self.keepout.radius_m:g} m"
             )
         air, room = self.turbulence, self.flight.duration_max_s
-        if air.gusts * 2.0 * air.gust_length_s > room:
+        if self.fault.kind != "none" and self.fault.at_s[1] >= room:
+            raise ValueError(
+                f"fault.at_s ends at {self.fault.at_s[1]:g} s; it must lie within flight.duration_max_s, {room:g} s:"
+                " fly longer, or let it fail earlier"
+            )
+        if (air.gusts > 0) != (air.gust_speed_mps > 0.0):
+            raise ValueError(
+                f"turbulence.gusts is {air.gusts} with a turbulence.gust_speed_mps of {air.gust_speed_mps:g}; give both, or neither"
+            )
+        if air.gusts * 2.0 * air.gust_length_s > 0.9 * room:
             raise ValueError(
                 f"turbulence.gusts is {air.gusts}, each {2.0 * air.gust_length_s:g} s long; they do not fit into"
                 f" flight.duration_max_s, {room:g} s: give fewer or shorter ones"
@@ -269,6 +285,12 @@ class SeaScenario(Section):
                 "turbulence.level or turbulence.gusts is set with fidelity 'kinematic', which feels the steady wind alone:"
                 " set fidelity to 'six_dof', or turbulence.level to 'none' and turbulence.gusts to 0"
             )
+        keys = [draw.key for draw in self.draws]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise ValueError(f"draws has '{key}' {keys.count(key)} times; draw a key once")
+            if "." not in key:
+                raise ValueError(f"draws has '{key}', which is the trial's own; draw keys of its sections, as in wind.speed_mps")
         return self
 
 

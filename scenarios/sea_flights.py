@@ -23,7 +23,7 @@ from scenarios.sea_config import SeaScenario
 from scenarios.sea_draws import drawn_flight
 from scenarios.sea_loop import SEA_COLUMNS, fly_sea
 from scenarios.sea_margin import SpreadTable
-from scenarios.sea_metrics import Row, sea_figures, sea_interventions, sea_plan_row, sea_unmet
+from scenarios.sea_metrics import Row, sea_figures, sea_plan_row, sea_unmet
 from scenarios.sea_plan import KINEMATIC_LAG, Airframe, SeaPlan, plan_sea_flight
 from scenarios.vehicle import Vehicle
 
@@ -85,7 +85,7 @@ def fly_sea_request(request: SeaRequest, directory: Path, airframe: Airframe) ->
         figures, found = sea_figures(plan, record)
         named: Row = {"flight_id": request.flight_id, "trial": request.trial}
         details["crossings.csv"] = [_crossing_row(request, i, crossing) for i, crossing in enumerate(found, start=1)]
-        details["interventions.csv"] = [named | entry for entry in sea_interventions(record)]
+        details["interventions.csv"] = [named | stretch._asdict() for stretch in record.interventions]
         row |= figures
         unmet = sea_unmet(row, scenario.criteria)
         row |= {"criteria_met": not unmet, "message": "; ".join([*unmet, *([record.message] if record.message else [])])}

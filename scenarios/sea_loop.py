@@ -10,6 +10,7 @@ from gnc.health import Trouble
 from gnc.sea_guidance import SeaGuidance
 from gnc.vessel_filter import VesselReport
 from scenarios.closed_loop import Outcome
+from scenarios.interventions import Intervention, interventions
 from scenarios.sea_plan import SeaPlan
 from scenarios.sea_settling import Settling
 from scenarios.sea_world import SATELLITES, VESSEL_DATA
@@ -47,7 +48,7 @@ class SeaRecord:
     outcome, message : how it ended, in a word and in a sentence
     mode : what the guidance was doing at the end, or ``DITCHED``
     settled_at : when it had settled, not a number if it never had [s]
-    interventions : how often the keep-out guard began to change commands
+    interventions : each time that the keep-out guard changed commands
     history : shape (samples, len(SEA_COLUMNS))
     """
 
@@ -55,7 +56,7 @@ class SeaRecord:
     message: str
     mode: str
     settled_at: float
-    interventions: int
+    interventions: list[Intervention]
     history: npt.NDArray[np.float64]
 
 
@@ -87,13 +88,12 @@ def fly_sea(plan: SeaPlan, vehicle: Vehicle) -> SeaRecord:
             f"{flight.settling.crossings} of {plan.crossings} crossings flown after settling within {plan.duration_max:g} s;"
             " allow more time (flight.duration_max_s) or start closer"
         )
-    guard = flight.guidance.guard
     return SeaRecord(
         outcome=outcome,
         message=message,
         mode=DITCHED if ditched else flight.guidance.mode.value,
         settled_at=flight.settling.at,
-        interventions=guard.interventions if guard else 0,
+        interventions=interventions(flight.guarding, time_step),
         history=np.array(flight.rows),
     )
 
@@ -112,6 +112,7 @@ class _Flight:
         self.guidance = SeaGuidance(plan.guidance, plan.vessel_filter, plan.guard)
         self.settling = Settling(band=plan.settling_band, period=plan.oscillation.period, crossings=plan.crossings)
         self.rows: list[tuple[float, ...]] = []
+        self.guarding: list[tuple[int, float, bool]] = []
 
     def guide(self, step: int) -> float:
         """Let the guidance compute its commands; return the error of the measured airspeed [m/s]."""
@@ -145,6 +146,10 @@ class _Flight:
             # Where one surface is elevator and aileron, each would undo the other's work.
             self._held = True
             vehicle.hold_elevator()
+        guard = guidance.guard
+        if guard is not None and guard.intervening:
+            x, y = motion[0] - guidance.vessel_north, motion[1] - guidance.vessel_east
+            self.guarding.append((step, math.hypot(x, y), guard.lost))
         return measured_airspeed - airspeed
 
     def _note_reference(self) -> None:

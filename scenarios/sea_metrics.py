@@ -9,7 +9,6 @@ import numpy.typing as npt
 from gnc.sea_guidance import Mode
 from scenarios.closed_loop import Outcome
 from scenarios.crossings import Crossing, find_crossings
-from scenarios.interventions import interventions
 from scenarios.keepout import keepout_figures
 from scenarios.sea_config import SeaCriteria
 from scenarios.sea_loop import DITCHED, SEA_COLUMNS, SeaRecord
@@ -93,8 +92,8 @@ def sea_figures(plan: SeaPlan, record: SeaRecord) -> tuple[Row, list[Crossing]]:
         "min_distance_m": keepout.distance_min,
         "end_distance_m": float(np.linalg.norm(position[-1])),
         "settling_time_s": record.settled_at,
-        "guard_interventions": record.interventions,
-        "guard_time_s": sample * float(np.count_nonzero(guarding > 0.0)),
+        "guard_interventions": len(record.interventions),
+        "guard_time_s": sum(stretch.duration_s for stretch in record.interventions),
         "guard_lost_s": sample * float(np.count_nonzero(guarding > 1.0)),
         "vessel_error_max_m": float(np.max(_vessel_error(history))),
         "airspeed_min_mps": float(np.min(sea_column(history, "airspeed_mps"))),
@@ -111,13 +110,6 @@ def sea_figures(plan: SeaPlan, record: SeaRecord) -> tuple[Row, list[Crossing]]:
     row |= _settled_figures(plan, history[settled], position[settled])
     crossings = _crossings(history[settled], position[settled], velocity[settled])
     return row | _crossing_figures(plan, crossings, float(sea_column(history, "speed_ratio")[-1])), crossings
-
-
-def sea_interventions(record: SeaRecord) -> list[Row]:
-    """Return a row for each time that the keep-out guard had its hands on; see ``scenarios.interventions``."""
-    history = record.history
-    north, east = (sea_column(history, f"{axis}_m") - sea_column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
-    return interventions(sea_column(history, "time_s"), sea_column(history, "guard"), np.hypot(north, east))
 
 
 def _in_vessel_frame(history: Array, source_height: float) -> tuple[Array, Array]:
@@ -204,7 +196,9 @@ def sea_unmet(row: Row, criteria: SeaCriteria) -> list[str]:
     has failed: a false alarm would end it safely, and measure nothing.
     """
     nothing = math.nan
-    broken = row["fault"] not in ("none", VESSEL_DATA, SATELLITES)
+    broken = row["fault"] not in ("none", VESSEL_DATA, SATELLITES) and row.get("duration_s", math.inf) >= row.get(
+        "fault_time_s", 0.0
+    )
     limit = row["heading_rate_limit_rad_s"] * (1.0 + 1e-12)
     checks = [
         (
@@ -223,7 +217,9 @@ def sea_unmet(row: Row, criteria: SeaCriteria) -> list[str]:
     if criteria.crossing_interval_error is not None:
         interval, predicted = row.get("crossing_interval_mean_s", nothing), row["crossing_interval_predicted_s"]
         met = abs(interval / predicted - 1.0) <= criteria.crossing_interval_error
-        checks.append((met, f"mean crossing interval {interval:.3f} s against {predicted:.3f} s"))
+        checks.append(
+            (met, f"mean crossing interval {interval:.3f} s, {100.0 * (interval / predicted - 1.0):+.1f} % of {predicted:.3f} s")
+        )
     if criteria.tracking_error_rms_m is not None:
         error = row.get("tracking_error_rms_m", nothing)
         checks.append((error <= criteria.tracking_error_rms_m, f"rms tracking error {error:.2f} m"))

@@ -83,7 +83,7 @@ class SeaRunResult:
             met = sum(bool(row["criteria_met"]) for row in rows)
             entries = sum(int(row.get("keepout_violations") or 0) for row in rows)
             nearest = min((float(row["min_distance_m"]) for row in rows if "min_distance_m" in row), default=math.nan)
-            kept = f"{entries} entries into the keep-out area, nearest {nearest:.1f} m"
+            kept = f"{entries} entries into the keep-out area" + ("" if math.isnan(nearest) else f", nearest {nearest:.1f} m")
             lines.append(f"  {trial}: {met} of {planned} met every criterion; {kept}")
         unmet = [row for row in self.rows if not row["criteria_met"]]
         lines += [f"    {row['flight_id']}: {row['outcome']}: {row['message']}" for row in unmet[:_SHOWN]]

@@ -64,8 +64,8 @@ def drawn_fault(scenario: SeaScenario, generator: np.random.Generator) -> TimedF
     """Return the flight's fault, at its time."""
     fault = scenario.fault
     begins = float(generator.uniform(*fault.at_s))
-    passing = fault.kind in (VESSEL_DATA, SATELLITES)
-    return TimedFault(kind=fault.kind, begins=begins, ends=begins + fault.lasts_s if passing else math.inf)
+    lasts = {VESSEL_DATA: fault.vessel_data_s, SATELLITES: fault.satellite_navigation_s}.get(fault.kind, math.inf)
+    return TimedFault(kind=fault.kind, begins=begins, ends=begins + lasts)
 
 
 def drawn_weather(scenario: SeaScenario, generator: np.random.Generator) -> Weather:

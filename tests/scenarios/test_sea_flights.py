@@ -96,7 +96,7 @@ def test_while_nothing_is_heard_of_the_vessel_it_holds_off_and_then_resumes(tmp_
     result = fly(
         tmp_path,
         reports=HEARD,
-        fault={"kind": "vessel_data", "at_s": (80.0, 80.0), "lasts_s": 60.0},
+        fault={"kind": "vessel_data", "at_s": (80.0, 80.0)},
         following={"vessel_acceleration_mps2": 0.1, "speed_error_mps": 0.5},
         start=ASTERN,
         flight={"crossings": 0, "duration_max_s": 260.0},
@@ -118,7 +118,7 @@ def test_while_nothing_is_heard_of_the_vessel_it_holds_off_and_then_resumes(tmp_
 def test_vessel_data_fail_also_where_they_are_exact(tmp_path):
     fly(
         tmp_path,
-        fault={"kind": "vessel_data", "at_s": (0.0, 0.0), "lasts_s": 30.0},
+        fault={"kind": "vessel_data", "at_s": (0.0, 0.0), "vessel_data_s": 30.0},
         vessel={"speed_mps": 8.0, "manoeuvres": [{"at_s": 5.0, "turn_deg": 90.0, "turn_rate_deg_s": 3.0}]},
         start=ASTERN,
         flight={"crossings": 0, "duration_max_s": 45.0},
@@ -137,7 +137,7 @@ def test_without_satellites_it_reckons_and_stays_outside(tmp_path):
     result = fly(
         tmp_path,
         wind={"speed_mps": 6.0, "from_deg": 70.0},
-        fault={"kind": "satellite_navigation", "at_s": (80.0, 80.0), "lasts_s": 20.0},
+        fault={"kind": "satellite_navigation", "at_s": (80.0, 80.0), "satellite_navigation_s": 20.0},
         start=ASTERN,
         flight={"crossings": 0, "duration_max_s": 150.0},
         criteria={"settles": False},
