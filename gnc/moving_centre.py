@@ -10,8 +10,11 @@ from dataclasses import dataclass
 
 from gnc.angles import wrap
 
-_AXIS_GAIN = 0.05
-"""Rate at which the axis goes where it should, per difference [1/s]; slow enough to even out what reports of the vessel scatter."""
+_AXIS_GAIN = 0.1
+"""Rate at which the axis goes where it should, per difference, in units of omega_max [-].
+
+It is slow enough to even out what reports of the vessel scatter.
+"""
 
 _IN_PLACE = 0.04
 """Distance from its place within which the centre counts as being there, over r_CO [-]."""
@@ -19,8 +22,8 @@ _IN_PLACE = 0.04
 _AXIS_SPEED = 0.7
 """Share of the vehicle's speed at which the centre may be swung round the vessel [-]: it must be followed."""
 
-_DISTANCE_GAIN = 0.06
-"""Rate at which the centre's distance goes where it should, per difference [1/s]."""
+_DISTANCE_GAIN = 0.12
+"""Rate at which the centre's distance goes where it should, per difference, in units of omega_max [-]."""
 
 _DISTANCE_SHARE = 0.3
 """Share of the speed that the vehicle has over the vessel at which the centre's distance may change [-]."""
@@ -37,7 +40,7 @@ class CentreParameters:
     along, across : |d_x|max and |d_y|max of the orbit, equation (12), at equal steps of nu from 0 [m]
     plume_heading : chi_P from the vessel's bow, or none where the plume trails behind the vessel's motion through the air [rad]
     apparent_wind_min : below this a plume has no direction that could be known [m/s]
-    speed : V_r [m/s]
+    speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
     """
 
     distance_min: float
@@ -47,6 +50,7 @@ class CentreParameters:
     plume_heading: float | None
     apparent_wind_min: float
     speed: float
+    heading_rate_max: float
 
 
 class MovingCentre:
@@ -115,12 +119,12 @@ class MovingCentre:
             self._started, self.axis = True, wanted
             self.distance = self._target(air_north, air_east) + further
         fastest = _AXIS_SPEED * p.speed / self.distance
-        turn = min(max(turn + _AXIS_GAIN * wrap(wanted - self.axis), -fastest), fastest)
+        turn = min(max(turn + _AXIS_GAIN * p.heading_rate_max * wrap(wanted - self.axis), -fastest), fastest)
         swing = turn * self.distance
         swung_north, swung_east = air_north - swing * math.sin(self.axis), air_east + swing * math.cos(self.axis)
         target = self._target(swung_north, swung_east) + further
         fastest = _DISTANCE_SHARE * max(0.05, 1.0 - self.speed_ratio) * p.speed
-        recede = min(max(_DISTANCE_GAIN * (target - self.distance), -fastest), fastest)
+        recede = min(max(_DISTANCE_GAIN * p.heading_rate_max * (target - self.distance), -fastest), fastest)
         self.axis = wrap(self.axis + turn * time_step)
         self.distance += recede * time_step
         self.in_place = abs(target - self.distance) < _IN_PLACE * target

@@ -30,14 +30,14 @@ _ETA_FREQUENCY = 0.2
 _GATE = 0.2
 """Share of their rates that mean course and amplitude keep where the reference is farthest from the centre [-]."""
 
-_RATE_GAIN = 0.4
-"""Rate of mean course and amplitude per difference from what is wanted [1/s]."""
+_RATE_GAIN = 0.8
+"""Rate of mean course and amplitude per difference from what is wanted, in units of the heading rate [-]."""
 
 _RATE_SHARE = 0.3
 """Share of the heading rate that either of them may take [-]."""
 
-_SMOOTHING = 0.5
-"""Time constant of their rates [s]: the heading rate of a rolling aircraft does not jump."""
+_SMOOTHING = 0.25
+"""Time constant of their rates, over one through the heading rate [-]: that of a rolling aircraft does not jump."""
 
 
 class SteeredReference:
@@ -67,6 +67,7 @@ class SteeredReference:
         "_eta_wanted",
         "_mean_rate",
         "_mean_wanted",
+        "_rate_gain",
         "_rate_max",
         "_smoothing",
         "_time_step",
@@ -99,7 +100,8 @@ class SteeredReference:
         self._acceleration = GRAVITY * roll_rate_max / speed
         self._time_step = time_step
         self._rate_max = _RATE_SHARE * heading_rate
-        self._smoothing = min(1.0, time_step / _SMOOTHING)
+        self._smoothing = min(1.0, time_step * heading_rate / _SMOOTHING)
+        self._rate_gain = _RATE_GAIN * heading_rate
         self._mean_rate = self._eta_rate = 0.0
         self.north, self.east = north, east
         self.mean_course = self._mean_wanted = mean_course
@@ -120,11 +122,11 @@ class SteeredReference:
         phase, eta, mean_course = self.phase, self.eta, self.mean_course
         cos_phase = cos(phase)
         gate = _GATE + (1.0 - _GATE) * cos_phase * cos_phase
-        turn = _RATE_GAIN * wrap(self._mean_wanted - mean_course)
+        turn = self._rate_gain * wrap(self._mean_wanted - mean_course)
         if not -rate_max < turn < rate_max:
             turn = math.copysign(rate_max, turn)
         self._mean_rate = mean_rate = self._mean_rate + smoothing * (gate * turn - self._mean_rate)
-        grow = _RATE_GAIN * (self._eta_wanted - eta)
+        grow = self._rate_gain * (self._eta_wanted - eta)
         if not -rate_max < grow < rate_max:
             grow = math.copysign(rate_max, grow)
         self._eta_rate = eta_rate = self._eta_rate + smoothing * (gate * grow - self._eta_rate)

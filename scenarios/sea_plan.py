@@ -257,6 +257,7 @@ def _parameters(
         plume_heading=math.radians(scenario.plume.heading_deg) if scenario.plume.direction == "given" else None,
         apparent_wind_min=f.apparent_wind_min_mps,
         speed=g.airspeed_mps,
+        heading_rate_max=fastest,
     )
     return SeaParameters(
         guidance=guidance,
