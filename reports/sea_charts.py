@@ -10,7 +10,7 @@ from reports.sea_data import Kind, Mask, Trial, clearance, column, entered, inte
 from reports.sea_panels import capped, classes, histogram, level, points, quartiles, strips
 
 _NU = "Speed ratio ν [-]"
-_CLEARANCE = "Closest approach beyond r_min [m]"
+_CLEARANCE = "Distance kept beyond r_min [m]"
 _WIND_BOUNDS = (2.5, 5.0, 7.5)
 _R_MIN = (0.0, "r_min")
 
@@ -99,7 +99,7 @@ def _margin(trial: Trial) -> Panel:
     planned = column(rows, "keepout_margin_m")
     all_alike = float(np.ptp(planned)) < 1e-6
     x, x_label = (column(rows, "nu"), _NU) if all_alike else (planned, "Planned margin [m]")
-    lines = [*points(x, clearance(rows), _every(trial)), level(x, 0.0, "r_min")]
+    lines = [*points(x, clearance(rows), _every(trial)), level(x, 0.0, "r_min", "black")]
     if all_alike:
         lines.append(level(x, float(planned[0]), "planned margin", "green"))
     else:

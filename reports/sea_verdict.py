@@ -75,6 +75,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame) -> list[tuple[str, str, s
     nearest = flown.iloc[int(np.argmin(least))] if len(flown) else None
     command = column(flown, "heading_rate_command_max_rad_s") / column(flown, "heading_rate_limit_rad_s")
     guarded = int(np.count_nonzero(column(flown, "guard_interventions") > 0.0))
+    lost = int(np.count_nonzero(column(flown, "guard_lost_s") > 0.0))
     asked_for = {trial.title: asked(trial) for trial in trials}
     worst = [_worst(asked_for, key) for key in _SHOWN]
     return [
@@ -88,6 +89,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame) -> list[tuple[str, str, s
         ("Heading-rate command over ω_max, worst", f"{np.nanmax(command):.3f}" if np.isfinite(command).any() else "none", "≤ 1"),
         *(figure for figure in worst if figure),
         ("Flights in which the guard intervened", f"{guarded:,} of {len(flown):,}", ""),
+        ("Flights in which it could not hold its own radius for a while", f"{lost:,}", ""),
     ]
 
 
@@ -97,4 +99,4 @@ def _worst(asked_for: dict[str, list[Asked]], key: str) -> tuple[str, str, str] 
     if not known:
         return None
     worst = max(known, key=lambda a: a.share)
-    return f"{worst.what}, worst", worst.worst.split(";")[0], worst.limit
+    return f"{worst.what}, worst where asked for", worst.worst.split(";")[0], worst.limit

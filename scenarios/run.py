@@ -55,7 +55,7 @@ def _list() -> int:
     from scenarios.load import catalog
 
     for name, path in catalog().items():
-        print(f"{name:20} {tomllib.loads(path.read_text(encoding='utf-8'))['title']}")
+        print(f"{name:24} {tomllib.loads(path.read_text(encoding='utf-8'))['title']}")
     return MET
 
 

@@ -24,6 +24,7 @@ def make(plume_heading=None):
             plume_heading=plume_heading,
             apparent_wind_min=1.0,
             speed=SPEED,
+            heading_rate_max=0.505,
         )
     )
 

@@ -29,7 +29,7 @@ def test_a_flight_is_drawn_by_the_trials_seed_its_name_and_its_number_alone():
 
 
 def test_draws_stay_within_their_ranges_and_choices_are_dealt_equally():
-    trial = scenario(draws=WINDS, flight={"duration_max_s": 10.0})
+    trial = scenario(draws=WINDS, flight={"duration_max_s": 300.0})
     flights = [drawn_flight("trial", trial, number)[0] for number in range(60)]
     speeds = [flight.wind.speed_mps for flight in flights]
     assert 2.0 <= min(speeds) < 3.0

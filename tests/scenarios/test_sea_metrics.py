@@ -189,8 +189,11 @@ def test_every_criterion_is_missed_in_a_short_sentence(plan, change, criteria, w
 
 
 def test_a_flight_may_be_given_up_where_a_part_of_the_aircraft_has_failed(plan):
-    row = good_row(plan) | {"mode_at_end": "ditched", "fault": "engine"}
-    assert sea_unmet(row, scenario(criteria={"settles": False}).criteria) == []
+    row = good_row(plan) | {"mode_at_end": "ditched", "fault": "engine", "fault_time_s": 50.0}
+    criteria = scenario(criteria={"settles": False}).criteria
+    assert sea_unmet(row, criteria) == []
+    # Given up before anything had failed: a false alarm.
+    assert sea_unmet(row | {"fault_time_s": 1000.0}, criteria) == ["ended ditched, though nothing of the aircraft failed"]
 
 
 @pytest.mark.parametrize("key", ["crossing_interval_mean_s", "tracking_error_rms_m", "resume_periods"])
