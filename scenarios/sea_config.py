@@ -26,7 +26,7 @@ class Manoeuvre(Section):
     turn_rate_deg_s: Annotated[float, Field(gt=0.0, le=5.0)] = 0.5
     """Rate of the turn [deg/s]."""
     speed_mps: Annotated[float, Field(ge=0.0, le=30.0)] | None = None
-    """Speed through the water that it ends with; that before if not given [m/s]."""
+    """Speed over the ground that it ends with; that before if not given [m/s]."""
     acceleration_mps2: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
     """Rate of the change of speed [m/s2]."""
 
@@ -184,7 +184,7 @@ class SeaFlight(Section):
     duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 900.0
     """Longest flight [s]."""
     settling_band_m: Positive = 8.0
-    """Settled once the distance to the reference, and its orbit's from where it should be, stay below this for a period [m]."""
+    """Settled once the reference is nearer than this, and its orbit nearer to its place than three times this, for a period [m]."""
     log_rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 10.0
     """Recording rate [Hz], at least 5 so that keep-out figures are true to centimetres; must divide the guidance rate."""
 

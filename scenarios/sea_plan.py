@@ -60,6 +60,7 @@ class Airframe:
     ----------
     lag : of the heading rate behind the guidance [s]
     airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
+    turning_airspeed : up to which omega_max can be flown at the autopilot's largest bank [m/s]
     reversal : how the heading rate follows a reversal of the turn
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
     six_dof, model : the aircraft and the JSBSim root of its autopilot; neither for a kinematic vehicle
@@ -69,6 +70,7 @@ class Airframe:
     airspeed_bandwidth: float
     airspeed_min: float
     airspeed_max: float
+    turning_airspeed: float
     reversal: Reversal
     crab_banks: tuple[float, ...]
     crab_offsets: tuple[float, ...]
@@ -272,7 +274,7 @@ def _parameters(
         standoff=f.standoff_m,
         tracked=f.tracked_m,
         hold=hold,
-        transit_airspeed=g.airspeed_mps + _TRANSIT_SHARE * (hold.airspeed_max - g.airspeed_mps),
+        transit_airspeed=min(g.airspeed_mps + _TRANSIT_SHARE * (hold.airspeed_max - g.airspeed_mps), airframe.turning_airspeed),
         powerless=_POWERLESS_SHARE * (g.airspeed_mps - hold.airspeed_min),
         stale=max(_STALE_MIN, reports.interval_s[1] + reports.latency_max_s),
         vessel_acceleration=f.vessel_acceleration_mps2,

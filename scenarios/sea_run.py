@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+
 from aircraft.errors import AircraftError
 from aircraft.faults import fault_names
 from aircraft.fdm import Fdm
@@ -21,11 +23,12 @@ from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim
 from innerloop.reversal import Reversal, measure_reversal
+from innerloop.schedule import Schedule
 from scenarios.closed_loop import Outcome
 from scenarios.errors import InputError
 from scenarios.fitting import fitted
 from scenarios.flights import SixDof
-from scenarios.flyable import check_flyable
+from scenarios.flyable import check_flyable, omega_max
 from scenarios.keepout_margin import tracking_spread
 from scenarios.ledger import Ledger, Row, Table
 from scenarios.load import load_study
@@ -282,6 +285,7 @@ def _airframe(scenario: SeaScenario, found: Designed | None, run: RunDirectory) 
             airspeed_bandwidth=KINEMATIC_BANDWIDTH,
             airspeed_min=0.7 * scenario.guidance.airspeed_mps,
             airspeed_max=1.3 * scenario.guidance.airspeed_mps,
+            turning_airspeed=math.inf,
             reversal=reversal,
             crab_banks=(-1.0, 1.0),
             crab_offsets=(0.0, 0.0),
@@ -301,12 +305,24 @@ def _airframe(scenario: SeaScenario, found: Designed | None, run: RunDirectory) 
         airspeed_bandwidth=found.design.speeds.airspeed,
         airspeed_min=schedule.envelope.airspeed_min,
         airspeed_max=schedule.envelope.airspeed_max,
+        turning_airspeed=_turning_airspeed(schedule, omega_max(scenario.guidance)),
         reversal=reversal,
         crab_banks=tuple(turn.roll for turn in turns),
         crab_offsets=tuple(turn.course_offset() for turn in turns),
         six_dof=SixDof(start=start, lag=lag, reversal=reversal, envelope=schedule.envelope),
         model=run.model,
     )
+
+
+def _turning_airspeed(schedule: Schedule, heading_rate: float) -> float:
+    """Return the airspeed at which the slower of both turns at the autopilot's largest bank has a heading rate [m/s]."""
+    bank = schedule.envelope.bank_max
+    turns = [
+        min(abs(float(np.interp(side * bank, [t.roll for t in row], [t.yaw_rate for t in row]))) for side in (-1.0, 1.0))
+        for row in schedule.trims
+    ]
+    # Turns are slower the faster it flies.
+    return float(np.interp(-heading_rate, [-turn for turn in turns], schedule.airspeeds))
 
 
 def _spreads(scenario: SeaScenario, found: Designed | None, airframe: Airframe) -> SpreadTable | None:

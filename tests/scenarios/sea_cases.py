@@ -17,6 +17,7 @@ AIRFRAME = Airframe(
     airspeed_bandwidth=KINEMATIC_BANDWIDTH,
     airspeed_min=0.7 * SPEED,
     airspeed_max=1.3 * SPEED,
+    turning_airspeed=1.3 * SPEED,
     reversal=Reversal(delay=0.0, lag=KINEMATIC_LAG),
     crab_banks=(-1.0, 1.0),
     crab_offsets=(0.0, 0.0),
