@@ -18,10 +18,10 @@ import pandas as pd
 
 from gnc.guidance import Guidance
 from gnc.sea_guidance import SeaGuidance
+from scenarios.sea_airframe import airframe_for
 from scenarios.sea_config import Reports, SeaFlight, SeaScenario, SeaStart, SeaVessel, Wind
 from scenarios.sea_flights import SeaRequest, fly_sea_request
 from scenarios.sea_plan import SeaPlan, plan_sea_flight
-from scenarios.sea_run import airframe_for
 
 SETTLED = 150.0
 """From when on steps are timed: the UAV is on its orbit [s]."""

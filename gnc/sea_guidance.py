@@ -6,34 +6,19 @@ round the keep-out area; whatever is asked for passes the keep-out guard.
 """
 
 import math
-from dataclasses import dataclass
-from enum import Enum
 
 from gnc.angles import wrap
-from gnc.guidance import Guidance, GuidanceParameters
+from gnc.guidance import Guidance
 from gnc.health import Health, Trouble
 from gnc.keepout_guard import KeepoutGuard
-from gnc.moving_centre import CentreParameters, MovingCentre
-from gnc.navigation import Navigation, NavigationParameters
-from gnc.speed_hold import SpeedHold, airspeed_to_hold
+from gnc.moving_centre import MovingCentre
+from gnc.navigation import Navigation
+from gnc.reference_steering import mean_motion
+from gnc.sea_parameters import Mode, SeaParameters
+from gnc.speed_hold import airspeed_to_hold
 from gnc.steered_reference import SteeredReference
 from gnc.transit import Transit
 from gnc.vessel_filter import VesselFilter, VesselMotion
-
-_CENTRE_GAIN = 0.1
-"""Wanted drift of the orbit's centre per distance from where it should be, in units of omega_max [-]."""
-
-_ALONG_SHARE = 0.3
-"""Largest share of the vehicle's speed that such a drift takes along the centre's motion [-]; that changes the amplitude alone."""
-
-_ACROSS_SHARE = 0.4
-"""Largest share of the centre's speed that it takes across [-]: more would turn the orbit instead of moving it."""
-
-_STILL = 0.05
-"""Speed ratio below which a centre's motion gives no direction to an orbit [-]: then it lies across the plume."""
-
-_SLOW = 0.25
-"""Speed ratio below which that gain falls in proportion [-]: turning the mean course by a little moves a slow orbit by much."""
 
 _TRANSIT_GAIN = 2.0
 """Heading rate per course error on the way to the reference, in units of omega_max [-]."""
@@ -72,67 +57,7 @@ _DEEP = -1000.0
 """Altitude that a gliding vehicle is told [m]: so far below that the autopilot holds its airspeed by pitch, and sinks."""
 
 
-class Mode(Enum):
-    """What the guidance is doing."""
-
-    APPROACH = "approach"
-    TRACKING = "tracking"
-    HOLDING = "holding off"
-    DEAD_RECKONING = "dead reckoning"
-    OUTRUN = "outrun"
-    NO_PLUME = "no plume"
-    GLIDING = "gliding"
-    TERMINATING = "terminating"
-
-
 _MODES = {mode: i for i, mode in enumerate(Mode)}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SeaParameters:
-    """Parameters of the outer loop over a real sea.
-
-    Attributes
-    ----------
-    guidance : of the tracking law; it trims no airspeed and has no guard
-    navigation, centre : of own motion and of the centre of oscillation
-    reference_heading_rate : what the reference may turn at most [rad/s]
-    roll_rate_max : that the reference may ask for [rad/s]
-    speed_ratio_max : above it the vessel outruns the vehicle [-]
-    blocked_radius, round_radius : a way to the centre that comes closer to the vessel than the first goes round by the second [m]
-    join_distance : from the centre, within which the reference is tracked [m]
-    standoff : how much further off the centre stays until it is [m]
-    tracked : distance from the reference that counts as tracked [m]
-    hold : how it keeps pace with its reference
-    transit_airspeed : on the way to it [m/s]
-    powerless : mean lack of airspeed at which thrust counts as lost [m/s]
-    stale : age of vessel data beyond which the keep-out margin no longer covers where the vessel may be [s]
-    vessel_acceleration : largest, of a vessel that is not heard [m/s^2]
-    drift_rate : how fast dead reckoning goes wrong [m/s]
-    plan_interval : guidance steps between looks at vessel and wind
-    altitude, glide_airspeed : commanded as long as all is well, and while gliding [m, m/s]
-    """
-
-    guidance: GuidanceParameters
-    navigation: NavigationParameters
-    centre: CentreParameters
-    reference_heading_rate: float
-    roll_rate_max: float
-    speed_ratio_max: float
-    blocked_radius: float
-    round_radius: float
-    join_distance: float
-    standoff: float
-    tracked: float
-    hold: SpeedHold
-    transit_airspeed: float
-    powerless: float
-    stale: float
-    vessel_acceleration: float
-    drift_rate: float
-    plan_interval: int
-    altitude: float
-    glide_airspeed: float
 
 
 class SeaGuidance:
@@ -393,27 +318,15 @@ class SeaGuidance:
         self.reference = self.guidance.ahead
 
     def _steer(self, vessel: VesselMotion) -> None:
-        """Steer the reference's mean velocity: that of the centre, and what takes its orbit there."""
+        """Steer the reference's mean velocity so that its orbit is where it should be."""
         p, navigation, centre = self._parameters, self.navigation, self.centre
-        ahead = self.reference
         lag = p.guidance.lag
-        orbit_north, orbit_east = ahead.centre()
+        orbit_north, orbit_east = self.reference.centre()
         off_north = vessel.north - navigation.drift_north + centre.x + lag * centre.velocity_north - orbit_north
         off_east = vessel.east - navigation.drift_east + centre.y + lag * centre.velocity_east - orbit_east
         self.centre_error = math.hypot(off_north, off_east)
-        moving = math.hypot(centre.velocity_north, centre.velocity_east)
-        if moving > _STILL * self._speed:
-            cos_m, sin_m = centre.velocity_north / moving, centre.velocity_east / moving
-        else:
-            cos_m, sin_m = -math.cos(centre.axis), -math.sin(centre.axis)
-        gain = _CENTRE_GAIN * p.guidance.heading_rate_max
-        most = _ALONG_SHARE * self._speed
-        along = moving + min(max(gain * (off_north * cos_m + off_east * sin_m), -most), most)
-        gain *= min(1.0, max(_CENTRE_GAIN, moving / (_SLOW * self._speed)))
-        most = _ACROSS_SHARE * max(moving, 0.1 * self._speed)
-        across = min(max(gain * (off_east * cos_m - off_north * sin_m), -most), most)
-        turned = math.atan2(across, max(along, 2.0 * _STILL * self._speed))
-        ahead.steer(math.atan2(sin_m, cos_m) + turned, min(along / math.cos(turned) / self._speed, p.speed_ratio_max))
+        mean_course, speed_ratio = mean_motion(centre, off_north, off_east, self._speed, p.guidance.heading_rate_max)
+        self.reference.steer(mean_course, min(speed_ratio, p.speed_ratio_max))
 
     def _decide(self, vessel: VesselMotion) -> None:
         """Decide whether to track the reference, and whether the orbit may close in."""

@@ -19,12 +19,13 @@ from scenarios.interventions import INTERVENTION_COLUMNS
 from scenarios.jsbsim_vehicle import JsbsimVehicle
 from scenarios.kinematic_vehicle import KinematicVehicle
 from scenarios.run_directory import RunDirectory
+from scenarios.sea_airframe import KINEMATIC_LAG, Airframe
 from scenarios.sea_config import SeaScenario
 from scenarios.sea_draws import drawn_flight
 from scenarios.sea_loop import SEA_COLUMNS, fly_sea
 from scenarios.sea_margin import SpreadTable
 from scenarios.sea_metrics import Row, sea_figures, sea_plan_row, sea_unmet
-from scenarios.sea_plan import KINEMATIC_LAG, Airframe, SeaPlan, plan_sea_flight
+from scenarios.sea_plan import SeaPlan, plan_sea_flight
 from scenarios.vehicle import Vehicle
 
 _CROSSING_COLUMNS = ("flight_id", "trial", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")

@@ -29,7 +29,7 @@ SEA_COLUMNS = (
 
 Places and velocities are over the ground; the reference's course is through the air. The plume's axis, vessel and own motion are
 true; ``seen``, centre, wind and speed ratio are what the guidance takes them to be. ``mode`` is a place in
-``gnc.sea_guidance.Mode``; ``guard`` is 1 while the keep-out guard changes commands, 2 while it cannot hold its radius.
+``gnc.sea_parameters.Mode``; ``guard`` is 1 while the keep-out guard changes commands, 2 while it cannot hold its radius.
 """
 
 DITCHED = "ditched"

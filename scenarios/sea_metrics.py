@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from gnc.sea_guidance import Mode
+from gnc.sea_parameters import Mode
 from scenarios.closed_loop import Outcome
 from scenarios.crossings import Crossing, find_crossings
 from scenarios.keepout import keepout_figures

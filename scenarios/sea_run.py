@@ -7,40 +7,32 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
-from aircraft.errors import AircraftError
 from aircraft.faults import fault_names
 from aircraft.fdm import Fdm
 from aircraft.find import find_spec
 from aircraft.spec import AircraftSpec, Envelope
 from aircraft.turbulence import TURBULENCE
 from aircraft.units import METRES_PER_FOOT
-from gnc.sea_guidance import Mode
-from innerloop.cache import Designed, designed
+from gnc.sea_parameters import Mode
+from innerloop.cache import Designed
 from innerloop.dryden import low_altitude_turbulence
-from innerloop.flight import AutopilotedAircraft
-from innerloop.jsbsim_root import write_root
-from innerloop.responses import level_trim
-from innerloop.reversal import Reversal, measure_reversal
-from innerloop.schedule import Schedule
 from scenarios.closed_loop import Outcome
 from scenarios.errors import InputError
 from scenarios.fitting import fitted
-from scenarios.flights import SixDof
-from scenarios.flyable import check_flyable, omega_max
+from scenarios.flyable import check_flyable
 from scenarios.keepout_margin import tracking_spread
 from scenarios.ledger import Ledger, Row, Table
 from scenarios.load import load_study
 from scenarios.manifest import config_hash, opening_manifest, parameters
 from scenarios.pool import DIED, Progress, fly_all
 from scenarios.run_directory import RunDirectory
+from scenarios.sea_airframe import Airframe, airframe_of, design_for
 from scenarios.sea_config import SeaScenario, SeaTrial
 from scenarios.sea_draws import check_draws
 from scenarios.sea_flights import DETAILS, SeaRequest, SeaResult, fly_sea_request, sea_failed
 from scenarios.sea_margin import SpreadTable
 from scenarios.sea_metrics import SEA_SUMMARY_COLUMNS
-from scenarios.sea_plan import KINEMATIC_BANDWIDTH, KINEMATIC_LAG, Airframe, oscillation_at, speed_hold, tracking_parameters
+from scenarios.sea_parameters import oscillation_at, speed_hold, tracking_parameters
 from scenarios.sea_world import SATELLITES, VESSEL_DATA
 
 
@@ -133,7 +125,7 @@ def run_sea(
     trials = _trials(study, name)
     first = next(iter(trials.values()))
     progress("designing the autopilot", 0, sum(scenario.flights for scenario in trials.values()))
-    design, refusal = _design(first)
+    design, refusal = design_for(first)
     envelope = design.design.schedule.envelope if design else None
     if envelope is not None:
         trials = {trial: fitted(scenario, envelope) for trial, scenario in trials.items()}
@@ -158,7 +150,7 @@ def run_sea(
     interrupted = False
     try:
         # Of a trial that has been fitted to the aircraft: its airspeed is where flights start.
-        airframe = _airframe(next(iter(trials.values())), design, run)
+        airframe = airframe_of(next(iter(trials.values())), design, run)
         requests = _requests(trials, {trial: _spreads(scenario, design, airframe) for trial, scenario in trials.items()})
         for request in requests:
             if refusal and request.flight_id not in ledger.done:
@@ -219,25 +211,6 @@ def _requests(trials: dict[str, SeaScenario], spreads: dict[str, SpreadTable | N
     ]
 
 
-def _design(scenario: SeaScenario) -> tuple[Designed | None, str]:
-    """Return the autopilot of the aircraft that flies, or of the one that kinematic flights are fitted to, or why there is none.
-
-    Raises
-    ------
-    InputError : there is no such aircraft
-    """
-    if scenario.fidelity == "kinematic" and scenario.aircraft == SeaScenario.model_fields["aircraft"].default:
-        return None, ""
-    try:
-        spec = find_spec(scenario.aircraft)
-    except AircraftError as error:
-        raise InputError(f"aircraft: {error}") from None
-    try:
-        return designed(spec, scenario.plume.source_height_m), ""
-    except AircraftError as error:
-        return None, str(error)
-
-
 def _check(trials: dict[str, SeaScenario], envelope: Envelope | None) -> None:
     """Check what can be checked before anything is flown.
 
@@ -263,66 +236,6 @@ def _check(trials: dict[str, SeaScenario], envelope: Envelope | None) -> None:
         for kind in sorted(kinds - known):
             raise InputError(f"fault.kind is '{kind}'; what can fail is {', '.join(sorted(known))}")
         check_draws(trial, scenario)
-
-
-def airframe_for(scenario: SeaScenario, directory: Path) -> Airframe:
-    """Return what flights of one scenario need of its aircraft, with its autopilot written into a run directory.
-
-    Raises
-    ------
-    InputError : there is no such aircraft
-    """
-    return _airframe(scenario, _design(scenario)[0], RunDirectory(directory))
-
-
-def _airframe(scenario: SeaScenario, found: Designed | None, run: RunDirectory) -> Airframe:
-    """Return what flights need of the aircraft; write its autopilot into the run directory."""
-    half_step = 0.5 / scenario.guidance.rate_hz
-    if found is None or scenario.fidelity == "kinematic":
-        reversal = Reversal(delay=0.0, lag=KINEMATIC_LAG)
-        return Airframe(
-            lag=KINEMATIC_LAG + half_step,
-            airspeed_bandwidth=KINEMATIC_BANDWIDTH,
-            airspeed_min=0.7 * scenario.guidance.airspeed_mps,
-            airspeed_max=1.3 * scenario.guidance.airspeed_mps,
-            turning_airspeed=math.inf,
-            reversal=reversal,
-            crab_banks=(-1.0, 1.0),
-            crab_offsets=(0.0, 0.0),
-            six_dof=None,
-            model=None,
-        )
-    schedule = found.design.schedule
-    write_root(schedule, run.model)
-    run.write_json(run.innerloop, found.record)
-    near = schedule.level(schedule.middle)
-    start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, near)
-    lag = float(found.record["heading_rate_lag_s"])
-    turns = schedule.trims[schedule.middle]
-    reversal = measure_reversal(AutopilotedAircraft(schedule.spec, run.model), start, schedule.envelope.bank)
-    return Airframe(
-        lag=lag + half_step,
-        airspeed_bandwidth=found.design.speeds.airspeed,
-        airspeed_min=schedule.envelope.airspeed_min,
-        airspeed_max=schedule.envelope.airspeed_max,
-        turning_airspeed=_turning_airspeed(schedule, omega_max(scenario.guidance)),
-        reversal=reversal,
-        crab_banks=tuple(turn.roll for turn in turns),
-        crab_offsets=tuple(turn.course_offset() for turn in turns),
-        six_dof=SixDof(start=start, lag=lag, reversal=reversal, envelope=schedule.envelope),
-        model=run.model,
-    )
-
-
-def _turning_airspeed(schedule: Schedule, heading_rate: float) -> float:
-    """Return the airspeed at which the slower of both turns at the autopilot's largest bank has a heading rate [m/s]."""
-    bank = schedule.envelope.bank_max
-    turns = [
-        min(abs(float(np.interp(side * bank, [t.roll for t in row], [t.yaw_rate for t in row]))) for side in (-1.0, 1.0))
-        for row in schedule.trims
-    ]
-    # Turns are slower the faster it flies.
-    return float(np.interp(-heading_rate, [-turn for turn in turns], schedule.airspeeds))
 
 
 def _spreads(scenario: SeaScenario, found: Designed | None, airframe: Airframe) -> SpreadTable | None:

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from gnc.sea_guidance import Mode
+from gnc.sea_parameters import Mode
 from innerloop.reversal import Reversal
+from scenarios.sea_airframe import KINEMATIC_BANDWIDTH, KINEMATIC_LAG, Airframe
 from scenarios.sea_config import SeaScenario
 from scenarios.sea_flights import SeaRequest, fly_sea_request
 from scenarios.sea_loop import SEA_COLUMNS
-from scenarios.sea_plan import KINEMATIC_BANDWIDTH, KINEMATIC_LAG, Airframe
 from scenarios.vessel_track import VesselTrack
 
 SPEED = 19.42

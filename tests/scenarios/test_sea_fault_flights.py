@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gnc.sea_guidance import Mode
+from gnc.sea_parameters import Mode
 from scenarios.sea_config import SeaScenario
 from scenarios.sea_loop import DITCHED
 from scenarios.sea_run import run_sea

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from sea_cases import AIRFRAME, ASTERN, SPEED, fly, modes, scenario
 
-from gnc.sea_guidance import Mode
+from gnc.sea_parameters import Mode
 from scenarios.closed_loop import Outcome
 from scenarios.sea_flights import DETAILS, SeaRequest, fly_sea_request, sea_failed
 from scenarios.sea_metrics import SEA_SUMMARY_COLUMNS

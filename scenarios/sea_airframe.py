@@ -1,0 +1,132 @@
+"""What flights over a real sea need of what flies them, and designing it."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from aircraft.errors import AircraftError
+from aircraft.find import find_spec
+from innerloop.cache import Designed, designed
+from innerloop.flight import AutopilotedAircraft
+from innerloop.jsbsim_root import write_root
+from innerloop.responses import level_trim
+from innerloop.reversal import Reversal, measure_reversal
+from innerloop.schedule import Schedule
+from scenarios.errors import InputError
+from scenarios.flights import SixDof
+from scenarios.flyable import omega_max
+from scenarios.run_directory import RunDirectory
+from scenarios.sea_config import SeaScenario
+
+KINEMATIC_BANDWIDTH = 1.0
+"""Bandwidth of a kinematic vehicle's airspeed that its guidance reckons with; it follows at once [rad/s]."""
+
+KINEMATIC_LAG = 0.4
+"""Lag of a kinematic vehicle's heading rate over the real sea, where it stands for an aircraft [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Airframe:
+    """What flights need of what flies them.
+
+    Attributes
+    ----------
+    lag : of the heading rate behind the guidance [s]
+    airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
+    turning_airspeed : up to which omega_max can be flown at the autopilot's largest bank [m/s]
+    reversal : how the heading rate follows a reversal of the turn
+    crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
+    six_dof, model : the aircraft and the JSBSim root of its autopilot; neither for a kinematic vehicle
+    """
+
+    lag: float
+    airspeed_bandwidth: float
+    airspeed_min: float
+    airspeed_max: float
+    turning_airspeed: float
+    reversal: Reversal
+    crab_banks: tuple[float, ...]
+    crab_offsets: tuple[float, ...]
+    six_dof: SixDof | None
+    model: Path | None
+
+
+def design_for(scenario: SeaScenario) -> tuple[Designed | None, str]:
+    """Return the autopilot of the aircraft that flies, or of the one that kinematic flights are fitted to, or why there is none.
+
+    Raises
+    ------
+    InputError : there is no such aircraft
+    """
+    if scenario.fidelity == "kinematic" and scenario.aircraft == SeaScenario.model_fields["aircraft"].default:
+        return None, ""
+    try:
+        spec = find_spec(scenario.aircraft)
+    except AircraftError as error:
+        raise InputError(f"aircraft: {error}") from None
+    try:
+        return designed(spec, scenario.plume.source_height_m), ""
+    except AircraftError as error:
+        return None, str(error)
+
+
+def airframe_for(scenario: SeaScenario, directory: Path) -> Airframe:
+    """Return what flights of one scenario need of its aircraft, with its autopilot written into a run directory.
+
+    Raises
+    ------
+    InputError : there is no such aircraft
+    """
+    return airframe_of(scenario, design_for(scenario)[0], RunDirectory(directory))
+
+
+def airframe_of(scenario: SeaScenario, found: Designed | None, run: RunDirectory) -> Airframe:
+    """Return what flights need of the aircraft; write its autopilot into the run directory."""
+    half_step = 0.5 / scenario.guidance.rate_hz
+    if found is None or scenario.fidelity == "kinematic":
+        reversal = Reversal(delay=0.0, lag=KINEMATIC_LAG)
+        return Airframe(
+            lag=KINEMATIC_LAG + half_step,
+            airspeed_bandwidth=KINEMATIC_BANDWIDTH,
+            airspeed_min=0.7 * scenario.guidance.airspeed_mps,
+            airspeed_max=1.3 * scenario.guidance.airspeed_mps,
+            turning_airspeed=math.inf,
+            reversal=reversal,
+            crab_banks=(-1.0, 1.0),
+            crab_offsets=(0.0, 0.0),
+            six_dof=None,
+            model=None,
+        )
+    schedule = found.design.schedule
+    write_root(schedule, run.model)
+    run.write_json(run.innerloop, found.record)
+    near = schedule.level(schedule.middle)
+    start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, near)
+    lag = float(found.record["heading_rate_lag_s"])
+    turns = schedule.trims[schedule.middle]
+    reversal = measure_reversal(AutopilotedAircraft(schedule.spec, run.model), start, schedule.envelope.bank)
+    return Airframe(
+        lag=lag + half_step,
+        airspeed_bandwidth=found.design.speeds.airspeed,
+        airspeed_min=schedule.envelope.airspeed_min,
+        airspeed_max=schedule.envelope.airspeed_max,
+        turning_airspeed=_turning_airspeed(schedule, omega_max(scenario.guidance)),
+        reversal=reversal,
+        crab_banks=tuple(turn.roll for turn in turns),
+        crab_offsets=tuple(turn.course_offset() for turn in turns),
+        six_dof=SixDof(start=start, lag=lag, reversal=reversal, envelope=schedule.envelope),
+        model=run.model,
+    )
+
+
+def _turning_airspeed(schedule: Schedule, heading_rate: float) -> float:
+    """Return the airspeed at which the slower of both turns at the autopilot's largest bank has a heading rate [m/s]."""
+    bank = schedule.envelope.bank_max
+    turns = [
+        min(abs(float(np.interp(side * bank, [t.roll for t in row], [t.yaw_rate for t in row]))) for side in (-1.0, 1.0))
+        for row in schedule.trims
+    ]
+    # Turns are slower the faster it flies.
+    return float(np.interp(-heading_rate, [-turn for turn in turns], schedule.airspeeds))
