@@ -13,8 +13,11 @@ _MANOEUVRE, _MANOEUVRE_MEMORY = 0.02, 40.0
 _NAVIGATION_TIME = 60.0
 """Time constant with which the error of satellite navigation wanders [s]."""
 
-_GUARD_SHARE = 0.6
-"""Share of the margin that the keep-out guard holds [-]: an orbit that had no room beyond would meet it at every swing."""
+_SEEN_SHARE, _FLOWN_SHARE = 0.6, 0.5
+"""Shares of the margin that the keep-out guard holds [-]: of what is not seen exactly, and of what is flown with turbulence.
+
+An orbit that had no room beyond would meet it at every swing.
+"""
 
 _GUARD_AHEAD = 3.0
 """How far ahead the keep-out guard looks from the near side of the orbit [s]: the UAV then turns already."""
@@ -90,10 +93,11 @@ def keepout_margin(scenario: SeaScenario, spreads: SpreadTable | None, nu: float
     between = max(1.0, 0.5 * sum(reports.interval_s))
     sigma, rate = math.hypot(seen, navigation), math.hypot(seen / between, navigation / _NAVIGATION_TIME)
     random = planned_margin(spread, other_sigma=sigma, other_sigma_rate=rate, touches_per_hour=f.touches_per_hour)
-    planned = drift + random + f.margin_min_m
+    unseen = planned_margin(STILL, other_sigma=sigma, other_sigma_rate=rate, touches_per_hour=f.touches_per_hour)
+    guard = _SEEN_SHARE * (drift + unseen) + _FLOWN_SHARE * (random - unseen + f.margin_min_m)
     # The guard's disc swells as it looks ahead; the orbit leaves it that much room where it turns.
     room = (f.speed_error_mps + 0.5 * f.vessel_acceleration_mps2 * _GUARD_AHEAD) * _GUARD_AHEAD
-    return KeepoutMargin(tracking_sigma=spread.radial, total=planned + room, guard=_GUARD_SHARE * planned)
+    return KeepoutMargin(tracking_sigma=spread.radial, total=drift + random + f.margin_min_m + room, guard=guard)
 
 
 def _seen(reports: Reports) -> float:
