@@ -20,9 +20,10 @@ from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim, measure_lag
 from innerloop.reversal import measure_reversal
 from scenarios.closed_loop import fly
-from scenarios.flights import SixDof, guidance_lag, place_vehicle
+from scenarios.flights import guidance_lag, place_vehicle
 from scenarios.load import load_scenario, with_values
 from scenarios.plan import plan_flight
+from scenarios.six_dof import SixDof
 
 ROUNDS = 15
 FLOWN = 200.0
@@ -52,6 +53,7 @@ def _loops(folder: Path) -> dict[str, Callable[[], float]]:
     bare, autopiloted = Fdm(X8), AutopilotedAircraft(X8, root)
     bank = schedule.envelope.bank
     six_dof = SixDof(
+        spec=X8,
         start=level,
         lag=measure_lag(autopiloted, level, bank),
         reversal=measure_reversal(autopiloted, level, bank),

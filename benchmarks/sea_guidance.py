@@ -6,6 +6,7 @@ real sea, in turn, again and again.
 """
 
 import copy
+import io
 import math
 import statistics
 import tempfile
@@ -18,9 +19,11 @@ import pandas as pd
 
 from gnc.guidance import Guidance
 from gnc.sea_guidance import SeaGuidance
+from scenarios.engine.work import Task
+from scenarios.histories import history_path
 from scenarios.sea_airframe import airframe_for
 from scenarios.sea_config import Reports, SeaFlight, SeaScenario, SeaStart, SeaVessel, Wind
-from scenarios.sea_flights import SeaRequest, fly_sea_request
+from scenarios.sea_flights import SeaWork, Trial
 from scenarios.sea_plan import SeaPlan, plan_sea_flight
 
 SETTLED = 150.0
@@ -43,10 +46,13 @@ def report_sea_guidance(rounds: int) -> None:
     """Print the benchmark: medians over rounds, and ratios within a round."""
     with tempfile.TemporaryDirectory() as folder:
         airframe = airframe_for(SCENARIO, Path(folder))
-        request = SeaRequest(flight_id="bench", trial="bench", scenario=SCENARIO, number=0, spreads=None)
-        seed = int(fly_sea_request(request, Path(folder), airframe).row["seed"])
-        history = pd.read_parquet(Path(folder) / "flights" / "bench.parquet")
-        plans = [plan_sea_flight(SCENARIO, flight_id="bench", seed=seed, airframe=airframe, spreads=None) for _ in range(rounds)]
+        work = SeaWork(trials=(Trial(name="bench", scenario=SCENARIO, spreads={}),), histories=1, airframe=airframe)
+        flown = work.fly(Task(number=0))
+        row = flown.tables["summary.csv"][0]
+        history = pd.read_parquet(io.BytesIO(flown.files[history_path(row["flight_id"])]))
+        plans = [
+            plan_sea_flight(SCENARIO, flight_id="bench", seed=row["seed"], airframe=airframe, spreads={}) for _ in range(rounds)
+        ]
     sensed = _sensed(history, plans[0])
     pairs = [_round(plan, sensed) for plan in plans]
     calm, sea = (statistics.median(times) for times in zip(*pairs, strict=True))

@@ -8,9 +8,11 @@ import numpy as np
 from gnc.adversary import tightness
 from gnc.errors import InfeasibleError
 from scenarios.flights import FlightRequest
+from scenarios.flyable import omega_max
 from scenarios.load import with_values
 from scenarios.metrics import Row
-from scenarios.plan import heading_rate_max, plan_flight, plan_oscillation
+from scenarios.oscillations import oscillation_at
+from scenarios.plan import plan_flight
 from scenarios.steering import farthest_start, largest_speed, search_steering
 
 _SAMPLES = 1_000_000
@@ -39,7 +41,7 @@ def bounds_record(requests: list[FlightRequest], seed: int) -> dict[str, Any]:
         "guaranteed_for": last
         and {
             "speed_mps": largest_speed(last),
-            "heading_rate_max_rad_s": heading_rate_max(last),
+            "heading_rate_max_rad_s": omega_max(last.guidance),
             "distance_from_m": farthest_start(last),
             "distance_to_m": last.flight.settling_band_m,
         },
@@ -92,9 +94,9 @@ def _guaranteed(request: FlightRequest, reserve: float) -> Row:
     row: Row = {"nu": request.nu, "reserve": reserve}
     try:
         scenario = with_values(request.scenario, {"guidance.reserve": reserve})
-        oscillation = plan_oscillation(scenario, request.nu)
+        oscillation = oscillation_at(scenario.guidance, request.nu)
         row["crossing_interval_s"] = oscillation.crossing_interval
-        found = search_steering(scenario, heading_rate_max(scenario), oscillation.amplitude)
+        found = search_steering(scenario, omega_max(scenario.guidance), oscillation.amplitude)
     except InfeasibleError as error:
         return row | {"message": str(error)}
     return row | {

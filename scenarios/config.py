@@ -23,6 +23,8 @@ class Section(BaseModel):
 
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
+Histories = Annotated[int, Field(ge=0, le=100_000)]
+"""Number of time histories to be kept: an even sample. Those of flights that fall short are kept beside them."""
 
 
 class Sweep(Section):
@@ -232,6 +234,7 @@ class Scenario(Section):
     fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
     """The aircraft in six degrees of freedom, the paper's kinematic vehicle, or (cases only) one after the other."""
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1
+    histories: Histories = 200
     sweep: Sweep = Sweep(nu=(0.5,))
     cases: tuple[Case, ...] = ()
     vessel: Vessel = Vessel()

@@ -1,11 +1,8 @@
 """From how many of 10,000 starts a vehicle reaches its reference, and how fast."""
 
 import json
-import multiprocessing
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,8 +13,8 @@ from gnc.ensemble import DISTANCE_CONVERGED, EnsembleResult, Outcome, Tolerances
 from gnc.ensemble_motion import Steering, Vehicle
 from gnc.turning_reference import TurningReferences
 from scenarios.convergence_cases import CIRCLE_HEADING_RATES, REFERENCES, Case, draw_case, references_of
+from scenarios.engine.work import Row
 from scenarios.errors import InputError
-from scenarios.pool import Progress
 
 BLOCK = 1250
 """Trajectories that one process flies before the next are handed out, at most."""
@@ -40,7 +37,7 @@ Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Block:
+class Block:
     """Trajectories of one law and one kind of reference, to be flown together."""
 
     law: Steering
@@ -50,13 +47,8 @@ class _Block:
     settling_band: float
     time_max: Array
 
-    @property
-    def keys(self) -> set[tuple[int, str]]:
-        """Trajectory and law of each row that the block will have."""
-        return {(case.trajectory, self.law.value) for case in self.cases}
 
-
-def run_convergence(
+def convergence_blocks(
     *,
     trajectories: int,
     seed: int,
@@ -65,15 +57,11 @@ def run_convergence(
     settling_band: float,
     time_max: float,
     laws: Sequence[str],
-    jobs: int,
-    progress: Progress,
-    done: pd.DataFrame | None = None,
-) -> Iterator[pd.DataFrame]:
-    """Fly the study; yield the table after each block, with all rows so far by trajectory and then in the order of ``laws``.
+) -> list[Block]:
+    """Return a study's trajectories, one per start and law, in blocks that are to be flown together; those that take long first.
 
-    One row per trajectory and law, columns ``COLUMNS``. The last table depends on neither ``jobs``, nor the other laws, nor what
-    was ``done`` before, bit for bit. Starts are uniform over the disc about the reference, their courses uniform; the references
-    are a circle, an oscillation and a random course in turn.
+    Starts are uniform over the disc about the reference, their courses uniform; the references are a circle, an oscillation and a
+    random course in turn. The rows of a block depend neither on the other laws nor on the other blocks, bit for bit.
 
     Parameters
     ----------
@@ -83,9 +71,6 @@ def run_convergence(
     settling_band : distance below which a trajectory counts as settled [m]
     time_max : limit [s]; the patiences of this file give more to starts from which more is expected to be needed
     laws : values of ``gnc.ensemble_motion.Steering``
-    jobs : number of processes
-    progress : told what happens, how many trajectories are done, and of how many
-    done : an earlier table of the same study, whose whole blocks are not flown again
 
     Raises
     ------
@@ -93,7 +78,7 @@ def run_convergence(
     """
     if unknown := [law for law in laws if law not in {known.value for known in Steering}]:
         raise InputError(f"law {unknown[0]!r} is unknown; choose from {', '.join(law.value for law in Steering)}")
-    for name, value in (("trajectories", trajectories), ("jobs", jobs), ("distance_max", distance_max), ("time_max", time_max)):
+    for name, value in (("trajectories", trajectories), ("distance_max", distance_max), ("time_max", time_max)):
         if not value > 0:
             raise InputError(f"{name} is {value:g}; it must be above 0")
     if not vehicle.heading_rate_max > CIRCLE_HEADING_RATES[1]:
@@ -106,21 +91,15 @@ def run_convergence(
     blocks = [
         block for law in laws for block in _blocks(Steering(law), vehicle, cases, settling_band=settling_band, time_max=time_max)
     ]
-    rows: dict[tuple[int, str], dict[Any, Any]] = {}
-    if done is not None:
-        rows = {(row["trajectory"], row["law"]): row for row in done[list(COLUMNS)].to_dict("records")}
-        blocks = [block for block in blocks if not block.keys <= rows.keys()]
     # The longest first: the last to finish is then a short one.
-    blocks.sort(key=lambda block: -float(block.time_max.max()))
-    total = trajectories * len(laws)
-    flown = total - sum(len(block.cases) for block in blocks)
-    progress("flying", flown, total)
+    return sorted(blocks, key=lambda block: -float(block.time_max.max()))
+
+
+def convergence_table(rows: Iterable[Row], laws: Sequence[str]) -> pd.DataFrame:
+    """Return rows by trajectory and then in the order of ``laws``, with columns ``COLUMNS``."""
     order = {law: i for i, law in enumerate(laws)}
-    for more in _fly_all(blocks, jobs):
-        rows |= {(row["trajectory"], row["law"]): row for row in more}
-        flown += len(more)
-        yield pd.DataFrame([rows[key] for key in sorted(rows, key=lambda key: (key[0], order[key[1]]))], columns=list(COLUMNS))
-        progress("flying", flown, total)
+    ordered: list[Row] = sorted(rows, key=lambda row: (row["trajectory"], order[row["law"]]))
+    return pd.DataFrame(ordered, columns=list(COLUMNS))
 
 
 def counterexamples(frame: pd.DataFrame) -> pd.DataFrame:
@@ -192,7 +171,7 @@ def _reference_track(references: TurningReferences, speed: float, time: Array) -
     return np.concatenate([[0.0], np.cumsum(north)]), np.concatenate([[0.0], np.cumsum(east)])
 
 
-def _blocks(law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_band: float, time_max: float) -> Iterator[_Block]:
+def _blocks(law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_band: float, time_max: float) -> Iterator[Block]:
     """Yield the trajectories in blocks of one kind of reference, the longest first.
 
     A block takes at least as long as its longest trajectory, so that like belongs with like.
@@ -214,7 +193,7 @@ def _blocks(law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_
         order = np.argsort(-limit, kind="stable")
         for first in range(0, len(chosen), BLOCK):
             which = order[first : first + BLOCK]
-            yield _Block(
+            yield Block(
                 law=law,
                 vehicle=vehicle,
                 cases=tuple(chosen[i] for i in which),
@@ -224,24 +203,7 @@ def _blocks(law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_
             )
 
 
-def _fly_all(blocks: Sequence[_Block], jobs: int) -> Iterator[list[dict[str, Any]]]:
-    """Yield the rows of each block as it is done; when interrupted, end the processes at once."""
-    if jobs == 1 or not blocks:
-        yield from map(_fly_block, blocks)
-        return
-    others = set(multiprocessing.active_children())
-    with ProcessPoolExecutor(max_workers=min(jobs, len(blocks))) as pool:
-        try:
-            for future in as_completed([pool.submit(_fly_block, block) for block in blocks]):
-                yield future.result()
-        except BaseException:
-            # A block may take minutes, and nothing of it is wanted any more. The pool finds its processes gone, and closes.
-            for child in set(multiprocessing.active_children()) - others:
-                child.terminate()
-            raise
-
-
-def _fly_block(block: _Block) -> list[dict[str, Any]]:
+def fly_block(block: Block) -> list[Row]:
     """Return the rows of a block."""
     result = fly_ensemble(
         block.law,
@@ -255,7 +217,7 @@ def _fly_block(block: _Block) -> list[dict[str, Any]]:
     return [_row(block, result, i) for i in range(len(block.cases))]
 
 
-def _row(block: _Block, result: EnsembleResult, i: int) -> dict[str, Any]:
+def _row(block: Block, result: EnsembleResult, i: int) -> Row:
     case = block.cases[i]
     return {
         "trajectory": case.trajectory,

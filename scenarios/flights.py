@@ -2,31 +2,28 @@
 
 import math
 import time
-import traceback
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+import pandas as pd
 
-from aircraft.errors import AircraftError
-from aircraft.find import find_spec
-from aircraft.spec import Envelope
-from aircraft.trim import Trim
-from aircraft.weather import Weather
-from gnc.errors import InfeasibleError
 from innerloop.flight import AutopilotedAircraft
-from innerloop.reversal import Reversal
 from scenarios.closed_loop import Outcome, fly
 from scenarios.config import Case, Scenario
+from scenarios.crossings import Crossing
+from scenarios.engine.work import Result, Row, Task
 from scenarios.errors import InputError
+from scenarios.failure import failure, unflown
+from scenarios.histories import history_file, history_path, keeps_history
 from scenarios.history import flight_history
 from scenarios.jsbsim_vehicle import JsbsimVehicle
 from scenarios.kinematic_vehicle import KinematicVehicle
 from scenarios.load import with_values
-from scenarios.metrics import Row, flight_figures, plan_row, unmet_criteria
+from scenarios.metrics import flight_figures, plan_row, unmet_criteria
 from scenarios.plan import FlightPlan, plan_flight
-from scenarios.run_directory import RunDirectory
+from scenarios.six_dof import SixDof
 from scenarios.vehicle import Vehicle
 
 STUDY = "study"
@@ -44,6 +41,7 @@ class FlightRequest:
     nu : speed ratio [-]; not a number where there is no vessel
     seed : of the start
     scenario : with the variant's values set; its fidelity is one vehicle
+    refusal : why it cannot be flown, or nothing
     """
 
     flight_id: str
@@ -51,33 +49,12 @@ class FlightRequest:
     nu: float
     seed: int
     scenario: Scenario
+    refusal: str = ""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FlightResult:
-    """A flown flight: its row and the rows of its crossings."""
-
-    request: FlightRequest
-    row: Row
-    crossings: list[Row]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SixDof:
-    """What flights of the aircraft need beyond their scenario.
-
-    Attributes
-    ----------
-    start : equilibrium to start from
-    lag : of the autopilot's heading rate behind its command [s]
-    reversal : how the heading rate follows a reversal of the turn
-    envelope : where the autopilot may fly it
-    """
-
-    start: Trim
-    lag: float
-    reversal: Reversal
-    envelope: Envelope
+    @property
+    def table(self) -> str:
+        """Return the file that its row is in."""
+        return "summary.csv" if self.variant == STUDY else "comparison.csv"
 
 
 def flight_requests(scenario: Scenario) -> list[FlightRequest]:
@@ -132,52 +109,75 @@ def _seed(scenario: Scenario, nu: float) -> int:
     return int(np.random.SeedSequence([scenario.seed, round(nu * 1e6)]).generate_state(1)[0])
 
 
-def fly_request(request: FlightRequest, directory: Path, six_dof: SixDof | None) -> FlightResult:
-    """Plan, fly, measure and record one flight. Every way it can end is a row.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlightWork:
+    """Plans, flies, measures and records flights. Every way that one can end is a row.
 
-    Parameters
+    Attributes
     ----------
-    request : the flight
-    directory : the run directory, which holds the aircraft with its autopilot
-    six_dof : what the aircraft needs; a kinematic flight does without
+    requests : the flights, by the numbers of their tasks
+    histories : number of time histories to be kept, beside those of flights that did not meet their criteria
+    six_dof : what the aircraft needs; kinematic flights do without
+    model : JSBSim root of the aircraft with its autopilot, if it is to fly
     """
-    began = time.perf_counter()
-    run = RunDirectory(directory)
-    if request.scenario.fidelity == "kinematic":
-        six_dof = None
-    row = _request_row(request)
-    crossings: list[Row] = []
-    try:
-        lag = guidance_lag(request.scenario, six_dof)
-        reversal = six_dof.reversal if six_dof else None
-        plan = plan_flight(
-            request.scenario, flight_id=request.flight_id, nu=request.nu, seed=request.seed, lag=lag, reversal=reversal
+
+    requests: tuple[FlightRequest, ...]
+    histories: int
+    six_dof: SixDof | None
+    model: Path | None
+
+    def moved(self, model: Path) -> "FlightWork":
+        """Return the same work with its files in another directory."""
+        return replace(self, model=model)
+
+    def fly(self, task: Task) -> Result:
+        """Plan, fly, measure and record one flight."""
+        began = time.perf_counter()
+        request = self.requests[task.number]
+        row = _request_row(request)
+        if request.refusal:
+            return self._result(task, row | unflown(Outcome.TRIM_FAILED, request.refusal))
+        crossings: list[Row] = []
+        history: pd.DataFrame | None = None
+        try:
+            plan = self._plan(request)
+            row |= plan_row(plan)
+            record = fly(plan, place_vehicle(request.scenario, plan, self.model, self.six_dof))
+            history = flight_history(plan, record)
+            figures, found = flight_figures(plan, record)
+            row = _judged(request, row | figures)
+            crossings = _crossing_rows(request, found)
+        except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the sweep goes on
+            row |= failure(error)
+        return self._result(task, row | {"wall_time_s": time.perf_counter() - began}, crossings, history)
+
+    def lost(self, task: Task, reason: str) -> Result:
+        """Return the result of a flight whose process was lost."""
+        row = _request_row(self.requests[task.number]) | unflown(Outcome.FAILED, reason)
+        return replace(self._result(task, row), lost=True)
+
+    def _plan(self, request: FlightRequest) -> FlightPlan:
+        six_dof = self.six_dof if request.scenario.fidelity == "six_dof" else None
+        return plan_flight(
+            request.scenario,
+            flight_id=request.flight_id,
+            nu=request.nu,
+            seed=request.seed,
+            lag=guidance_lag(request.scenario, six_dof),
+            reversal=six_dof.reversal if six_dof else None,
         )
-        row |= plan_row(plan)
-        figures, crossings = _fly(request, plan, run, six_dof)
-        if figures["outcome"] == Outcome.COMPLETED.value:
-            unmet = unmet_criteria(row | figures, request.scenario.criteria)
-            figures |= {"criteria_met": not unmet, "message": "; ".join(unmet)}
-        row |= figures
-    except InfeasibleError as error:
-        row |= {"outcome": Outcome.INFEASIBLE.value, "message": str(error)}
-    except AircraftError as error:
-        row |= {"outcome": Outcome.FAILED.value, "message": str(error)}
-    except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the sweep goes on
-        where = traceback.extract_tb(error.__traceback__)[-1]
-        row |= {
-            "outcome": Outcome.FAILED.value,
-            "message": f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})",
-        }
-    row.setdefault("criteria_met", False)
-    row["wall_time_s"] = time.perf_counter() - began
-    return FlightResult(request=request, row=row, crossings=crossings)
 
-
-def failed(request: FlightRequest, outcome: Outcome, message: str) -> FlightResult:
-    """Return the result of a flight that was never begun, or whose process died."""
-    row = {**_request_row(request), "outcome": outcome.value, "message": message, "criteria_met": False}
-    return FlightResult(request=request, row=row, crossings=[])
+    def _result(self, task: Task, row: Row, crossings: Sequence[Row] = (), history: pd.DataFrame | None = None) -> Result:
+        request = self.requests[task.number]
+        files = {}
+        if history is not None and keeps_history(task, planned=len(self.requests), wanted=self.histories, row=row):
+            files[history_path(request.flight_id)] = history_file(history)
+        return Result(
+            task=task,
+            items=int(request.variant == STUDY),
+            tables={request.table: [row], "crossings.csv": list(crossings)},
+            files=files,
+        )
 
 
 def _request_row(request: FlightRequest) -> Row:
@@ -201,11 +201,8 @@ def guidance_lag(scenario: Scenario, six_dof: SixDof | None) -> float:
 def place_vehicle(
     scenario: Scenario,
     plan: FlightPlan,
-    model: Path,
+    model: Path | None,
     six_dof: SixDof | None,
-    *,
-    weather: Weather | None = None,
-    failable: bool = False,
 ) -> Vehicle:
     """Return the scenario's vehicle at the start of a flight.
 
@@ -213,28 +210,35 @@ def place_vehicle(
     ----------
     scenario : whose fidelity chooses the vehicle
     plan : the flight
-    model : JSBSim root of the aircraft with its autopilot
+    model : JSBSim root of the aircraft with its autopilot, if that is to fly
     six_dof : what the aircraft needs, if it is to fly
-    weather : the air it flies in; none for still air. A kinematic vehicle feels the steady wind alone
-    failable : whether the aircraft is to have faults on the way
     """
-    where = {"north": plan.start_north, "east": plan.start_east, "altitude": plan.altitude, "course": plan.start_course}
+    where: dict[str, float] = {
+        "north": plan.start_north,
+        "east": plan.start_east,
+        "altitude": plan.altitude,
+        "course": plan.start_course,
+    }
     time_step = plan.guidance.time_step
-    if scenario.fidelity == "kinematic" or six_dof is None:
+    if scenario.fidelity == "kinematic" or six_dof is None or model is None:
         lag = scenario.kinematic.heading_rate_lag_s
-        north, east = weather.wind if weather else (0.0, 0.0)
-        return KinematicVehicle(**where, speed=plan.reference.speed, time_step=time_step, lag=lag, wind_north=north, wind_east=east)
-    aircraft = AutopilotedAircraft(find_spec(scenario.aircraft), model, failable=failable)
-    return JsbsimVehicle(aircraft, six_dof.start, six_dof.envelope, **where, time_step=time_step, weather=weather)
+        return KinematicVehicle(**where, speed=plan.reference.speed, time_step=time_step, lag=lag)
+    aircraft = AutopilotedAircraft(six_dof.spec, model)
+    return JsbsimVehicle(aircraft, six_dof.start, six_dof.envelope, **where, time_step=time_step, weather=None)
 
 
-def _fly(request: FlightRequest, plan: FlightPlan, run: RunDirectory, six_dof: SixDof | None) -> tuple[Row, list[Row]]:
-    record = fly(plan, place_vehicle(request.scenario, plan, run.model, six_dof))
-    run.write_history(request.flight_id, flight_history(plan, record))
-    figures, crossings = flight_figures(plan, record)
-    if record.outcome is not Outcome.COMPLETED and figures.get("keepout_violations"):
-        figures["message"] = f"entered the keep-out area {figures['keepout_violations']} times; {figures['message']}"
-    rows: list[dict[str, Any]] = [
+def _judged(request: FlightRequest, row: Row) -> Row:
+    """Return the row of a flown flight, and whether it met its criteria, and why not."""
+    if row["outcome"] == Outcome.COMPLETED.value:
+        unmet = unmet_criteria(row, request.scenario.criteria)
+        return row | {"criteria_met": not unmet, "message": "; ".join(unmet)}
+    entries = row.get("keepout_violations")
+    message = f"entered the keep-out area {entries} times; {row['message']}" if entries else row["message"]
+    return row | {"criteria_met": False, "message": message}
+
+
+def _crossing_rows(request: FlightRequest, crossings: Sequence[Crossing]) -> list[Row]:
+    return [
         {
             "flight_id": request.flight_id,
             "variant": request.variant,
@@ -248,4 +252,3 @@ def _fly(request: FlightRequest, plan: FlightPlan, run: RunDirectory, six_dof: S
         }
         for i, crossing in enumerate(crossings, start=1)
     ]
-    return figures, rows

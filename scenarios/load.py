@@ -10,17 +10,23 @@ from pydantic import ValidationError
 from scenarios.config import Scenario
 from scenarios.convergence_config import ConvergenceScenario
 from scenarios.errors import InputError
+from scenarios.monte_carlo_config import FalsifyScenario, MonteCarloScenario
 from scenarios.sea_config import SeaScenario, SeaTrial
 
 Flown = TypeVar("Flown", Scenario, SeaScenario)
-Study = TypeVar("Study", Scenario, ConvergenceScenario, SeaScenario, SeaTrial)
+Study = TypeVar("Study", Scenario, ConvergenceScenario, SeaScenario, SeaTrial, MonteCarloScenario, FalsifyScenario)
 
-AnyStudy = Scenario | ConvergenceScenario | SeaScenario | SeaTrial
+AnyStudy = Scenario | ConvergenceScenario | SeaScenario | SeaTrial | MonteCarloScenario | FalsifyScenario
 
-KINDS = ("flights", "paper", "convergence", "sea", "sea_trial")
+KINDS = ("flights", "paper", "convergence", "sea", "sea_trial", "monte_carlo", "falsify")
 """What a file may say of ``study``."""
 
-_KEYS: dict[type, str] = {Scenario: "config", ConvergenceScenario: "convergence_config"}
+_KEYS: dict[type, str] = {
+    Scenario: "config",
+    ConvergenceScenario: "convergence_config",
+    MonteCarloScenario: "monte_carlo_config",
+    FalsifyScenario: "monte_carlo_config",
+}
 
 CATALOG = Path(__file__).parent / "catalog"
 
@@ -86,16 +92,20 @@ def load_study(name: str, overrides: Sequence[str] = ()) -> AnyStudy:
     if study not in KINDS:
         raise InputError(f"study is {study!r}; it must be one of {', '.join(KINDS)}")
     if study == "convergence":
-        return _validate(document, ConvergenceScenario)
+        return checked(document, ConvergenceScenario)
     if study == "sea":
-        return _validate(document, SeaScenario)
+        return checked(document, SeaScenario)
     if study == "sea_trial":
-        return _validate(document, SeaTrial)
-    return _validate(document, Scenario)
+        return checked(document, SeaTrial)
+    if study == "monte_carlo":
+        return checked(document, MonteCarloScenario)
+    if study == "falsify":
+        return checked(document, FalsifyScenario)
+    return checked(document, Scenario)
 
 
-def _validate(document: Mapping[str, Any], kind: type[Study]) -> Study:
-    """Return the checked scenario, or raise an InputError that names the key, its value and the limit."""
+def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:
+    """Return a scenario of some kind, or raise an InputError that names the key, its value and the limit."""
     try:
         return kind.model_validate(document)
     except ValidationError as error:
@@ -112,7 +122,7 @@ def with_values(scenario: Flown, values: Mapping[str, object]) -> Flown:
     document = scenario.model_dump()
     for key, value in values.items():
         _set(document, key, value)
-    return _validate(document, type(scenario))
+    return checked(document, type(scenario))
 
 
 def _explain(key: str, kind: str, message: str, value: object, keys: str) -> str:
@@ -167,10 +177,27 @@ def _parse_override(override: str) -> tuple[str, object]:
 
 def _set(document: dict[str, Any], dotted: str, value: object) -> None:
     *parents, last = dotted.split(".")
-    section = document
+    section: Any = document
     for parent in parents:
-        child = section.setdefault(parent, {})
-        if not isinstance(child, dict):
-            raise InputError(f"unknown key '{dotted}'; '{parent}' is a value, not a section")
-        section = child
-    section[last] = value
+        section = _entered(section, parent, dotted)
+    if isinstance(section, list):
+        section[_place(section, last, dotted)] = value
+    else:
+        section[last] = value
+
+
+def _entered(section: Any, name: str, dotted: str) -> Any:
+    """Return what is called ``name`` in a section, made if there is none; or at that place of a list."""
+    key: Any = _place(section, name, dotted) if isinstance(section, list) else name
+    child = section[key] if isinstance(section, list) else section.setdefault(key, {})
+    if isinstance(child, tuple):
+        section[key] = child = list(child)
+    if not isinstance(child, dict | list):
+        raise InputError(f"unknown key '{dotted}'; '{name}' is a value, not a section")
+    return child
+
+
+def _place(entries: list[Any], name: str, dotted: str) -> int:
+    if not (name.isdigit() and int(name) < len(entries)):
+        raise InputError(f"unknown key '{dotted}'; '{name}' is no place in a list of {len(entries)}: they count from 0")
+    return int(name)

@@ -10,6 +10,7 @@ from pydantic import BaseModel
 from pydantic_core import to_jsonable_python
 
 from reports.provenance import provenance
+from scenarios.engine.fingerprint import fingerprint
 
 
 def opening_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -> dict[str, Any]:
@@ -26,9 +27,9 @@ def opening_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -
         "name": name,
         "title": config["title"],
         "overrides": list(overrides),
-        "state": "running",
         "config": config,
         "config_hash": config_hash(scenario),
+        "fingerprint": fingerprint(),
         "parameters": parameters(scenario),
         **provenance(),
     }

@@ -8,12 +8,13 @@ import numpy as np
 from gnc.errors import InfeasibleError
 from gnc.guidance import GuidanceParameters, Law
 from gnc.keepout_guard import KeepoutGuard
-from gnc.oscillation import Oscillation, design_oscillation
+from gnc.oscillation import Oscillation
 from gnc.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
 from gnc.reference import CirclingReference, Reference, ReferencePoint, ReferenceStart, start_reference
 from innerloop.reversal import Reversal
 from scenarios.config import Scenario
 from scenarios.flyable import omega_max
+from scenarios.oscillations import oscillation_at
 from scenarios.steering import plan_steering
 from scenarios.vessel import Vessel
 
@@ -114,7 +115,7 @@ def plan_flight(
         mission=mission,
         reference=reference,
         guidance=guidance,
-        heading_rate_max=heading_rate_max(scenario),
+        heading_rate_max=omega_max(scenario.guidance),
         heading_rate_bound=bound,
         altitude=altitude,
         start_north=north,
@@ -126,28 +127,11 @@ def plan_flight(
     )
 
 
-def heading_rate_max(scenario: Scenario) -> float:
-    """Return omega_max [rad/s]."""
-    return omega_max(scenario.guidance)
-
-
-def plan_oscillation(scenario: Scenario, nu: float) -> Oscillation:
-    """Return the oscillation of the reference at a speed ratio, or raise an InfeasibleError."""
-    g = scenario.guidance
-    return design_oscillation(
-        nu=nu,
-        speed=g.airspeed_mps,
-        heading_rate_max=heading_rate_max(scenario),
-        reserve=g.reserve,
-        roll_rate_max=math.radians(g.roll_rate_max_deg_s),
-    )
-
-
 def _mission(scenario: Scenario, nu: float, turning: Reversal) -> tuple[Mission, tuple[float, float, float]]:
     """Return the mission, and its CO ahead of, right of and above the plume's origin [m]."""
     g = scenario.guidance
     axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
-    oscillation = plan_oscillation(scenario, nu)
+    oscillation = oscillation_at(scenario.guidance, nu)
     vessel = Vessel(
         speed=nu * g.airspeed_mps,
         course=math.radians(scenario.vessel.course_deg),
@@ -181,7 +165,7 @@ def _oscillating(scenario: Scenario, mission: Mission, centre: tuple[float, floa
 
 def _circle(scenario: Scenario, time_step: float) -> CirclingReference:
     speed, radius = scenario.guidance.airspeed_mps, scenario.reference.radius_m
-    least = speed / heading_rate_max(scenario)
+    least = speed / omega_max(scenario.guidance)
     if radius < least:
         raise InfeasibleError(
             f"reference.radius_m is {radius:g} m; at {speed:g} m/s and omega_max = {speed / least:.3f} rad/s it must be at least"
@@ -194,14 +178,14 @@ def _circle(scenario: Scenario, time_step: float) -> CirclingReference:
 def _guidance(scenario: Scenario, reference_heading_rate: float, lag: float) -> tuple[GuidanceParameters, float]:
     """Return the parameters of the outer loop, and the bound on what its law asks for [rad/s]."""
     g = scenario.guidance
-    steering = plan_steering(scenario, heading_rate_max(scenario), reference_heading_rate)
+    steering = plan_steering(scenario, omega_max(scenario.guidance), reference_heading_rate)
     parameters = GuidanceParameters(
         law=Law(g.law),
         look_ahead=steering.look_ahead,
         gain=g.gain_per_s,
         rate_max=steering.steering_max,
         k_1=g.lyapunov_gain_per_m2,
-        heading_rate_max=heading_rate_max(scenario) if g.command_limit else math.inf,
+        heading_rate_max=omega_max(scenario.guidance) if g.command_limit else math.inf,
         time_step=1.0 / g.rate_hz,
         lag=lag if g.preview else 0.0,
         airspeed_gain=g.airspeed_gain_per_s if g.airspeed_trim else 0.0,
@@ -217,7 +201,7 @@ def _guard(scenario: Scenario, above: float, turning: Reversal) -> KeepoutGuard 
         return None
     return KeepoutGuard(
         radius=math.sqrt(radius**2 - above**2),
-        heading_rate_max=heading_rate_max(scenario),
+        heading_rate_max=omega_max(scenario.guidance),
         lag=turning.lag,
         delay=turning.delay,
         time_step=1.0 / scenario.guidance.rate_hz,

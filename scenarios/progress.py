@@ -1,14 +1,18 @@
 """A progress bar on standard error."""
 
 import contextlib
+import time
 from collections.abc import Iterator
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 
+from scenarios.engine.study import Progress
 from scenarios.errors import InputError
-from scenarios.pool import Progress
+
+_BETWEEN = 0.1
+"""Shortest time between two drawings of the bar [s]: flights can be faster than a terminal."""
 
 
 @contextlib.contextmanager
@@ -27,9 +31,15 @@ def progress_bar() -> Iterator[Progress]:
     )
     task = bar.add_task("")
 
+    drawn = -_BETWEEN
+
     def report(doing: str, done: int, total: int) -> None:
+        nonlocal drawn
         bar.start()
-        bar.update(task, description=doing, completed=done, total=total, refresh=True)
+        now = time.monotonic()
+        due = now - drawn >= _BETWEEN or done == total
+        drawn = now if due else drawn
+        bar.update(task, description=doing, completed=done, total=total, refresh=due)
 
     try:
         yield report

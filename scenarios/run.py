@@ -5,28 +5,39 @@ import shlex
 import sys
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from reports.command_line import BAD_INPUT, INTERRUPTED, run_command
 
 if TYPE_CHECKING:
-    from scenarios.convergence_run import ConvergenceResult
-    from scenarios.runner import RunResult
-    from scenarios.sea_run import SeaRunResult
+    from scenarios.engine.study import Hire
 
 MET, NOT_MET = 0, 1
 
 
 def command(
-    name: Annotated[str | None, typer.Argument(metavar="NAME|FILE.toml", help="Scenario of the catalog, or a file.")] = None,
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="NAME|FILE.toml|RUN/flights/ID", help="Scenario of the catalog, or a file, or a flight to fly again."
+        ),
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="Run directory; default runs/NAME-DATE-TIME.")] = None,
     jobs: Annotated[int | None, typer.Option(min=1, max=256, help="Processes; default one per core.")] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed of the random starts.")] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a key, e.g. guidance.preview=false.")
     ] = None,
+    executor: Annotated[
+        Literal["local", "dask"], typer.Option(help="Processes of this machine, or a Dask cluster (pip install '.[dask]').")
+    ] = "local",
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="tcp://HOST:PORT", help="Dask scheduler; without one a cluster is started here.")
+    ] = None,
+    time_limit: Annotated[float, typer.Option(min=1.0, help="Seconds that a flight may take.")] = 600.0,
+    memory_limit: Annotated[float | None, typer.Option(min=0.25, help="GiB that a process may have; default any.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the run in --out.")] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Leave out report.html and report.pdf.")] = False,
     list_scenarios: Annotated[bool, typer.Option("--list", help="List the catalog and exit.")] = False,
@@ -36,10 +47,17 @@ def command(
     Exit status: 0 every flight completed and met its criteria (or every trajectory converged), 1 some did not, 2 bad input, 130
     interrupted.
     """
+    from scenarios.engine.hiring import Hiring
+    from scenarios.engine.work import Limits
     from scenarios.errors import InputError
 
     try:
-        status = _list() if list_scenarios else _run(name, out, jobs, seed, overrides or [], resume, no_report)
+        if list_scenarios:
+            status = _list()
+        else:
+            limits = Limits(time=time_limit, memory=None if memory_limit is None else round(memory_limit * 2**30))
+            hire = Hiring(jobs=jobs or os.cpu_count() or 1, executor=executor, scheduler=scheduler, limits=limits)
+            status = _run(name, out, hire, seed, overrides or [], resume, no_report)
     except InputError as error:
         print(f"error: {error}", file=sys.stderr)
         status = BAD_INPUT
@@ -62,16 +80,14 @@ def _list() -> int:
 def _run(
     name: str | None,
     out: Path | None,
-    jobs: int | None,
+    hire: "Hire",
     seed: int | None,
     overrides: list[str],
     resume: bool,
     no_report: bool,
 ) -> int:
-    from scenarios.config import Scenario
     from scenarios.errors import InputError
     from scenarios.load import catalog, load_study
-    from scenarios.sea_config import SeaScenario, SeaTrial
 
     if name is None:
         raise InputError(f"no scenario given; name a TOML file or one of: {', '.join(catalog())}")
@@ -79,39 +95,30 @@ def _run(
         raise InputError("--resume needs --out, the directory of the run to go on with")
     if seed is not None:
         overrides = [*overrides, f"seed={seed}"]
-    study = load_study(name, overrides)
-    stem = Path(name).stem
-    directory = out or Path("runs") / f"{stem}-{datetime.now():%Y%m%d-%H%M%S}"
 
+    from scenarios.engine.study import fly_study
     from scenarios.progress import progress_bar
+    from scenarios.replay import Replay, is_flight
+    from scenarios.studies import run_study
 
-    result: RunResult | ConvergenceResult | SeaRunResult
+    stem = Path(name).stem
+    replayed = is_flight(name)
+    directory = out or Path("runs") / f"{'replay-' if replayed else ''}{stem}-{datetime.now():%Y%m%d-%H%M%S}"
+    if replayed and overrides:
+        raise InputError(f"'{name}' is flown again as it was; leave out --set and --seed, or fly its scenario")
+    scenario = None if replayed else load_study(name, overrides)
     with progress_bar() as progress:
-        options: dict[str, Any] = {
-            "jobs": jobs or os.cpu_count() or 1,
-            "resume": resume,
-            "progress": progress,
-            "overrides": overrides,
-        }
-        if isinstance(study, Scenario):
-            from scenarios.runner import run_scenario
-
-            result = run_scenario(study, stem, directory, **options)
-        elif isinstance(study, SeaScenario | SeaTrial):
-            from scenarios.sea_run import run_sea
-
-            result = run_sea(study, stem, directory, **options)
+        if scenario is None:
+            result = fly_study(Replay(name), directory, hire=hire, resume=resume, progress=progress)
         else:
-            from scenarios.convergence_run import run_study
-
-            result = run_study(study, stem, directory, **options)
-    for line in result.lines():
+            result = run_study(scenario, stem, directory, hire=hire, resume=resume, progress=progress, overrides=overrides)
+    for line in result.summary.lines:
         print(line)
     print(f"results: {result.directory}")
     if result.interrupted:
         again = "".join(f"--set {shlex.quote(item)} " for item in overrides)
         again = f"{shlex.quote(name)} {again}--out {shlex.quote(str(directory))} --resume"
-        kept = f"{result.done} of {result.planned} {result.what} are kept"
+        kept = f"{result.summary.done} of {result.planned} {result.what} are kept"
         print(f"interrupted; {kept}. Go on with: python -m scenarios.run {again}", file=sys.stderr)
         return INTERRUPTED
     status = MET if no_report else _report(directory)

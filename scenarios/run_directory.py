@@ -9,9 +9,8 @@ from typing import Any
 import pandas as pd
 
 from reports.files import write_json, write_whole
+from scenarios.engine.fingerprint import fingerprint
 from scenarios.errors import InputError
-
-Row = dict[str, Any]
 
 
 class RunDirectory:
@@ -25,8 +24,10 @@ class RunDirectory:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.manifest = path / "manifest.json"
+        self.journal = path / "journal.sqlite"
         self.innerloop = path / "innerloop.json"
         self.bounds = path / "bounds.json"
+        self.statistics = path / "statistics.json"
         self.model = path / "model"
         self.flights = path / "flights"
         self.trajectories = path / "trajectories"
@@ -67,14 +68,24 @@ class RunDirectory:
         if not self.manifest.is_file():
             raise InputError(f"'{self.path}' holds no run to resume; leave out --resume to start one")
         try:
-            found = json.loads(self.manifest.read_text(encoding="utf-8"))["config_hash"]
+            manifest = json.loads(self.manifest.read_text(encoding="utf-8"))
+            found, theirs = manifest["config_hash"], manifest["fingerprint"]
         except (ValueError, KeyError, TypeError, OSError):
             raise InputError(f"'{self.manifest}' cannot be read; start a new run in another --out") from None
         if found != config_hash:
             raise InputError(
                 f"'{self.path}' was run with another configuration; resume it with the same scenario, --seed and --set values"
             )
+        for name, mine in fingerprint().items():
+            if theirs.get(name) != mine:
+                raise InputError(
+                    f"'{self.path}' was begun with {name} {theirs.get(name)}, now it is {mine}: results would not go together;"
+                    " resume it with what it was begun with, or start a new run in another --out"
+                )
         self._create()
+        # What was being written when the program was killed.
+        for part in self.path.rglob(".*.part"):
+            part.unlink()
 
     def _create(self) -> None:
         try:
@@ -89,29 +100,13 @@ class RunDirectory:
         """Write a JSON file, whole or not at all."""
         write_json(path, value)
 
-    def write_rows(self, name: str, rows: list[Row], columns: tuple[str, ...]) -> None:
-        """Write a table with exactly ``columns`` to ``name``, whole or not at all; figures that a row lacks are empty."""
-        self.write_frame(name, pd.DataFrame(rows, columns=list(columns)))
-
     def write_frame(self, name: str, frame: pd.DataFrame) -> None:
         """Write a table to ``name``, a CSV or Parquet file by its ending, whole or not at all."""
         write = frame.to_parquet if name.endswith(".parquet") else frame.to_csv
         write_whole(self.path / name, lambda part: write(part, index=False))
 
-    def read_frame(self, name: str) -> pd.DataFrame | None:
-        """Return the table of a Parquet file, or none where there is no such file."""
+    def write_bytes(self, name: str, content: bytes) -> None:
+        """Write a file of the run, whole or not at all."""
         path = self.path / name
-        return pd.read_parquet(path) if path.is_file() else None
-
-    def read_rows(self, name: str) -> list[Row]:
-        """Return the rows of a table, or none where there is no such file."""
-        path = self.path / name
-        if not path.is_file():
-            return []
-        records = pd.read_csv(path, keep_default_na=False, na_values=[""]).to_dict("records")
-        return [{str(k): v for k, v in row.items() if not pd.isna(v)} for row in records]
-
-    def write_history(self, flight_id: str, history: pd.DataFrame) -> None:
-        """Write a flight's time history, whole or not at all."""
-        self.flights.mkdir(exist_ok=True)
-        self.write_frame(f"{self.flights.name}/{flight_id}.parquet", history)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, lambda part: part.write_bytes(content))

@@ -6,19 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from aircraft.errors import AircraftError
-from aircraft.find import find_spec
-from innerloop.cache import Designed, designed
-from innerloop.flight import AutopilotedAircraft
-from innerloop.jsbsim_root import write_root
-from innerloop.responses import level_trim
-from innerloop.reversal import Reversal, measure_reversal
+from innerloop.cache import Designed
+from innerloop.reversal import Reversal
 from innerloop.schedule import Schedule
-from scenarios.errors import InputError
-from scenarios.flights import SixDof
 from scenarios.flyable import omega_max
 from scenarios.run_directory import RunDirectory
 from scenarios.sea_config import SeaScenario
+from scenarios.six_dof import SixDof, design_of, six_dof_of, spec_of
 
 KINEMATIC_BANDWIDTH = 1.0
 """Bandwidth of a kinematic vehicle's airspeed that its guidance reckons with; it follows at once [rad/s]."""
@@ -62,14 +56,7 @@ def design_for(scenario: SeaScenario) -> tuple[Designed | None, str]:
     """
     if scenario.fidelity == "kinematic" and scenario.aircraft == SeaScenario.model_fields["aircraft"].default:
         return None, ""
-    try:
-        spec = find_spec(scenario.aircraft)
-    except AircraftError as error:
-        raise InputError(f"aircraft: {error}") from None
-    try:
-        return designed(spec, scenario.plume.source_height_m), ""
-    except AircraftError as error:
-        return None, str(error)
+    return design_of(spec_of(scenario.aircraft), scenario.plume.source_height_m)
 
 
 def airframe_for(scenario: SeaScenario, directory: Path) -> Airframe:
@@ -100,23 +87,18 @@ def airframe_of(scenario: SeaScenario, found: Designed | None, run: RunDirectory
             model=None,
         )
     schedule = found.design.schedule
-    write_root(schedule, run.model)
-    run.write_json(run.innerloop, found.record)
-    near = schedule.level(schedule.middle)
-    start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, near)
-    lag = float(found.record["heading_rate_lag_s"])
     turns = schedule.trims[schedule.middle]
-    reversal = measure_reversal(AutopilotedAircraft(schedule.spec, run.model), start, schedule.envelope.bank)
+    six_dof = six_dof_of(found, airspeed=scenario.guidance.airspeed_mps, altitude=scenario.plume.source_height_m, run=run)
     return Airframe(
-        lag=lag + half_step,
+        lag=six_dof.lag + half_step,
         airspeed_bandwidth=found.design.speeds.airspeed,
         airspeed_min=schedule.envelope.airspeed_min,
         airspeed_max=schedule.envelope.airspeed_max,
         turning_airspeed=_turning_airspeed(schedule, omega_max(scenario.guidance)),
-        reversal=reversal,
+        reversal=six_dof.reversal,
         crab_banks=tuple(turn.roll for turn in turns),
         crab_offsets=tuple(turn.course_offset() for turn in turns),
-        six_dof=SixDof(start=start, lag=lag, reversal=reversal, envelope=schedule.envelope),
+        six_dof=six_dof,
         model=run.model,
     )
 

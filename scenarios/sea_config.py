@@ -4,7 +4,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from scenarios.config import Guidance, Keepout, NonNegative, Positive, Section, check_divides
+from scenarios.config import Guidance, Histories, Keepout, NonNegative, Positive, Section, check_divides
+
+_DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "guidance.bank_deg", "plume.source_height_m")
 
 Angle = Annotated[float, Field(ge=-360.0, le=360.0)]
 Range = tuple[float, float]
@@ -174,6 +176,12 @@ class SeaStart(Section):
     """Nearest and farthest distance from the vessel [m]."""
     spread_deg: Annotated[float, Field(ge=0.0, le=180.0)] = 180.0
     """Largest bearing from the plume's axis, either side [deg]."""
+    range_m: Positive | None = None
+    """Distance from the vessel; random within distance_m if not given [m]."""
+    aspect_deg: Angle | None = None
+    """Bearing from the plume's axis, clockwise; random within spread_deg if not given [deg]."""
+    course_deg: Angle | None = None
+    """Course through the air; any if not given [deg]."""
 
 
 class SeaFlight(Section):
@@ -205,21 +213,37 @@ class SeaCriteria(Section):
 
 
 class Draw(Section):
-    """A key that is drawn for each flight."""
+    """A key that is drawn for each flight, from one distribution."""
 
     key: str
-    """Dotted key of the scenario."""
+    """Dotted key of the scenario; a number is a place in a list, as in vessel.manoeuvres.0.turn_deg."""
     uniform: Range | None = None
     """Drawn evenly between these."""
+    normal: tuple[float, Positive] | None = None
+    """Mean and standard deviation."""
+    weibull: tuple[Positive, Positive] | None = None
+    """Shape and scale, as wind speeds have them."""
+    within: Range | None = None
+    """What a normal or Weibull distribution is cut off at."""
     choice: Annotated[tuple[object, ...], Field(min_length=1)] | None = None
-    """Dealt in turn, so that each comes equally often."""
+    """One of these. Dealt in turn, so that each comes equally often, or drawn by their weights."""
+    weights: tuple[NonNegative, ...] | None = None
+    """Of the choices, in any unit."""
 
     @model_validator(mode="after")
     def _one(self) -> "Draw":
-        if (self.uniform is None) == (self.choice is None):
-            raise ValueError(f"draw of '{self.key}' has {'both' if self.choice else 'neither'} of uniform and choice; give one")
-        if self.uniform is not None:
-            check_ordered(f"uniform of the draw of '{self.key}'", self.uniform)
+        given = [name for name in ("uniform", "normal", "weibull", "choice") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"draw of '{self.key}' has {' and '.join(given) or 'none'} of uniform, normal, weibull and choice; give one"
+            )
+        for name in ("uniform", "within"):
+            if (values := getattr(self, name)) is not None:
+                check_ordered(f"{name} of the draw of '{self.key}'", values)
+        if self.within is not None and given[0] not in ("normal", "weibull"):
+            raise ValueError(f"draw of '{self.key}' has within beside {given[0]}; it cuts off a normal or a weibull")
+        if self.weights is not None and (self.choice is None or len(self.weights) != len(self.choice) or not sum(self.weights)):
+            raise ValueError(f"draw of '{self.key}' has weights {list(self.weights)}; give each choice one, and not all 0")
         return self
 
 
@@ -238,6 +262,9 @@ class SeaScenario(Section):
     fidelity: Literal["six_dof", "kinematic"] = "six_dof"
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1
     flights: Annotated[int, Field(ge=1, le=1_000_000)] = 1
+    histories: Histories = 200
+    flight_seed: Annotated[int, Field(ge=0, le=2**63 - 1)] | None = None
+    """Of start, air and noise; each flight has its own, from seed, name and number, if it is not given."""
     speed_ratio: Range = (0.0, 1e9)
     """Flights whose nu leaves this range, at the start or after a manoeuvre, are drawn again [-]."""
     draws: tuple[Draw, ...] = ()
@@ -287,6 +314,8 @@ class SeaScenario(Section):
             )
         keys = [draw.key for draw in self.draws]
         for key in keys:
+            if key.startswith(_DESIGNED_FOR):
+                raise ValueError(f"draws has '{key}', which the autopilot is designed for; give each value a run of its own")
             if keys.count(key) > 1:
                 raise ValueError(f"draws has '{key}' {keys.count(key)} times; draw a key once")
             if "." not in key:
@@ -306,5 +335,6 @@ class SeaTrial(Section):
     """Share of each trial's flights that are flown, for a quick look [-]."""
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] | None = None
     """Seed of every trial; each has its own if not given."""
+    histories: Histories = 350
     set: tuple[str, ...] = ()
     """Keys to set in every trial, as key=value; overrides of the command line that are not keys of this list come here."""

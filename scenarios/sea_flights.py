@@ -1,30 +1,32 @@
-"""Flying one flight over the real sea in a process of its own. Every way it can end is a row."""
+"""Flying flights over the real sea in processes of their own. Every way that one can end is a row."""
 
+import bisect
+import itertools
+import json
 import math
 import time
-import traceback
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import pandas as pd
 
-from aircraft.errors import AircraftError
-from aircraft.find import find_spec
-from gnc.errors import InfeasibleError
 from innerloop.flight import AutopilotedAircraft
 from scenarios.closed_loop import Outcome
 from scenarios.crossings import Crossing
-from scenarios.errors import InputError
+from scenarios.engine.work import Result, Row, Task
+from scenarios.failure import failure, unflown
+from scenarios.histories import history_file, history_path, keeps_history
 from scenarios.interventions import INTERVENTION_COLUMNS
 from scenarios.jsbsim_vehicle import JsbsimVehicle
 from scenarios.kinematic_vehicle import KinematicVehicle
-from scenarios.run_directory import RunDirectory
 from scenarios.sea_airframe import KINEMATIC_LAG, Airframe
 from scenarios.sea_config import SeaScenario
-from scenarios.sea_draws import drawn_flight
+from scenarios.sea_draws import DrawnFlight, drawn_flight
 from scenarios.sea_loop import SEA_COLUMNS, fly_sea
 from scenarios.sea_margin import SpreadTable
-from scenarios.sea_metrics import Row, sea_figures, sea_plan_row, sea_unmet
+from scenarios.sea_metrics import sea_figures, sea_plan_row, sea_unmet
 from scenarios.sea_plan import SeaPlan, plan_sea_flight
 from scenarios.vehicle import Vehicle
 
@@ -33,90 +35,131 @@ _CROSSING_COLUMNS = ("flight_id", "trial", "crossing", "time_s", "axis_distance_
 DETAILS = {"crossings.csv": _CROSSING_COLUMNS, "interventions.csv": INTERVENTION_COLUMNS}
 """Tables with several rows of a flight, and their columns."""
 
+DRAWS = "draws.csv"
+"""Table of what was drawn for each flight."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SeaRequest:
-    """A flight to be drawn and flown.
+class Trial:
+    """Flights of one scenario.
 
     Attributes
     ----------
-    flight_id : unique in the run
-    trial : its name
-    scenario : of the trial
-    number : of the flight in it, from 0
-    spreads : predicted in the trial's turbulence, none in still air
+    name : of the trial
+    scenario : of its flights
+    spreads : predicted in the levels of turbulence that they may have
     """
 
-    flight_id: str
-    trial: str
+    name: str
     scenario: SeaScenario
-    number: int
-    spreads: SpreadTable | None
+    spreads: Mapping[str, SpreadTable]
+
+    def flight_id(self, number: int) -> str:
+        """Return the name of a flight in the run, by its number in the trial."""
+        return f"{self.name}_{number:05d}"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SeaResult:
-    """A flown flight: its row, and its rows in the tables of ``DETAILS``."""
+@dataclass(frozen=True, kw_only=True)
+class SeaWork:
+    """Draws, plans, flies, measures and records flights.
 
-    flight_id: str
-    row: Row
-    details: dict[str, list[Row]]
-
-
-def fly_sea_request(request: SeaRequest, directory: Path, airframe: Airframe) -> SeaResult:
-    """Draw, plan, fly, measure and record one flight.
-
-    Parameters
+    Attributes
     ----------
-    request : the flight
-    directory : the run directory
-    airframe : what its vehicle needs
+    trials : one after the other; a task's number counts through them
+    histories : number of time histories to be kept, beside those of flights that did not meet their criteria
+    airframe : what flies, or none
+    refusal : why nothing can be flown, or nothing
     """
-    began = time.perf_counter()
-    row: Row = {"flight_id": request.flight_id, "trial": request.trial}
-    details: dict[str, list[Row]] = {}
-    try:
-        scenario, seed, nu = drawn_flight(request.trial, request.scenario, request.number)
-        row |= _drawn_row(scenario, seed, nu)
-        plan = plan_sea_flight(scenario, flight_id=request.flight_id, seed=seed, airframe=airframe, spreads=request.spreads)
-        row |= sea_plan_row(plan)
-        record = fly_sea(plan, _vehicle(scenario, plan, airframe))
-        run = RunDirectory(directory)
-        run.write_history(request.flight_id, pd.DataFrame(record.history, columns=list(SEA_COLUMNS)))
-        figures, found = sea_figures(plan, record)
-        named: Row = {"flight_id": request.flight_id, "trial": request.trial}
-        details["crossings.csv"] = [_crossing_row(request, i, crossing) for i, crossing in enumerate(found, start=1)]
-        details["interventions.csv"] = [named | stretch._asdict() for stretch in record.interventions]
-        row |= figures
-        unmet = sea_unmet(row, scenario.criteria)
-        row |= {"criteria_met": not unmet, "message": "; ".join([*unmet, *([record.message] if record.message else [])])}
-    except InfeasibleError as error:
-        row |= {"outcome": Outcome.INFEASIBLE.value, "message": str(error)}
-    except (AircraftError, InputError) as error:
-        row |= {"outcome": Outcome.FAILED.value, "message": str(error)}
-    except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the trial goes on
-        where = traceback.extract_tb(error.__traceback__)[-1]
-        row |= {
-            "outcome": Outcome.FAILED.value,
-            "message": f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})",
-        }
-    row.setdefault("criteria_met", False)
-    row["wall_time_s"] = time.perf_counter() - began
-    return SeaResult(flight_id=request.flight_id, row=row, details=details)
+
+    trials: tuple[Trial, ...]
+    histories: int
+    airframe: Airframe
+    refusal: str = ""
+
+    @property
+    def model(self) -> Path | None:
+        """Return the JSBSim root of the aircraft with its autopilot, if it is to fly."""
+        return self.airframe.model
+
+    def moved(self, model: Path) -> "SeaWork":
+        """Return the same work with its files in another directory."""
+        return replace(self, airframe=replace(self.airframe, model=model))
+
+    @cached_property
+    def _ends(self) -> list[int]:
+        """The number of the task after each trial's last."""
+        return list(itertools.accumulate(trial.scenario.flights for trial in self.trials))
+
+    def flight(self, number: int) -> tuple[Trial, int]:
+        """Return the trial of a task and the flight's number in it."""
+        i = bisect.bisect_right(self._ends, number)
+        return self.trials[i], number - (self._ends[i - 1] if i else 0)
+
+    def fly(self, task: Task) -> Result:
+        """Draw, plan, fly, measure and record one flight."""
+        began = time.perf_counter()
+        trial, number = self.flight(task.number)
+        named: Row = {"flight_id": trial.flight_id(number), "trial": trial.name}
+        if self.refusal:
+            return self._result(task, named | unflown(Outcome.TRIM_FAILED, self.refusal))
+        row, tables = dict(named), dict[str, list[Row]]()
+        history: pd.DataFrame | None = None
+        try:
+            drawn = drawn_flight(trial.name, trial.scenario, number, task.point)
+            row |= _drawn_row(drawn)
+            tables[DRAWS] = [named | {"nu": drawn.nu} | _plain(drawn.values)]
+            plan = plan_sea_flight(
+                drawn.scenario, flight_id=named["flight_id"], seed=drawn.seed, airframe=self.airframe, spreads=trial.spreads
+            )
+            row |= sea_plan_row(plan)
+            record = fly_sea(plan, self._vehicle(plan))
+            history = pd.DataFrame(record.history, columns=list(SEA_COLUMNS))
+            figures, found = sea_figures(plan, record)
+            tables["crossings.csv"] = [named | _crossing_row(i, crossing) for i, crossing in enumerate(found, start=1)]
+            tables["interventions.csv"] = [named | stretch._asdict() for stretch in record.interventions]
+            row |= figures
+            unmet = sea_unmet(row, drawn.scenario.criteria)
+            row |= {"criteria_met": not unmet, "message": "; ".join([*unmet, *([record.message] if record.message else [])])}
+        except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the trial goes on
+            row |= failure(error)
+        return self._result(task, row | {"wall_time_s": time.perf_counter() - began}, tables, history)
+
+    def lost(self, task: Task, reason: str) -> Result:
+        """Return the result of a flight whose process was lost."""
+        trial, number = self.flight(task.number)
+        row = {"flight_id": trial.flight_id(number), "trial": trial.name} | unflown(Outcome.FAILED, reason)
+        return replace(self._result(task, row), lost=True)
+
+    def _result(
+        self, task: Task, row: Row, tables: Mapping[str, list[Row]] | None = None, history: pd.DataFrame | None = None
+    ) -> Result:
+        kept = history is not None and keeps_history(task, planned=self._ends[-1], wanted=self.histories, row=row)
+        return Result(
+            task=task,
+            tables={"summary.csv": [row], **(tables or {})},
+            files={history_path(row["flight_id"]): history_file(history)} if kept and history is not None else {},
+        )
+
+    def _vehicle(self, plan: SeaPlan) -> Vehicle:
+        """Return the vehicle at the start of a flight."""
+        where = {"north": plan.start_north, "east": plan.start_east, "altitude": plan.altitude, "course": plan.start_course}
+        time_step = plan.guidance.guidance.time_step
+        six_dof, model = self.airframe.six_dof, self.airframe.model
+        if six_dof is None or model is None:
+            north, east = plan.weather.wind
+            speed = plan.guidance.centre.speed
+            return KinematicVehicle(**where, speed=speed, time_step=time_step, lag=KINEMATIC_LAG, wind_north=north, wind_east=east)
+        aircraft = AutopilotedAircraft(six_dof.spec, model, failable=plan.fault.of_aircraft())
+        return JsbsimVehicle(aircraft, six_dof.start, six_dof.envelope, **where, time_step=time_step, weather=plan.weather)
 
 
-def sea_failed(request: SeaRequest, outcome: Outcome, message: str) -> SeaResult:
-    """Return the result of a flight that was never begun, or whose process died."""
-    row = {"flight_id": request.flight_id, "trial": request.trial, "outcome": outcome.value, "message": message}
-    return SeaResult(flight_id=request.flight_id, row={**row, "criteria_met": False}, details={})
-
-
-def _drawn_row(scenario: SeaScenario, seed: int, nu: float) -> Row:
+def _drawn_row(drawn: DrawnFlight) -> Row:
+    scenario = drawn.scenario
     return {
         "aircraft": scenario.aircraft if scenario.fidelity == "six_dof" else "none",
         "fidelity": scenario.fidelity,
-        "seed": seed,
-        "nu": nu,
+        "seed": drawn.seed,
+        "nu": drawn.nu,
         "wind_speed_mps": scenario.wind.speed_mps,
         "wind_from_deg": scenario.wind.from_deg,
         "vessel_speed_mps": scenario.vessel.speed_mps,
@@ -126,23 +169,13 @@ def _drawn_row(scenario: SeaScenario, seed: int, nu: float) -> Row:
     }
 
 
-def _vehicle(scenario: SeaScenario, plan: SeaPlan, airframe: Airframe) -> Vehicle:
-    """Return the scenario's vehicle at the start of its flight."""
-    where = {"north": plan.start_north, "east": plan.start_east, "altitude": plan.altitude, "course": plan.start_course}
-    time_step = plan.guidance.guidance.time_step
-    if airframe.six_dof is None or airframe.model is None:
-        north, east = plan.weather.wind
-        speed = plan.guidance.centre.speed
-        return KinematicVehicle(**where, speed=speed, time_step=time_step, lag=KINEMATIC_LAG, wind_north=north, wind_east=east)
-    aircraft = AutopilotedAircraft(find_spec(scenario.aircraft), airframe.model, failable=plan.fault.of_aircraft())
-    six_dof = airframe.six_dof
-    return JsbsimVehicle(aircraft, six_dof.start, six_dof.envelope, **where, time_step=time_step, weather=plan.weather)
+def _plain(values: Mapping[str, object]) -> Row:
+    """Return what was drawn as it goes into a table: numbers and words, anything else as JSON."""
+    return {key: value if isinstance(value, str | float | int) else json.dumps(value) for key, value in values.items()}
 
 
-def _crossing_row(request: SeaRequest, i: int, crossing: Crossing) -> Row:
+def _crossing_row(i: int, crossing: Crossing) -> Row:
     return {
-        "flight_id": request.flight_id,
-        "trial": request.trial,
         "crossing": i,
         "time_s": crossing.time,
         "axis_distance_m": crossing.axis_distance,

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from gnc.vessel_filter import VesselFilter, VesselReport
 from scenarios.keepout_margin import Spread, planned_margin
 from scenarios.sea_config import Reports, SeaScenario
+from scenarios.sensors import NAVIGATION_TIME
 
 _MANOEUVRE, _MANOEUVRE_MEMORY = 0.02, 40.0
 """Standard deviation [m/s^2] and time constant [s] of the acceleration that the vessel's filter reckons with: a ship's."""
-
-_NAVIGATION_TIME = 60.0
-"""Time constant with which the error of satellite navigation wanders [s]."""
 
 _SEEN_SHARE, _FLOWN_SHARE = 0.6, 0.5
 """Shares of the margin that the keep-out guard holds [-]: of what is not seen exactly, and of what is flown with turbulence.
@@ -91,7 +89,7 @@ def keepout_margin(scenario: SeaScenario, spreads: SpreadTable | None, nu: float
     navigation = scenario.sensors.position_sigma_m
     seen, drift = _seen(reports), 0.5 * f.vessel_acceleration_mps2 * (reports.interval_s[1] + reports.latency_max_s) ** 2
     between = max(1.0, 0.5 * sum(reports.interval_s))
-    sigma, rate = math.hypot(seen, navigation), math.hypot(seen / between, navigation / _NAVIGATION_TIME)
+    sigma, rate = math.hypot(seen, navigation), math.hypot(seen / between, navigation / NAVIGATION_TIME)
     random = planned_margin(spread, other_sigma=sigma, other_sigma_rate=rate, touches_per_hour=f.touches_per_hour)
     unseen = planned_margin(STILL, other_sigma=sigma, other_sigma_rate=rate, touches_per_hour=f.touches_per_hour)
     guard = _SEEN_SHARE * (drift + unseen) + _FLOWN_SHARE * (random - unseen + f.margin_min_m)

@@ -1,13 +1,13 @@
 """From a scenario of the real sea to the parameters of its guidance, in SI."""
 
 import math
+from collections.abc import Sequence
 
 from aircraft.turbulence import TURBULENCE, intensities, scale_lengths
 from gnc.delta import look_ahead
 from gnc.guidance import GuidanceParameters, Law
 from gnc.moving_centre import CentreParameters
 from gnc.navigation import NavigationParameters
-from gnc.oscillation import Oscillation, design_oscillation
 from gnc.sea_parameters import SeaParameters
 from gnc.speed_hold import SpeedHold, design_speed_hold
 from scenarios.flyable import omega_max
@@ -28,18 +28,18 @@ _POWERLESS_SHARE = 0.55
 
 
 def sea_parameters(
-    scenario: SeaScenario, fastest: float, airframe: Airframe, margin: float, widths: list[tuple[float, float]]
+    scenario: SeaScenario, airframe: Airframe, margin: float, widths: Sequence[tuple[float, float]]
 ) -> SeaParameters:
     """Return the parameters of the guidance over a real sea.
 
     Parameters
     ----------
     scenario, airframe : the flight, and what flies it
-    fastest : omega_max [rad/s]
     margin : of the keep-out area [m]
     widths : half-widths of the orbit along and across its course, at equal steps of nu from 0 [m]
     """
     g, f, time_step = scenario.guidance, scenario.following, 1.0 / scenario.guidance.rate_hz
+    fastest = omega_max(g)
     radius, reports = scenario.keepout.radius_m, scenario.reports
     gust = 0.0
     if scenario.turbulence.level != "none":
@@ -117,16 +117,4 @@ def speed_hold(scenario: SeaScenario, airframe: Airframe) -> SpeedHold:
         look_ahead=scenario.guidance.look_ahead_m,
         airspeed_min=airframe.airspeed_min,
         airspeed_max=airframe.airspeed_max,
-    )
-
-
-def oscillation_at(scenario: SeaScenario, nu: float) -> Oscillation:
-    """Return the reference's oscillation at a speed ratio, or raise an InfeasibleError."""
-    g = scenario.guidance
-    return design_oscillation(
-        nu=nu,
-        speed=g.airspeed_mps,
-        heading_rate_max=omega_max(g),
-        reserve=g.reserve,
-        roll_rate_max=math.radians(g.roll_rate_max_deg_s),
     )

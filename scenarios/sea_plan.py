@@ -1,6 +1,7 @@
 """From a scenario of the real sea to one flight: everything it needs, resolved to SI, and the reason where it cannot be flown."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,23 +9,20 @@ import numpy as np
 from aircraft.weather import Weather
 from gnc.errors import InfeasibleError
 from gnc.keepout_guard import KeepoutGuard
-from gnc.orbit import half_widths
 from gnc.oscillation import Oscillation
 from gnc.sea_parameters import SeaParameters
 from gnc.vessel_filter import VesselFilter, VesselReport
 from innerloop.reversal import Reversal
 from scenarios.flyable import omega_max
+from scenarios.oscillations import RATIO_STEPS, orbits, oscillation_at
 from scenarios.sea_airframe import Airframe
 from scenarios.sea_config import SeaScenario
 from scenarios.sea_margin import KeepoutMargin, SpreadTable, keepout_margin, vessel_filter
-from scenarios.sea_parameters import oscillation_at, sea_parameters
+from scenarios.sea_parameters import sea_parameters
 from scenarios.sea_world import VESSEL_DATA, TimedFault, drawn_fault, drawn_weather, vessel_track, wind_ned
 from scenarios.sensors import SensorErrors
 from scenarios.vessel_reports import heard_reports, never
 from scenarios.vessel_track import VesselTrack
-
-_RATIO_STEPS = 48
-"""Steps of nu at which the orbit's half-widths are tabled."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +73,7 @@ class SeaPlan:
 
     def period(self, nu: float) -> float:
         """Return the period of the oscillation at a speed ratio [s]."""
-        return self.periods[min(round(nu / self.guidance.speed_ratio_max * _RATIO_STEPS), len(self.periods) - 1)]
+        return self.periods[min(round(nu / self.guidance.speed_ratio_max * RATIO_STEPS), len(self.periods) - 1)]
 
 
 def plan_sea_flight(
@@ -84,7 +82,7 @@ def plan_sea_flight(
     flight_id: str,
     seed: int,
     airframe: Airframe,
-    spreads: SpreadTable | None,
+    spreads: Mapping[str, SpreadTable],
 ) -> SeaPlan:
     """Resolve one flight.
 
@@ -92,7 +90,7 @@ def plan_sea_flight(
     ----------
     scenario, flight_id, seed : the flight
     airframe : what flies it
-    spreads : predicted in its turbulence
+    spreads : predicted, by level of turbulence
 
     Raises
     ------
@@ -101,28 +99,24 @@ def plan_sea_flight(
     g, time_step = scenario.guidance, 1.0 / scenario.guidance.rate_hz
     world, noise = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(2))
     track = vessel_track(scenario)
-    nu = track.apparent_wind([0.0])[0] / g.airspeed_mps
+    nu = track.apparent_wind_at_start / g.airspeed_mps
     _check_plume(scenario, track)
-    fastest = omega_max(g)
-    ratios = np.linspace(0.0, scenario.following.speed_ratio_max, _RATIO_STEPS + 1).tolist()
-    oscillations = [oscillation_at(scenario, ratio) for ratio in ratios]
-    margin = keepout_margin(scenario, spreads, nu)
+    periods, widths = orbits(g, scenario.following.speed_ratio_max)
+    margin = keepout_margin(scenario, spreads.get(scenario.turbulence.level), nu)
     steps = round(scenario.flight.duration_max_s * g.rate_hz) + 2
     start = _start(scenario, track, world)
     fault = drawn_fault(scenario, world)
     weather = drawn_weather(scenario, world)
     silence = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else never()
     duration = scenario.flight.duration_max_s
-    guard = _guard(scenario, fastest, airframe.reversal, margin)
+    guard = _guard(scenario, airframe.reversal, margin)
     _check_start(scenario, guard, margin, track, start)
     return SeaPlan(
         flight_id=flight_id,
         nu=nu,
-        oscillation=oscillation_at(scenario, nu),
-        periods=tuple(oscillation.period for oscillation in oscillations),
-        guidance=sea_parameters(
-            scenario, fastest, airframe, margin.total, [half_widths(oscillation) for oscillation in oscillations]
-        ),
+        oscillation=oscillation_at(g, nu),
+        periods=periods,
+        guidance=sea_parameters(scenario, airframe, margin.total, widths),
         guard=guard,
         vessel_filter=vessel_filter(scenario.reports),
         track=track,
@@ -154,9 +148,9 @@ def _check_plume(scenario: SeaScenario, track: VesselTrack) -> None:
             f"the vessel moves at up to {most:.1f} m/s through the air, nu = {most / speed:.2f}; the UAV at {speed:g} m/s follows"
             f" up to nu = {f.speed_ratio_max:g}: fly faster, or in less apparent wind"
         )
-    if scenario.plume.direction == "apparent_wind" and track.apparent_wind([0.0])[0] < f.apparent_wind_min_mps:
+    if scenario.plume.direction == "apparent_wind" and track.apparent_wind_at_start < f.apparent_wind_min_mps:
         raise InfeasibleError(
-            f"the apparent wind is {track.apparent_wind([0.0])[0]:.2f} m/s; below {f.apparent_wind_min_mps:g} the plume has no"
+            f"the apparent wind is {track.apparent_wind_at_start:.2f} m/s; below {f.apparent_wind_min_mps:g} the plume has no"
             " direction: give wind or vessel another speed, or the plume a direction (plume.direction=given)"
         )
 
@@ -180,14 +174,14 @@ def _check_start(
         )
 
 
-def _guard(scenario: SeaScenario, fastest: float, reversal: Reversal, margin: KeepoutMargin) -> KeepoutGuard | None:
+def _guard(scenario: SeaScenario, reversal: Reversal, margin: KeepoutMargin) -> KeepoutGuard | None:
     """Return the guard of the disc that the keep-out sphere cuts out at the height of its centre."""
     g, f = scenario.guidance, scenario.following
     if not g.keepout_guard:
         return None
     return KeepoutGuard(
         radius=scenario.keepout.radius_m + margin.guard,
-        heading_rate_max=fastest,
+        heading_rate_max=omega_max(g),
         lag=reversal.lag,
         delay=reversal.delay,
         time_step=1.0 / g.rate_hz,
@@ -197,9 +191,14 @@ def _guard(scenario: SeaScenario, fastest: float, reversal: Reversal, margin: Ke
 
 
 def _start(scenario: SeaScenario, track: VesselTrack, generator: np.random.Generator) -> tuple[float, float, float]:
-    """Return north, east [m] and course through the air [rad] of the UAV's start, drawn about the plume's axis."""
-    distance = float(generator.uniform(*scenario.start.distance_m))
-    spread = math.radians(scenario.start.spread_deg)
-    bearing = track.axis(0.0) + float(generator.uniform(-spread, spread))
+    """Return north, east [m] and course through the air [rad] of the UAV's start, about the plume's axis: given, or drawn."""
+    given = scenario.start
+    distance = float(generator.uniform(*given.distance_m))
+    spread = math.radians(given.spread_deg)
+    aspect = float(generator.uniform(-spread, spread))
     course = float(generator.uniform(-math.pi, math.pi))
+    # What is given is drawn all the same, so that nothing else of the flight depends on what is.
+    distance = distance if given.range_m is None else given.range_m
+    bearing = track.axis(0.0) + (aspect if given.aspect_deg is None else math.radians(given.aspect_deg))
+    course = course if given.course_deg is None else math.radians(given.course_deg)
     return distance * math.cos(bearing), distance * math.sin(bearing), course

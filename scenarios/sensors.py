@@ -7,7 +7,7 @@ from scipy.signal import lfilter
 
 from scenarios.sea_config import Sensors
 
-_WANDER = 60.0
+NAVIGATION_TIME = 60.0
 """Time constant with which the error of satellite navigation wanders [s]."""
 
 Reading = tuple[tuple[float, float, float, float] | None, float, float]
@@ -33,7 +33,7 @@ class SensorErrors:
         self.airspeed_bias = float(generator.uniform(-1.0, 1.0)) * sensors.airspeed_bias_mps
         heading_bias = math.radians(float(generator.uniform(-1.0, 1.0)) * sensors.heading_bias_deg)
         white = generator.standard_normal((6, steps))
-        kept = math.exp(-time_step / _WANDER)
+        kept = math.exp(-time_step / NAVIGATION_TIME)
         before = generator.standard_normal((2, 1))
         wander, _ = lfilter([math.sqrt(1.0 - kept**2)], [1.0, -kept], white[:2], axis=-1, zi=kept * before)
         self._rows: list[tuple[float, ...]] = [

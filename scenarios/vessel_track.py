@@ -1,7 +1,6 @@
 """Where a vessel that manoeuvres is, and where its plume trails, at any time."""
 
 import math
-from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -59,8 +58,7 @@ class VesselTrack:
         through_air = velocity - np.array([wind_north, wind_east])
         if axis is None:
             axis = np.unwrap(np.arctan2(-through_air[:, 1], -through_air[:, 0])[_last_moving(through_air)])
-        axis_rate = np.gradient(axis, _STEP)
-        self._table = np.column_stack([place, velocity, axis, axis_rate, np.hypot(through_air[:, 0], through_air[:, 1])])
+        self._table = np.column_stack([place, velocity, axis, np.hypot(through_air[:, 0], through_air[:, 1])])
 
     @cached_property
     def _rows(self) -> list[list[float]]:
@@ -87,21 +85,15 @@ class VesselTrack:
         i = min(int(time / _STEP), len(self._rows) - 2)
         return self._rows[i][4] + (time / _STEP - i) * (self._rows[i + 1][4] - self._rows[i][4])
 
-    def sampled(self, times: Array) -> tuple[Array, Array, Array, Array]:
-        """Return place and velocity, shape (n, 2) [m, m/s], and the plume's course and its rate, shape (n,) [rad, rad/s]."""
-        moving = np.array([self.motion(float(t)) for t in times]).reshape(-1, 4)
-        at = np.clip(times / _STEP, 0, len(self._table) - 1)
-        axis, rate = (np.interp(at, np.arange(len(self._table)), self._table[:, j]) for j in (4, 5))
-        return moving[:, :2], moving[:, 2:], axis, rate
-
-    def apparent_wind(self, times: Sequence[float]) -> list[float]:
-        """Return the speed of the vessel through the air [m/s]."""
-        return [float(self._table[min(round(t / _STEP), len(self._table) - 1), 6]) for t in times]
+    @property
+    def apparent_wind_at_start(self) -> float:
+        """Return the speed of the vessel through the air at time 0 [m/s]."""
+        return float(self._table[0, 5])
 
     @property
     def apparent_wind_range(self) -> tuple[float, float]:
         """Return the least and the greatest speed through the air over the whole track [m/s]."""
-        return float(self._table[:, 6].min()), float(self._table[:, 6].max())
+        return float(self._table[:, 5].min()), float(self._table[:, 5].max())
 
 
 def _last_moving(velocity: Array) -> npt.NDArray[np.intp]:

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
+from scenarios.runner import run_scenario
 
 from scenarios.load import load_scenario
-from scenarios.runner import run_scenario
 
 
 @dataclass(frozen=True)

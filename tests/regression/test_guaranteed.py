@@ -2,10 +2,10 @@
 
 import pandas as pd
 import pytest
+from scenarios.runner import run_scenario
 
 from reports.build import build_reports
 from scenarios.load import load_scenario
-from scenarios.runner import run_scenario
 
 
 @pytest.fixture(scope="module")

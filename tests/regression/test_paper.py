@@ -10,13 +10,13 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+from scenarios.runner import run_scenario
 
 from reports.blocks import Table
 from reports.build import build_reports
 from reports.content import content
 from reports.run_data import read_run
 from scenarios.load import load_scenario
-from scenarios.runner import run_scenario
 
 BOTH = pytest.mark.parametrize("fidelity", ["kinematic", "six_dof"])
 

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from design_runs import record
+from scenarios.runner import run_scenario
 
 from reports import matplotlib_charts, plotly_charts
 from reports.blocks import FlightPicker, Table
@@ -21,7 +22,6 @@ from reports.run_data import read_run
 from reports.tables import limit
 from reports.verdict import verdict
 from scenarios.load import load_scenario
-from scenarios.runner import run_scenario
 
 # Three crossings are too few for the study's own criteria.
 CRITERIA = ["criteria.tracking_error_rms_m=5.0", "criteria.crossing_interval_error=0.1"]

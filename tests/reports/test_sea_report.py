@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from scenarios.sea_run import run_sea
 
 from reports import matplotlib_charts, plotly_charts
 from reports.blocks import FlightPicker, Table, Text
@@ -24,7 +25,6 @@ from reports.sea_tables import UNMET_MAX
 from scenarios.load import load_study
 from scenarios.manifest import parameters
 from scenarios.sea_config import SeaTrial
-from scenarios.sea_run import run_sea
 
 # Both settle and cross a few times, within some 150 s; after that the vessel of the second turns, which takes it 40 s at most.
 STEADY = """

@@ -5,11 +5,11 @@ import shutil
 
 import pandas as pd
 import pytest
+from scenarios.convergence_run import run_study
 
 from gnc.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.build import build_reports
 from scenarios.convergence_config import ConvergenceScenario
-from scenarios.convergence_run import run_study
 from scenarios.errors import InputError
 from scenarios.load import load_study
 

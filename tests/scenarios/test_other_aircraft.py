@@ -5,9 +5,10 @@ import math
 
 import pandas as pd
 import pytest
-import typer
-
 import scenarios.runner
+import typer
+from scenarios.runner import run_scenario
+
 from aircraft.errors import AircraftError
 from aircraft.find import find_spec
 from aircraft.spec import AEROSONDE
@@ -17,7 +18,6 @@ from reports.build import build_reports
 from scenarios.errors import InputError
 from scenarios.load import load_scenario
 from scenarios.run import command
-from scenarios.runner import run_scenario
 
 SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]"]
 

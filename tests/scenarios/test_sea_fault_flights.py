@@ -3,11 +3,11 @@
 import numpy as np
 import pandas as pd
 import pytest
+from scenarios.sea_run import run_sea
 
 from gnc.sea_parameters import Mode
 from scenarios.sea_config import SeaScenario
 from scenarios.sea_loop import DITCHED
-from scenarios.sea_run import run_sea
 
 KINDS = ("engine", "throttle", "left_elevon", "right_elevon")
 FAILS, ENDS = 55.0, 130.0

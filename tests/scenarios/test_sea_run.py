@@ -4,10 +4,10 @@ import json
 
 import pandas as pd
 import pytest
+from scenarios.sea_run import run_sea
 
 from scenarios.errors import InputError
 from scenarios.load import load_study
-from scenarios.sea_run import run_sea
 
 TRIAL = """
 study = "sea"

@@ -54,7 +54,8 @@ def test_the_plume_trails_behind_the_motion_through_the_air():
     # Course north at 6 m/s in a wind to the east at 6 m/s: through the air it goes north-west, and the smoke south-east.
     vessel = track({"speed_mps": 6.0}, wind=(0.0, 6.0))
     assert math.remainder(vessel.axis(10.0) - math.radians(135.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
-    assert vessel.apparent_wind([0.0, 10.0]) == pytest.approx([math.hypot(6.0, 6.0)] * 2)
+    assert vessel.apparent_wind_at_start == pytest.approx(math.hypot(6.0, 6.0))
+    assert vessel.apparent_wind_range == pytest.approx([math.hypot(6.0, 6.0)] * 2)
     assert math.isnan(vessel.manoeuvres_end)
 
 
@@ -81,15 +82,3 @@ def test_the_plume_of_a_vessel_that_stops_in_still_air_stays_where_it_was():
     # No direction follows from no motion at all: it is that of the last, 210 degrees.
     assert math.remainder(vessel.axis(100.0) - math.radians(210.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
     assert vessel.apparent_wind_range == pytest.approx((0.0, 8.0), abs=1e-12)
-
-
-def test_a_sampled_track_is_the_track():
-    vessel = track({"speed_mps": 8.0, "manoeuvres": [{"at_s": 10.0, "turn_deg": 90.0, "turn_rate_deg_s": 1.0}]}, wind=(3.0, 1.0))
-    times = np.array([0.0, 33.33, 70.01])
-    place, velocity, axis, rate = vessel.sampled(times)
-    for i, time in enumerate(times):
-        assert (*place[i], *velocity[i]) == vessel.motion(float(time))
-        assert axis[i] == pytest.approx(vessel.axis(float(time)), abs=1e-12)
-    # Central difference over 2 ms of the axis itself, linear between points of the table 0.05 s apart.
-    expected = (vessel.axis(33.331) - vessel.axis(33.329)) / 0.002
-    assert rate[1] == pytest.approx(expected, rel=1e-3)

@@ -1,0 +1,68 @@
+"""What the engine adds to the flights: the second process, the start of a flight.
+
+One study is flown by one process and by two, in turn, again and again: whole studies, with their journal and their tables. What
+starting a flight costs is what is left of flights of two lengths when the time that grows with the length is taken away.
+"""
+
+import statistics
+import tempfile
+import time
+from pathlib import Path
+
+from scenarios.engine.hiring import Hiring
+from scenarios.engine.study import fly_study
+from scenarios.engine.work import Task, Work
+from scenarios.load import load_study
+from scenarios.run_directory import RunDirectory
+from scenarios.studies import study_of
+
+FLIGHTS = 24
+LENGTHS = (50.0, 250.0)
+"""Of the flights whose costs are compared [s]."""
+
+SETTINGS = ("criteria.settles=false", "histories=0")
+
+
+def report_engine(rounds: int) -> None:
+    """Print the benchmark: medians over rounds, and ratios within a round."""
+    one, two = zip(*(tuple(_whole_study(jobs) for jobs in (1, 2)) for _ in range(rounds)), strict=True)
+    ratio = statistics.median(a / b for a, b in zip(one, two, strict=True))
+    print(
+        f"{FLIGHTS} flights of 300 s, journal and tables included, {rounds} interleaved rounds: {statistics.median(one):.2f} s with"
+        f" one process, {statistics.median(two):.2f} s with two, {ratio:.2f} times as fast"
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        works = [_work(length, Path(folder) / f"{length:g}") for length in LENGTHS]
+        short, long = zip(*(tuple(_flight(work) for work in works) for _ in range(5 * rounds)), strict=True)
+    per_second = statistics.median((b - a) / (LENGTHS[1] - LENGTHS[0]) for a, b in zip(short, long, strict=True))
+    starting = statistics.median(a - per_second * LENGTHS[0] for a in short)
+    print(f"a flight over a real sea: {1e3 * starting:.1f} ms to start and to measure, {1e3 * per_second:.3f} ms per second flown")
+
+
+def _whole_study(jobs: int) -> float:
+    """Return the time in which a study is flown, from its first flight to its tables [s]."""
+    study = study_of(load_study("monte_carlo", [f"flights={FLIGHTS}", "sampling=random", *SETTINGS]), "bench")
+    times: list[float] = []
+
+    def told(doing: str, done: int, total: int) -> None:
+        if doing == "flying":
+            times.append(time.perf_counter())
+
+    with tempfile.TemporaryDirectory() as folder:
+        fly_study(study, Path(folder) / "run", hire=Hiring(jobs=jobs), resume=False, progress=told)
+    return times[-1] - times[0]
+
+
+def _work(length: float, path: Path) -> Work:
+    """Return the flying of flights of some length [s]."""
+    run = RunDirectory(path)
+    run.open_new()
+    overrides = [f"flight.duration_max_s={length}", "sampling=random", *SETTINGS]
+    return study_of(load_study("monte_carlo", overrides), "bench").work(run)
+
+
+def _flight(work: Work) -> float:
+    """Return the time of one flight [s]."""
+    began = time.perf_counter()
+    work.fly(Task(number=3))
+    return time.perf_counter() - began

@@ -1,0 +1,23 @@
+"""What results depend on beside their configuration: versions, and the project's own source."""
+
+import functools
+import hashlib
+import importlib.metadata
+import platform
+from pathlib import Path
+
+_PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic")
+_SOURCE = ("aircraft", "gnc", "innerloop", "scenarios")
+
+
+@functools.cache
+def fingerprint() -> dict[str, str]:
+    """Return the versions of Python and of the packages that results depend on, and a hash of the project's source."""
+    versions = {package: importlib.metadata.version(package) for package in _PACKAGES}
+    digest = hashlib.sha256()
+    house = Path(__file__).parents[2]
+    for package in _SOURCE:
+        for path in sorted((house / package).rglob("*.py")):
+            digest.update(str(path.relative_to(house)).encode())
+            digest.update(path.read_bytes())
+    return {"python": platform.python_version(), **versions, "source": digest.hexdigest()[:16]}

@@ -1,0 +1,90 @@
+"""Monte Carlo over the real sea: how often, how much, what it depends on, and how sure that is."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import pandas as pd
+
+from scenarios.engine.journal import Journal
+from scenarios.engine.study import Fly, Progress, Summary
+from scenarios.engine.work import Row, Task
+from scenarios.monte_carlo_config import MonteCarloScenario
+from scenarios.run_directory import RunDirectory
+from scenarios.sampling import Points
+from scenarios.sea_flights import DRAWS
+from scenarios.sea_study import SUMMARY, SeaStudy
+from scenarios.statistics import study_statistics
+from scenarios.stopping import looks, tight_enough
+
+
+class MonteCarloStudy(SeaStudy):
+    """Flights that are drawn from declared distributions, until they are all flown or an interval is as tight as was asked for.
+
+    Parameters
+    ----------
+    scenario, name : what to fly, and what it is called
+    overrides : how the scenario differs from the one of that name, for the record
+
+    Raises
+    ------
+    InputError : an unknown aircraft or fault, or a key that cannot be drawn
+    """
+
+    def __init__(self, scenario: MonteCarloScenario, name: str, *, overrides: Sequence[str] = ()) -> None:
+        super().__init__(scenario, name, overrides=overrides)
+        self._scenario = scenario
+        self._points = Points(scenario.sampling, dimension=len(scenario.draws), flights=scenario.flights, seed=scenario.seed)
+        self._looks = 0
+
+    def task(self, number: int) -> Task:
+        """Return the task of a flight, at its point."""
+        return Task(number=number, point=self._points.at(number))
+
+    def conduct(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
+        """Have flights flown up to one look after the other, until one shows what was asked for."""
+        first = 0
+        stops = self._scenario.statistics.stops
+        for flights in looks(self.planned) if stops else [self.planned]:
+            self._looks += 1
+            fly(self.task(number) for number in range(first, flights))
+            first = flights
+            if stops and self._tight(journal, flights):
+                self.planned = flights
+                break
+        fly(self.telling(run, journal))
+
+    def _tight(self, journal: Journal, flights: int) -> bool:
+        s = self._scenario.statistics
+        rows = _frame(journal.rows(SUMMARY, below=flights), ("flight_id", "outcome", "min_distance_m", "keepout_violations"))
+        return tight_enough(
+            rows,
+            look_number=self._looks,
+            confidence=s.confidence,
+            violation_upper=s.violation_upper,
+            distance_quantile_width_m=s.distance_quantile_width_m,
+            distance_quantile=s.distance_quantile,
+        )
+
+    def finish(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
+        """Write ``statistics.json``."""
+        progress("estimating", self.planned, self.planned)
+        statistics = study_statistics(
+            _frame(journal.rows(SUMMARY)),
+            _frame(journal.rows(DRAWS)),
+            confidence=self._scenario.statistics.confidence,
+            seed=self._scenario.seed,
+            look_number=self._looks if self._scenario.statistics.stops else None,
+        )
+        run.write_json(run.statistics, statistics)
+
+    def summary(self, journal: Journal) -> Summary:
+        """Return what the flights have come to, and how many there were to be in the end."""
+        found = super().summary(journal)
+        manifest: dict[str, Any] = found.manifest | {"flights_planned": self.planned}
+        return Summary(done=found.done, met=found.met, lines=found.lines, manifest=manifest)
+
+
+def _frame(rows: Iterable[Row], columns: Sequence[str] | None = None) -> pd.DataFrame:
+    if columns is None:
+        return pd.DataFrame(rows)
+    return pd.DataFrame([[row.get(name) for name in columns] for row in rows], columns=list(columns))
