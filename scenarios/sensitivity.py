@@ -23,7 +23,7 @@ FLIGHTS_MIN = 200
 """With fewer flights the classes of an input hold less than 50 of them, too few for a density."""
 
 FLIGHTS_MAX = 2000
-"""So many flights are looked at, drawn by lot from more: an index takes a fifth of a second then, and so much more with more."""
+"""So many flights are looked at, drawn by lot from more: an index takes a tenth of a second then, and so much more with more."""
 
 RESAMPLES = 20
 """Bootstrap samples for the interval of an index, whose width is known to 16 % then: a deviation from 20 values, 1/sqrt(2 19)."""

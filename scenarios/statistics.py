@@ -28,7 +28,7 @@ PROBABILITIES = (0.01, 0.05, 0.5, 0.95, 0.99)
 EXTREMES = (0.001, 0.999)
 """Of the quantiles that a figure has where there are flights enough for an interval: 3,688 at a confidence of 0.95."""
 
-NAMED_MAX = 20
+NAMED_MAX = 10
 """Flights of each outcome that are named; ``summary.csv`` has all."""
 
 DRIVEN = ("clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
