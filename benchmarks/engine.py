@@ -44,7 +44,7 @@ def _whole_study(jobs: int) -> float:
     study = study_of(load_study("monte_carlo", [f"flights={FLIGHTS}", "sampling=random", *SETTINGS]), "bench")
     times: list[float] = []
 
-    def told(doing: str, done: int, total: int) -> None:
+    def told(doing: str, *_: int) -> None:
         if doing == "flying":
             times.append(time.perf_counter())
 

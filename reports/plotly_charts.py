@@ -76,7 +76,8 @@ def _tint(colour: str) -> str:
 
 def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bool) -> None:
     x_options: dict[str, Any] = {"title": {"text": panel.x_label, "standoff": 6} if show_x else None}
-    y_options: dict[str, Any] = {"title": panel.y_label}
+    # Figures of four digits and names are wide: the title stays clear of them only if it is told how far.
+    y_options: dict[str, Any] = {"title": {"text": panel.y_label, "standoff": 8}}
     if panel.log_x:
         x_options["type"] = "log"
     if panel.log_y:
@@ -87,8 +88,6 @@ def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bo
     if panel.y_range:
         y_options["range"] = _limits(panel.y_range, log=panel.log_y)
     if panel.y_names:
-        # Names are wider than figures: the title stays clear of them only if it is told how far.
-        y_options["title"] = {"text": panel.y_label, "standoff": 8}
         y_options |= {"tickvals": [value for value, _ in panel.y_names], "ticktext": [name for _, name in panel.y_names]}
     # Plotly would write 20k and 50µ, before a unit that has a prefix of its own. Decades are too many for plain figures.
     figure.update_xaxes(**({} if panel.log_x else {"exponentformat": "none"}), **x_options, row=row, col=column)

@@ -22,6 +22,8 @@ class RunData:
     comparison : a row per flight of the comparisons, possibly none
     crossings : a row per crossing
     innerloop : the autopilot's design record, or none if the run ended before
+    statistics : what a Monte Carlo study shows and how sure that is, or none of any other run
+    draws : the inputs of each flight of a Monte Carlo study
     """
 
     path: Path
@@ -30,6 +32,8 @@ class RunData:
     comparison: pd.DataFrame
     crossings: pd.DataFrame
     innerloop: dict[str, Any] | None
+    statistics: dict[str, Any] | None
+    draws: pd.DataFrame
 
     def history(self, flight_id: str) -> pd.DataFrame | None:
         """Return a flight's time history, or None if it has none."""
@@ -67,7 +71,6 @@ def read_run(path: Path) -> RunData:
         raise ReportError(f"'{path}': manifest.json is not that of a run; run the scenario again in another --out")
     if manifest.get("study") != "design" and not (path / "summary.csv").is_file():
         raise ReportError(f"'{path}' holds nothing finished (no summary.csv); continue the run with --resume")
-    innerloop = path / "innerloop.json"
     try:
         return RunData(
             path=path,
@@ -75,10 +78,16 @@ def read_run(path: Path) -> RunData:
             summary=_table(path / "summary.csv"),
             comparison=_table(path / "comparison.csv"),
             crossings=_table(path / "crossings.csv", columns=["flight_id", "time_s", "distance_m"]),
-            innerloop=json.loads(innerloop.read_text(encoding="utf-8")) if innerloop.is_file() else None,
+            innerloop=_record(path / "innerloop.json"),
+            statistics=_record(path / "statistics.json"),
+            draws=_table(path / "draws.csv"),
         )
     except (ValueError, OSError) as error:
-        raise ReportError(f"'{path}': a table cannot be read: {error}; run the scenario again") from None
+        raise ReportError(f"'{path}': a table or a record cannot be read: {error}; run the scenario again") from None
+
+
+def _record(path: Path) -> dict[str, Any] | None:
+    return dict(json.loads(path.read_text(encoding="utf-8"))) if path.is_file() else None
 
 
 def _table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:

@@ -8,6 +8,7 @@ import pandas as pd
 
 from reports.blocks import Block, FlightContent, FlightPicker, Heading, Section, Text, Verdict
 from reports.innerloop_section import innerloop_section
+from reports.monte_carlo_content import monte_carlo_sections
 from reports.run_data import RunData
 from reports.sea_charts import trial_charts
 from reports.sea_data import Kind, Trial, clearance, column, entered, read_trials
@@ -26,6 +27,7 @@ def sea_content(run: RunData) -> tuple[Verdict, list[Section]]:
     """Return the verdict and the sections of the report of trials over the real sea."""
     trials = read_trials(run)
     sections = [
+        *monte_carlo_sections(run),
         Section(anchor="trials", title="The trials", nav_title="Trials", blocks=_overview(trials)),
         *(Section(anchor=trial.name, title=trial.title, blocks=_trial(trial)) for trial in trials if len(trial.rows)),
         Section(anchor="unmet", title="Flights that fell short", nav_title="Fell short", blocks=unmet_blocks(run)),

@@ -152,7 +152,19 @@ def _drawn(draw: dict[str, Any]) -> str:
     if draw["uniform"] is not None:
         low, high = draw["uniform"]
         return f"drawn from {low:g} to {high:g}"
-    return "in turn: " + "; ".join(_value(choice) for choice in draw["choice"])
+    if draw["choice"] is not None:
+        choices = [_value(choice) for choice in draw["choice"]]
+        if draw["weights"] is None:
+            return "in turn: " + "; ".join(choices)
+        whole = sum(draw["weights"])
+        return "; ".join(f"{100.0 * w / whole:.0f} % {choice}" for w, choice in zip(draw["weights"], choices, strict=True))
+    if draw["normal"] is not None:
+        mean, sigma = draw["normal"]
+        what = f"normal, mean {mean:g}, deviation {sigma:g}"
+    else:
+        shape, scale = draw["weibull"]
+        what = f"Weibull, shape {shape:g}, scale {scale:g}"
+    return f"{what}, from {draw['within'][0]:g} to {draw['within'][1]:g}" if draw["within"] else what
 
 
 def _default(parameter: dict[str, Any]) -> str:

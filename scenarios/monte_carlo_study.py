@@ -34,7 +34,7 @@ class MonteCarloStudy(SeaStudy):
         super().__init__(scenario, name, overrides=overrides)
         self._scenario = scenario
         self._points = Points(scenario.sampling, dimension=len(scenario.draws), flights=scenario.flights, seed=scenario.seed)
-        self._looks = 0
+        self._looks, self._stopped = 0, False
 
     def task(self, number: int) -> Task:
         """Return the task of a flight, at its point."""
@@ -49,7 +49,8 @@ class MonteCarloStudy(SeaStudy):
             fly(self.task(number) for number in range(first, flights))
             first = flights
             if stops and self._tight(journal, flights):
-                self.planned = flights
+                self._stopped = flights < self.planned
+                self.flights = dict.fromkeys(self.flights, flights)
                 break
         fly(self.telling(run, journal))
 
@@ -81,7 +82,11 @@ class MonteCarloStudy(SeaStudy):
         """Return what the flights have come to, and how many there were to be in the end."""
         found = super().summary(journal)
         manifest: dict[str, Any] = found.manifest | {"flights_planned": self.planned}
-        return Summary(done=found.done, met=found.met, lines=found.lines, manifest=manifest)
+        asked = self._scenario.flights
+        stopped = (
+            [f"stopped after {self.planned} of {asked} flights: what was asked for is as tight as that"] if self._stopped else []
+        )
+        return Summary(done=found.done, met=found.met, lines=[*found.lines, *stopped], manifest=manifest)
 
 
 def _frame(rows: Iterable[Row], columns: Sequence[str] | None = None) -> pd.DataFrame:

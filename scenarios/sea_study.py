@@ -57,7 +57,7 @@ class SeaStudy:
         _check(trials, envelope)
         self.trials = trials
         self.histories = study.histories
-        self.planned = sum(scenario.flights for scenario in trials.values())
+        self.flights = {trial: scenario.flights for trial, scenario in trials.items()}
         keys = dict.fromkeys(draw.key for scenario in trials.values() for draw in scenario.draws)
         self.tables = {SUMMARY: SEA_SUMMARY_COLUMNS, DRAWS: ("flight_id", "trial", "nu", *keys), **DETAILS}
         self.config_hash = config_hash(study, *trials.values())
@@ -69,6 +69,11 @@ class SeaStudy:
             "modes": [mode.value for mode in Mode],
             "trial_parameters": {trial: parameters(scenario) for trial, scenario in trials.items()},
         }
+
+    @property
+    def planned(self) -> int:
+        """Number of flights."""
+        return sum(self.flights.values())
 
     def opening(self) -> dict[str, Any]:
         """Return what the manifest says before anything has been flown."""
@@ -117,7 +122,7 @@ class SeaStudy:
     def summary(self, journal: Journal) -> Summary:
         """Return what the flights have come to."""
         whole = Tally(planned=self.planned)
-        tallies = {trial: Tally(planned=scenario.flights) for trial, scenario in self.trials.items()}
+        tallies = {trial: Tally(planned=flights) for trial, flights in self.flights.items()}
         for row in journal.rows(SUMMARY):
             whole.add(row)
             tallies[row["trial"]].add(row)

@@ -50,13 +50,15 @@ class Study(Protocol):
     Attributes
     ----------
     what : it counts, in the plural
-    planned : how many of them, at most
     config_hash : of everything that results depend on
     """
 
     what: str
-    planned: int
     config_hash: str
+
+    @property
+    def planned(self) -> int:
+        """Return how many there are to be, at most."""
 
     def opening(self) -> dict[str, Any]:
         """Return what the manifest says before anything has been flown."""

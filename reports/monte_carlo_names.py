@@ -1,0 +1,59 @@
+"""What the figures and the inputs of a Monte Carlo study are called, and how they are written."""
+
+from dataclasses import dataclass
+
+_UNITS = {
+    "_per_hour": "1/h", "_per_m2": "1/m2", "_per_m": "1/m", "_per_s": "1/s", "_deg_s": "deg/s", "_rad_s": "rad/s", "_mps2": "m/s2",
+    "_mps": "m/s", "_deg": "deg", "_hz": "Hz", "_m": "m", "_s": "s",
+}  # fmt: skip
+"""Units by the suffix of a key that names them; the first that fits."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Figure:
+    """How a figure is written.
+
+    Attributes
+    ----------
+    name, unit : of the figure
+    digits : after the point
+    scale : from the figure as it is recorded to ``unit``
+    missing : what flights without it are
+    """
+
+    name: str
+    unit: str
+    digits: int
+    scale: float = 1.0
+    missing: str = "without"
+
+    @property
+    def label(self) -> str:
+        """What an axis says."""
+        return f"{self.name} [{self.unit}]"
+
+    def text(self, value: float | None) -> str:
+        """Return a value in digits, and a dash if there is none."""
+        return "–" if value is None else f"{self.scale * value:.{self.digits}f}"
+
+
+FIGURES = {
+    "clearance_m": Figure(name="Distance kept beyond r_min", unit="m", digits=2),
+    "min_distance_m": Figure(name="Closest approach", unit="m", digits=1),
+    "crossing_interval_error": Figure(name="Mean crossing interval off π/ω₀", unit="%", digits=3, scale=100.0),
+    "crossing_distance_min_m": Figure(name="Nearest crossing", unit="m", digits=1),
+    "tracking_error_rms_m": Figure(name="Tracking error, rms after settling", unit="m", digits=3),
+    "settling_time_s": Figure(name="Settling time", unit="s", digits=1, missing="not settled"),
+}
+"""By the keys of ``statistics.json``, in the order they are shown."""
+
+
+def input_name(key: str) -> str:
+    """Return what an input is called, by its dotted key, without its unit."""
+    bare = next((key.removesuffix(suffix) for suffix in _UNITS if key.endswith(suffix)), key)
+    return bare.replace(".", " ").replace("_", " ").capitalize()
+
+
+def input_label(key: str) -> str:
+    """Return what an axis says of an input."""
+    return f"{input_name(key)} [{next((unit for suffix, unit in _UNITS.items() if key.endswith(suffix)), '-')}]"

@@ -1,0 +1,224 @@
+"""What a report shows of a Monte Carlo study: of a made-up one, with statistics as the study itself writes them."""
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reports import matplotlib_charts, plotly_charts
+from reports.blocks import Table, Text
+from reports.chart import Chart
+from reports.content import content
+from reports.errors import ReportError
+from reports.monte_carlo_content import bound_in_words, monte_carlo_sections
+from reports.monte_carlo_driver_charts import NEAREST, SCATTER_MAX, thinned
+from reports.monte_carlo_names import input_label, input_name
+from reports.monte_carlo_spread_charts import cumulative
+from reports.monte_carlo_tables import percent
+from reports.run_data import RunData, read_run
+from scenarios.load import load_study
+from scenarios.manifest import opening_manifest, parameters
+from scenarios.statistics import study_statistics
+from tests.scenarios.study_rows import RADIUS, study_rows
+
+FLIGHTS = 250
+
+
+def run_of(rows, inputs, **changes):
+    """Return a run directory as read, with as much of a manifest as a report needs."""
+    study = load_study("sea_wind", [])
+    config = study.model_dump(mode="json")
+    manifest = opening_manifest(study, "study", []) | {
+        "study": "sea",
+        "trials": {"study": config},
+        "trial_parameters": {"study": json.loads(json.dumps(parameters(study)))},
+        "flights_planned": len(rows),
+        "modes": [],
+    }
+    return RunData(
+        path=Path("nowhere"),
+        manifest=manifest,
+        summary=rows.assign(criteria_met=True, nu=0.5, wind_speed_mps=5.0, fault="none", message=""),
+        comparison=pd.DataFrame(),
+        crossings=pd.DataFrame(),
+        innerloop=None,
+        statistics=study_statistics(rows, inputs, **{"confidence": 0.95, "seed": 1, **changes}),
+        draws=inputs,
+    )
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_indices():
+    """Ask of two figures what drives them, with 3 bootstraps: they take nearly all of the time, and a report shows any alike."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("scenarios.sensitivity.RESAMPLES", 3)
+        patch.setattr("scenarios.statistics.DRIVEN", ("clearance_m", "settling_time_s"))
+        yield
+
+
+@pytest.fixture(scope="module")
+def run():
+    rows, inputs = study_rows(FLIGHTS)
+    # One that entered, one that never settled, and one of which nothing is known.
+    rows.loc[3, ["min_distance_m", "keepout_violations"]] = [RADIUS - 0.5, 1]
+    rows.loc[5, "settling_time_s"] = np.nan
+    rows.loc[7, ["outcome", "min_distance_m", "keepout_violations", "mode_at_end"]] = ["failed", np.nan, np.nan, None]
+    return run_of(rows, inputs)
+
+
+@pytest.fixture(scope="module")
+def sections(run):
+    return {section.anchor: section for section in monte_carlo_sections(run)}
+
+
+def charts_of(section):
+    return {block.name: block for block in section.blocks if isinstance(block, Chart)}
+
+
+def lines_of(panel):
+    return {line.label: line for line in panel.lines}
+
+
+def test_a_study_comes_first_in_the_report_and_a_run_without_statistics_has_no_such_sections(run):
+    anchors = [section.anchor for section in content(run).sections]
+    assert anchors[:4] == ["study", "spread", "drivers", "trials"]
+    assert monte_carlo_sections(replace(run, statistics=None)) == []
+
+
+def test_the_bound_is_said_in_words_with_its_confidence_and_what_is_not_known(run):
+    words = bound_in_words(run.statistics)
+    found = run.statistics["violation"]
+    assert "With 95 % confidence" in words.replace("\N{NO-BREAK SPACE}", " ")
+    assert f"at most {percent(found['measured']['upper'])}" in words
+    assert "1 of 249 flights did" in words
+    assert "1 flight is of unknown end" in words
+    assert f"the bound is {percent(found['pessimistic']['upper'])}" in words
+    assert "looks" not in words
+
+
+def test_a_study_that_was_looked_at_says_how_often_and_what_that_makes_of_the_confidence(run):
+    statistics = run.statistics | {"look_number": 3, "interval_confidence": 1.0 - 0.05 / 12.0}
+    words = bound_in_words(statistics).replace("\N{NO-BREAK SPACE}", " ")
+    assert "up to 3 times" in words
+    # 1 - 0.05/12 is 0.99583.
+    assert "are made with 99.58 %" in words
+
+
+def test_of_a_study_without_any_measurement_nothing_is_claimed():
+    rows, inputs = study_rows(5)
+    rows["outcome"] = "failed"
+    measured = ["min_distance_m", "crossing_interval_mean_s", "crossing_distance_min_m", "tracking_error_rms_m", "settling_time_s"]
+    rows[[*measured, "keepout_violations"]] = np.nan
+    run = run_of(rows, inputs)
+    assert bound_in_words(run.statistics).startswith("No flight was measured")
+    assert not any(charts_of(section) for section in monte_carlo_sections(run))
+    assert content(run).verdict.headline == "Nothing was flown"
+
+
+def test_every_figure_has_its_quantiles_with_intervals_and_counts_who_has_none(run, sections):
+    (table,) = (block for block in sections["spread"].blocks if isinstance(block, Table))
+    rows = {row[0]: dict(zip(table.head, row, strict=True)) for row in table.rows}
+    settling = rows["Settling time [s]"]
+    assert settling["Flights"] == "249, 1 not settled"
+    quantile = run.statistics["figures"]["settling_time_s"]["quantiles"][2]
+    assert settling[percent(0.5)] == f"{quantile['value']:.1f} ({quantile['low']:.1f} to {quantile['high']:.1f})"
+    # The interval's error is shown in per cent, at three digits after the point.
+    error = run.statistics["figures"]["crossing_interval_error"]["quantiles"][0]
+    shown = rows["Mean crossing interval off π/ω₀ [%]"][percent(0.01)]
+    assert shown.startswith(f"{100.0 * error['value']:.3f} (")
+    # None of 0.001, for which 250 flights are too few.
+    assert table.head[2:] == [percent(p) for p in (0.01, 0.05, 0.5, 0.95, 0.99)]
+
+
+def test_every_axis_of_a_study_reads_quantity_and_unit_and_both_drawers_draw_all_charts(sections):
+    charts = [chart for section in sections.values() for chart in charts_of(section).values()]
+    assert {chart.name for chart in charts} >= {"clearance", "spread", "drivers-clearancem", "over-inputs"}
+    for chart in charts:
+        assert len(matplotlib_charts.draw(chart).axes) >= len(chart.panels)
+        assert len(plotly_charts.draw(chart).data) == sum(len(panel.lines) for panel in chart.panels)
+        for panel in chart.panels:
+            for label in (panel.x_label, panel.y_label):
+                assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)
+
+
+def test_the_nearest_flight_is_in_the_histogram_and_at_the_foot_of_the_curve(run, sections):
+    counted, tail = charts_of(sections["spread"])["clearance"].panels
+    # The first edge of the first bar, and the first point of the curve: one flight in 249.
+    assert lines_of(counted)["flights"].x[0] == pytest.approx(-0.5, abs=1e-9)
+    curve = lines_of(tail)["flights"]
+    assert (curve.x[0], curve.y[0]) == pytest.approx((-0.5, 100.0 / 249.0), abs=1e-9)
+    # That of 1 % is open below, with so few flights, and not drawn: the first is that of 5 %.
+    quantile = run.statistics["figures"]["clearance_m"]["quantiles"][1]
+    intervals = lines_of(tail)["interval of a quantile"]
+    assert list(intervals.x[:2]) == [quantile["low"], quantile["high"]]
+    assert list(intervals.y[:2]) == [5.0, 5.0]
+
+
+def test_bars_are_as_long_as_the_indices_and_coloured_by_the_noise_floor(run, sections):
+    found = run.statistics["sensitivity"]["clearance_m"]
+    bars = charts_of(sections["drivers"])["drivers-clearancem"].panels[0]
+    names = [name for _, name in bars.y_names]
+    assert names == ["Wind speed", "Turbulence level"]
+    lines = lines_of(bars)
+    # Four corners for each bar: from 0, out, up and back.
+    first = found["inputs"][0]
+    assert list(lines["above the noise floor"].x[:4]) == [0.0, first["delta"], first["delta"], 0.0]
+    assert set(lines["noise floor"].x) == {found["delta_floor"]}
+    assert list(lines["interval"].x[:2]) == [first["delta"] - first["delta_error"], first["delta"] + first["delta_error"]]
+
+
+def test_the_clearance_is_drawn_over_figures_and_words_alike(sections):
+    wind, level = charts_of(sections["drivers"])["over-inputs"].panels
+    assert wind.x_label == "Wind speed [m/s]"
+    assert lines_of(wind)["flight that entered"].y == pytest.approx([-0.5], abs=1e-9)
+    assert sorted(name for _, name in level.y_names) == ["moderate", "none"]
+
+
+def test_why_there_are_no_indices_is_said():
+    rows, inputs = study_rows(50)
+    section = monte_carlo_sections(run_of(rows, inputs))[2]
+    texts = [block.text for block in section.blocks if isinstance(block, Text)]
+    assert "Settling time: 50 flights have this figure; indices take 200 at least." in texts
+    assert charts_of(section) == {}
+
+
+def test_of_ten_thousand_flights_so_many_are_drawn_as_is_said_and_always_the_nearest():
+    near = np.random.default_rng(2).exponential(size=10_000)
+    chosen = thinned(near)
+    assert len(chosen) == len(set(chosen)) == SCATTER_MAX
+    assert set(np.argsort(near)[:NEAREST]) <= set(chosen)
+    assert np.array_equal(chosen, thinned(near))
+    # Few flights are all drawn.
+    assert list(thinned(near[:7])) == list(range(7))
+    x, share = cumulative(near)
+    assert len(x) < 400
+    # All of the nearest ten, and the last, which is all flights.
+    assert np.array_equal(x[:10], np.sort(near)[:10])
+    assert share[-1] == 1.0
+
+
+def test_inputs_are_called_by_their_keys_without_the_unit_which_the_axis_has():
+    assert input_label("wind.speed_mps") == "Wind speed [m/s]"
+    assert input_label("guidance.roll_rate_max_deg_s") == "Guidance roll rate max [deg/s]"
+    assert input_label("following.vessel_acceleration_mps2") == "Following vessel acceleration [m/s2]"
+    assert input_label("reports.missing") == "Reports missing [-]"
+    assert input_name("turbulence.level") == "Turbulence level"
+
+
+def test_statistics_and_inputs_are_read_from_the_run_directory(run, tmp_path):
+    (tmp_path / "manifest.json").write_text(json.dumps({"config": {}}), encoding="utf-8")
+    run.summary.to_csv(tmp_path / "summary.csv", index=False)
+    assert read_run(tmp_path).statistics is None
+    assert len(read_run(tmp_path).draws) == 0
+    (tmp_path / "statistics.json").write_text(json.dumps(run.statistics), encoding="utf-8")
+    run.draws.to_csv(tmp_path / "draws.csv", index=False)
+    read = read_run(tmp_path)
+    assert read.statistics == run.statistics
+    assert list(read.draws["turbulence.level"]) == list(run.draws["turbulence.level"])
+    (tmp_path / "statistics.json").write_text("{", encoding="utf-8")
+    with pytest.raises(ReportError, match="a table or a record cannot be read"):
+        read_run(tmp_path)

@@ -1,0 +1,37 @@
+"""A made-up Monte Carlo study: rows as in ``summary.csv`` and inputs as in ``draws.csv``."""
+
+import numpy as np
+import pandas as pd
+
+RADIUS = 200.0
+PREDICTED = 7.0
+
+
+def study_rows(flights, seed=20261121):
+    """Return rows and inputs of flights whose clearance falls with the wind, which it is the most, and with the turbulence.
+
+    Nobody enters: the clearance is 8 m less up to 4 m of the wind's and 1 m of the turbulence's, at least 2 m.
+    """
+    generator = np.random.default_rng(seed)
+    wind = generator.uniform(0.0, 10.0, flights)
+    level = generator.choice(["none", "moderate"], flights)
+    clearance = 8.0 - 0.4 * wind - (level == "moderate") - generator.uniform(0.0, 1.0, flights)
+    flight_ids = [f"study_{i:05d}" for i in range(flights)]
+    rows = pd.DataFrame(
+        {
+            "flight_id": flight_ids,
+            "trial": "study",
+            "outcome": "completed",
+            "mode_at_end": "tracking",
+            "keepout_radius_m": RADIUS,
+            "keepout_violations": 0,
+            "min_distance_m": RADIUS + clearance,
+            "crossing_interval_mean_s": PREDICTED * (1.0 + 0.001 * generator.standard_normal(flights)),
+            "crossing_interval_predicted_s": PREDICTED,
+            "crossing_distance_min_m": RADIUS + clearance + 3.0,
+            "tracking_error_rms_m": 0.1 + 0.05 * wind,
+            "settling_time_s": generator.uniform(80.0, 140.0, flights),
+        }
+    )
+    inputs = pd.DataFrame({"flight_id": flight_ids, "trial": "study", "wind.speed_mps": wind, "turbulence.level": level})
+    return rows, inputs
