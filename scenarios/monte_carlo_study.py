@@ -81,7 +81,9 @@ class MonteCarloStudy(SeaStudy):
     def summary(self, journal: Journal) -> Summary:
         """Return what the flights have come to, and how many there were to be in the end."""
         found = super().summary(journal)
-        manifest: dict[str, Any] = found.manifest | {"flights_planned": self.planned}
+        # Of a study that stopped by itself, what is left was not to be flown.
+        trials = {trial: config | {"flights": self.planned} for trial, config in self.opening()["trials"].items()}
+        manifest: dict[str, Any] = found.manifest | {"flights_planned": self.planned, "trials": trials}
         asked = self._scenario.flights
         stopped = (
             [f"stopped after {self.planned} of {asked} flights: what was asked for is as tight as that"] if self._stopped else []

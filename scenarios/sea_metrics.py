@@ -109,7 +109,7 @@ def sea_figures(plan: SeaPlan, record: SeaRecord) -> tuple[Row, list[Crossing]]:
     row["guard_after_settling_s"] = sample * float(np.count_nonzero(guarding[settled] > 0.0))
     row |= _settled_figures(plan, history[settled], position[settled])
     crossings = _crossings(history[settled], position[settled], velocity[settled])
-    return row | _crossing_figures(plan, crossings, float(sea_column(history, "speed_ratio")[-1])), crossings
+    return row | _crossing_figures(plan, crossings, history), crossings
 
 
 def _in_vessel_frame(history: Array, source_height: float) -> tuple[Array, Array]:
@@ -174,7 +174,23 @@ def _crossings(history: Array, position: Array, velocity: Array) -> list[Crossin
     )
 
 
-def _crossing_figures(plan: SeaPlan, crossings: list[Crossing], speed_ratio: float) -> Row:
+def _predicted_interval(plan: SeaPlan, history: Array, first: float, last: float) -> float:
+    """Return the mean of pi/omega_0 over a vessel's changes of course and speed, from its first crossing to its last [s].
+
+    Where omega_0 changes with time, crossings come at the rate omega_0/pi: their number between two times is its integral.
+    """
+    time = np.linspace(first, last, max(2, math.ceil(last - first)))
+    through_air = [
+        np.interp(time, sea_column(history, "time_s"), sea_column(history, f"vessel_velocity_{axis}_mps")) - wind
+        for axis, wind in zip(("north", "east"), plan.weather.wind, strict=True)
+    ]
+    ratio = np.hypot(*through_air) / plan.guidance.centre.speed
+    steps = np.linspace(0.0, plan.guidance.speed_ratio_max, len(plan.periods))
+    crossing_rate = 2.0 / np.interp(ratio, steps, plan.periods)
+    return float((last - first) / np.trapezoid(crossing_rate, time))
+
+
+def _crossing_figures(plan: SeaPlan, crossings: list[Crossing], history: Array) -> Row:
     row: Row = {"crossing_count": len(crossings)}
     if crossings:
         distances = [crossing.distance for crossing in crossings]
@@ -182,10 +198,13 @@ def _crossing_figures(plan: SeaPlan, crossings: list[Crossing], speed_ratio: flo
     if len(crossings) > 1:
         intervals = np.diff([crossing.time for crossing in crossings])
         row |= {"crossing_interval_mean_s": float(np.mean(intervals)), "crossing_interval_std_s": float(np.std(intervals))}
+        least, most = plan.track.apparent_wind_range
+        if most > least:
+            row["crossing_interval_predicted_s"] = _predicted_interval(plan, history, crossings[0].time, crossings[-1].time)
     after = [crossing.time for crossing in crossings if crossing.time >= plan.track.manoeuvres_end]
     if after:
         row["resume_time_s"] = after[0] - plan.track.manoeuvres_end
-        row["resume_periods"] = row["resume_time_s"] / plan.period(speed_ratio)
+        row["resume_periods"] = row["resume_time_s"] / plan.period(float(sea_column(history, "speed_ratio")[-1]))
     return row
 
 
