@@ -83,7 +83,7 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
     counter = _CrossingCounter(plan.mission, plan.settling_band) if plan.mission else None
     reference, time_step, log_interval = guidance.reference, plan.guidance.time_step, plan.log_interval
     steps_max = round(plan.duration_max / time_step)
-    # As bytes: tuples would be millions of numbers for Python to look after, and slow to make an array of.
+    # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and slow to make an array of.
     rows, packed = bytearray(), struct.Struct(f"{len(COLUMNS)}d").pack
     outcome, message = (Outcome.NOT_SETTLED if counter else Outcome.COMPLETED), ""
     wanted_max = command_max = 0.0
