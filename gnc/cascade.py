@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from gnc.delta import LookAhead, RelativeState
 from gnc.dynamics import state_rates
+from gnc.limits import limited
 
 
 class DrivenState(NamedTuple):
@@ -31,7 +32,7 @@ def h(phi: float, gain: float, rate_max: float) -> float:
     gain : [1/s], above 0
     rate_max : largest |h| [rad/s], above 0
     """
-    return min(max(gain * phi, -rate_max), rate_max)
+    return limited(gain * phi, rate_max)
 
 
 def driven_rates(

@@ -69,11 +69,22 @@ def relative_state(
     to_reference_north, to_reference_east : d, from the vehicle to the reference [m]
     reference_course, course : chi_r and chi [rad]
     """
-    delta = delta_length(parameters, to_reference_north * to_reference_north + to_reference_east * to_reference_east)
+    return RelativeState(*bare_state(parameters, to_reference_north, to_reference_east, reference_course, course))
+
+
+def bare_state(
+    parameters: LookAhead, to_reference_north: float, to_reference_east: float, reference_course: float, course: float
+) -> tuple[float, float, float, float]:
+    """Return delta, rho, phi_r and phi, the relative state without names: equations (14), (15), (16) and (19).
+
+    Parameters are those of ``relative_state``. The guidance asks at every step, and the names cost as much as the numbers.
+    """
+    epsilon, radius = parameters
+    delta = epsilon * (to_reference_north * to_reference_north + to_reference_east * to_reference_east) + radius
     z_north = to_reference_north + delta * math.cos(reference_course)
     z_east = to_reference_east + delta * math.sin(reference_course)
     z_course = math.atan2(z_east, z_north)
-    return RelativeState(delta, math.hypot(z_north, z_east), wrap(reference_course - z_course), wrap(course - z_course))
+    return delta, math.hypot(z_north, z_east), wrap(reference_course - z_course), wrap(course - z_course)
 
 
 def distance_squared(state: RelativeState) -> float:
@@ -86,26 +97,34 @@ def distance_squared_rate(state: RelativeState, reference_speed: float, speed: f
 
     Differs from the paper because a real aircraft's speed is V_r only on average: d . d-dot = d . (v_r - v), resolved along z.
     """
-    cos_r, sin_r = math.cos(state.phi_r), math.sin(state.phi_r)
-    along = reference_speed * cos_r - speed * math.cos(state.phi)
-    across = reference_speed * sin_r - speed * math.sin(state.phi)
-    return 2.0 * ((state.rho - state.delta * cos_r) * along - state.delta * sin_r * across)
+    delta, rho, phi_r, phi = state
+    cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
+    along = reference_speed * cos_r - speed * math.cos(phi)
+    across = reference_speed * sin_r - speed * math.sin(phi)
+    return 2.0 * ((rho - delta * cos_r) * along - delta * sin_r * across)
 
 
 def relative_velocity(
-    parameters: LookAhead, state: RelativeState, reference_speed: float, speed: float, reference_heading_rate: float
+    parameters: LookAhead,
+    state: tuple[float, float, float, float],
+    reference_speed: float,
+    speed: float,
+    reference_heading_rate: float,
 ) -> tuple[float, float]:
     """Return the rates of rho [m/s] and of the course of z, omega_rho [rad/s]: equations (17) and (18).
 
     Parameters
     ----------
-    parameters, state : look-ahead and relative state
+    parameters : of the look-ahead
+    state : the relative state, delta, rho [m], phi_r and phi [rad]
     reference_speed, speed : V_r for both in the paper [m/s]
     reference_heading_rate : omega_r [rad/s]
     """
-    cos_r, sin_r = math.cos(state.phi_r), math.sin(state.phi_r)
-    delta_rate = parameters.epsilon * distance_squared_rate(state, reference_speed, speed)
-    swing = state.delta * reference_heading_rate
-    along = reference_speed * cos_r - speed * math.cos(state.phi) - swing * sin_r + delta_rate * cos_r
-    across = reference_speed * sin_r - speed * math.sin(state.phi) + swing * cos_r + delta_rate * sin_r
-    return along, across / state.rho
+    delta, rho, phi_r, phi = state
+    cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
+    along = reference_speed * cos_r - speed * math.cos(phi)
+    across = reference_speed * sin_r - speed * math.sin(phi)
+    # Equation (20) once more: calling distance_squared_rate would take every sine and cosine twice, at each step of the guidance.
+    delta_rate = parameters.epsilon * (2.0 * ((rho - delta * cos_r) * along - delta * sin_r * across))
+    swing = delta * reference_heading_rate
+    return along - swing * sin_r + delta_rate * cos_r, (across + swing * cos_r + delta_rate * sin_r) / rho

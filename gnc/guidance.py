@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Generic, TypeVar
 
-from gnc.delta import LookAhead, relative_state, relative_velocity
+from gnc.delta import LookAhead, RelativeState, bare_state, relative_velocity
 from gnc.keepout_guard import KeepoutGuard
 from gnc.laws import cascade_law, line_of_sight_law, lyapunov_law
+from gnc.limits import limited
 from gnc.reference import Reference
 
 
@@ -147,32 +148,28 @@ class Guidance(Generic[AnyReference]):
         """
         p = self._parameters
         reference, ahead = self.reference, self.ahead
-        here = (north, east, course)
         if p.airspeed_gain > 0.0:
             along = (reference.north - north) * math.cos(reference.course) + (reference.east - east) * math.sin(reference.course)
-            trim = p.airspeed_gain * along
-            self.airspeed_command = self._speed + min(max(trim, -p.airspeed_trim_max), p.airspeed_trim_max)
-        lag = self._lag
+            self.airspeed_command = self._speed + limited(p.airspeed_gain * along, p.airspeed_trim_max)
+        then_north, then_east, then_course, lag = north, east, course, self._lag
         if lag > 0.0:
             # Heading rate linear in time from the measured value to the last command; its integrals over the lag.
             last = self.heading_rate_command
             middle = course + lag * (heading_rate / 3.0 + last / 6.0)
-            north += speed * lag * math.cos(middle)
-            east += speed * lag * math.sin(middle)
-            course += 0.5 * lag * (heading_rate + last)
-        to_north, to_east = ahead.north - north, ahead.east - east
-        wanted = self._steer(ahead, to_north, to_east, course, speed)
-        limit = p.heading_rate_max
-        command = min(max(wanted, -limit), limit)
+            then_north += speed * lag * math.cos(middle)
+            then_east += speed * lag * math.sin(middle)
+            then_course += 0.5 * lag * (heading_rate + last)
+        wanted = self._steer(ahead, ahead.north - then_north, ahead.east - then_east, then_course, speed)
+        command = limited(wanted, p.heading_rate_max)
         self.saturated = command != wanted
         if self.guard is not None:
             if disc is None:
                 raise ValueError("the guidance has a keep-out guard and was not told where the disc is; give it to step()")
             # The guard has the lag inside: it is asked about the motion now. A turn away is flown at V_r: what the trim has taken
             # from the airspeed comes back in it.
-            x, y, velocity_north, velocity_east = here[0] - disc[0], here[1] - disc[1], disc[2], disc[3]
-            fastest = max(speed, self._speed)
-            command = self.guard.limit(command, x, y, velocity_north, velocity_east, here[2], fastest, heading_rate)
+            disc_north, disc_east, velocity_north, velocity_east = disc
+            x, y, fastest = north - disc_north, east - disc_east, speed if speed > self._speed else self._speed
+            command = self.guard.limit(command, x, y, velocity_north, velocity_east, course, fastest, heading_rate)
             if self.guard.intervening:
                 self.airspeed_command = self._speed
         self.heading_rate_wanted = wanted
@@ -189,8 +186,8 @@ class Guidance(Generic[AnyReference]):
         p = self._parameters
         if p.law is Law.LINE_OF_SIGHT:
             return line_of_sight_law(to_north, to_east, course, p.gain)
-        state = relative_state(p.look_ahead, to_north, to_east, reference.course, course)
+        state = bare_state(p.look_ahead, to_north, to_east, reference.course, course)
         _, omega_rho = relative_velocity(p.look_ahead, state, self._speed, speed, reference.heading_rate)
         if p.law is Law.CASCADE:
-            return cascade_law(state.phi, omega_rho, p.gain, p.rate_max)
-        return lyapunov_law(state, speed, omega_rho, p.k_1)
+            return cascade_law(state[3], omega_rho, p.gain, p.rate_max)
+        return lyapunov_law(RelativeState(*state), speed, omega_rho, p.k_1)

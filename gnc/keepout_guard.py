@@ -268,6 +268,7 @@ class KeepoutGuard:
         time : from now to the start [s]
         extra_radius, floor : [m]
         """
+        cos, sin, sqrt = math.cos, math.sin, math.sqrt
         x, y, course, heading_rate = start
         _, _, velocity_north, velocity_east, _, speed, _ = motion
         duration, turned, mean, kept = self._look
@@ -277,8 +278,8 @@ class KeepoutGuard:
         north, east = velocity_north * duration, velocity_east * duration
         error, half, lag = self._speed_error, 0.5 * self._acceleration, self._lag
         fixed = self._radius + extra_radius
-        least = slack = math.sqrt(x * x + y * y) - fixed - (error + half * time) * time
-        outward = side * (y * math.cos(course) - x * math.sin(course))
+        least = slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
+        outward = side * (y * cos(course) - x * sin(course))
         acting = time - self._delay
         gain = -1.0
         share, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
@@ -286,7 +287,7 @@ class KeepoutGuard:
             if least < floor:
                 break
             middle = course + mean * heading_rate + ahead
-            cos_m, sin_m = math.cos(middle), math.sin(middle)
+            cos_m, sin_m = cos(middle), sin(middle)
             x += chord * cos_m - north
             y += chord * sin_m - east
             course += turned * heading_rate + gained
@@ -296,13 +297,14 @@ class KeepoutGuard:
             fade *= kept
             last, before, before_outward = slack, rise, outward
             outward = side * (y * cos_m - x * sin_m)
-            slack = math.sqrt(x * x + y * y) - fixed - (error + half * time) * time
+            slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
             rise = slack - last
-            share = min(share, slack / (acting - lag * (1.0 - fade)))
+            shared = slack / (acting - lag * (1.0 - fade))
+            share = shared if shared < share else share
             if rise < 0.0:
                 if gain >= 0.0:
                     break
-                least = min(least, slack)
+                least = slack if slack < least else least
                 continue
             if look == 0:
                 # There is no look before; the rate at the start stands in for it.

@@ -85,10 +85,12 @@ class ReferencePoint:
     __slots__ = (
         "_amplitude",
         "_base",
+        "_cos_course",
         "_distance",
         "_eta",
         "_omega_0",
         "_phase",
+        "_sin_course",
         "_steps",
         "_time_step",
         "course",
@@ -111,22 +113,24 @@ class ReferencePoint:
         self.north = start.north
         self.east = start.east
         self.course = start.course
+        self._cos_course, self._sin_course = math.cos(start.course), math.sin(start.course)
         self.heading_rate = -self._amplitude * math.sin(phase)
 
     def step(self, vessel_heading_rate: float = 0.0) -> None:
         """Advance one time step while the vessel turns at ``vessel_heading_rate`` omega_V [rad/s]."""
         cos, sin = math.cos, math.sin
-        first = self.course
-        turn = vessel_heading_rate * self._time_step
-        angle = self._omega_0 * (self._steps + 0.5) * self._time_step + self._phase
+        steps, time_step, omega_0, distance = self._steps, self._time_step, self._omega_0, self._distance
+        turn = vessel_heading_rate * time_step
+        angle = omega_0 * (steps + 0.5) * time_step + self._phase
         middle = self._base + 0.5 * turn + self._eta * cos(angle)
-        self._steps += 1
-        self._base += turn
-        angle = self._omega_0 * self._steps * self._time_step + self._phase
-        last = self._base + self._eta * cos(angle)
-        self.north += self._distance * (cos(first) + 4.0 * cos(middle) + cos(last))
-        self.east += self._distance * (sin(first) + 4.0 * sin(middle) + sin(last))
-        self.course = last
+        self._steps = steps = steps + 1
+        self._base = base = self._base + turn
+        angle = omega_0 * steps * time_step + self._phase
+        self.course = last = base + self._eta * cos(angle)
+        cos_first, sin_first = self._cos_course, self._sin_course
+        self._cos_course, self._sin_course = cos_last, sin_last = cos(last), sin(last)
+        self.north += distance * (cos_first + 4.0 * cos(middle) + cos_last)
+        self.east += distance * (sin_first + 4.0 * sin(middle) + sin_last)
         self.heading_rate = vessel_heading_rate - self._amplitude * sin(angle)
 
 

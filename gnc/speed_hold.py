@@ -66,7 +66,9 @@ def airspeed_to_hold(hold: SpeedHold, *, along: float, reference_speed: float, s
     airspeed : as measured, against the gusty air [m/s]
     """
     wanted = airspeed + reference_speed + hold.gain * along - speed
-    return min(max(wanted, hold.airspeed_min), hold.airspeed_max)
+    if wanted > hold.airspeed_max:
+        return hold.airspeed_max
+    return hold.airspeed_min if wanted < hold.airspeed_min else wanted
 
 
 def air_turn(heading_rate: float, *, speed: float, airspeed: float) -> float:

@@ -63,12 +63,15 @@ class SteeredReference:
     __slots__ = (
         "_acceleration",
         "_available",
+        "_cos_course",
+        "_cos_phase",
         "_eta_rate",
         "_eta_wanted",
         "_mean_rate",
         "_mean_wanted",
         "_rate_gain",
         "_rate_max",
+        "_sin_course",
         "_smoothing",
         "_time_step",
         "course",
@@ -108,7 +111,9 @@ class SteeredReference:
         self.eta = self._eta_wanted = eta_for_mean_speed(speed_ratio)
         self.phase = phase
         self.omega_0 = self._frequency()
-        self.course = mean_course + self.eta * math.cos(phase)
+        self._cos_phase = math.cos(phase)
+        self.course = mean_course + self.eta * self._cos_phase
+        self._cos_course, self._sin_course = math.cos(self.course), math.sin(self.course)
         self.heading_rate = -self.eta * self.omega_0 * math.sin(phase)
 
     def steer(self, mean_course: float, speed_ratio: float) -> None:
@@ -119,8 +124,7 @@ class SteeredReference:
     def step(self) -> None:
         """Advance one time step."""
         cos, sin, dt, rate_max, smoothing = math.cos, math.sin, self._time_step, self._rate_max, self._smoothing
-        phase, eta, mean_course = self.phase, self.eta, self.mean_course
-        cos_phase = cos(phase)
+        phase, eta, mean_course, cos_phase = self.phase, self.eta, self.mean_course, self._cos_phase
         gate = _GATE + (1.0 - _GATE) * cos_phase * cos_phase
         turn = self._rate_gain * wrap(self._mean_wanted - mean_course)
         if not -rate_max < turn < rate_max:
@@ -137,12 +141,13 @@ class SteeredReference:
         self.omega_0 = omega_0 = self._frequency()
         middle = middle_mean + middle_eta * cos(phase + half * omega_0)
         self.phase = phase = phase + dt * omega_0
-        cos_phase = cos(phase)
-        first, last = self.course, mean_course + eta * cos_phase
+        self._cos_phase = cos_phase = cos(phase)
+        self.course = last = mean_course + eta * cos_phase
+        cos_first, sin_first = self._cos_course, self._sin_course
+        self._cos_course, self._sin_course = cos_last, sin_last = cos(last), sin(last)
         distance = self.speed * dt / 6.0
-        self.north += distance * (cos(first) + 4.0 * cos(middle) + cos(last))
-        self.east += distance * (sin(first) + 4.0 * sin(middle) + sin(last))
-        self.course = last
+        self.north += distance * (cos_first + 4.0 * cos(middle) + cos_last)
+        self.east += distance * (sin_first + 4.0 * sin(middle) + sin_last)
         self.heading_rate = mean_rate + eta_rate * cos_phase - eta * omega_0 * sin(phase)
 
     @property

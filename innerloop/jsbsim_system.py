@@ -1,6 +1,9 @@
 """The autopilot written out as a JSBSim ``<system>``.
 
 The commands are the properties ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND`` [m] and ``HEADING_RATE_COMMAND`` [rad/s].
+
+A component costs JSBSim more than a table does, and some forty of them were a third of its time step. So a value has one of its own
+only if it is read from outside, remembered, looked up in a table, or dear to compute twice.
 """
 
 import math
@@ -49,6 +52,7 @@ _SCHEDULE = "autopilot/schedule-mps"
 _MODEL_RATE = "autopilot/model-rate"
 _MODEL_ACCELERATION = "autopilot/model-acceleration"
 _MODEL_JERK = "autopilot/model-jerk"
+_BANK_RATE = "autopilot/bank-rate-per-acceleration"
 _ROLL = "attitude/phi-rad"
 
 
@@ -148,8 +152,8 @@ def _longitudinal(schedule: Schedule) -> list[str]:
     airspeed_error, altitude_error = "autopilot/airspeed-error-mps", "autopilot/altitude-error-m"
     altitude = times(read("position/h-sl-ft"), number(METRES_PER_FOOT))
     parts = [
-        *_limited_error(airspeed_error, minus(read(_SCHEDULE), read(_AIRSPEED)), weights.airspeed_error_max),
-        *_limited_error(altitude_error, minus(read(ALTITUDE_COMMAND), altitude), weights.altitude_error_max),
+        function(airspeed_error, minus(read(_SCHEDULE), read(_AIRSPEED))),
+        function(altitude_error, minus(read(ALTITUDE_COMMAND), altitude)),
         function("autopilot/pitch-error-rad", minus(_by_bank(schedule, "pitch"), read("attitude/theta-rad"))),
         function("autopilot/pitch-rate-error", minus(_by_bank(schedule, "q"), read("velocities/q-rad_sec"))),
     ]
@@ -157,14 +161,18 @@ def _longitudinal(schedule: Schedule) -> list[str]:
         zip(
             LONGITUDINAL,
             (
-                read(airspeed_error),
+                clipped(read(airspeed_error), -weights.airspeed_error_max, weights.airspeed_error_max),
                 times(number(-1.0), read(_CLIMB_RATE)),
                 read("autopilot/pitch-rate-error"),
                 read("autopilot/pitch-error-rad"),
-                read(altitude_error),
+                clipped(read(altitude_error), -weights.altitude_error_max, weights.altitude_error_max),
             ),
             strict=True,
         )
+    )
+    integrated = (
+        _integrated(airspeed_error, weights.airspeed_error_max),
+        _integrated(altitude_error, weights.altitude_error_max),
     )
     for row, name in ((0, "elevator"), (1, "throttle")):
         unlimited, integral, growth = (f"autopilot/{name}-{part}" for part in ("unlimited", "integral", "integral-rate"))
@@ -180,13 +188,9 @@ def _longitudinal(schedule: Schedule) -> list[str]:
             function(
                 growth,
                 total(
-                    times(
-                        _by_point(schedule, lambda g, row=row: g.longitudinal_integral[row, 0]),  # type: ignore[misc]
-                        read(f"{airspeed_error}-integrated"),
-                    ),
-                    times(
-                        _by_point(schedule, lambda g, row=row: g.longitudinal_integral[row, 1]),  # type: ignore[misc]
-                        read(f"{altitude_error}-integrated"),
+                    *(
+                        times(_by_point(schedule, lambda g, at=(row, j): g.longitudinal_integral[at]), error)  # type: ignore[misc]
+                        for j, error in enumerate(integrated)
                     ),
                     times(number(weights.anti_windup_rate), minus(read(f"autopilot/{name}-command"), read(unlimited))),
                 ),
@@ -196,43 +200,39 @@ def _longitudinal(schedule: Schedule) -> list[str]:
     return parts
 
 
-def _limited_error(name: str, error: str, limit: float) -> list[str]:
-    """Return components for an error kept within ``limit``, and for the error that is integrated: none beyond the limit.
+def _integrated(error: str, limit: float) -> str:
+    """Return the part of an error that is integrated: all of it, or none where the error is beyond its limit.
 
     A larger error asks for a steady climb or acceleration; integrated on the way there, it would overshoot by as much again.
     """
-    return [
-        function(f"{name}-whole", error),
-        function(name, clipped(read(f"{name}-whole"), -limit, limit)),
-        function(f"{name}-integrated", times(read(f"{name}-whole"), within(read(f"{name}-whole"), limit))),
-    ]
+    return times(read(error), within(read(error), limit))
 
 
 def _lateral(schedule: Schedule) -> list[str]:
     parts = [*_heading_rate_model(schedule), *_bank_command(schedule)]
+    roll_rate = times(read(_BANK_RATE), read(_MODEL_ACCELERATION))
     errors = {
-        "p": minus(read("autopilot/model-roll-rate"), read("velocities/p-rad_sec")),
+        "p": minus(roll_rate, read("velocities/p-rad_sec")),
         "r": minus(_by_bank(schedule, "r"), read("velocities/r-rad_sec")),
         "roll": minus(read(BANK_COMMAND), read(_ROLL)),
     }
     rudder = "rudder" in schedule.controls
     if rudder:
         errors["beta"] = times(number(-1.0), read(_SIDESLIP))
-    parts += [function(f"autopilot/{name}-error", error) for name, error in errors.items()]
     for row, name in enumerate(("aileron", "rudder") if rudder else ("aileron",)):
         feedback = [
-            times(_by_point(schedule, lambda g, at=(row, j): g.lateral[at]), read(f"autopilot/{state}-error"))  # type: ignore[misc]
+            times(_by_point(schedule, lambda g, at=(row, j): g.lateral[at]), errors[state])  # type: ignore[misc]
             for j, state in enumerate(LATERAL)
             if state in errors
         ]
         ahead = [
             times(
                 _by_point(schedule, lambda g, row=row: g.roll_rate_feedforward[row]),  # type: ignore[misc]
-                read("autopilot/model-roll-rate"),
+                roll_rate,
             ),
             times(
                 _by_point(schedule, lambda g, row=row: g.roll_acceleration_feedforward[row]),  # type: ignore[misc]
-                read("autopilot/bank-rate-per-acceleration"),
+                read(_BANK_RATE),
                 read(_MODEL_JERK),
             ),
         ]
@@ -262,19 +262,16 @@ def _heading_rate_model(schedule: Schedule) -> list[str]:
     """Return the heading-rate response that the aircraft is made to follow."""
     frequency, damping = schedule.weights.model_frequency, schedule.weights.model_damping
     turn_max = math.tan(schedule.envelope.bank_max) * STANDARD_GRAVITY
+    limited = operation(
+        "max",
+        operation("min", read(HEADING_RATE_COMMAND), operation("quotient", number(turn_max), read(_AIRSPEED))),
+        operation("quotient", number(-turn_max), read(_AIRSPEED)),
+    )
     return [
-        function(
-            "autopilot/heading-rate-limited",
-            operation(
-                "max",
-                operation("min", read(HEADING_RATE_COMMAND), operation("quotient", number(turn_max), read(_AIRSPEED))),
-                operation("quotient", number(-turn_max), read(_AIRSPEED)),
-            ),
-        ),
         function(
             _MODEL_JERK,
             minus(
-                times(number(frequency**2), minus(read("autopilot/heading-rate-limited"), read(_MODEL_RATE))),
+                times(number(frequency**2), minus(limited, read(_MODEL_RATE))),
                 times(number(2.0 * damping * frequency), read(_MODEL_ACCELERATION)),
             ),
         ),
@@ -299,8 +296,7 @@ def _bank_command(schedule: Schedule) -> list[str]:
             "autopilot/model-bank-rad",
             table_2d("autopilot/model-turn", _SCHEDULE, list(turns), schedule.airspeeds, schedule.bank_for_turn(turns)),
         ),
-        function("autopilot/bank-rate-per-acceleration", rate_to_bank_rate),
-        function("autopilot/model-roll-rate", times(read("autopilot/bank-rate-per-acceleration"), read(_MODEL_ACCELERATION))),
+        function(_BANK_RATE, rate_to_bank_rate),
         function("autopilot/bank-unlimited-rad", total(read("autopilot/model-bank-rad"), read("autopilot/bank-integral"))),
         function(BANK_COMMAND, clipped(read("autopilot/bank-unlimited-rad"), -bank_max, bank_max)),
         function(

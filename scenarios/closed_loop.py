@@ -1,6 +1,7 @@
 """The closed loop: a vehicle, the guidance at its own rate, and the record. It is closed here only."""
 
 import math
+import struct
 from dataclasses import dataclass
 from enum import Enum
 
@@ -80,9 +81,10 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
     guard = guidance.guard
     vessel_north, vessel_east = plan.mission.vessel.velocity_ned if plan.mission else (0.0, 0.0)
     counter = _CrossingCounter(plan.mission, plan.settling_band) if plan.mission else None
-    reference, time_step = guidance.reference, plan.guidance.time_step
+    reference, time_step, log_interval = guidance.reference, plan.guidance.time_step, plan.log_interval
     steps_max = round(plan.duration_max / time_step)
-    rows: list[tuple[float, ...]] = []
+    # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and slow to make an array of.
+    rows, packed = bytearray(), struct.Struct(f"{len(COLUMNS)}d").pack
     outcome, message = (Outcome.NOT_SETTLED if counter else Outcome.COMPLETED), ""
     wanted_max = command_max = 0.0
     saturated = guarded = finished_at = step = 0
@@ -90,24 +92,29 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
     while step <= steps_max:
         motion = north, east, velocity_north, velocity_east, heading_rate = vehicle.motion()
         course = math.atan2(velocity_east, velocity_north)
-        at = (reference.north, reference.east, reference.course, reference.heading_rate)
         time = step * time_step
-        disc = (vessel_north * time, vessel_east * time, vessel_north, vessel_east)
+        vessel_at_north, vessel_at_east = vessel_north * time, vessel_east * time
+        if counter:
+            to_north, to_east = reference.north - north, reference.east - east
+            done = counter.update(north - vessel_at_north, east - vessel_at_east, to_north, to_east)
+        logged = step % log_interval == 0
+        if logged:
+            # The guidance moves the reference on.
+            at = (reference.north, reference.east, reference.course, reference.heading_rate)
+        disc = (vessel_at_north, vessel_at_east, vessel_north, vessel_east)
         guidance.step(north, east, course, math.sqrt(velocity_north**2 + velocity_east**2), heading_rate, disc)
         wanted, command = guidance.heading_rate_wanted, guidance.heading_rate_command
-        wanted_max = max(wanted_max, wanted, -wanted)
-        command_max = max(command_max, command, -command)
+        wanted_max = max(wanted_max, abs(wanted))
+        command_max = max(command_max, abs(command))
         saturated += guidance.saturated
         if guard:
             guarding = guard.intervening
             guarded += guarding
-        if counter:
-            done = counter.update(time, north, east, at[0] - north, at[1] - east)
-        if step % plan.log_interval == 0:
+        if logged:
             sample = vehicle.sample()
-            rows.append((
-                time, *motion, course, *at, wanted, command, guidance.airspeed_command, guidance.saturated, guarding, *sample,
-            ))  # fmt: skip
+            rows += packed(
+                time, *motion, course, *at, wanted, command, guidance.airspeed_command, guidance.saturated, guarding, *sample
+            )
             message = vehicle.fault(sample)
             if message:
                 outcome, message = Outcome.DIVERGED, f"{message} at {time:.1f} s"
@@ -127,7 +134,7 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
     return FlightRecord(
         outcome=outcome,
         message=message,
-        history=np.array(rows),
+        history=np.frombuffer(rows).reshape(-1, len(COLUMNS)),
         saturation_fraction=saturated / max(1, step),
         heading_rate_wanted_max=wanted_max,
         heading_rate_command_max=command_max,
@@ -139,19 +146,17 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
 class _CrossingCounter:
     """Counts crossings since the distance to the reference last left the settling band."""
 
-    __slots__ = ("_axis_east", "_axis_north", "_band_squared", "_side", "_vessel_east", "_vessel_north", "count", "wanted")
+    __slots__ = ("_axis_east", "_axis_north", "_band_squared", "_side", "count", "wanted")
 
     def __init__(self, mission: Mission, settling_band: float) -> None:
-        self._vessel_north, self._vessel_east = mission.vessel.velocity_ned
         self._axis_north, self._axis_east = mission.vessel.plume_direction_ned
         self._band_squared = settling_band**2
         self._side = 0.0
         self.wanted = mission.crossings
         self.count = 0
 
-    def update(self, time: float, north: float, east: float, to_reference_north: float, to_reference_east: float) -> bool:
-        """Take note of a step; return whether the flight has all it wants."""
-        x, y = north - self._vessel_north * time, east - self._vessel_east * time
+    def update(self, x: float, y: float, to_reference_north: float, to_reference_east: float) -> bool:
+        """Take note of a step, ``x`` north and ``y`` east of the vessel; return whether the flight has all it wants."""
         before, self._side = self._side, self._axis_north * y - self._axis_east * x
         if to_reference_north * to_reference_north + to_reference_east * to_reference_east >= self._band_squared:
             self.count = 0

@@ -1,6 +1,7 @@
 """The closed loop over a real sea: vehicle, sensors, what is heard of the vessel, guidance, faults, and the record."""
 
 import math
+import struct
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,7 +95,7 @@ def fly_sea(plan: SeaPlan, vehicle: Vehicle) -> SeaRecord:
         mode=DITCHED if ditched else flight.guidance.mode.value,
         settled_at=flight.settling.at,
         interventions=interventions(flight.guarding, time_step),
-        history=np.array(flight.rows),
+        history=np.frombuffer(flight.rows).reshape(-1, len(SEA_COLUMNS)),
     )
 
 
@@ -106,18 +107,21 @@ class _Flight:
         self._heard = None if plan.heard is None else list(reversed(plan.heard))
         self._motion = vehicle.motion()
         self._altitude = plan.altitude
+        self._time_step = plan.guidance.guidance.time_step
         self._reference = (0.0, 0.0, 0.0, 0.0)
         self._held = False
         self._failing = plan.fault.of_aircraft()
         self.guidance = SeaGuidance(plan.guidance, plan.vessel_filter, plan.guard)
         self.settling = Settling(band=plan.settling_band, period=plan.oscillation.period, crossings=plan.crossings)
-        self.rows: list[tuple[float, ...]] = []
+        # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and slow to make an array of.
+        self.rows = bytearray()
+        self._pack = struct.Struct(f"{len(SEA_COLUMNS)}d").pack
         self.guarding: list[tuple[int, float, bool]] = []
 
     def guide(self, step: int) -> float:
         """Let the guidance compute its commands; return the error of the measured airspeed [m/s]."""
         plan, vehicle, guidance = self._plan, self._vehicle, self.guidance
-        time = step * plan.guidance.guidance.time_step
+        time = step * self._time_step
         self._motion = motion = vehicle.motion()
         airspeed, heading, roll = vehicle.air_data()
         if self._heard is None:
@@ -132,7 +136,7 @@ class _Flight:
             self._failing = False
             vehicle.fail(plan.fault.kind)
         satellites = not plan.fault.lasts(SATELLITES, time)
-        if step > 0:
+        if step > 0 and step % plan.log_interval == 0:
             self._note_reference()
         position, measured_airspeed, measured_heading = plan.errors.read(step, motion, airspeed, heading, satellites=satellites)
         guidance.step(time, position, measured_airspeed, measured_heading, roll, motion[4], vehicle.servo_error())
@@ -165,7 +169,7 @@ class _Flight:
         navigation, wind, centre = guidance.navigation, guidance.navigation.wind, guidance.centre
         north, east = air_north + navigation.drift_north, air_east + navigation.drift_east
         guard = guidance.guard
-        self.rows.append((
+        self.rows += self._pack(
             time, *motion, *vessel, axis,
             north, east, course, turning,
             guidance.vessel_north + centre.x, guidance.vessel_east + centre.y, guidance.centre_error, wind.north, wind.east,
@@ -173,7 +177,7 @@ class _Flight:
             guidance.guidance.heading_rate_wanted, guidance.heading_rate_command, guidance.airspeed_command,
             guard.intervening + guard.lost if guard else 0.0,
             *sample,
-        ))  # fmt: skip
+        )  # fmt: skip
         off_centre = guidance.centre_error if guidance.in_place else math.inf
         return self.settling.update(
             time,

@@ -9,6 +9,7 @@ from gnc.angles import wrap
 from gnc.delta import (
     LookAhead,
     RelativeState,
+    bare_state,
     delta_length,
     distance_squared,
     distance_squared_rate,
@@ -47,6 +48,7 @@ def test_the_relative_state_holds_the_geometry_of_figure_2(north, east, referenc
     assert wrap(reference_course - state.phi_r - z_course) == pytest.approx(0.0, abs=1e-14)
     assert -math.pi <= state.phi < math.pi
     assert -math.pi <= state.phi_r < math.pi
+    assert bare_state(LOOK_AHEAD, north, east, reference_course, course) == (state.delta, state.rho, state.phi_r, state.phi)
 
 
 @examples(200)
