@@ -3,7 +3,7 @@
 from typing import Any
 
 from reports.blocks import Block, Heading, Section, Text
-from reports.monte_carlo_driver_charts import driver_charts, scatter_chart
+from reports.monte_carlo_driver_charts import driver_charts, scatter_charts
 from reports.monte_carlo_spread_charts import spread_charts
 from reports.monte_carlo_tables import ending_table, left_out_rows, percent, quantile_table, violation_table
 from reports.run_data import RunData
@@ -74,10 +74,9 @@ def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
         " flights neither is 0 for an input that does nothing: the noise floor is the largest index of some that do nothing, and"
         f" what matters has an interval (at {percent(statistics['confidence'])}) above it."
     )
-    scatter = scatter_chart(run, statistics)
     return [
         Text(text),
         *(Text(line) for line in left_out_rows(statistics["sensitivity"])),
         *driver_charts(statistics),
-        *([scatter] if scatter else []),
+        *scatter_charts(run, statistics),
     ]

@@ -85,36 +85,43 @@ def _bar_line(values: Array, places: Array, label: str, colour: str) -> Line:
     return Line(x=x, y=y, label=label, colour=colour, fill=True)
 
 
-def scatter_chart(run: RunData, statistics: dict[str, Any]) -> Chart | None:
-    """Return the clearance over the inputs that drive it the most, or None if no input is known to."""
+def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
+    """Return the clearance over the inputs that drive it the most, words apart from figures; none if no input is known to."""
     keys = [index["key"] for index in statistics["sensitivity"]["clearance_m"]["inputs"][:SCATTERED]]
-    if not keys:
-        return None
     measured = run.summary[run.summary["min_distance_m"].notna()]
     shown = measured.iloc[thinned(clearance(measured))]
     drawn = run.draws.set_index("flight_id").reindex(shown["flight_id"])
     near, inside = clearance(shown), entered(shown)
     groups = [(~inside, "flight", "blue"), (inside, "flight that entered", "vermillion")]
-    few = len(measured) - len(shown)
-    return Chart(
-        name="over-inputs",
-        caption="Closest approach of each flight beyond r_min, over the inputs with the largest δ."
-        + (f" {len(shown):,} of {len(measured):,} flights are drawn, the {NEAREST} nearest among them." if few else ""),
-        panels=[_scatter(drawn[key], near, groups) for key in keys],
-        columns=min(2, len(keys)),
-        panel_height=0.36,
-    )
+    caption = "Closest approach of each flight beyond r_min, over the inputs with the largest δ."
+    if len(shown) < len(measured):
+        caption += f" {len(shown):,} of {len(measured):,} flights are drawn, the {NEAREST} nearest among them."
+    figures = [_scatter(drawn[key], near, groups) for key in keys if pd.api.types.is_numeric_dtype(drawn[key])]
+    # Words beside an axis are wide: below each other, not beside, these panels have room for them.
+    words = [_strips(drawn[key], near, groups) for key in keys if not pd.api.types.is_numeric_dtype(drawn[key])]
+    charts = [
+        Chart(name="over-figures", caption=caption, panels=figures, columns=min(2, len(figures)), panel_height=0.36),
+        Chart(name="over-words", caption=caption, panels=words, panel_height=0.3),
+    ]
+    return [chart for chart in charts if chart.panels]
 
 
 def _scatter(values: "pd.Series[Any]", near: Array, groups: list[tuple[Mask, str, str]]) -> Panel:
-    label = input_label(str(values.name))
-    if not pd.api.types.is_numeric_dtype(values):
-        return strips(near, [str(value) for value in values], _CLEARANCE, label, groups, [(0.0, "r_min")], named=True)
     x = values.to_numpy(dtype=np.float64)
     lines, top = capped(x, near, groups, float("nan"))
     bottom = min(0.0, float(near.min()))
     lines.append(level(x, 0.0, "r_min"))
-    return Panel(x_label=label, y_label=_CLEARANCE, lines=lines, y_range=(bottom - 0.05 * (top - bottom), top))
+    y_range = (bottom - 0.05 * (top - bottom), top)
+    return Panel(x_label=input_label(str(values.name)), y_label=_CLEARANCE, lines=lines, y_range=y_range)
+
+
+def _strips(values: "pd.Series[Any]", near: Array, groups: list[tuple[Mask, str, str]]) -> Panel:
+    """Return a row of flights for each word, those far above all others at the edge."""
+    _, top = capped(near, near, groups, float("nan"))
+    beyond = near > top
+    shown = [*((mask & ~beyond, name, colour) for mask, name, colour in groups), (beyond, "beyond the panel", "black")]
+    words, label = [str(value).replace("_", " ") for value in values], input_label(str(values.name))
+    return strips(np.minimum(near, top), words, _CLEARANCE, label, shown, [(0.0, "r_min")], named=True)
 
 
 def thinned(near: Array) -> npt.NDArray[np.int64]:

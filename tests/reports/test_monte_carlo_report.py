@@ -136,7 +136,7 @@ def test_every_figure_has_its_quantiles_with_intervals_and_counts_who_has_none(r
 
 def test_every_axis_of_a_study_reads_quantity_and_unit_and_both_drawers_draw_all_charts(sections):
     charts = [chart for section in sections.values() for chart in charts_of(section).values()]
-    assert {chart.name for chart in charts} >= {"clearance", "spread", "drivers-clearancem", "over-inputs"}
+    assert {chart.name for chart in charts} >= {"clearance", "spread", "drivers-clearancem", "over-figures", "over-words"}
     for chart in charts:
         assert len(matplotlib_charts.draw(chart).axes) >= len(chart.panels)
         assert len(plotly_charts.draw(chart).data) == sum(len(panel.lines) for panel in chart.panels)
@@ -172,10 +172,22 @@ def test_bars_are_as_long_as_the_indices_and_coloured_by_the_noise_floor(run, se
 
 
 def test_the_clearance_is_drawn_over_figures_and_words_alike(sections):
-    wind, level = charts_of(sections["drivers"])["over-inputs"].panels
+    charts = charts_of(sections["drivers"])
+    (wind,), (level,) = charts["over-figures"].panels, charts["over-words"].panels
     assert wind.x_label == "Wind speed [m/s]"
     assert lines_of(wind)["flight that entered"].y == pytest.approx([-0.5], abs=1e-9)
     assert sorted(name for _, name in level.y_names) == ["moderate", "none"]
+
+
+def test_a_flight_far_from_all_others_does_not_squeeze_them_whatever_they_are_drawn_over(run):
+    far = run.summary.copy()
+    far.loc[20, "min_distance_m"] = RADIUS + 500.0
+    section = monte_carlo_sections(replace(run, summary=far))[2]
+    (wind,), (level,) = (charts_of(section)[name].panels for name in ("over-figures", "over-words"))
+    # Medians lie at some 5 m, and all others within 8 m (study_rows).
+    assert wind.y_range[1] < 30.0
+    assert level.x_range[1] < 30.0
+    assert [len(lines_of(panel)["beyond the panel"].x) for panel in (wind, level)] == [1, 1]
 
 
 def test_why_there_are_no_indices_is_said():

@@ -20,7 +20,7 @@ def statistics_of(rows, inputs, **changes):
 
 @pytest.fixture(scope="module", autouse=True)
 def few_indices():
-    """Ask of two figures what drives them, with 3 bootstraps: they take nearly all of the time, and test_sensitivity is about them."""
+    """Ask of two figures what drives them, with 3 bootstraps: that takes nearly all of the time; test_sensitivity is about it."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("scenarios.sensitivity.RESAMPLES", 3)
         patch.setattr("scenarios.statistics.DRIVEN", ("clearance_m", "tracking_error_rms_m"))
