@@ -54,6 +54,7 @@ class FlightRecord:
     ----------
     outcome, message : how it ended, in a word and in a sentence
     history : shape (samples, len(COLUMNS))
+    every_step : the same of every step of the guidance, if that was recorded; otherwise ``history``
     saturation_fraction : share of guidance steps whose command was cut at omega_max [-]
     heading_rate_wanted_max, heading_rate_command_max : largest heading rate that the law asked for, and that was commanded, at any
         step of the guidance [rad/s]
@@ -64,6 +65,7 @@ class FlightRecord:
     outcome: Outcome
     message: str
     history: npt.NDArray[np.float64]
+    every_step: npt.NDArray[np.float64]
     saturation_fraction: float
     heading_rate_wanted_max: float
     heading_rate_command_max: float
@@ -71,11 +73,11 @@ class FlightRecord:
     guard_time: float
 
 
-def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
+def fly(plan: FlightPlan, vehicle: Vehicle, *, every_step: bool = False) -> FlightRecord:
     """Fly ``plan`` with a vehicle that stands at its start.
 
     With a mission the flight ends one sample after the last wanted crossing, so that every crossing lies inside the record; without
-    one it lasts as long as planned.
+    one it lasts as long as planned. To record ``every_step`` of the guidance, beside the samples, changes nothing of the flight.
     """
     guidance = Guidance(plan.guidance, plan.reference, guard=plan.mission.guard if plan.mission else None)
     guard = guidance.guard
@@ -93,15 +95,15 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
         motion = north, east, velocity_north, velocity_east, heading_rate = vehicle.motion()
         course = math.atan2(velocity_east, velocity_north)
         time = step * time_step
-        vessel_at_north, vessel_at_east = vessel_north * time, vessel_east * time
+        disc = at_north, at_east, _, _ = (vessel_north * time, vessel_east * time, vessel_north, vessel_east)
         if counter:
             to_north, to_east = reference.north - north, reference.east - east
-            done = counter.update(north - vessel_at_north, east - vessel_at_east, to_north, to_east)
-        logged = step % log_interval == 0
-        if logged:
+            done = counter.update(north - at_north, east - at_east, to_north, to_east)
+        sampled = step % log_interval == 0
+        recorded = sampled or every_step
+        if recorded:
             # The guidance moves the reference on.
             at = (reference.north, reference.east, reference.course, reference.heading_rate)
-        disc = (vessel_at_north, vessel_at_east, vessel_north, vessel_east)
         guidance.step(north, east, course, math.sqrt(velocity_north**2 + velocity_east**2), heading_rate, disc)
         wanted, command = guidance.heading_rate_wanted, guidance.heading_rate_command
         wanted_max = max(wanted_max, abs(wanted))
@@ -110,11 +112,12 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
         if guard:
             guarding = guard.intervening
             guarded += guarding
-        if logged:
+        if recorded:
             sample = vehicle.sample()
             rows += packed(
                 time, *motion, course, *at, wanted, command, guidance.airspeed_command, guidance.saturated, guarding, *sample
             )
+        if sampled:
             message = vehicle.fault(sample)
             if message:
                 outcome, message = Outcome.DIVERGED, f"{message} at {time:.1f} s"
@@ -131,10 +134,12 @@ def fly(plan: FlightPlan, vehicle: Vehicle) -> FlightRecord:
             f"{counter.count} of {counter.wanted} crossings flown after settling within {plan.duration_max:g} s;"
             " allow more time (flight.duration_max_s), start closer, or see whether the guard holds it off (guidance.keepout_guard)"
         )
+    record = np.frombuffer(rows).reshape(-1, len(COLUMNS))
     return FlightRecord(
         outcome=outcome,
         message=message,
-        history=np.frombuffer(rows).reshape(-1, len(COLUMNS)),
+        history=record[::log_interval] if every_step else record,
+        every_step=record,
         saturation_fraction=saturated / max(1, step),
         heading_rate_wanted_max=wanted_max,
         heading_rate_command_max=command_max,

@@ -142,7 +142,8 @@ class FlightWork:
         try:
             plan = self._plan(request)
             row |= plan_row(plan)
-            record = fly(plan, place_vehicle(request.scenario, plan, self.model, self.six_dof))
+            vehicle = place_vehicle(request.scenario, plan, self.model, self.six_dof)
+            record = fly(plan, vehicle, every_step=task.every_step)
             history = flight_history(plan, record)
             figures, found = flight_figures(plan, record)
             row = _judged(request, row | figures)

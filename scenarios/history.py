@@ -12,7 +12,7 @@ RELATIVE_COLUMNS = ("delta_m", "rho_m", "phi_r_rad", "phi_rad")
 
 def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
     """Return a row per sample; columns are those of the record and ``RELATIVE_COLUMNS``."""
-    history = pd.DataFrame(record.history, columns=list(COLUMNS))
+    history = pd.DataFrame(record.every_step, columns=list(COLUMNS))
     motion = history[["reference_north_m", "north_m", "reference_east_m", "east_m", "reference_course_rad", "course_rad"]]
     states: list[RelativeState] = [
         relative_state(plan.guidance.look_ahead, to_north - north, to_east - east, reference_course, course)

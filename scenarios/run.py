@@ -144,6 +144,8 @@ def _report(directory: Path) -> int:
 
 def main() -> None:
     """Entry point."""
+    # A study is flown by processes; threads under each of its small matrices would only be in their way.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     run_command(command, "python -m scenarios.run")
 
 

@@ -112,8 +112,8 @@ class SeaWork:
                 drawn.scenario, flight_id=named["flight_id"], seed=drawn.seed, airframe=self.airframe, spreads=trial.spreads
             )
             row |= sea_plan_row(plan)
-            record = fly_sea(plan, self._vehicle(plan))
-            history = pd.DataFrame(record.history, columns=list(SEA_COLUMNS))
+            record = fly_sea(plan, self._vehicle(plan), every_step=task.every_step)
+            history = pd.DataFrame(record.every_step, columns=list(SEA_COLUMNS))
             figures, found = sea_figures(plan, record)
             tables["crossings.csv"] = [named | _crossing_row(i, crossing) for i, crossing in enumerate(found, start=1)]
             tables["interventions.csv"] = [named | stretch._asdict() for stretch in record.interventions]

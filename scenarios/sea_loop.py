@@ -51,6 +51,7 @@ class SeaRecord:
     settled_at : when it had settled, not a number if it never had [s]
     interventions : each time that the keep-out guard changed commands
     history : shape (samples, len(SEA_COLUMNS))
+    every_step : the same of every step of the guidance, if that was recorded; otherwise ``history``
     """
 
     outcome: Outcome
@@ -59,21 +60,25 @@ class SeaRecord:
     settled_at: float
     interventions: list[Intervention]
     history: npt.NDArray[np.float64]
+    every_step: npt.NDArray[np.float64]
 
 
-def fly_sea(plan: SeaPlan, vehicle: Vehicle) -> SeaRecord:
+def fly_sea(plan: SeaPlan, vehicle: Vehicle, *, every_step: bool = False) -> SeaRecord:
     """Fly ``plan`` with a vehicle that stands at its start.
 
-    The flight ends one sample after the last wanted crossing, or when its time is up; on the water; or out of control.
+    The flight ends one sample after the last wanted crossing, or when its time is up; on the water; or out of control. To record
+    ``every_step`` of the guidance, beside the samples, changes nothing of the flight.
     """
-    flight = _Flight(plan, vehicle)
+    flight = _Flight(plan, vehicle, record_interval=1 if every_step else plan.log_interval)
     time_step, steps_max = plan.guidance.guidance.time_step, round(plan.duration_max / plan.guidance.guidance.time_step)
     outcome, message, ditched = Outcome.NOT_SETTLED if plan.crossings else Outcome.COMPLETED, "", False
     for step in range(steps_max + 1):
         airspeed_error = flight.guide(step)
-        if step % plan.log_interval == 0:
+        sampled = step % plan.log_interval == 0
+        if sampled or every_step:
             sample = vehicle.sample()
-            complete = flight.record(step * time_step, sample)
+            complete = flight.record(step * time_step, sample, judged=sampled)
+        if sampled:
             ditched = flight.guidance.health.trouble is not Trouble.NONE and sample[0] < _ON_THE_WATER
             message = "" if ditched else vehicle.fault(sample)
             if message:
@@ -89,26 +94,29 @@ def fly_sea(plan: SeaPlan, vehicle: Vehicle) -> SeaRecord:
             f"{flight.settling.crossings} of {plan.crossings} crossings flown after settling within {plan.duration_max:g} s;"
             " allow more time (flight.duration_max_s) or start closer"
         )
+    record = np.frombuffer(flight.rows).reshape(-1, len(SEA_COLUMNS))
     return SeaRecord(
         outcome=outcome,
         message=message,
         mode=DITCHED if ditched else flight.guidance.mode.value,
         settled_at=flight.settling.at,
         interventions=interventions(flight.guarding, time_step),
-        history=np.frombuffer(flight.rows).reshape(-1, len(SEA_COLUMNS)),
+        history=record[:: plan.log_interval] if every_step else record,
+        every_step=record,
     )
 
 
 class _Flight:
     """A flight under way: what is sensed and heard goes to the guidance, its altitude and faults to the vehicle."""
 
-    def __init__(self, plan: SeaPlan, vehicle: Vehicle) -> None:
+    def __init__(self, plan: SeaPlan, vehicle: Vehicle, *, record_interval: int) -> None:
         self._plan, self._vehicle, self._track = plan, vehicle, plan.track
         self._heard = None if plan.heard is None else list(reversed(plan.heard))
         self._motion = vehicle.motion()
         self._altitude = plan.altitude
         self._time_step = plan.guidance.guidance.time_step
         self._reference = (0.0, 0.0, 0.0, 0.0)
+        self._record_interval = record_interval
         self._held = False
         self._failing = plan.fault.of_aircraft()
         self.guidance = SeaGuidance(plan.guidance, plan.vessel_filter, plan.guard)
@@ -136,7 +144,7 @@ class _Flight:
             self._failing = False
             vehicle.fail(plan.fault.kind)
         satellites = not plan.fault.lasts(SATELLITES, time)
-        if step > 0 and step % plan.log_interval == 0:
+        if step > 0 and step % self._record_interval == 0:
             self._note_reference()
         position, measured_airspeed, measured_heading = plan.errors.read(step, motion, airspeed, heading, satellites=satellites)
         guidance.step(time, position, measured_airspeed, measured_heading, roll, motion[4], vehicle.servo_error())
@@ -161,8 +169,8 @@ class _Flight:
         reference = self.guidance.guidance.reference
         self._reference = reference.north, reference.east, reference.course, reference.heading_rate
 
-    def record(self, time: float, sample: tuple[float, ...]) -> bool:
-        """Keep a row; return whether the flight has all it wants."""
+    def record(self, time: float, sample: tuple[float, ...], *, judged: bool) -> bool:
+        """Keep a row; return whether the flight has all it wants, which is ``judged`` by samples alone."""
         guidance, motion = self.guidance, self._motion
         vessel, axis = self._track.motion(time), self._track.axis(time)
         air_north, air_east, course, turning = self._reference
@@ -178,6 +186,8 @@ class _Flight:
             guard.intervening + guard.lost if guard else 0.0,
             *sample,
         )  # fmt: skip
+        if not judged:
+            return False
         off_centre = guidance.centre_error if guidance.in_place else math.inf
         return self.settling.update(
             time,
