@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from reports.blocks import Block, FlightContent, FlightPicker, Heading, Section, Text, Verdict
+from reports.falsify_content import falsify_sections
 from reports.innerloop_section import innerloop_section
 from reports.monte_carlo_content import monte_carlo_sections
 from reports.run_data import RunData
@@ -28,6 +29,7 @@ def sea_content(run: RunData) -> tuple[Verdict, list[Section]]:
     trials = read_trials(run)
     sections = [
         *monte_carlo_sections(run),
+        *falsify_sections(run),
         Section(anchor="trials", title="The trials", nav_title="Trials", blocks=_overview(trials)),
         *(Section(anchor=trial.name, title=trial.title, blocks=_trial(trial)) for trial in trials if len(trial.rows)),
         Section(anchor="unmet", title="Flights that fell short", nav_title="Fell short", blocks=unmet_blocks(run)),

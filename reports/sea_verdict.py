@@ -25,7 +25,8 @@ def sea_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     if not len(flown):
         headline = "Nothing was flown"
     elif entries:
-        headline = f"Not safe: {inside} of {len(flown)} flights entered the keep-out area, {entries} times in all"
+        times = "once" if entries == 1 else f"{entries} times in all"
+        headline = f"Not safe: {inside} of {len(flown)} flights entered the keep-out area, {times}"
     elif met == planned:
         headline = "Safe: no flight entered the keep-out area, and every flight met what its trial asks for"
     else:
@@ -36,7 +37,7 @@ def sea_verdict(run: RunData, trials: list[Trial]) -> Verdict:
         headline=headline,
         detail=_detail(run, trials, planned, met, flown),
         failures=[_failure(trial) for trial in trials if not trial.rows["criteria_met"].all() or len(trial.rows) < trial.planned],
-        figures=_figures(trials, flown),
+        figures=[*_bound(run), *_figures(trials, flown)],
     )
 
 
@@ -68,6 +69,15 @@ def _failure(trial: Trial) -> str:
     parts += [f"{missing} not flown yet"] if missing else []
     unmet = int((~rows["criteria_met"]).sum()) + missing
     return f"{trial.title}: {unmet} of {trial.planned} fell short" + (f" ({'; '.join(parts)})" if parts else "")
+
+
+def _bound(run: RunData) -> list[tuple[str, str, str]]:
+    """Return the bound on the probability of an entry, of a study that estimated it."""
+    if run.statistics is None:
+        return []
+    confidence = f"{100.0 * run.statistics['confidence']:g} %"
+    bound = run.statistics["violation"]["pessimistic"]["upper"]
+    return [(f"Probability that a flight enters, at most, with {confidence} confidence", f"{bound:.2g}", "")]
 
 
 def _figures(trials: list[Trial], flown: pd.DataFrame) -> list[tuple[str, str, str]]:

@@ -36,17 +36,14 @@ class SensorErrors:
         kept = math.exp(-time_step / NAVIGATION_TIME)
         before = generator.standard_normal((2, 1))
         wander, _ = lfilter([math.sqrt(1.0 - kept**2)], [1.0, -kept], white[:2], axis=-1, zi=kept * before)
-        self._rows: list[tuple[float, ...]] = [
-            tuple(row)
-            for row in np.column_stack(
-                [
-                    sensors.position_sigma_m * wander.T,
-                    sensors.velocity_sigma_mps * white[2:4].T,
-                    self.airspeed_bias + sensors.airspeed_sigma_mps * white[4],
-                    heading_bias + math.radians(sensors.heading_sigma_deg) * white[5],
-                ]
-            ).tolist()
+        errors = [
+            sensors.position_sigma_m * wander.T,
+            sensors.velocity_sigma_mps * white[2:4].T,
+            self.airspeed_bias + sensors.airspeed_sigma_mps * white[4],
+            heading_bias + math.radians(sensors.heading_sigma_deg) * white[5],
         ]
+        # One flat list: thousands of small ones take longer to make than all of them to read.
+        self._errors: list[float] = np.column_stack(errors).ravel().tolist()
 
     def read(
         self, step: int, motion: tuple[float, float, float, float, float], airspeed: float, heading: float, *, satellites: bool
@@ -60,6 +57,6 @@ class SensorErrors:
         airspeed, heading : true ones [m/s, rad]
         satellites : whether satellite navigation works
         """
-        north, east, v_north, v_east, air, turned = self._rows[step]
+        north, east, v_north, v_east, air, turned = self._errors[6 * step : 6 * step + 6]
         position = (motion[0] + north, motion[1] + east, motion[2] + v_north, motion[3] + v_east) if satellites else None
         return position, airspeed + air, heading + turned

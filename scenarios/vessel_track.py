@@ -11,6 +11,9 @@ from scenarios.sea_config import SeaVessel
 _STEP = 0.05
 """Time step of the tabled track [s]; between its points the track is a parabola to 1e-5 m."""
 
+_COLUMNS = 6
+"""Of the table: north, east, their rates, the plume's course, and the speed through the air."""
+
 _AT_REST = 1e-9
 """Speed through the air below which its direction is rounding alone [m/s]."""
 
@@ -61,29 +64,34 @@ class VesselTrack:
         self._table = np.column_stack([place, velocity, axis, np.hypot(through_air[:, 0], through_air[:, 1])])
 
     @cached_property
-    def _rows(self) -> list[list[float]]:
-        """The table as plain floats, for one look at a time."""
-        return self._table.tolist()  # type: ignore[no-any-return]
+    def _flat(self) -> list[float]:
+        """The table as plain floats, row after row, for one look at a time."""
+        return self._table.ravel().tolist()  # type: ignore[no-any-return]
+
+    def _place(self, time: float) -> int:
+        """Return where the row before a time, and with it the one after, begins in the flat table."""
+        return _COLUMNS * min(int(time / _STEP), len(self._table) - 2)
 
     def motion(self, time: float) -> tuple[float, float, float, float]:
         """Return north, east [m] and their rates [m/s]."""
-        i = min(int(time / _STEP), len(self._rows) - 2)
-        north, east, v_north, v_east, *_ = self._rows[i]
-        after = self._rows[i + 1]
-        since = time - i * _STEP
+        at = self._place(time)
+        north, east, v_north, v_east = self._flat[at : at + 4]
+        v_north_after, v_east_after = self._flat[at + _COLUMNS + 2 : at + _COLUMNS + 4]
+        since = time - at // _COLUMNS * _STEP
         half = 0.5 * since * since / _STEP
         share = since / _STEP
         return (
-            north + since * v_north + half * (after[2] - v_north),
-            east + since * v_east + half * (after[3] - v_east),
-            v_north + share * (after[2] - v_north),
-            v_east + share * (after[3] - v_east),
+            north + since * v_north + half * (v_north_after - v_north),
+            east + since * v_east + half * (v_east_after - v_east),
+            v_north + share * (v_north_after - v_north),
+            v_east + share * (v_east_after - v_east),
         )
 
     def axis(self, time: float) -> float:
         """Return the course along which the plume trails [rad]."""
-        i = min(int(time / _STEP), len(self._rows) - 2)
-        return self._rows[i][4] + (time / _STEP - i) * (self._rows[i + 1][4] - self._rows[i][4])
+        at = self._place(time)
+        axis, after = self._flat[at + 4], self._flat[at + _COLUMNS + 4]
+        return axis + (time / _STEP - at // _COLUMNS) * (after - axis)
 
     @property
     def apparent_wind_at_start(self) -> float:

@@ -1,0 +1,52 @@
+"""``python -m benchmarks.scaling``: how the cost of a study grows with flights, flight time and log rate; three minutes.
+
+Figures of docs/scaling.md. Each is of a whole study with its journal, tables and time histories, in a process of its own, so that
+peak memory is that of the study alone.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+KINEMATIC = ("sea_wind", "fidelity=kinematic", "flight.duration_max_s=2", "criteria.settles=false", "flight.crossings=0")
+SIX_DOF = ("monte_carlo", "sampling=random", "histories=100000")
+
+Measured = tuple[float, float, float]
+"""Time from the first flight to the last table [s], peak memory of the program that hands out the flights [MiB], and size [MiB]."""
+
+
+def main() -> None:
+    """Print the tables."""
+    print("flights, kinematic, 2 s each, two processes: ms per flight, peak memory, size of the run")
+    for flights in (300, 3_000, 30_000):
+        seconds, memory, size = _study(*KINEMATIC, f"flights={flights}", "histories=100")
+        print(f"{flights:8,} {1e3 * seconds / flights:8.2f} ms {memory:8.0f} MiB {size:8.1f} MiB")
+    print("flight time, X8, 20 flights, two processes: s per flight, size of a flight")
+    for duration in (100, 200, 400, 800):
+        seconds, _, size = _study(*SIX_DOF, "flights=20", f"flight.duration_max_s={duration}", "vessel.manoeuvres.0.at_s=50")
+        print(f"{duration:8} s {seconds / 20:8.3f} s {size / 20:8.2f} MiB")
+    print("log rate, X8, 20 flights of 300 s, two processes: s per flight, size of a flight")
+    for rate in (5, 10, 20):
+        seconds, _, size = _study(*SIX_DOF, "flights=20", f"flight.log_rate_hz={rate}")
+        print(f"{rate:8} Hz {seconds / 20:8.3f} s {size / 20:8.2f} MiB")
+
+
+def _study(name: str, *overrides: str) -> Measured:
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "run"
+        words = [word for override in overrides for word in ("--set", override)]
+        command = [sys.executable, "-m", "scenarios.run", name, *words, "--jobs", "2", "--no-report", "--out", str(out)]
+        began = time.perf_counter()
+        subprocess.run(command, check=False, capture_output=True)
+        manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+        if manifest["state"] != "complete":
+            raise RuntimeError(f"{' '.join(command)} did not complete in {time.perf_counter() - began:.0f} s")
+        size = sum(path.stat().st_size for path in out.rglob("*") if path.is_file()) / 2**20
+        return float(manifest["wall_time_s"]), float(manifest["peak_memory_mib"]), size
+
+
+if __name__ == "__main__":
+    main()
