@@ -80,7 +80,7 @@ class FalsifyStudy(SeaStudy):
         first = len(self._tasks)
         self._tasks += [Task(number=first + i, point=tuple(map(float, point))) for i, point in enumerate(points)]
         fly(self._tasks[first:])
-        return [_clearance(row) for row in journal.rows(SUMMARY, first=first)]
+        return [_clearance(row) for row in journal.rows(SUMMARY, first=first, below=len(self._tasks))]
 
     def _keep_worst(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Write scenario files of the worst flights, and have those recorded that have no time history."""

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from scenarios.config import Positive, Section
 from scenarios.sea_config import SeaScenario
@@ -57,3 +57,9 @@ class FalsifyScenario(SeaScenario):
 
     study: Literal["falsify"]  # type: ignore[assignment]
     search: Search = Search()
+
+    @model_validator(mode="after")
+    def _something_to_search(self) -> "FalsifyScenario":
+        if not self.draws:
+            raise ValueError("draws is empty; give the keys to search over, each with its range")
+        return self

@@ -13,7 +13,7 @@ from scenarios.run_directory import RunDirectory
 from scenarios.sampling import Points
 from scenarios.sea_flights import DRAWS
 from scenarios.sea_study import SUMMARY, SeaStudy
-from scenarios.statistics import study_statistics
+from scenarios.statistics import COLUMNS, study_statistics
 from scenarios.stopping import looks, tight_enough
 
 
@@ -56,7 +56,7 @@ class MonteCarloStudy(SeaStudy):
 
     def _tight(self, journal: Journal, flights: int) -> bool:
         s = self._scenario.statistics
-        rows = _frame(journal.rows(SUMMARY, below=flights), ("flight_id", "outcome", "min_distance_m", "keepout_violations"))
+        rows = _frame(journal.rows(SUMMARY, below=flights), COLUMNS)
         return tight_enough(
             rows,
             look_number=self._looks,
@@ -70,8 +70,8 @@ class MonteCarloStudy(SeaStudy):
         """Write ``statistics.json``."""
         progress("estimating", self.planned, self.planned)
         statistics = study_statistics(
-            _frame(journal.rows(SUMMARY)),
-            _frame(journal.rows(DRAWS)),
+            _frame(journal.rows(SUMMARY), COLUMNS),
+            _frame(journal.rows(DRAWS), self.tables[DRAWS]),
             confidence=self._scenario.statistics.confidence,
             seed=self._scenario.seed,
             look_number=self._looks if self._scenario.statistics.stops else None,
@@ -91,7 +91,5 @@ class MonteCarloStudy(SeaStudy):
         return Summary(done=found.done, met=found.met, lines=[*found.lines, *stopped], manifest=manifest)
 
 
-def _frame(rows: Iterable[Row], columns: Sequence[str] | None = None) -> pd.DataFrame:
-    if columns is None:
-        return pd.DataFrame(rows)
+def _frame(rows: Iterable[Row], columns: Sequence[str]) -> pd.DataFrame:
     return pd.DataFrame([[row.get(name) for name in columns] for row in rows], columns=list(columns))

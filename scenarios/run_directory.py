@@ -69,7 +69,7 @@ class RunDirectory:
             raise InputError(f"'{self.path}' holds no run to resume; leave out --resume to start one")
         try:
             manifest = json.loads(self.manifest.read_text(encoding="utf-8"))
-            found, theirs = manifest["config_hash"], manifest["fingerprint"]
+            found, theirs = manifest["config_hash"], dict(manifest.get("fingerprint", {}))
         except (ValueError, KeyError, TypeError, OSError):
             raise InputError(f"'{self.manifest}' cannot be read; start a new run in another --out") from None
         if found != config_hash:
@@ -77,13 +77,16 @@ class RunDirectory:
                 f"'{self.path}' was run with another configuration; resume it with the same scenario, --seed and --set values"
             )
         for name, mine in fingerprint().items():
-            if theirs.get(name) != mine:
+            before = theirs.get(name, "unknown")
+            if before != mine:
                 raise InputError(
-                    f"'{self.path}' was begun with {name} {theirs.get(name)}, now it is {mine}: results would not go together;"
+                    f"'{self.path}' was begun with {name} {before}, now it is {mine}: results would not go together;"
                     " resume it with what it was begun with, or start a new run in another --out"
                 )
         self._create()
-        # What was being written when the program was killed.
+
+    def sweep(self) -> None:
+        """Remove what was being written when the program was killed. Nobody else may be writing."""
         for part in self.path.rglob(".*.part"):
             part.unlink()
 

@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from scenarios.config import Guidance, Histories, Keepout, NonNegative, Positive, Section, check_divides
 
-_DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "guidance.bank_deg", "plume.source_height_m")
+_DESIGNED_FOR = ("guidance.", "plume.source_height_m")
 
 Angle = Annotated[float, Field(ge=-360.0, le=360.0)]
 Range = tuple[float, float]
@@ -292,6 +292,10 @@ class SeaScenario(Section):
                 f"start.distance_m begins at {self.start.distance_m[0]:g} m; it must exceed keepout.radius_m,"
                 f" {self.keepout.radius_m:g} m"
             )
+        if self.start.range_m is not None and self.start.range_m <= self.keepout.radius_m:
+            raise ValueError(
+                f"start.range_m is {self.start.range_m:g} m; it must exceed keepout.radius_m, {self.keepout.radius_m:g} m"
+            )
         air, room = self.turbulence, self.flight.duration_max_s
         if self.fault.kind != "none" and self.fault.at_s[1] >= room:
             raise ValueError(
@@ -315,7 +319,9 @@ class SeaScenario(Section):
         keys = [draw.key for draw in self.draws]
         for key in keys:
             if key.startswith(_DESIGNED_FOR):
-                raise ValueError(f"draws has '{key}', which the autopilot is designed for; give each value a run of its own")
+                raise ValueError(
+                    f"draws has '{key}', for which autopilot and margins are worked out once; give each value a run of its own"
+                )
             if keys.count(key) > 1:
                 raise ValueError(f"draws has '{key}' {keys.count(key)} times; draw a key once")
             if "." not in key:

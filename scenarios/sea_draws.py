@@ -15,6 +15,9 @@ from scenarios.sea_world import vessel_track
 
 _TRIES = 1000
 
+_ALMOST_ALL = 1.0 - 1e-15
+"""The share of a distribution up to its end, where it has none."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrawnFlight:
@@ -72,10 +75,10 @@ def value_at(draw: Draw, share: float) -> object:
         return low + (high - low) * share
     if draw.choice is not None:
         weights = np.cumsum(draw.weights or [1.0] * len(draw.choice))
-        return draw.choice[min(int(np.searchsorted(weights, share * weights[-1], side="right")), len(draw.choice) - 1)]
+        return draw.choice[int(np.searchsorted(weights, min(share, _ALMOST_ALL) * weights[-1], side="right"))]
     low, high = (_share_below(draw, limit) for limit in draw.within) if draw.within else (0.0, 1.0)
     # A distribution without an end has no value at it.
-    share = min(max(low + (high - low) * share, 1e-15), 1.0 - 1e-15)
+    share = min(max(low + (high - low) * share, 1.0 - _ALMOST_ALL), _ALMOST_ALL)
     if draw.normal is not None:
         mean, sigma = draw.normal
         value = mean + sigma * float(ndtri(share))
@@ -120,6 +123,11 @@ def check_draws(trial: str, scenario: SeaScenario) -> None:
     ------
     InputError : as of ``drawn_flight``
     """
+    for draw in scenario.draws:
+        if draw.within is not None and not _share_below(draw, draw.within[0]) < _share_below(draw, draw.within[1]):
+            raise InputError(
+                f"draw of '{draw.key}' has within {list(draw.within)}, which holds nothing of its distribution; widen it"
+            )
     for number in range(max((len(draw.choice or ()) for draw in scenario.draws), default=0) or 1):
         for end in (0.0, 1.0):
             with_values(

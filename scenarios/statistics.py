@@ -31,6 +31,12 @@ EXTREMES = (0.001, 0.999)
 NAMED_MAX = 10
 """Flights of each outcome that are named; ``summary.csv`` has all."""
 
+COLUMNS = (
+    "flight_id", "outcome", "mode_at_end", "min_distance_m", "keepout_radius_m", "keepout_violations", "crossing_interval_mean_s",
+    "crossing_interval_predicted_s", "crossing_distance_min_m", "tracking_error_rms_m", "settling_time_s",
+)  # fmt: skip
+"""Columns of the summary that are looked at."""
+
 DRIVEN = ("clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
 """Figures that it is asked of what drives them."""
 
@@ -45,7 +51,7 @@ def study_statistics(
 
     Parameters
     ----------
-    rows : the summary, a row per flight that is done, also of those that failed
+    rows : of the summary ``COLUMNS``, a row per flight that is done, also of those that failed
     inputs : ``draws.csv``: ``flight_id``, ``trial`` and a column per drawn key
     confidence : of each interval, between 0 and 1; not of all of them together
     seed : of what is drawn by lot for the sensitivity indices

@@ -72,6 +72,6 @@ def run_study(
     """
     if not resume:
         RunDirectory(directory).refuse_taken()
-    progress("designing the autopilot", 0, 1)
+    progress("preparing", 0, 1)
     study = study_of(scenario, name, overrides)
     return fly_study(study, directory, hire=hire or Hiring(), resume=resume, progress=progress)

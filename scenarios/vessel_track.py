@@ -66,7 +66,7 @@ class VesselTrack:
     @cached_property
     def _flat(self) -> list[float]:
         """The table as plain floats, row after row, for one look at a time."""
-        return self._table.ravel().tolist()  # type: ignore[no-any-return]
+        return self._table.ravel().tolist()
 
     def _place(self, time: float) -> int:
         """Return where the row before a time, and with it the one after, begins in the flat table."""

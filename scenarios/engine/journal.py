@@ -34,7 +34,7 @@ class Journal:
     """
 
     def __init__(self, path: Path) -> None:
-        self._database = sqlite3.connect(path, isolation_level=None)
+        self._database = sqlite3.connect(path, isolation_level=None, timeout=0.0)
         try:
             # Alone: two programs that fly the same study would undo each other's work.
             self._database.execute("PRAGMA locking_mode = EXCLUSIVE")
@@ -46,8 +46,10 @@ class Journal:
             if "locked" not in str(error):
                 raise
             raise InputError(f"'{path.parent}' is being flown by another program; wait for it, or choose another --out") from None
-        except sqlite3.DatabaseError:
+        except sqlite3.DatabaseError as error:
             self._database.close()
+            if not is_damaged(error):
+                raise
             raise InputError(f"'{path}' is damaged; start a new run in another --out") from None
 
     def close(self) -> None:
@@ -55,7 +57,7 @@ class Journal:
         self._database.close()
 
     def add(self, result: Result) -> None:
-        """Take in a result; it is on disk when this returns. One that was there for its task is replaced."""
+        """Take in a result; no end of the program loses it from then on. One that was there for its task is replaced."""
         self._database.execute(
             "INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?)",
             (
@@ -100,6 +102,21 @@ class Journal:
         for count, row in enumerate(self.rows(table), start=1):  # noqa: B007 - the last one is returned
             writer.writerow([_text(row.get(name)) for name in columns])
         return count
+
+
+def is_full(error: sqlite3.DatabaseError) -> bool:
+    """Return whether there was no room left on the disk."""
+    return _code(error) == sqlite3.SQLITE_FULL
+
+
+def is_damaged(error: sqlite3.DatabaseError) -> bool:
+    """Return whether the file is no journal, or no longer one."""
+    return _code(error) in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+
+
+def _code(error: sqlite3.DatabaseError) -> int:
+    """Return the primary code of SQLite's error."""
+    return int(error.sqlite_errorcode) & 0xFF
 
 
 def _plain(value: Any) -> Any:

@@ -17,8 +17,9 @@ from typing import Self
 
 from reports.interrupt import ignore_interrupt
 from scenarios.engine.crew import TRIES
-from scenarios.engine.memory import limit_memory
+from scenarios.engine.memory import data_memory, limit_memory
 from scenarios.engine.work import Limits, Result, Task, Work
+from scenarios.errors import InputError
 
 _AHEAD = 2
 """Tasks that a process has at most: the one at hand, and the next, so that it does not wait for it."""
@@ -44,7 +45,18 @@ class LocalCrew:
         self._tried: Counter[int] = Counter()
 
     def __enter__(self) -> Self:
-        """Begin; processes start as there is work for them."""
+        """Begin; processes start as there is work for them.
+
+        Raises
+        ------
+        InputError : the limit of memory is below what they begin with
+        """
+        memory, needed = self._limits.memory, data_memory()
+        if memory is not None and memory < needed:
+            raise InputError(
+                f"--memory-limit is {memory / 2**30:.2f} GiB; a process has {needed / 2**30:.2f} GiB before its first flight: give"
+                " more"
+            )
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from reports.files import write_whole
 from scenarios.engine.crew import Crew
-from scenarios.engine.journal import Journal
+from scenarios.engine.journal import Journal, is_damaged, is_full
 from scenarios.engine.memory import peak_memory
 from scenarios.engine.work import Task, Work
 from scenarios.errors import InputError
@@ -125,16 +125,13 @@ def fly_study(study: Study, directory: Path, *, hire: Hire, resume: bool, progre
     run.open(study.config_hash, resume=resume)
     try:
         journal = Journal(run.journal)
+        run.sweep()
         try:
             return _fly(study, run, journal, hire, progress)
         finally:
             journal.close()
-    except (OSError, sqlite3.OperationalError) as error:
-        if not _is_full(error):
-            raise
-        raise InputError(
-            f"there is no room left for '{directory}'; everything done so far is kept: make room, and go on with --resume"
-        ) from None
+    except (OSError, sqlite3.DatabaseError) as error:
+        raise _explained(error, run) from None
 
 
 def _fly(study: Study, run: RunDirectory, journal: Journal, hire: Hire, progress: Progress) -> RunResult:
@@ -189,7 +186,11 @@ def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, tuple
         write_whole(run.path / name, write)
 
 
-def _is_full(error: OSError | sqlite3.OperationalError) -> bool:
-    if isinstance(error, OSError):
-        return error.errno in (errno.ENOSPC, errno.EDQUOT)
-    return error.sqlite_errorcode == sqlite3.SQLITE_FULL
+def _explained(error: OSError | sqlite3.DatabaseError, run: RunDirectory) -> Exception:
+    """Return what to tell of an error of the disk."""
+    full = error.errno in (errno.ENOSPC, errno.EDQUOT) if isinstance(error, OSError) else is_full(error)
+    if full:
+        return InputError(f"there is no room left for '{run.path}'; everything done is kept: make room, and go on with --resume")
+    if isinstance(error, sqlite3.DatabaseError) and is_damaged(error):
+        return InputError(f"'{run.journal}' is damaged; start a new run in another --out")
+    return error

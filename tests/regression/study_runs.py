@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
-from scenarios.runner import run_scenario
 
 from scenarios.load import load_scenario
+from scenarios.studies import run_study
+from tests.run_tables import rows_of
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,8 @@ class StudyRun:
 def fly_study(path, aircraft, *overrides, nus=(0.5,)):
     """Fly the sweep at some speed ratios with nothing else changed, in one process."""
     words = [f"aircraft={aircraft}", f"sweep.nu={list(nus)}", "comparison.variants=[]", *overrides]
-    result = run_scenario(load_scenario("sweep_nu", words), "sweep_nu", path, jobs=1, resume=False, progress=lambda *_: None)
-    return StudyRun(path=path, rows={row["nu"]: row for row in result.rows})
+    run_study(load_scenario("sweep_nu", words), "sweep_nu", path)
+    return StudyRun(path=path, rows={row["nu"]: row for row in rows_of(path)})
 
 
 def assert_flown_as_the_issue_asks(row):

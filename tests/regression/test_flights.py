@@ -12,8 +12,11 @@ from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim
 from innerloop.reversal import measure_reversal
-from scenarios.flights import SixDof, flight_requests, fly_request
+from scenarios.engine.work import Task
+from scenarios.flights import FlightWork, flight_requests
 from scenarios.load import load_scenario
+from scenarios.six_dof import SixDof
+from tests.run_tables import history_in
 
 SPEED = 19.42
 
@@ -24,27 +27,25 @@ def design():
 
 
 @pytest.fixture(scope="module")
-def run_directory(design, tmp_path_factory):
-    directory = tmp_path_factory.mktemp("run")
-    (directory / "flights").mkdir()
-    write_root(design.design.schedule, directory / "model")
-    return directory
+def model(design, tmp_path_factory):
+    return write_root(design.design.schedule, tmp_path_factory.mktemp("run") / "model")
 
 
 @pytest.fixture(scope="module")
-def six_dof(design, run_directory):
+def six_dof(design, model):
     start, envelope = level_trim(X8, SPEED, 60.0), design.design.schedule.envelope
-    reversal = measure_reversal(AutopilotedAircraft(X8, run_directory / "model"), start, envelope.bank)
-    return SixDof(start=start, lag=design.record["heading_rate_lag_s"], reversal=reversal, envelope=envelope)
+    reversal = measure_reversal(AutopilotedAircraft(X8, model), start, envelope.bank)
+    return SixDof(spec=X8, start=start, lag=design.record["heading_rate_lag_s"], reversal=reversal, envelope=envelope)
 
 
 @pytest.fixture
-def fly(run_directory, six_dof):
+def fly(model, six_dof):
     def run(*overrides, nu=0.5, scenario="sweep_nu"):
         settings = load_scenario(scenario, [f"sweep.nu=[{nu}]", "comparison.variants=[]", *overrides])
-        result = fly_request(flight_requests(settings)[0], run_directory, six_dof)
-        history = run_directory / "flights" / f"{result.row['flight_id']}.parquet"
-        return result.row, pd.read_parquet(history) if history.is_file() else None
+        work = FlightWork(requests=tuple(flight_requests(settings)), histories=1, six_dof=six_dof, model=model)
+        result = work.fly(Task(number=0))
+        (row,) = result.tables["summary.csv"]
+        return row, history_in(result)
 
     return run
 

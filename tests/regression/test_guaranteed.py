@@ -2,10 +2,10 @@
 
 import pandas as pd
 import pytest
-from scenarios.runner import run_scenario
 
 from reports.build import build_reports
 from scenarios.load import load_scenario
+from scenarios.studies import run_study
 
 
 @pytest.fixture(scope="module")
@@ -14,7 +14,7 @@ def directory(tmp_path_factory):
     path = tmp_path_factory.mktemp("guaranteed") / "run"
     overrides = ["fidelity=kinematic", "sweep.nu=[0.5, 0.7]", "guidance.tuning=bounded", "guidance.reserve=0.4"]
     scenario = load_scenario("sweep_nu", overrides)
-    result = run_scenario(scenario, "sweep_nu", path, jobs=1, resume=False, progress=lambda *_: None, overrides=overrides)
+    result = run_study(scenario, "sweep_nu", path, overrides=overrides)
     assert result.all_met
     return path
 

@@ -10,13 +10,14 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
-from scenarios.runner import run_scenario
 
 from reports.blocks import Table
 from reports.build import build_reports
 from reports.content import content
 from reports.run_data import read_run
 from scenarios.load import load_scenario
+from scenarios.studies import run_study
+from tests.run_tables import rows_of
 
 BOTH = pytest.mark.parametrize("fidelity", ["kinematic", "six_dof"])
 
@@ -24,8 +25,8 @@ BOTH = pytest.mark.parametrize("fidelity", ["kinematic", "six_dof"])
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory):
     path = tmp_path_factory.mktemp("paper") / "run"
-    result = run_scenario(load_scenario("paper"), "paper", path, jobs=1, resume=False, progress=lambda *_: None)
-    assert result.planned == len(result.rows) == 8
+    result = run_study(load_scenario("paper"), "paper", path)
+    assert result.planned == result.summary.done == len(rows_of(path)) == 8
     return path
 
 
@@ -184,8 +185,8 @@ def test_saddle_points_are_marked_where_the_relative_courses_meet(directory):
 
 def test_the_kinematic_half_flies_alone(tmp_path):
     scenario = load_scenario("paper", ["fidelity=kinematic"])
-    result = run_scenario(scenario, "paper", tmp_path / "run", jobs=1, resume=False, progress=lambda *_: None)
-    assert [row["flight_id"] for row in result.rows] == [
+    result = run_study(scenario, "paper", tmp_path / "run")
+    assert [row["flight_id"] for row in rows_of(tmp_path / "run")] == [
         "sim1_kinematic",
         "sim2_delta_kinematic",
         "sim2_los_kinematic",
@@ -211,7 +212,7 @@ def test_the_kinematic_half_flies_alone(tmp_path):
 def test_what_is_not_the_papers_is_not_called_reproduced(override, headline, tmp_path):
     # An override has its way in every case, also where the case sets that key; report and exit status then agree.
     scenario = load_scenario("paper", ["fidelity=kinematic", "flight.crossings=10", override])
-    result = run_scenario(scenario, "paper", tmp_path / "run", jobs=1, resume=False, progress=lambda *_: None)
+    result = run_study(scenario, "paper", tmp_path / "run")
     assert not result.all_met
     report = content(read_run(tmp_path / "run"))
     assert report.verdict.headline == headline

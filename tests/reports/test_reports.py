@@ -9,7 +9,6 @@ import numpy as np
 import pandas as pd
 import pytest
 from design_runs import record
-from scenarios.runner import run_scenario
 
 from reports import matplotlib_charts, plotly_charts
 from reports.blocks import FlightPicker, Table
@@ -22,6 +21,7 @@ from reports.run_data import read_run
 from reports.tables import limit
 from reports.verdict import verdict
 from scenarios.load import load_scenario
+from scenarios.studies import run_study
 
 # Three crossings are too few for the study's own criteria.
 CRITERIA = ["criteria.tracking_error_rms_m=5.0", "criteria.crossing_interval_error=0.1"]
@@ -32,7 +32,7 @@ OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0
 def run_path(tmp_path_factory):
     path = tmp_path_factory.mktemp("reports") / "run"
     scenario = load_scenario("sweep_nu", OVERRIDES)
-    run_scenario(scenario, "sweep_nu", path, jobs=1, resume=False, progress=lambda *_: None)
+    run_study(scenario, "sweep_nu", path)
     return path
 
 

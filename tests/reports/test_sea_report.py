@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from scenarios.sea_run import run_sea
 
 from reports import matplotlib_charts, plotly_charts
 from reports.blocks import FlightPicker, Table, Text
@@ -25,6 +24,7 @@ from reports.sea_tables import UNMET_MAX
 from scenarios.load import load_study
 from scenarios.manifest import parameters
 from scenarios.sea_config import SeaTrial
+from scenarios.studies import run_study
 
 # Both settle and cross a few times, within some 150 s; after that the vessel of the second turns, which takes it 40 s at most.
 STEADY = """
@@ -66,7 +66,7 @@ def run_path(tmp_path_factory):
     for name, text in (("steady", STEADY), ("turns", TURNS)):
         (folder / f"{name}.toml").write_text(text, encoding="utf-8")
     study = SeaTrial(title="Small", trials=[str(folder / "steady.toml"), str(folder / "turns.toml")])
-    run_sea(study, "small", folder / "run", jobs=1, resume=False, progress=lambda *_: None)
+    run_study(study, "small", folder / "run")
     return folder / "run"
 
 

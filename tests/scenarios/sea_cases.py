@@ -1,12 +1,15 @@
 """What the tests of the real sea share: scenarios, and the kinematic vehicle that flies them."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from gnc.sea_parameters import Mode
 from innerloop.reversal import Reversal
+from scenarios.engine.work import Task
 from scenarios.sea_airframe import KINEMATIC_BANDWIDTH, KINEMATIC_LAG, Airframe
 from scenarios.sea_config import SeaScenario
-from scenarios.sea_flights import SeaRequest, fly_sea_request
+from scenarios.sea_flights import SeaWork, Trial
 from scenarios.sea_loop import SEA_COLUMNS
 from scenarios.vessel_track import VesselTrack
 
@@ -24,7 +27,7 @@ AIRFRAME = Airframe(
     six_dof=None,
     model=None,
 )
-"""As ``scenarios.sea_run`` makes it at 20 Hz."""
+"""As ``scenarios.sea_airframe`` makes it at 20 Hz."""
 
 ASTERN = {"distance_m": (400.0, 400.0), "spread_deg": 10.0}
 
@@ -35,10 +38,28 @@ def scenario(**changes):
     return SeaScenario.model_validate(values | changes)
 
 
+def work(**changes):
+    """Return the flying of one trial."""
+    return SeaWork(trials=(Trial(name="trial", scenario=scenario(**changes), spreads={}),), histories=1, airframe=AIRFRAME)
+
+
+@dataclass(frozen=True)
+class Flown:
+    """A flight's row in the summary, and its rows in all tables."""
+
+    row: dict
+    tables: dict
+
+
 def fly(directory, **changes):
-    """Fly one flight as a run does; return its result and its time history."""
-    request = SeaRequest(flight_id="a", trial="trial", scenario=scenario(**changes), number=0, spreads=None)
-    return fly_sea_request(request, directory, AIRFRAME)
+    """Fly one flight as a run does; leave its time history in ``directory``."""
+    result = work(**changes).fly(Task(number=0))
+    for name, content in result.files.items():
+        path = directory / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    (row,) = result.tables["summary.csv"]
+    return Flown(row=row, tables=result.tables)
 
 
 def modes(history):
@@ -53,4 +74,4 @@ def track(vessel, duration=600.0, *, wind=(0.0, 0.0), plume_heading=None):
     return VesselTrack(scenario(vessel=vessel).vessel, duration, wind_north=wind[0], wind_east=wind[1], plume_heading=plume_heading)
 
 
-__all__ = ["AIRFRAME", "ASTERN", "SEA_COLUMNS", "SPEED", "fly", "modes", "scenario", "track"]
+__all__ = ["AIRFRAME", "ASTERN", "SEA_COLUMNS", "SPEED", "fly", "modes", "scenario", "track", "work"]

@@ -70,6 +70,7 @@ def test_help_and_list_answer():
         (["sweep_nu", "--resume"], ["--resume needs --out"]),
         (["sweep_nu", "--jobs", "0"], ["--jobs", "greater than or equal to 1"]),
         (["sweep_nu", "--sed", "5"], ["--sed", "--help"]),
+        (["sweep_nu", "--scheduler", "tcp://127.0.0.1:1"], ["--scheduler is tcp://127.0.0.1:1", "add --executor dask"]),
         (["sea_trial", "--set", "trials=['sea_nowhere']"], ["unknown scenario 'sea_nowhere'", "sea_wind"]),
     ],
 )
@@ -79,7 +80,7 @@ def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path):
 
 
 def test_a_directory_that_holds_another_run_is_left_alone(tmp_path):
-    (tmp_path / "manifest.json").write_text('{"config_hash": "other"}', encoding="utf-8")
+    (tmp_path / "manifest.json").write_text('{"config_hash": "other", "fingerprint": {}}', encoding="utf-8")
     assert_refused(run("sweep_nu", "--out", tmp_path, *SHORT), "holds another run", "--resume")
     assert_refused(run("sweep_nu", "--out", tmp_path, "--resume", *SHORT), "another configuration")
     assert [path.name for path in tmp_path.iterdir()] == ["manifest.json"]
@@ -121,7 +122,8 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
         text=True,
         start_new_session=True,
     )
-    while not (broken / "summary.csv").is_file():
+    # A time history is there just before its flight is done: once there are two, the first flight is.
+    while len(list((broken / "flights").glob("*.parquet"))) < 2:
         assert process.poll() is None
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)  # what a terminal does at Ctrl-C

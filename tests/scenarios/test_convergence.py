@@ -11,8 +11,11 @@ import pytest
 from gnc.averaged_motion import averaged_settling_time
 from gnc.delta import look_ahead
 from gnc.ensemble_motion import Vehicle
-from scenarios.convergence import COLUMNS, counterexamples, run_convergence, trajectory_of
+from scenarios.convergence import COLUMNS, convergence_blocks, convergence_table, counterexamples, trajectory_of
 from scenarios.convergence_cases import REFERENCES, draw_case, references_of
+from scenarios.convergence_study import ConvergenceWork
+from scenarios.engine.local_crew import LocalCrew
+from scenarios.engine.work import Limits, Task
 from scenarios.errors import InputError
 
 # The paper's vehicle (reference/paper-notes.md) and the guidance of the catalogue's scenarios.
@@ -27,17 +30,19 @@ STUDY = {
     "settling_band": BAND,
     "time_max": 20_000.0,
     "laws": ("lyapunov", "cascade"),
-    "jobs": 1,
-    "progress": lambda *_: None,
 }
 
 
-def tables(**changes):
-    return run_convergence(**(STUDY | changes))
+def results(jobs=1, **changes):
+    """Yield the result of each block as it comes."""
+    blocks = convergence_blocks(**(STUDY | changes))
+    with LocalCrew(ConvergenceWork(blocks=tuple(blocks)), jobs=jobs, limits=Limits()) as crew:
+        yield from crew.fly(Task(number=i) for i in range(len(blocks)))
 
 
-def study(**changes):
-    return list(tables(**changes))[-1]
+def study(jobs=1, **changes):
+    rows = [row for result in results(jobs, **changes) for row in result.tables["summary.csv"]]
+    return convergence_table(rows, (STUDY | changes)["laws"])
 
 
 @pytest.fixture(scope="module")
@@ -80,31 +85,25 @@ def test_under_law_24_distance_never_exceeds_what_v_2_allows(small):
 
 
 def test_the_same_seed_gives_the_same_rows_bit_for_bit_in_one_process_and_in_two():
-    told = []
     # From close by, for time's sake; the cut law flies where it takes no longer.
     few = {"trajectories": 12, "distance_max": 60.0, "laws": ("lyapunov", "cascade", "cascade_cut"), "seed": 11}
     one = study(**few)
-    two = study(**few, jobs=2, progress=lambda *report: told.append(report))
-    assert one.equals(two)
-    assert told[0] == ("flying", 0, 36)
-    assert told[-1] == ("flying", 36, 36)
+    assert one.equals(study(**few, jobs=2))
     # And a law flies the same without the others.
     alone = study(**(few | {"laws": ("cascade",)}))
     assert alone.equals(one[one["law"] == "cascade"].reset_index(drop=True))
     assert not alone.equals(study(**(few | {"laws": ("cascade",), "seed": 12})))
 
 
-def test_a_study_that_was_interrupted_goes_on_with_the_blocks_that_are_left():
-    few = {"trajectories": 12, "distance_max": 60.0}
-    told = []
-    whole = list(tables(**few))
+def test_trajectories_are_flown_in_blocks_of_one_law_and_kind_of_reference_the_longest_first():
+    blocks = convergence_blocks(**(STUDY | {"trajectories": 12, "distance_max": 60.0}))
     # Two laws, three kinds of reference: six blocks of four trajectories.
-    assert [len(table) for table in whole] == [4, 8, 12, 16, 20, 24]
-    rest = list(tables(**few, done=whole[2], progress=lambda *report: told.append(report)))
-    assert [len(table) for table in rest] == [16, 20, 24]
-    assert rest[-1].equals(whole[-1])
-    assert told[0] == ("flying", 12, 24)
-    assert list(tables(**few, done=whole[-1])) == []
+    assert [len(block.cases) for block in blocks] == [4] * 6
+    assert {(block.law.value, *{case.kind for case in block.cases}) for block in blocks} == {
+        (law, kind) for law in STUDY["laws"] for kind in REFERENCES
+    }
+    longest = [block.time_max.max() for block in blocks]
+    assert longest == sorted(longest, reverse=True)
 
 
 def test_an_interrupted_study_ends_its_processes_at_once():
@@ -116,7 +115,7 @@ def test_an_interrupted_study_ends_its_processes_at_once():
         raise KeyboardInterrupt
 
     # Half a minute of work, interrupted after half a second.
-    flying = tables(trajectories=60, distance_max=5000.0, laws=("lyapunov", "cascade", "cascade_cut"), jobs=2)
+    flying = results(trajectories=60, distance_max=5000.0, laws=("lyapunov", "cascade", "cascade_cut"), jobs=2)
     earlier = signal.signal(signal.SIGALRM, interrupt)
     signal.setitimer(signal.ITIMER_REAL, 0.5)
     began = time.perf_counter()
@@ -127,6 +126,18 @@ def test_an_interrupted_study_ends_its_processes_at_once():
         signal.signal(signal.SIGALRM, earlier)
     assert time.perf_counter() - began < 5.0
     assert set(multiprocessing.active_children()) <= before
+
+
+def test_a_block_whose_process_was_lost_is_a_row_for_each_of_its_trajectories():
+    blocks = convergence_blocks(**(STUDY | {"trajectories": 12}))
+    result = ConvergenceWork(blocks=tuple(blocks)).lost(Task(number=2), "why")
+    rows = convergence_table(result.tables["summary.csv"], STUDY["laws"])
+    assert result.lost
+    assert result.items == len(rows) == 4
+    assert sorted(rows["trajectory"]) == sorted(case.trajectory for case in blocks[2].cases)
+    assert set(rows["law"]) == {blocks[2].law.value}
+    assert set(rows["message"]) == {"why"}
+    assert len(counterexamples(rows)) == 4
 
 
 def test_a_trajectory_that_has_too_little_time_is_a_counterexample(monkeypatch):

@@ -5,13 +5,14 @@ import shutil
 
 import pandas as pd
 import pytest
-from scenarios.convergence_run import run_study
 
 from gnc.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.build import build_reports
 from scenarios.convergence_config import ConvergenceScenario
+from scenarios.engine.hiring import Hiring
 from scenarios.errors import InputError
 from scenarios.load import load_study
+from scenarios.studies import run_study
 
 FEW = ["ensemble.trajectories=30", "ensemble.distance_max_m=300", "ensemble.samples=2"]
 
@@ -23,7 +24,7 @@ def study(*overrides):
 
 
 def run(scenario, path, *, resume=False, progress=lambda *_: None, jobs=1):
-    return run_study(scenario, "convergence", path, jobs=jobs, resume=resume, progress=progress)
+    return run_study(scenario, "convergence", path, hire=Hiring(jobs=jobs), resume=resume, progress=progress)
 
 
 @pytest.fixture(scope="module")
@@ -89,13 +90,37 @@ def test_an_interrupted_study_resumes_to_the_same_rows(directory, tmp_path):
     path = tmp_path / "run"
     first = run(study(), path, progress=interrupt)
     assert first.interrupted
-    assert 0 < first.done < 60
+    assert 0 < first.summary.done < 60
     assert json.loads((path / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
     again = run(study(), path, resume=True)
-    assert again.done == again.planned == 60
+    assert again.summary.done == again.planned == 60
     pd.testing.assert_frame_equal(pd.read_csv(path / "summary.csv"), pd.read_csv(directory / "summary.csv"), check_exact=True)
     with pytest.raises(InputError, match="another configuration"):
         run(study("seed=3"), path, resume=True)
+
+
+def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
+    few = study("ensemble.trajectories=12", "ensemble.distance_max_m=60")
+    told = []
+
+    def tell(doing, done, total):
+        told.append((doing, done, total))
+
+    def interrupt(doing, done, total):
+        if done == 12:
+            raise KeyboardInterrupt
+
+    run(few, tmp_path / "whole", progress=tell, jobs=2)
+    # Two laws, three kinds of reference: six blocks of four trajectories.
+    assert [done for doing, done, _ in told if doing == "flying"] == [0, 4, 8, 12, 16, 20, 24]
+    assert run(few, tmp_path / "broken", progress=interrupt).summary.done == 12
+    told.clear()
+    assert run(few, tmp_path / "broken", resume=True, progress=tell).all_met
+    assert [report for report in told if report[0] == "flying"] == [("flying", done, 24) for done in (12, 16, 20, 24)]
+    assert (tmp_path / "broken" / "summary.csv").read_bytes() == (tmp_path / "whole" / "summary.csv").read_bytes()
+    told.clear()
+    assert run(few, tmp_path / "whole", resume=True, progress=tell).all_met
+    assert [report for report in told if report[0] == "flying"] == [("flying", 24, 24)]
 
 
 def test_a_study_of_cut_commands_alone_is_no_verdict_on_the_theory(tmp_path):
@@ -116,10 +141,10 @@ def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_res
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("scenarios.convergence_run.trajectory_of", interrupt)
+        patch.setattr("scenarios.convergence_study.trajectory_of", interrupt)
         first = run(study(), tmp_path / "run")
     assert first.interrupted
-    assert first.done == first.planned
+    assert first.summary.done == first.planned
     assert json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
     assert run(study(), tmp_path / "run", resume=True).all_met
 

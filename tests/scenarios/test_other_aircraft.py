@@ -5,9 +5,7 @@ import math
 
 import pandas as pd
 import pytest
-import scenarios.runner
 import typer
-from scenarios.runner import run_scenario
 
 from aircraft.errors import AircraftError
 from aircraft.find import find_spec
@@ -18,6 +16,8 @@ from reports.build import build_reports
 from scenarios.errors import InputError
 from scenarios.load import load_scenario
 from scenarios.run import command
+from scenarios.studies import run_study
+from tests.run_tables import rows_of
 
 SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]"]
 
@@ -26,7 +26,7 @@ LOOSE = ["criteria.crossing_interval_error=0.1", "criteria.tracking_error_rms_m=
 
 
 def run(path, *overrides, name="sweep_nu"):
-    return run_scenario(load_scenario(name, [*SHORT, *overrides]), name, path, jobs=1, resume=False, progress=lambda *_: None)
+    return run_study(load_scenario(name, [*SHORT, *overrides]), name, path)
 
 
 def exit_status(path, *overrides):
@@ -43,7 +43,7 @@ def refuse(monkeypatch):
         def designed(*_):
             raise error
 
-        monkeypatch.setattr(scenarios.runner, "designed", designed)
+        monkeypatch.setattr("scenarios.six_dof.designed", designed)
 
     return refuse
 
@@ -93,8 +93,14 @@ def test_a_design_that_is_refused_is_rows_with_its_reason_and_exit_status_1(refu
 def test_flights_that_were_refused_are_done_and_are_not_tried_again(refuse, tmp_path):
     refuse(AircraftError("it does not trim"))
     run(tmp_path / "run")
-    again = run_scenario(load_scenario("sweep_nu", SHORT), "x", tmp_path / "run", jobs=1, resume=True, progress=lambda *_: None)
-    assert [row["outcome"] for row in again.rows] == ["trim_failed"]
+    told = []
+    again = run_study(
+        load_scenario("sweep_nu", SHORT), "x", tmp_path / "run", resume=True, progress=lambda *report: told.append(report)
+    )
+    assert again.summary.done == 1
+    assert [row["outcome"] for row in rows_of(tmp_path / "run")] == ["trim_failed"]
+    # One that is done from the beginning is not flown.
+    assert [report for report in told if report[0] == "flying"] == [("flying", 1, 1)]
 
 
 def test_the_kinematic_vehicle_flies_as_the_aircraft_that_is_named_would(tmp_path):
@@ -120,7 +126,7 @@ def test_aircraft_that_differ_from_flight_to_flight_are_refused(tmp_path):
     variants = 'comparison={ nu = [0.5], variants = [{ name = "other", set = { aircraft = "aerosonde" } }] }'
     scenario = load_scenario("sweep_nu", ["sweep.nu=[0.5]", variants])
     with pytest.raises(InputError, match="flights differ in aircraft"):
-        run_scenario(scenario, "x", tmp_path / "run", jobs=1, resume=False, progress=lambda *_: None)
+        run_study(scenario, "x", tmp_path / "run")
 
 
 def test_the_range_of_airspeeds_is_named_where_it_is_left(tmp_path):

@@ -1,6 +1,7 @@
 import pytest
 
 from reports.files import write_whole
+from scenarios.engine.fingerprint import fingerprint
 from scenarios.errors import InputError
 from scenarios.run_directory import RunDirectory
 
@@ -22,7 +23,7 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path):
 def test_a_directory_that_holds_a_run_is_refused(tmp_path):
     run = RunDirectory(tmp_path / "run")
     run.open_new()
-    run.write_json(run.manifest, {"config_hash": "a"})
+    run.write_json(run.manifest, {"config_hash": "a", "fingerprint": fingerprint()})
     with pytest.raises(InputError, match="holds another run; choose another --out, or continue it with --resume"):
         run.open_new()
     run.open_existing("a")
@@ -47,9 +48,18 @@ def test_resuming_needs_a_run(tmp_path):
         RunDirectory(tmp_path).open_existing("a")
 
 
-def test_rows_survive_a_round_trip_and_missing_figures_stay_missing(tmp_path):
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}"])
+def test_a_manifest_that_says_too_little_is_refused_in_a_line(tmp_path, text):
+    run = RunDirectory(tmp_path)
+    run.manifest.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="cannot be read; start a new run in another --out") as refused:
+        run.open_existing("a")
+    assert "\n" not in str(refused.value)
+
+
+def test_a_file_of_the_run_is_written_with_the_directory_that_it_is_in(tmp_path):
     run = RunDirectory(tmp_path / "run")
     run.open_new()
-    run.write_rows("summary.csv", [{"flight_id": "a", "nu": 0.1 + 0.2}, {"flight_id": "b"}], ("flight_id", "nu", "message"))
-    assert run.read_rows("summary.csv") == [{"flight_id": "a", "nu": 0.1 + 0.2}, {"flight_id": "b"}]
-    assert run.read_rows("nothing.csv") == []
+    run.write_bytes("flights/a.parquet", b"PAR1")
+    assert (run.flights / "a.parquet").read_bytes() == b"PAR1"
+    assert [path.name for path in run.flights.iterdir()] == ["a.parquet"]

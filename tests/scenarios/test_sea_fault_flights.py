@@ -3,11 +3,12 @@
 import numpy as np
 import pandas as pd
 import pytest
-from scenarios.sea_run import run_sea
 
 from gnc.sea_parameters import Mode
 from scenarios.sea_config import SeaScenario
 from scenarios.sea_loop import DITCHED
+from scenarios.studies import run_study
+from tests.run_tables import rows_of
 
 KINDS = ("engine", "throttle", "left_elevon", "right_elevon")
 FAILS, ENDS = 55.0, 130.0
@@ -31,8 +32,8 @@ def flown(designs, tmp_path_factory):
         "criteria": {"settles": False},
     })  # fmt: skip
     path = tmp_path_factory.mktemp("faults") / "run"
-    result = run_sea(scenario, "faults", path, jobs=1, resume=False, progress=lambda *_: None)
-    return {row["fault"]: (row, pd.read_parquet(path / "flights" / f"{row['flight_id']}.parquet")) for row in result.rows}
+    run_study(scenario, "faults", path)
+    return {row["fault"]: (row, pd.read_parquet(path / "flights" / f"{row['flight_id']}.parquet")) for row in rows_of(path)}
 
 
 @pytest.mark.parametrize("kind", KINDS)

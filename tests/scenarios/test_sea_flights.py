@@ -5,17 +5,17 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from sea_cases import AIRFRAME, ASTERN, SPEED, fly, modes, scenario
+from sea_cases import ASTERN, SPEED, fly, modes, work
 
 from gnc.sea_parameters import Mode
-from scenarios.closed_loop import Outcome
-from scenarios.sea_flights import DETAILS, SeaRequest, fly_sea_request, sea_failed
+from scenarios.engine.work import Task
+from scenarios.sea_flights import DETAILS
 from scenarios.sea_metrics import SEA_SUMMARY_COLUMNS
 
 HEARD = {"interval_s": (2.0, 10.0), "latency_max_s": 2.0, "missing": 0.1}
 
 
-def history_of(directory, flight="a"):
+def history_of(directory, flight="trial_00000"):
     return pd.read_parquet(directory / "flights" / f"{flight}.parquet")
 
 
@@ -42,7 +42,7 @@ def test_a_flight_in_wind_tracks_and_crosses_at_the_interval_of_the_apparent_win
     assert row["nu"] == pytest.approx(math.hypot(north, east) / SPEED, rel=1e-9)
     # Settled within 3 bands of 8 m the orbit still moves into place: a centimetre per second of the 19 m/s that cross it.
     assert row["crossing_interval_mean_s"] == pytest.approx(row["crossing_interval_predicted_s"], rel=2e-3)
-    assert row["crossing_count"] == len(result.details["crossings.csv"]) == 6
+    assert row["crossing_count"] == len(result.tables["crossings.csv"]) == 6
     assert row["keepout_violations"] == 0
     # Exact sensors.
     assert row["wind_error_rms_mps"] == pytest.approx(0.0, abs=1e-3)
@@ -51,13 +51,13 @@ def test_a_flight_in_wind_tracks_and_crosses_at_the_interval_of_the_apparent_win
 def test_what_a_flight_records_is_what_the_tables_have_columns_for(windy):
     result, _ = windy
     assert set(result.row) <= set(SEA_SUMMARY_COLUMNS)
-    assert set(result.details["crossings.csv"][0]) == set(DETAILS["crossings.csv"])
-    assert np.all(np.diff([crossing["time_s"] for crossing in result.details["crossings.csv"]]) > 0.0)
+    assert set(result.tables["crossings.csv"][0]) == set(DETAILS["crossings.csv"])
+    assert np.all(np.diff([crossing["time_s"] for crossing in result.tables["crossings.csv"]]) > 0.0)
 
 
 def test_crossings_lie_on_the_plumes_axis_beyond_the_keep_out_radius(windy):
     result, history = windy
-    for crossing in result.details["crossings.csv"]:
+    for crossing in result.tables["crossings.csv"]:
         at = crossing["time_s"]
         north = np.interp(at, history["time_s"], history["north_m"] - history["vessel_north_m"])
         east = np.interp(at, history["time_s"], history["east_m"] - history["vessel_east_m"])
@@ -193,17 +193,42 @@ def test_a_flight_that_does_not_settle_in_time_says_so(tmp_path):
     assert "0 of 5 crossings flown after settling within 20 s; allow more time (flight.duration_max_s)" in row["message"]
 
 
-def test_an_error_that_nobody_thought_of_is_a_row_too(tmp_path):
-    # The directory of the run is gone.
-    request = SeaRequest(
-        flight_id="a", trial="trial", scenario=scenario(start=ASTERN, flight={"duration_max_s": 5.0}), number=0, spreads=None
-    )
-    row = fly_sea_request(request, tmp_path / "gone", AIRFRAME).row
-    assert (row["outcome"], row["criteria_met"]) == ("failed", False)
-    assert "FileNotFoundError" in row["message"]
+@pytest.fixture
+def broken(monkeypatch):
+    """Return a function that lets every flight end in an error."""
+
+    def broken(error):
+        def fly_sea(*_, **__):
+            raise error
+
+        monkeypatch.setattr("scenarios.sea_flights.fly_sea", fly_sea)
+
+    return broken
 
 
-def test_a_flight_that_never_began_is_a_row():
-    request = SeaRequest(flight_id="a", trial="trial", scenario=scenario(), number=0, spreads=None)
-    result = sea_failed(request, Outcome.FAILED, "why")
-    assert result.row == {"flight_id": "a", "trial": "trial", "outcome": "failed", "message": "why", "criteria_met": False}
+def test_an_error_that_nobody_thought_of_is_a_row_too(broken, tmp_path):
+    broken(ZeroDivisionError("division by zero"))
+    result = fly(tmp_path, start=ASTERN)
+    assert (result.row["outcome"], result.row["criteria_met"]) == ("failed", False)
+    # What it was, and where it was raised.
+    assert result.row["message"].startswith("ZeroDivisionError: division by zero (test_sea_flights.py:")
+    # What is known by then is in the tables: the flight that was drawn, and its plan.
+    assert result.row["nu"] == pytest.approx(8.0 / SPEED)
+    assert result.tables["draws.csv"] == [{"flight_id": "trial_00000", "trial": "trial", "nu": result.row["nu"]}]
+    assert set(result.row) <= set(SEA_SUMMARY_COLUMNS)
+    assert not (tmp_path / "flights").exists()
+
+
+def test_a_lack_of_memory_is_no_row_but_ends_the_process(broken, tmp_path):
+    # The crew tries the flight once more, in a process of its own.
+    broken(MemoryError())
+    with pytest.raises(MemoryError):
+        fly(tmp_path, start=ASTERN)
+
+
+def test_a_flight_whose_process_was_lost_is_a_row():
+    result = work().lost(Task(number=0), "why")
+    assert result.lost
+    assert result.tables["summary.csv"] == [
+        {"flight_id": "trial_00000", "trial": "trial", "outcome": "failed", "message": "why", "criteria_met": False}
+    ]

@@ -21,7 +21,7 @@ INTERVAL = 10.0
 def plan():
     manoeuvre = {"at_s": 40.0, "turn_deg": 10.0, "turn_rate_deg_s": 1.0}
     vessel = {"speed_mps": 8.0, "manoeuvres": [manoeuvre]}
-    return plan_sea_flight(scenario(vessel=vessel), flight_id="a", seed=1, airframe=AIRFRAME, spreads=None)
+    return plan_sea_flight(scenario(vessel=vessel), flight_id="a", seed=1, airframe=AIRFRAME, spreads={})
 
 
 def weave(plan, *, duration=100.0, distance=230.0, **columns):
@@ -53,7 +53,8 @@ def weave(plan, *, duration=100.0, distance=230.0, **columns):
 
 
 def record(history, settled_at=0.0, outcome=Outcome.COMPLETED):
-    return SeaRecord(outcome=outcome, message="", mode="tracking", settled_at=settled_at, interventions=[], history=history)
+    figures = {"message": "", "mode": "tracking", "interventions": [], "history": history, "every_step": history}
+    return SeaRecord(outcome=outcome, settled_at=settled_at, **figures)
 
 
 def figures(plan, history, **changes):

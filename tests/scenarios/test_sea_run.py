@@ -4,10 +4,12 @@ import json
 
 import pandas as pd
 import pytest
-from scenarios.sea_run import run_sea
 
+from scenarios.engine.hiring import Hiring
 from scenarios.errors import InputError
 from scenarios.load import load_study
+from scenarios.studies import run_study
+from tests.run_tables import rows_of
 
 TRIAL = """
 study = "sea"
@@ -59,7 +61,7 @@ def quiet(doing, done, total):
 
 def run(path, out, *overrides, jobs=1, resume=False, progress=quiet):
     study = load_study(str(path), overrides)
-    return run_sea(study, path.stem, out, jobs=jobs, resume=resume, progress=progress, overrides=overrides)
+    return run_study(study, path.stem, out, hire=Hiring(jobs=jobs), resume=resume, progress=progress, overrides=overrides)
 
 
 def tables(directory):
@@ -85,20 +87,43 @@ def test_the_same_rows_come_from_one_process_and_from_two(listed, whole, tmp_pat
 def test_a_share_of_the_flights_is_the_first_ones_of_each_trial(listed, whole, tmp_path):
     result = run(listed, tmp_path / "share", "share=0.3")
     # 0.3 of four, rounded up.
-    assert result.trials == {"one": 2, "two": 2}
+    assert result.planned == result.summary.done == 4
+    assert [row["trial"] for row in rows_of(tmp_path / "share")] == ["one", "one", "two", "two"]
     every, part = tables(whole)[0], tables(tmp_path / "share")[0]
     first = every[every["flight_id"].isin(part["flight_id"])].reset_index(drop=True)
     pd.testing.assert_frame_equal(first, part, check_exact=True)
 
 
 def test_a_key_of_the_trials_is_set_in_every_one(listed, tmp_path):
-    result = run(listed, tmp_path / "run", "keepout.radius_m=150", "seed=5", "share=0.1")
-    assert [row["keepout_radius_m"] for row in result.rows] == [150.0, 150.0]
+    run(listed, tmp_path / "run", "keepout.radius_m=150", "seed=5", "share=0.1")
+    assert [row["keepout_radius_m"] for row in rows_of(tmp_path / "run")] == [150.0, 150.0]
     manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
     assert {trial["seed"] for trial in manifest["trials"].values()} == {5}
     assert {trial["keepout"]["radius_m"] for trial in manifest["trials"].values()} == {150.0}
     assert manifest["flights_planned"] == 2
     assert manifest["flights_met_criteria"] == 2
+
+
+def test_a_run_that_is_to_keep_no_history_keeps_those_that_tell_most(listed, whole, tmp_path):
+    # Of each trial the closest flight and the median one; they are flown again for it, and their rows are as they were.
+    assert run(listed, tmp_path / "run", "histories=0").all_met
+    assert same(whole, tmp_path / "run")
+    told = set()
+    for _, flights in pd.read_csv(whole / "summary.csv").groupby("trial"):
+        nearest_first = list(flights.sort_values("min_distance_m")["flight_id"])
+        # Of four, the median is taken to be the third: half of all are nearer.
+        told |= {f"{nearest_first[0]}.parquet", f"{nearest_first[2]}.parquet"}
+    kept = tmp_path / "run" / "flights"
+    assert {path.name for path in kept.iterdir()} == told
+    for name in told:
+        pd.testing.assert_frame_equal(pd.read_parquet(kept / name), pd.read_parquet(whole / "flights" / name), check_exact=True)
+
+
+def test_what_was_drawn_for_each_flight_is_a_table(whole):
+    drawn, flown = rows_of(whole, "draws.csv"), rows_of(whole)
+    assert [row["flight_id"] for row in drawn] == [row["flight_id"] for row in flown]
+    assert [row["wind.speed_mps"] for row in drawn] == [row["wind_speed_mps"] for row in flown]
+    assert [row["nu"] for row in drawn] == [row["nu"] for row in flown]
 
 
 def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(listed, whole, tmp_path):
@@ -112,15 +137,14 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(li
     broken = tmp_path / "broken"
     result = run(listed, broken, progress=interrupt_once)
     assert result.interrupted
-    # The second was not yet due to be written, two seconds after the first; it is on disk all the same.
-    assert 2 <= result.done == len(pd.read_csv(broken / "summary.csv")) < 8
+    assert 2 <= result.summary.done == len(rows_of(broken)) < 8
     assert json.loads((broken / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
     flown = []
 
     def count(doing, done, total):
         flown.append(done)
 
-    kept = result.done
+    kept = result.summary.done
     result = run(listed, broken, resume=True, progress=count)
     assert not result.interrupted
     # It goes on where it was, after the design of the autopilot.
@@ -177,7 +201,7 @@ def test_trials_that_need_different_autopilots_are_refused(tmp_path):
 
 
 def test_what_happened_is_told_in_lines(listed, tmp_path):
-    lines = run(listed, tmp_path / "run", "share=0.1", "vessel.speed_mps=19.4", "speed_ratio=[0, 9]").lines()
+    lines = run(listed, tmp_path / "run", "share=0.1", "vessel.speed_mps=19.4", "speed_ratio=[0, 9]").summary.lines
     assert lines[0] == "2 flights planned, 2 done"
     assert lines[1].startswith("  one: 0 of 1 met every criterion; 0 entries")
     assert lines[3].startswith("    one_00000: infeasible: the vessel moves at up to")

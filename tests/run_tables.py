@@ -1,0 +1,18 @@
+"""Reading what a run or a flight left: rows of its tables, and time histories."""
+
+import io
+
+import pandas as pd
+
+
+def rows_of(directory, table="summary.csv"):
+    """Return the rows of a run's table; a figure that a row lacks is no key of it."""
+    frame = pd.read_csv(directory / table, keep_default_na=False, na_values=[""])
+    return [{key: value for key, value in row.items() if not pd.isna(value)} for row in frame.to_dict("records")]
+
+
+def history_in(result):
+    """Return the time history among the files of a flight's result, or none."""
+    histories = [pd.read_parquet(io.BytesIO(content)) for content in result.files.values()]
+    assert len(histories) <= 1
+    return histories[0] if histories else None

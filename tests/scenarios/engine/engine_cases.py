@@ -1,0 +1,98 @@
+"""Work and a study of a few milliseconds, whose tasks do what a test wants of them."""
+
+import os
+import uuid
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from scenarios.engine.fingerprint import fingerprint
+from scenarios.engine.study import Summary, write_tables
+from scenarios.engine.work import Result, Task
+
+TABLE = "rows.csv"
+COLUMNS = ("number", "square", "reason")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Squares:
+    """Squares the numbers of its tasks.
+
+    Attributes
+    ----------
+    marks : directory in which each task that is begun leaves a file
+    does : what a task does before, by its number
+    text : how long a text its row has
+    """
+
+    marks: Path
+    does: Mapping[int, Callable[[], object]] = field(default_factory=dict)
+    text: int = 0
+    model: Path | None = None
+
+    def moved(self, _):
+        return self
+
+    def fly(self, task):
+        (self.marks / f"{task.number}-{os.getpid()}-{uuid.uuid4().hex}").touch()
+        if task.number in self.does:
+            self.does[task.number]()
+        # A row that is taken down for a task that was flown for its file alone would be seen.
+        square = -1.0 if task.recorded else float(task.number**2)
+        row = {"number": task.number, "square": square, "text": "x" * self.text}
+        files = {f"files/{task.number}.txt": b"recorded" if task.recorded else b"flown"}
+        return Result(task=task, tables={TABLE: [row]}, files=files)
+
+    def lost(self, task, reason):
+        return Result(task=task, tables={TABLE: [{"number": task.number, "reason": reason}]}, lost=True)
+
+
+def begun(marks, number):
+    """Return how often a task was begun."""
+    return len(list(marks.glob(f"{number}-*")))
+
+
+def workers(marks):
+    """Return the processes in which tasks were begun."""
+    return {int(mark.name.split("-")[1]) for mark in marks.iterdir()}
+
+
+class SquareStudy:
+    """Squares numbers in batches; then some of them again, to be recorded.
+
+    Parameters
+    ----------
+    work : what is done
+    batches : numbers of tasks
+    recorded : of the tasks that are to be recorded where they have not been
+    config_hash : of the study
+    """
+
+    what = "squares"
+
+    def __init__(self, work, batches=(range(8),), recorded=(), config_hash="a"):
+        self._work, self._batches, self._recorded, self.config_hash = work, batches, recorded, config_hash
+        self.planned = sum(map(len, batches))
+        self.seen = []
+
+    def opening(self):
+        return {"config_hash": self.config_hash, "fingerprint": fingerprint()}
+
+    def work(self, _run):
+        return self._work
+
+    def conduct(self, fly, _run, journal):
+        for batch in self._batches:
+            fly(Task(number=i) for i in batch)
+            self.seen.append(journal.done())
+        fly([Task(number=i, recorded=True) for i in self._recorded])
+
+    def finish(self, _run, _journal, progress):
+        progress("finishing", self.planned, self.planned)
+
+    def export(self, run, journal):
+        write_tables(run, journal, {TABLE: COLUMNS})
+
+    def summary(self, journal):
+        done = journal.items()
+        return Summary(done=done, met=done == self.planned, lines=[], manifest={"squares_done": done})

@@ -1,0 +1,91 @@
+"""A real Dask scheduler and two worker processes on loopback."""
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+
+import pandas as pd
+import pytest
+
+from scenarios.engine.hiring import Hiring
+from scenarios.errors import InputError
+from scenarios.load import load_study
+from scenarios.studies import run_study
+
+SETTINGS = [
+    "flights=60",
+    "turbulence.gusts=2",
+    "turbulence.gust_length_s=2.0",
+    "histories=5",
+    "flight.duration_max_s=20.0",
+    "criteria.settles=false",
+]
+"""The X8 in JSBSim, so that its model has to reach the workers too."""
+
+
+def free_port():
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+@contextlib.contextmanager
+def dask(command, *words, cwd):
+    """Run a command of Dask's in a group of its own, and end the group."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", f"distributed.cli.{command}", *words],
+        cwd=cwd,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    try:
+        yield process
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+
+def fly(out, *, progress=lambda *_: None, **hiring):
+    return run_study(load_study("sea_together", SETTINGS), "sea_together", out, hire=Hiring(**hiring), progress=progress)
+
+
+def test_a_study_that_loses_a_worker_in_the_middle_has_the_rows_of_a_local_one(tmp_path):
+    assert fly(tmp_path / "local", jobs=2).all_met
+    host, port = "127.0.0.1", str(free_port())
+    address = f"tcp://{host}:{port}"
+    worker = ("dask_worker", address, "--nthreads", "1", "--no-dashboard")
+    with (
+        dask("dask_scheduler", "--host", host, "--port", port, "--no-dashboard", cwd=tmp_path),
+        dask(*worker, cwd=tmp_path) as first,
+        dask(*worker, cwd=tmp_path),
+    ):
+        killed = []
+
+        def kill_in_the_middle(doing, done, _):
+            if done == 10 and not killed:
+                killed.append(done)
+                os.killpg(first.pid, signal.SIGKILL)
+
+        result = fly(tmp_path / "dask", executor="dask", scheduler=address, progress=kill_in_the_middle)
+    assert killed == [10]
+    assert result.all_met
+    for table in ("summary.csv", "crossings.csv", "interventions.csv", "draws.csv"):
+        local, remote = (
+            pd.read_csv(tmp_path / run / table).drop(columns="wall_time_s", errors="ignore") for run in ("local", "dask")
+        )
+        pd.testing.assert_frame_equal(local, remote, check_exact=True)
+    for path in sorted((tmp_path / "local" / "flights").iterdir()):
+        assert (tmp_path / "dask" / "flights" / path.name).read_bytes() == path.read_bytes()
+
+
+def test_a_scheduler_that_is_not_there_is_named_in_one_line(tmp_path, monkeypatch):
+    monkeypatch.setattr("scenarios.engine.dask_crew._CONNECT_TIME", 1.0)
+    with pytest.raises(InputError, match=r"--scheduler tcp://127\.0\.0\.1:\d+ does not answer") as refused:
+        fly(tmp_path / "run", executor="dask", scheduler=f"tcp://127.0.0.1:{free_port()}")
+    assert "\n" not in str(refused.value)

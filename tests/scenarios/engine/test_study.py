@@ -1,0 +1,274 @@
+"""A run directory that is flown, interrupted, out of room and gone on with."""
+
+import errno
+import json
+import os
+import re
+import signal
+
+import pytest
+from engine_cases import TABLE, Squares, SquareStudy, begun
+
+from scenarios.engine.hiring import Hiring
+from scenarios.engine.journal import Journal
+from scenarios.engine.study import fly_study
+from scenarios.errors import InputError
+from scenarios.run_directory import RunDirectory
+from tests.run_tables import rows_of
+
+
+@pytest.fixture
+def marks(tmp_path):
+    (tmp_path / "marks").mkdir()
+    return tmp_path / "marks"
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "run"
+
+
+def fly(study, out, *, resume=False, jobs=1, progress=lambda *_: None):
+    return fly_study(study, out, hire=Hiring(jobs=jobs), resume=resume, progress=progress)
+
+
+def interrupt_at(count):
+    def progress(doing, done, total):
+        if doing == "flying" and done == count:
+            raise KeyboardInterrupt
+
+    return progress
+
+
+def manifest(out):
+    return json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def whole(marks, tmp_path):
+    """The table of a run that nothing disturbed."""
+    (tmp_path / "others").mkdir()
+    fly(SquareStudy(Squares(marks=tmp_path / "others")), tmp_path / "whole")
+    return (tmp_path / "whole" / TABLE).read_bytes()
+
+
+def test_a_run_has_its_table_its_files_and_says_how_it_ended(marks, out):
+    told = []
+    result = fly(SquareStudy(Squares(marks=marks)), out, progress=lambda *report: told.append(report))
+    assert (result.all_met, result.interrupted, result.planned, result.summary.done) == (True, False, 8, 8)
+    assert (result.what, result.directory) == ("squares", out)
+    assert rows_of(out, TABLE) == [{"number": i, "square": float(i**2)} for i in range(8)]
+    assert sorted(path.name for path in (out / "files").iterdir()) == [f"{i}.txt" for i in range(8)]
+    assert (manifest(out)["state"], manifest(out)["squares_done"]) == ("complete", 8)
+    assert told == [*(("flying", i, 8) for i in range(9)), ("finishing", 8, 8)]
+
+
+def test_the_table_is_the_same_from_one_process_and_from_two(marks, out, whole):
+    assert fly(SquareStudy(Squares(marks=marks)), out, jobs=2).all_met
+    assert (out / TABLE).read_bytes() == whole
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_an_interrupted_run_goes_on_where_it_was_and_comes_to_the_same(marks, out, whole, jobs):
+    study = SquareStudy(Squares(marks=marks))
+    first = fly(study, out, jobs=jobs, progress=interrupt_at(3))
+    assert first.interrupted
+    assert not first.all_met
+    assert first.summary.done == 3
+    assert manifest(out)["state"] == "interrupted"
+    kept = [row["number"] for row in rows_of(out, TABLE)]
+    assert len(kept) == 3
+    told = []
+    again = fly(study, out, jobs=jobs, resume=True, progress=lambda *report: told.append(report))
+    assert again.all_met
+    assert manifest(out)["state"] == "complete"
+    # It says so from the beginning, and nothing that was done is done again.
+    assert [done for doing, done, _ in told if doing == "flying"] == [3, 4, 5, 6, 7, 8]
+    assert [begun(marks, number) for number in kept] == [1, 1, 1]
+    assert (out / TABLE).read_bytes() == whole
+
+
+def test_a_run_that_is_done_can_be_gone_on_with_and_flies_nothing(marks, out, whole):
+    study = SquareStudy(Squares(marks=marks))
+    fly(study, out)
+    (out / TABLE).unlink()
+    assert fly(study, out, resume=True).all_met
+    assert [begun(marks, number) for number in range(8)] == [1] * 8
+    assert (out / TABLE).read_bytes() == whole
+
+
+def test_a_run_that_was_killed_before_its_tables_were_written_goes_on_too(marks, out, whole):
+    study = SquareStudy(Squares(marks=marks))
+    fly(study, out, progress=interrupt_at(5))
+    # As kill -9 leaves it: what was being written lies about, and nothing says that it has ended.
+    (out / TABLE).unlink()
+    (out / "manifest.json").write_text(json.dumps(study.opening() | {"state": "running"}), encoding="utf-8")
+    parts = [out / f".{TABLE}.123.part", out / "files" / ".5.txt.123.part"]
+    for part in parts:
+        part.write_bytes(b"half")
+    assert fly(study, out, resume=True).all_met
+    assert not any(part.exists() for part in parts)
+    assert sum(begun(marks, number) == 1 for number in range(8)) >= 5
+    assert (out / TABLE).read_bytes() == whole
+
+
+def test_all_of_a_batch_is_in_the_journal_when_it_has_been_flown(marks, out):
+    study = SquareStudy(Squares(marks=marks), batches=(range(3), range(3, 8), range(8, 9)))
+    assert fly(study, out, jobs=2).summary.done == 9
+    assert study.seen == [{*range(3)}, {*range(8)}, {*range(9)}]
+    # Also where a part of it had been flown before.
+    assert fly(study, out, resume=True, jobs=2).all_met
+    assert [begun(marks, number) for number in range(9)] == [1] * 9
+
+
+def test_tasks_that_are_recorded_are_flown_for_their_files_alone(marks, out, whole):
+    told = []
+    study = SquareStudy(Squares(marks=marks), recorded=(2, 5))
+    fly(study, out, progress=lambda *report: told.append(report))
+    assert [begun(marks, number) for number in range(8)] == [1, 1, 2, 1, 1, 2, 1, 1]
+    assert (out / "files" / "2.txt").read_bytes() == b"recorded"
+    assert (out / "files" / "3.txt").read_bytes() == b"flown"
+    # Neither their rows nor their number change.
+    assert (out / TABLE).read_bytes() == whole
+    assert [done for doing, done, _ in told if doing == "flying"] == list(range(9))
+
+
+def test_a_task_whose_process_was_lost_is_a_row_and_is_tried_again_when_the_run_goes_on(marks, out, whole):
+    def dies():
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    result = fly(SquareStudy(Squares(marks=marks, does={4: dies})), out)
+    assert not result.all_met
+    assert not result.interrupted
+    lost = rows_of(out, TABLE)[4]
+    assert lost["number"] == 4
+    assert "SIGKILL" in lost["reason"]
+    assert manifest(out)["state"] == "complete"
+    assert fly(SquareStudy(Squares(marks=marks)), out, resume=True).all_met
+    assert [begun(marks, number) for number in range(8)] == [1, 1, 1, 1, 3, 1, 1, 1]
+    assert (out / TABLE).read_bytes() == whole
+
+
+def full_after(count, name):
+    """Return a writing that finds the disk full after some files."""
+    written = 0
+    write = getattr(RunDirectory, name)
+
+    def write_until_full(self, *arguments):
+        nonlocal written
+        if written == count:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        written += 1
+        write(self, *arguments)
+
+    return write_until_full
+
+
+def refused_for_room(study, out):
+    words = rf"no room left for '{re.escape(str(out))}'; .* is kept: .* go on with --resume"
+    with pytest.raises(InputError, match=words) as refused:
+        fly(study, out)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_disk_that_is_full_keeps_what_is_done(marks, out, whole, monkeypatch):
+    study = SquareStudy(Squares(marks=marks))
+    with monkeypatch.context() as patch:
+        patch.setattr(RunDirectory, "write_bytes", full_after(3, "write_bytes"))
+        refused_for_room(study, out)
+    told = []
+    assert fly(study, out, resume=True, progress=lambda *report: told.append(report)).all_met
+    assert told[0] == ("flying", 3, 8)
+    assert [begun(marks, number) for number in range(3)] == [1] * 3
+    assert (out / TABLE).read_bytes() == whole
+
+
+def test_a_disk_that_is_full_of_the_journal_keeps_what_is_done(marks, out, whole, monkeypatch):
+    class Small(Journal):
+        def __init__(self, path):
+            super().__init__(path)
+            # Of 4096 bytes each: room for the schema and a few rows.
+            self._database.execute("PRAGMA max_page_count = 8")
+
+    study = SquareStudy(Squares(marks=marks, text=3000))
+    with monkeypatch.context() as patch:
+        patch.setattr("scenarios.engine.study.Journal", Small)
+        refused_for_room(study, out)
+    told = []
+    assert fly(study, out, resume=True, progress=lambda *report: told.append(report)).all_met
+    kept = told[0][1]
+    assert 0 < kept < 8
+    assert [begun(marks, number) for number in range(kept)] == [1] * kept
+    assert (out / TABLE).read_bytes() == whole
+
+
+def test_a_disk_that_is_full_at_the_end_keeps_everything(marks, out, whole, monkeypatch):
+    study = SquareStudy(Squares(marks=marks))
+    with monkeypatch.context() as patch:
+        # The manifest is written at the beginning, and then at the end.
+        patch.setattr(RunDirectory, "write_json", full_after(1, "write_json"))
+        refused_for_room(study, out)
+    assert fly(study, out, resume=True).all_met
+    assert [begun(marks, number) for number in range(8)] == [1] * 8
+    assert (out / TABLE).read_bytes() == whole
+
+
+def test_any_other_trouble_with_files_is_not_taken_for_a_full_disk(marks, out, monkeypatch):
+    def denied(*_):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr(RunDirectory, "write_bytes", denied)
+    with pytest.raises(PermissionError):
+        fly(SquareStudy(Squares(marks=marks)), out)
+
+
+def test_a_run_that_other_code_began_is_not_gone_on_with(marks, out):
+    study = SquareStudy(Squares(marks=marks))
+    fly(study, out, progress=interrupt_at(3))
+    before = manifest(out)
+    for name in ("jsbsim", "source"):
+        other = before | {"fingerprint": before["fingerprint"] | {name: "0.0.1"}}
+        (out / "manifest.json").write_text(json.dumps(other), encoding="utf-8")
+        words = rf"was begun with {name} 0\.0\.1, now it is .*: results would not go together"
+        with pytest.raises(InputError, match=words) as refused:
+            fly(study, out, resume=True)
+        assert "\n" not in str(refused.value)
+    # Nothing of it was touched.
+    assert len(list((out / "files").iterdir())) >= 3
+    (out / "manifest.json").write_text(json.dumps(before), encoding="utf-8")
+    assert fly(study, out, resume=True).all_met
+
+
+def test_a_run_of_another_study_is_neither_gone_on_with_nor_overwritten(marks, out):
+    fly(SquareStudy(Squares(marks=marks)), out)
+    with pytest.raises(InputError, match="was run with another configuration"):
+        fly(SquareStudy(Squares(marks=marks), config_hash="b"), out, resume=True)
+    with pytest.raises(InputError, match="holds another run"):
+        fly(SquareStudy(Squares(marks=marks)), out)
+    assert [begun(marks, number) for number in range(8)] == [1] * 8
+
+
+def test_a_run_that_another_program_flies_is_left_to_it(marks, out):
+    study = SquareStudy(Squares(marks=marks))
+    fly(study, out, progress=interrupt_at(3))
+    other = Journal(out / "journal.sqlite")
+    before = (out / "manifest.json").read_bytes()
+    (out / ".table.part").touch()  # what the other one is writing
+    with pytest.raises(InputError, match="is being flown by another program"):
+        fly(study, out, resume=True)
+    other.close()
+    assert (out / ".table.part").exists()
+    assert (out / "manifest.json").read_bytes() == before
+    assert fly(study, out, resume=True).all_met
+
+
+def test_a_journal_that_is_damaged_further_in_is_refused_in_a_line(marks, out):
+    study = SquareStudy(Squares(marks=marks))
+    fly(study, out)
+    content = bytearray((out / "journal.sqlite").read_bytes())
+    # The first page says what there is, the second holds it.
+    content[4096:8192] = b"\xff" * 4096
+    (out / "journal.sqlite").write_bytes(content)
+    with pytest.raises(InputError, match=r"journal\.sqlite' is damaged; start a new run") as refused:
+        fly(study, out, resume=True)
+    assert "\n" not in str(refused.value)
