@@ -136,6 +136,10 @@ def _report(directory: Path) -> int:
     except ReportError as error:
         print(f"error: {error}", file=sys.stderr)
         return BAD_INPUT
+    except OSError as error:
+        again = f"python -m reports.build {directory}"
+        print(f"error: the report cannot be written: {error.strerror}; mend that, and build it with: {again}", file=sys.stderr)
+        return BAD_INPUT
     except KeyboardInterrupt:
         print(f"report interrupted; build it with: python -m reports.build {directory}", file=sys.stderr)
         return INTERRUPTED

@@ -235,10 +235,10 @@ def sea_unmet(row: Row, criteria: SeaCriteria) -> list[str]:
         checks.append((math.isfinite(row["settling_time_s"]), "did not settle"))
     if criteria.crossing_interval_error is not None:
         interval, predicted = row.get("crossing_interval_mean_s", nothing), row["crossing_interval_predicted_s"]
-        met = abs(interval / predicted - 1.0) <= criteria.crossing_interval_error
-        checks.append(
-            (met, f"mean crossing interval {interval:.3f} s, {100.0 * (interval / predicted - 1.0):+.1f} % of {predicted:.3f} s")
-        )
+        error = interval / predicted - 1.0
+        found = f"mean crossing interval {interval:.3f} s, {100.0 * error:+.1f} % of {predicted:.3f} s"
+        message = "too few crossings for an interval" if math.isnan(error) else found
+        checks.append((abs(error) <= criteria.crossing_interval_error, message))
     if criteria.tracking_error_rms_m is not None:
         error = row.get("tracking_error_rms_m", nothing)
         checks.append((error <= criteria.tracking_error_rms_m, f"rms tracking error {error:.2f} m"))
