@@ -16,9 +16,9 @@ from scenarios.engine.work import Row, Task
 from scenarios.histories import history_path
 from scenarios.monte_carlo_config import FalsifyScenario
 from scenarios.run_directory import RunDirectory
+from scenarios.scenario_file import scenario_file
 from scenarios.sea_draws import drawn_flight
 from scenarios.sea_study import SUMMARY, SeaStudy
-from scenarios.toml_files import scenario_file
 
 UNFLOWN = 1e6
 """Clearance of a flight that has none, because it was not flown [m]: no optimum, and finite, as the search needs it."""
