@@ -5,14 +5,23 @@ peak memory is that of the study alone.
 """
 
 import json
+import math
 import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import dataclass
 from pathlib import Path
+
+from scenarios.engine.hiring import DASK, LOCAL, Hiring
+from scenarios.engine.journal import Journal
+from scenarios.engine.work import Result, Task
 
 KINEMATIC = ("sea_wind", "fidelity=kinematic", "flight.duration_max_s=2", "criteria.settles=false", "flight.crossings=0")
 SIX_DOF = ("monte_carlo", "sampling=random", "histories=100000")
+
+TASKS = 3_000
+"""Tasks that do nothing, by which it is measured how many results a second the engine takes."""
 
 Measured = tuple[float, float, float]
 """Time from the first flight to the last table [s], peak memory of the program that hands out the flights [MiB], and size [MiB]."""
@@ -32,6 +41,40 @@ def main() -> None:
     for rate in (5, 10, 20):
         seconds, _, size = _study(*SIX_DOF, "flights=20", f"flight.log_rate_hz={rate}")
         print(f"{rate:8} Hz {seconds / 20:8.3f} s {size / 20:8.2f} MiB")
+    print("results of nothing at all, two processes: journal included, per second")
+    for executor in (LOCAL, DASK):
+        print(f"{executor:>8} {_throughput(executor):8.0f}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Nothing:
+    """Work that costs nothing but its handing out and its result, which is as large as a flight's."""
+
+    model: Path | None = None
+
+    def moved(self, _: Path) -> "Nothing":
+        return self
+
+    def fly(self, task: Task) -> Result:
+        row = {"flight_id": f"nothing_{task.number:05d}"} | {f"figure_{i}": math.pi * (i + task.number) for i in range(100)}
+        return Result(task=task, tables={"summary.csv": [row]})
+
+    def lost(self, task: Task, reason: str) -> Result:
+        raise RuntimeError(f"task {task.number}: {reason}")
+
+
+def _throughput(executor: str) -> float:
+    """Return how many results a second are in the journal."""
+    with tempfile.TemporaryDirectory() as folder, Hiring(jobs=2, executor=executor)(Nothing()) as crew:
+        journal = Journal(Path(folder) / "journal.sqlite")
+        flown = crew.fly(Task(number=i) for i in range(TASKS))
+        journal.add(next(flown))
+        began = time.perf_counter()
+        for result in flown:
+            journal.add(result)
+        seconds = time.perf_counter() - began
+        journal.close()
+    return (TASKS - 1) / seconds
 
 
 def _study(name: str, *overrides: str) -> Measured:

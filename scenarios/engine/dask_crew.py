@@ -6,8 +6,10 @@ system in common. Dask itself gives the task of a worker that dies to another.
 
 import faulthandler
 import logging
+import math
 import pickle
 import threading
+import time
 import uuid
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -23,6 +25,9 @@ from scenarios.errors import InputError
 
 _AHEAD = 2
 """Tasks per worker that are handed in: the one at hand, and the next, so that it does not wait for it."""
+
+_COUNT_INTERVAL = 1.0
+"""Shortest time between two counts of the workers [s]."""
 
 _CONNECT_TIME = 15.0
 """Time for the scheduler to answer, and for a worker to be there [s]."""
@@ -47,6 +52,7 @@ class DaskCrew:
         self._work, self._scheduler, self._jobs, self._limits = work, scheduler, jobs, limits
         self._name = f"plume-flight-study-{uuid.uuid4().hex}"
         self._cluster: Any = None
+        self._count, self._counted_at = 1, -math.inf
 
     def __enter__(self) -> Self:
         """Connect, and send the work to every worker."""
@@ -99,7 +105,7 @@ class DaskCrew:
         waiting = iter(tasks)
         tried: set[int] = set()
         flying: dict[Any, Task] = {}
-        coming: Any = distributed.as_completed(raise_errors=False)
+        coming: Any = distributed.as_completed(with_results=True, raise_errors=False)
 
         def submit(task: Task) -> None:
             future = self._client.submit(_fly, self._name, task, pure=False, retries=0)
@@ -107,25 +113,35 @@ class DaskCrew:
             coming.add(future)
 
         def hand_out() -> None:
-            room = _AHEAD * max(1, len(self._client.scheduler_info(n_workers=-1)["workers"])) - len(flying)
-            for _ in range(room):
+            for _ in range(_AHEAD * self._workers() - len(flying)):
                 task = next(waiting, None)
                 if task is None:
                     return
                 submit(task)
 
         hand_out()
-        for future in coming:
-            task = flying.pop(future)
-            if future.status == "finished":
-                yield future.result()
-            elif task.number in tried or isinstance(future.exception(), distributed.KilledWorker):
-                yield self._work.lost(task, _reason(future.exception()))
-            else:
-                tried.add(task.number)
-                submit(task)
-            future.release()
+        for batch in coming.batches():
+            results: list[Result] = []
+            for future, found in batch:
+                task = flying.pop(future)
+                if future.status == "finished":
+                    results.append(found)
+                elif task.number in tried or isinstance(future.exception(), distributed.KilledWorker):
+                    results.append(self._work.lost(task, _reason(future.exception())))
+                else:
+                    tried.add(task.number)
+                    submit(task)
+                future.release()
             hand_out()
+            yield from results
+
+    def _workers(self) -> int:
+        """Return how many workers there are, or were a moment ago: they come and go, and asking takes milliseconds."""
+        now = time.monotonic()
+        if now - self._counted_at > _COUNT_INTERVAL:
+            self._counted_at = now
+            self._count = max(1, len(self._client.scheduler_info(n_workers=-1)["workers"]))
+        return self._count
 
 
 def _reason(error: BaseException | None) -> str:

@@ -72,6 +72,8 @@ def test_help_and_list_answer():
         (["sweep_nu", "--sed", "5"], ["--sed", "--help"]),
         (["sweep_nu", "--scheduler", "tcp://127.0.0.1:1"], ["--scheduler is tcp://127.0.0.1:1", "add --executor dask"]),
         (["sea_trial", "--set", "trials=['sea_nowhere']"], ["unknown scenario 'sea_nowhere'", "sea_wind"]),
+        (["sweep_nu", "--scheduler", "tcp://host:1"], ["--scheduler is tcp://host:1 with --executor local", "--executor dask"]),
+        (["sweep_nu", "--executor", "slurm"], ["--executor", "'slurm'", "'local', 'dask'"]),
     ],
 )
 def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path):
