@@ -10,6 +10,7 @@ from scenarios.engine.journal import Journal
 from scenarios.engine.study import Fly, Progress, Study, Summary
 from scenarios.engine.work import Row, Task, Work
 from scenarios.errors import InputError
+from scenarios.flights import STUDY
 from scenarios.load import checked
 from scenarios.run_directory import RunDirectory
 from scenarios.sea_config import SeaScenario
@@ -93,7 +94,11 @@ class Replay:
     def opening(self) -> dict[str, Any]:
         """Return what the manifest says before anything has been flown."""
         manifest = self._study.opening()
-        again = {"title": f"{manifest['title']}: {self._flight_id}, flown again", "replayed": self._flight_id}
+        again: dict[str, Any] = {"title": f"{manifest['title']}: {self._flight_id}, flown again", "replayed": self._flight_id}
+        if "trials" in manifest:
+            again["trials"] = {trial: config | {"flights": 1} for trial, config in manifest["trials"].items()}
+        else:
+            again["variants"] = {self._flight_id: STUDY}
         return manifest | again | {"config_hash": self.config_hash, "flights_planned": 1}
 
     def work(self, run: RunDirectory) -> Work:
@@ -108,8 +113,10 @@ class Replay:
         """Leave it at that."""
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write its tables."""
+        """Write its tables; the flight is what it is about, also if it was a comparison."""
         self._study.export(run, journal)
+        if self._table != _TABLES[0]:
+            (run.path / self._table).replace(run.path / _TABLES[0])
 
     def summary(self, journal: Journal) -> Summary:
         """Return whether it went as it did the first time."""

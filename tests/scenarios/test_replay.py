@@ -6,7 +6,8 @@ import shutil
 import pandas as pd
 import pytest
 
-from reports.build import build_reports
+from reports.content import content
+from reports.run_data import read_run
 from scenarios.engine.hiring import Hiring
 from scenarios.engine.study import fly_study
 from scenarios.errors import InputError
@@ -68,7 +69,7 @@ def test_a_flight_is_flown_again_identically_with_every_step_of_the_guidance(run
     assert result.all_met
     assert result.summary.lines[-1].startswith("identical to the flight in")
     rows = pd.read_csv(runs / run / table).drop(columns="wall_time_s")
-    again = pd.read_csv(tmp_path / "again" / table).drop(columns="wall_time_s")
+    again = pd.read_csv(tmp_path / "again" / "summary.csv").drop(columns="wall_time_s")
     one = rows[rows["flight_id"] == flight_id].reset_index(drop=True)
     pd.testing.assert_frame_equal(one, again, check_exact=True, check_dtype=False)
     samples = pd.read_parquet(runs / run / "flights" / f"{flight_id}.parquet")
@@ -78,10 +79,14 @@ def test_a_flight_is_flown_again_identically_with_every_step_of_the_guidance(run
     assert steps["time_s"].diff()[1:].to_numpy() == pytest.approx(0.05, abs=1e-9)
 
 
-def test_a_report_of_one_flight_is_built(runs, tmp_path):
-    replay(runs / "sea" / "flights" / "two_00001.parquet", tmp_path / "again")
-    html, _ = build_reports(tmp_path / "again")
-    assert "two_00001, flown again" in html.read_text(encoding="utf-8")
+@pytest.mark.parametrize(("run", "flight_id"), [("sea", "two_00001.parquet"), ("sweep", "nu_0.50_no_preview")])
+def test_a_report_of_one_flight_is_about_that_flight(runs, tmp_path, run, flight_id):
+    replay(runs / run / "flights" / flight_id, tmp_path / "again")
+    report = content(read_run(tmp_path / "again"))
+    assert report.title.endswith(f"{flight_id.removesuffix('.parquet')}, flown again")
+    assert "Nothing was flown" not in report.verdict.headline
+    assert "1 of 1 flights" in report.verdict.detail
+    assert not [failure for failure in report.verdict.failures if "not flown yet" in failure]
 
 
 def test_a_flight_that_goes_another_way_is_told_with_what_has_changed(runs, tmp_path):
