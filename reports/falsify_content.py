@@ -37,29 +37,26 @@ def _in_words(config: dict[str, Any], flown: pd.DataFrame) -> str:
         else f"The worst that it found came {-least:.1f} m into the keep-out area."
     )
     return (
-        f"Differential evolution over {len(config['draws'])} inputs within their declared ranges: {search['population']} flights a"
-        f" generation, {search['generations']} generations after a Sobol sequence. {found} A search finds what is there to be"
-        " found within its flights; it proves no bound. The worst flights are in the directory worst/, as scenario files that fly"
-        " again identically."
+        f"Differential evolution over {len(config['draws'])} inputs within their declared ranges: up to {search['population']}"
+        f" flights a generation, {search['generations']} generations after a Sobol sequence. {found} A search finds what is there"
+        " to be found within its flights; it proves no bound. The worst flights are in the directory worst/, as scenario files that"
+        " fly again identically."
     )
 
 
 def search_chart(flown: pd.DataFrame, population: int) -> Chart:
-    """Return how close to the keep-out area each flight came, and the closest so far, over the generations."""
-    number = np.array([int(str(flight_id).rsplit("_", 1)[1]) for flight_id in flown["flight_id"]], dtype=np.float64)
-    generation, distance = np.floor(number / population), clearance(flown)
+    """Return how close to the keep-out area each flight came, in the order of the search, and the closest so far."""
+    number, distance = np.arange(len(flown), dtype=np.float64), clearance(flown)
     every = max(1, -(-len(flown) // _POINTS_MAX))
-    each = np.unique(generation)
-    closest = np.array([np.min(distance[generation == g]) for g in each])
-    median = np.array([np.median(distance[generation == g]) for g in each])
+    median = pd.Series(distance).rolling(population, min_periods=1).median().to_numpy()
     lines = [
-        Line(x=generation[::every], y=distance[::every], label="a flight", colour="sky", style="points"),
-        Line(x=each, y=median, label="median of the generation", colour="orange"),
-        Line(x=each, y=np.minimum.accumulate(closest), label="closest so far", colour="blue"),
-        Line(x=np.array([each[0], each[-1]]), y=np.zeros(2), label="r_min", colour="vermillion", style="dash"),
+        Line(x=number[::every], y=distance[::every], label="a flight", colour="sky", style="points"),
+        Line(x=number, y=median, label="median of as many flights as a generation has", colour="orange"),
+        Line(x=number, y=np.minimum.accumulate(distance), label="closest so far", colour="blue"),
+        Line(x=number[[0, -1]], y=np.zeros(2), label="r_min", colour="vermillion", style="dash"),
     ]
-    panel = Panel(x_label="Generation [-]", y_label="Distance kept beyond r_min [m]", lines=lines)
-    return Chart(name="search", caption="Closest approach of each flight, by generation of the search.", panels=[panel])
+    panel = Panel(x_label="Flights so far [-]", y_label="Distance kept beyond r_min [m]", lines=lines)
+    return Chart(name="search", caption="Closest approach of each flight, in the order of the search.", panels=[panel])
 
 
 def worst_table(flown: pd.DataFrame, kept: int) -> Table:

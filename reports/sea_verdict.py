@@ -77,7 +77,7 @@ def _bound(run: RunData) -> list[tuple[str, str, str]]:
         return []
     confidence = f"{100.0 * run.statistics['confidence']:g} %"
     bound = run.statistics["violation"]["pessimistic"]["upper"]
-    return [(f"Probability that a flight enters, at most, with {confidence} confidence", f"{bound:.2g}", "")]
+    return [(f"Probability that a flight enters, at most, with {confidence} confidence", f"{bound:.4g}", "")]
 
 
 def _figures(trials: list[Trial], flown: pd.DataFrame) -> list[tuple[str, str, str]]:

@@ -17,7 +17,7 @@ from scenarios.histories import history_path
 from scenarios.monte_carlo_config import FalsifyScenario
 from scenarios.run_directory import RunDirectory
 from scenarios.scenario_file import scenario_file
-from scenarios.sea_draws import drawn_flight
+from scenarios.sea_draws import drawn_flight, speed_ratio_excess
 from scenarios.sea_study import SUMMARY, SeaStudy
 
 UNFLOWN = 1e6
@@ -66,21 +66,29 @@ class FalsifyStudy(SeaStudy):
             mutation=self._search.mutation,
             recombination=self._search.recombination,
             rng=self._seed,
-            # The search ends by its generations alone: noise differs from flight to flight, so that none is like another.
+            # The search ends by its generations alone.
             tol=0.0,
             atol=-1.0,
             polish=False,
             updating="deferred",
             workers=clearances,
         )
+        self.flights = dict.fromkeys(self.flights, len(self._tasks))
         self._keep_worst(fly, run, journal)
 
     def _clearances(self, points: Iterable[Array], fly: Fly, journal: Journal) -> list[float]:
-        """Return how far from the keep-out area flights at these points stay at their closest [m]."""
-        first = len(self._tasks)
-        self._tasks += [Task(number=first + i, point=tuple(map(float, point))) for i, point in enumerate(points)]
+        """Return how far from the keep-out area flights at these points stay at their closest [m].
+
+        What leaves the declared range of speed ratios is not flown, and counts the worse the farther it does.
+        """
+        ((_, scenario),) = self.trials.items()
+        first, chosen = len(self._tasks), [tuple(map(float, point)) for point in points]
+        excesses = [speed_ratio_excess(scenario, point) for point in chosen]
+        within = [point for point, excess in zip(chosen, excesses, strict=True) if not excess]
+        self._tasks += [Task(number=first + i, point=point) for i, point in enumerate(within)]
         fly(self._tasks[first:])
-        return [_clearance(row) for row in journal.rows(SUMMARY, first=first, below=len(self._tasks))]
+        flown = (_clearance(row) for row in journal.rows(SUMMARY, first=first, below=len(self._tasks)))
+        return [UNFLOWN * (1.0 + excess) if excess else next(flown) for excess in excesses]
 
     def _keep_worst(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Write scenario files of the worst flights, and have those recorded that have no time history."""
@@ -105,7 +113,13 @@ class FalsifyStudy(SeaStudy):
             return found
         least, flight_id = min(clearances)
         line = f"closest: {flight_id}, {least:.2f} m from the keep-out area; the worst are in worst/, as scenarios to fly again"
-        manifest: dict[str, Any] = found.manifest | {"worst_flight": flight_id, "worst_clearance_m": least}
+        trials = {trial: config | {"flights": self.planned} for trial, config in self.opening()["trials"].items()}
+        manifest: dict[str, Any] = found.manifest | {
+            "flights_planned": self.planned,
+            "trials": trials,
+            "worst_flight": flight_id,
+            "worst_clearance_m": least,
+        }
         return Summary(done=found.done, met=found.met, lines=[*found.lines, line], manifest=manifest)
 
 

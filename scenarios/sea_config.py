@@ -324,7 +324,7 @@ class SeaScenario(Section):
                 )
             if keys.count(key) > 1:
                 raise ValueError(f"draws has '{key}' {keys.count(key)} times; draw a key once")
-            if "." not in key:
+            if "." not in key and key != "flight_seed":
                 raise ValueError(f"draws has '{key}', which is the trial's own; draw keys of its sections, as in wind.speed_mps")
         return self
 

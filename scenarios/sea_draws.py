@@ -53,19 +53,37 @@ def drawn_flight(trial: str, scenario: SeaScenario, number: int, point: Sequence
     InputError : a drawn key does not exist or is out of range, or no draw has a speed ratio within ``scenario.speed_ratio``
     """
     sequence = np.random.SeedSequence([scenario.seed, zlib.crc32(trial.encode()), number])
-    seed = int(sequence.generate_state(1)[0]) if scenario.flight_seed is None else scenario.flight_seed
     low, high = scenario.speed_ratio
     for values in _tried(scenario.draws, np.random.default_rng(sequence), number, point):
         flight = with_values(scenario, values) if values else scenario
-        track = vessel_track(flight)
-        least, most = (wind / flight.guidance.airspeed_mps for wind in track.apparent_wind_range)
+        least, most, nu = _speed_ratios(flight)
         if low <= least and most <= high:
-            nu = track.apparent_wind_at_start / flight.guidance.airspeed_mps
+            seed = int(sequence.generate_state(1)[0]) if flight.flight_seed is None else flight.flight_seed
             return DrawnFlight(scenario=flight, seed=seed, nu=nu, values=values)
     raise InputError(
         f"trial '{trial}': {_TRIES} draws had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
         f" {most:.3f}: widen speed_ratio, or draw other winds and vessel speeds"
     )
+
+
+def speed_ratio_excess(scenario: SeaScenario, point: Sequence[float]) -> float:
+    """Return how far outside ``scenario.speed_ratio`` the flight at a point gets; such flights are drawn again [-].
+
+    Parameters
+    ----------
+    scenario : a trial
+    point : as of ``drawn_flight``
+    """
+    flight = with_values(scenario, _values_at(scenario.draws, point))
+    (low, high), (least, most, _) = scenario.speed_ratio, _speed_ratios(flight)
+    return max(0.0, low - least, most - high)
+
+
+def _speed_ratios(flight: SeaScenario) -> tuple[float, float, float]:
+    """Return a flight's least and greatest speed ratio, and that at its start [-]."""
+    track, speed = vessel_track(flight), flight.guidance.airspeed_mps
+    least, most = track.apparent_wind_range
+    return least / speed, most / speed, track.apparent_wind_at_start / speed
 
 
 def value_at(draw: Draw, share: float) -> object:
@@ -88,6 +106,10 @@ def value_at(draw: Draw, share: float) -> object:
     return min(max(value, draw.within[0]), draw.within[1]) if draw.within else value
 
 
+def _values_at(draws: Sequence[Draw], point: Sequence[float]) -> dict[str, object]:
+    return {draw.key: value_at(draw, share) for draw, share in zip(draws, point, strict=True)}
+
+
 def _share_below(draw: Draw, limit: float) -> float:
     """Return the share of a normal or Weibull distribution that lies below a limit."""
     if draw.normal is not None:
@@ -102,7 +124,7 @@ def _tried(
 ) -> Iterator[dict[str, object]]:
     """Yield what to try for a flight, one after the other."""
     if point:
-        yield {draw.key: value_at(draw, share) for draw, share in zip(draws, point, strict=True)}
+        yield _values_at(draws, point)
     for _ in range(_TRIES):
         values: dict[str, object] = {}
         dealt = number
