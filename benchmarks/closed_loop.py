@@ -30,7 +30,7 @@ from scenarios.metrics import flight_figures
 from scenarios.plan import plan_flight
 from scenarios.six_dof import SixDof
 
-ROUNDS, STUDIES = 15, 5
+ROUNDS, STUDIES = 15, 3
 FLOWN = 400.0
 """Simulated time of each run [s]."""
 
