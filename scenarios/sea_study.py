@@ -1,11 +1,13 @@
 """Trials over the real sea as a study."""
 
-import heapq
 import math
+from array import array
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from aircraft.faults import fault_names
 from aircraft.find import find_spec
@@ -96,16 +98,22 @@ class SeaStudy:
 
     def telling(self, run: RunDirectory, journal: Journal) -> list[Task]:
         """Return the closest flight of each trial, and the one whose closest approach is the median, to be recorded."""
-        distances: dict[str, list[tuple[float, int, str]]] = {}
+        # Figures alone: a hundred thousand rows would be too many.
+        distances = {trial: (array("d"), array("q")) for trial in self.trials}
         for number, row in journal.numbered(SUMMARY):
             if "min_distance_m" in row:
-                distances.setdefault(row["trial"], []).append((row["min_distance_m"], number, row["flight_id"]))
-        chosen = [(min(flights), heapq.nsmallest(len(flights) // 2 + 1, flights)[-1]) for flights in distances.values()]
+                nearest, numbers = distances[row["trial"]]
+                nearest.append(row["min_distance_m"])
+                numbers.append(number)
+        chosen = []
+        for nearest, numbers in distances.values():
+            order = np.argsort(nearest, kind="stable")
+            chosen += [numbers[i] for i in (order[0], order[len(order) // 2])] if len(order) else []
         return [
             replace(self.task(number), recorded=True)
-            for pair in chosen
-            for _, number, flight_id in pair
-            if not (run.path / history_path(flight_id)).is_file()
+            for number in chosen
+            for row in journal.rows(SUMMARY, first=number, below=number + 1)
+            if not (run.path / history_path(row["flight_id"])).is_file()
         ]
 
     def task(self, number: int) -> Task:
