@@ -36,6 +36,12 @@ def catalog() -> dict[str, Path]:
     return {path.stem: path for path in sorted(CATALOG.glob("*.toml"))}
 
 
+def is_flight(name: str) -> bool:
+    """Return whether ``name`` is that of a flight in a run directory: ``RUN_DIR/flights/ID``."""
+    path = Path(name)
+    return path.parent.name == "flights" and (path.parents[1] / "manifest.json").is_file()
+
+
 def load_scenario(name: str, overrides: Sequence[str] = ()) -> Scenario:
     """Read a scenario of flights, as ``load_study`` does.
 

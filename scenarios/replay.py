@@ -23,12 +23,6 @@ _OWN = ("wall_time_s",)
 """Figures that differ from one flying to the next."""
 
 
-def is_flight(name: str) -> bool:
-    """Return whether ``name`` is that of a flight in a run directory: ``RUN_DIR/flights/ID``."""
-    path = Path(name)
-    return path.parent.name == "flights" and (path.parents[1] / "manifest.json").is_file()
-
-
 class Replay:
     """One flight as a study.
 

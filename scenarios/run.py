@@ -87,7 +87,7 @@ def _run(
     no_report: bool,
 ) -> int:
     from scenarios.errors import InputError
-    from scenarios.load import catalog, load_study
+    from scenarios.load import catalog, is_flight, load_study
 
     if name is None:
         raise InputError(f"no scenario given; name a TOML file or one of: {', '.join(catalog())}")
@@ -96,21 +96,25 @@ def _run(
     if seed is not None:
         overrides = [*overrides, f"seed={seed}"]
 
-    from scenarios.engine.study import fly_study
-    from scenarios.progress import progress_bar
-    from scenarios.replay import Replay, is_flight
-    from scenarios.studies import run_study
-
     stem = Path(name).stem
     replayed = is_flight(name)
     directory = out or Path("runs") / f"{'replay-' if replayed else ''}{stem}-{datetime.now():%Y%m%d-%H%M%S}"
     if replayed and overrides:
         raise InputError(f"'{name}' is flown again as it was; leave out --set and --seed, or fly its scenario")
+    # Before anything heavy is imported: most mistakes are found here.
     scenario = None if replayed else load_study(name, overrides)
+
+    from scenarios.progress import progress_bar
+
     with progress_bar() as progress:
         if scenario is None:
+            from scenarios.engine.study import fly_study
+            from scenarios.replay import Replay
+
             result = fly_study(Replay(name), directory, hire=hire, resume=resume, progress=progress)
         else:
+            from scenarios.studies import run_study
+
             result = run_study(scenario, stem, directory, hire=hire, resume=resume, progress=progress, overrides=overrides)
     for line in result.summary.lines:
         print(line)

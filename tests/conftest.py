@@ -11,6 +11,9 @@ import os
 import time
 from typing import TYPE_CHECKING
 
+# Tests run in two processes; threads under each of their small matrices would only be in the way. Before numpy is imported.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import pytest
 from hypothesis import settings
 

@@ -9,13 +9,13 @@ from scenarios.engine.hiring import Hiring
 from scenarios.load import load_study
 from scenarios.studies import run_study
 
-FLIGHTS = 24
+FLIGHTS = 12
 
 
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory):
     out = tmp_path_factory.mktemp("monte_carlo") / "run"
-    scenario = load_study("monte_carlo", [f"flights={FLIGHTS}", "flight.duration_max_s=150", "histories=1"])
+    scenario = load_study("monte_carlo", [f"flights={FLIGHTS}", "flight.duration_max_s=110", "histories=1"])
     assert run_study(scenario, "monte_carlo", out, hire=Hiring(jobs=2)).all_met
     return out
 

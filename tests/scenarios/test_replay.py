@@ -11,8 +11,8 @@ from reports.run_data import read_run
 from scenarios.engine.hiring import Hiring
 from scenarios.engine.study import fly_study
 from scenarios.errors import InputError
-from scenarios.load import load_study
-from scenarios.replay import Replay, is_flight
+from scenarios.load import is_flight, load_study
+from scenarios.replay import Replay
 from scenarios.studies import run_study
 
 SEA = """

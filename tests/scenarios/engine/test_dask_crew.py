@@ -16,7 +16,7 @@ from scenarios.load import load_study
 from scenarios.studies import run_study
 
 SETTINGS = [
-    "flights=60",
+    "flights=40",
     "turbulence.gusts=2",
     "turbulence.gust_length_s=2.0",
     "histories=5",
@@ -59,7 +59,7 @@ def test_a_study_that_loses_a_worker_in_the_middle_has_the_rows_of_a_local_one(t
     assert fly(tmp_path / "local", jobs=2).all_met
     host, port = "127.0.0.1", str(free_port())
     address = f"tcp://{host}:{port}"
-    worker = ("dask_worker", address, "--nthreads", "1", "--no-dashboard")
+    worker = ("dask_worker", address, "--nthreads", "1", "--no-dashboard", "--no-nanny")
     with (
         dask("dask_scheduler", "--host", host, "--port", port, "--no-dashboard", cwd=tmp_path),
         dask(*worker, cwd=tmp_path) as first,
