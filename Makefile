@@ -8,7 +8,7 @@ sweep_nu: .venv
 	@$(BIN)/python -m scenarios.run sweep_nu
 
 test: .venv
-	@$(BIN)/python -m pytest -n 2
+	@$(BIN)/python -m pytest -n 2 --dist loadfile
 
 check: .venv
 	$(BIN)/ruff check .
