@@ -53,7 +53,10 @@ class Search(Section):
 
 
 class FalsifyScenario(SeaScenario):
-    """A search for the flight over the real sea that comes closest to the vessel."""
+    """A search for the flight over the real sea that comes closest to the vessel.
+
+    ``flights`` has no effect: how many are flown follows from ``search``.
+    """
 
     study: Literal["falsify"]  # type: ignore[assignment]
     search: Search = Search()
