@@ -42,6 +42,10 @@ class Replay:
         self._flight_id = Path(name).name.removesuffix(".parquet")
         self._from = Path(name).parents[1]
         manifest = self._manifest()
+        if "replayed" in manifest:
+            raise InputError(
+                f"'{self._from}' holds a flight that was flown again already; give it as RUN_DIR/flights/ID of its first run"
+            )
         self._task, self._table, self._row = self._found()
         self._study = self._restored(manifest)
         self._begun_with = manifest.get("fingerprint", {})

@@ -31,7 +31,7 @@ def command(
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a key, e.g. guidance.preview=false.")
     ] = None,
     executor: Annotated[
-        Literal["local", "dask"], typer.Option(help="Processes of this machine, or a Dask cluster (pip install '.[dask]').")
+        Literal["local", "dask"], typer.Option(help="Processes of this machine, or a Dask cluster (the extra 'dask').")
     ] = "local",
     scheduler: Annotated[
         str | None, typer.Option(metavar="tcp://HOST:PORT", help="Dask scheduler; without one a cluster is started here.")

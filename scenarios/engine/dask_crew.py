@@ -29,6 +29,9 @@ _AHEAD = 2
 _COUNT_INTERVAL = 1.0
 """Shortest time between two counts of the workers [s]."""
 
+_MEMORY_MIN = 2**30
+"""Least memory of a worker that is started here [bytes]: with less, Dask may end it again and again before its first flight."""
+
 _CONNECT_TIME = 15.0
 """Time for the scheduler to answer, and for a worker to be there [s]."""
 
@@ -57,6 +60,11 @@ class DaskCrew:
     def __enter__(self) -> Self:
         """Connect, and send the work to every worker."""
         if self._scheduler is None:
+            memory = self._limits.memory
+            if memory is not None and memory < _MEMORY_MIN:
+                raise InputError(
+                    f"--memory-limit is {memory / 2**30:.2f} GiB; a worker of Dask's needs {_MEMORY_MIN / 2**30:g} GiB: give more"
+                )
             self._cluster = distributed.LocalCluster(
                 n_workers=self._jobs,
                 threads_per_worker=1,

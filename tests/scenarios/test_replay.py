@@ -103,6 +103,12 @@ def test_a_flight_that_goes_another_way_is_told_with_what_has_changed(runs, tmp_
     assert result.summary.lines[-1].endswith("it was flown with another numpy")
 
 
+def test_a_flight_that_was_flown_again_is_not_flown_again_from_there(runs, tmp_path):
+    replay(runs / "sea" / "flights" / "two_00001", tmp_path / "again")
+    with pytest.raises(InputError, match="flown again already; give it as RUN_DIR/flights/ID of its first run"):
+        Replay(str(tmp_path / "again" / "flights" / "two_00001"))
+
+
 def test_only_what_lies_in_a_run_is_a_flight(runs, tmp_path):
     assert is_flight(str(runs / "sea" / "flights" / "one_00000"))
     assert not is_flight("sweep_nu")

@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 
 from scenarios.engine.hiring import Hiring
+from scenarios.engine.work import Limits
 from scenarios.errors import InputError
 from scenarios.load import load_study
 from scenarios.studies import run_study
@@ -82,6 +83,11 @@ def test_a_study_that_loses_a_worker_in_the_middle_has_the_rows_of_a_local_one(t
         pd.testing.assert_frame_equal(local, remote, check_exact=True)
     for path in sorted((tmp_path / "local" / "flights").iterdir()):
         assert (tmp_path / "dask" / "flights" / path.name).read_bytes() == path.read_bytes()
+
+
+def test_a_limit_of_memory_with_which_no_worker_lives_is_refused_in_one_line(tmp_path):
+    with pytest.raises(InputError, match=r"--memory-limit is 0\.30 GiB; a worker of Dask's needs 1 GiB: give more"):
+        fly(tmp_path / "run", executor="dask", limits=Limits(memory=round(0.3 * 2**30)))
 
 
 def test_a_scheduler_that_is_not_there_is_named_in_one_line(tmp_path, monkeypatch):
