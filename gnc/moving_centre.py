@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 
 from gnc.angles import wrap
+from gnc.limits import limited
 
 _AXIS_GAIN = 0.1
 """Rate at which the axis goes where it should, per difference, in units of omega_max [-].
@@ -119,12 +120,12 @@ class MovingCentre:
             self._started, self.axis = True, wanted
             self.distance = self._target(air_north, air_east) + further
         fastest = _AXIS_SPEED * p.speed / self.distance
-        turn = min(max(turn + _AXIS_GAIN * p.heading_rate_max * wrap(wanted - self.axis), -fastest), fastest)
+        turn = limited(turn + _AXIS_GAIN * p.heading_rate_max * wrap(wanted - self.axis), fastest)
         swing = turn * self.distance
         swung_north, swung_east = air_north - swing * math.sin(self.axis), air_east + swing * math.cos(self.axis)
         target = self._target(swung_north, swung_east) + further
         fastest = _DISTANCE_SHARE * max(0.05, 1.0 - self.speed_ratio) * p.speed
-        recede = min(max(_DISTANCE_GAIN * p.heading_rate_max * (target - self.distance), -fastest), fastest)
+        recede = limited(_DISTANCE_GAIN * p.heading_rate_max * (target - self.distance), fastest)
         self.axis = wrap(self.axis + turn * time_step)
         self.distance += recede * time_step
         self.in_place = abs(target - self.distance) < _IN_PLACE * target

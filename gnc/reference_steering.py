@@ -6,6 +6,7 @@ across, it turns the mean course, which moves the orbit's centre by itself, the 
 
 import math
 
+from gnc.limits import limited
 from gnc.moving_centre import MovingCentre
 
 _CENTRE_GAIN = 0.1
@@ -42,9 +43,9 @@ def mean_motion(
         cos_m, sin_m = -math.cos(centre.axis), -math.sin(centre.axis)
     gain = _CENTRE_GAIN * heading_rate_max
     most = _ALONG_SHARE * speed
-    along = moving + min(max(gain * (off_north * cos_m + off_east * sin_m), -most), most)
+    along = moving + limited(gain * (off_north * cos_m + off_east * sin_m), most)
     gain *= min(1.0, max(_CENTRE_GAIN, moving / (_SLOW * speed)))
     most = _ACROSS_SHARE * max(moving, 0.1 * speed)
-    across = min(max(gain * (off_east * cos_m - off_north * sin_m), -most), most)
+    across = limited(gain * (off_east * cos_m - off_north * sin_m), most)
     turned = math.atan2(across, max(along, 2.0 * _STILL * speed))
     return math.atan2(sin_m, cos_m) + turned, along / math.cos(turned) / speed

@@ -11,6 +11,7 @@ from gnc.angles import wrap
 from gnc.guidance import Guidance
 from gnc.health import Health, Trouble
 from gnc.keepout_guard import KeepoutGuard
+from gnc.limits import limited
 from gnc.moving_centre import MovingCentre
 from gnc.navigation import Navigation
 from gnc.reference_steering import mean_motion
@@ -218,7 +219,7 @@ class SeaGuidance:
         left = wrap(math.atan2(y, x) - ahead)
         if abs(left) < 0.5 * math.pi:
             self._away_side = 0.0
-            return min(max(_TRANSIT_GAIN * limit * left, -limit), limit)
+            return limited(_TRANSIT_GAIN * limit * left, limit)
         if not self._away_side:
             self._away_side = math.copysign(1.0, heading_rate if abs(left) > _EITHER_WAY else left)
         return self._away_side * limit
@@ -242,7 +243,7 @@ class SeaGuidance:
         )
         limit = p.guidance.heading_rate_max
         ahead = course + 0.5 * p.guidance.lag * (heading_rate + self.guidance.heading_rate_command)
-        return min(max(_TRANSIT_GAIN * limit * wrap(to - ahead), -limit), limit)
+        return limited(_TRANSIT_GAIN * limit * wrap(to - ahead), limit)
 
     def _look(self, time: float) -> None:
         """Look where the vessel is, move the centre, steer the reference, and decide what to do."""

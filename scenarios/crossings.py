@@ -1,7 +1,9 @@
 """Where the aircraft's path cuts the plume's axis."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -71,3 +73,18 @@ def find_crossings(
             )
         )
     return crossings
+
+
+def crossing_rows(crossings: Sequence[Crossing]) -> list[dict[str, Any]]:
+    """Return a row for each crossing of a flight, numbered from 1; columns have units in their names."""
+    return [
+        {
+            "crossing": i,
+            "time_s": crossing.time,
+            "axis_distance_m": crossing.axis_distance,
+            "distance_m": crossing.distance,
+            "angle_deg": math.degrees(crossing.angle),
+            "height_m": crossing.height,
+        }
+        for i, crossing in enumerate(crossings, start=1)
+    ]

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +12,6 @@ from scipy.stats import qmc
 from scenarios.engine.journal import Journal
 from scenarios.engine.study import Fly, Summary
 from scenarios.engine.work import Row, Task
-from scenarios.histories import history_path
 from scenarios.monte_carlo_config import FalsifyScenario
 from scenarios.run_directory import RunDirectory
 from scenarios.scenario_file import scenario_file
@@ -99,11 +97,7 @@ class FalsifyStudy(SeaStudy):
             drawn = drawn_flight(trial, scenario, number, self._tasks[number].point)
             title = f"{scenario.title}: number {rank}, {clearance:.2f} m from the keep-out area"
             run.write_bytes(f"worst/{rank:02d}_{row['flight_id']}.toml", scenario_file(drawn, title=title))
-        fly(
-            replace(self._tasks[number], recorded=True)
-            for _, number, row in worst
-            if not (run.path / history_path(row["flight_id"])).is_file()
-        )
+        fly(self.unrecorded([number for _, number, _ in worst], run, journal))
 
     def summary(self, journal: Journal) -> Summary:
         """Return what the search has found."""
@@ -113,14 +107,8 @@ class FalsifyStudy(SeaStudy):
             return found
         least, flight_id = min(clearances)
         line = f"closest: {flight_id}, {least:.2f} m from the keep-out area; the worst are in worst/, as scenarios to fly again"
-        trials = {trial: config | {"flights": self.planned} for trial, config in self.opening()["trials"].items()}
-        manifest: dict[str, Any] = found.manifest | {
-            "flights_planned": self.planned,
-            "trials": trials,
-            "worst_flight": flight_id,
-            "worst_clearance_m": least,
-        }
-        return Summary(done=found.done, met=found.met, lines=[*found.lines, line], manifest=manifest)
+        manifest = found.manifest | {"worst_flight": flight_id, "worst_clearance_m": least}
+        return replace(found, lines=[*found.lines, line], manifest=manifest)
 
 
 def _clearance(row: Row) -> float:

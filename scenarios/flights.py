@@ -12,11 +12,11 @@ import pandas as pd
 from innerloop.flight import AutopilotedAircraft
 from scenarios.closed_loop import Outcome, fly
 from scenarios.config import Case, Scenario
-from scenarios.crossings import Crossing
+from scenarios.crossings import Crossing, crossing_rows
 from scenarios.engine.work import Result, Row, Task
 from scenarios.errors import InputError
 from scenarios.failure import failure, unflown
-from scenarios.histories import history_file, history_path, keeps_history
+from scenarios.histories import history_files
 from scenarios.history import flight_history
 from scenarios.jsbsim_vehicle import JsbsimVehicle
 from scenarios.kinematic_vehicle import KinematicVehicle
@@ -170,14 +170,11 @@ class FlightWork:
 
     def _result(self, task: Task, row: Row, crossings: Sequence[Row] = (), history: pd.DataFrame | None = None) -> Result:
         request = self.requests[task.number]
-        files = {}
-        if history is not None and keeps_history(task, planned=len(self.requests), wanted=self.histories, row=row):
-            files[history_path(request.flight_id)] = history_file(history)
         return Result(
             task=task,
             items=int(request.variant == STUDY),
             tables={request.table: [row], "crossings.csv": list(crossings)},
-            files=files,
+            files=history_files(task, history, planned=len(self.requests), wanted=self.histories, row=row),
         )
 
 
@@ -244,12 +241,7 @@ def _crossing_rows(request: FlightRequest, crossings: Sequence[Crossing]) -> lis
             "flight_id": request.flight_id,
             "variant": request.variant,
             "nu": request.nu,
-            "crossing": i,
-            "time_s": crossing.time,
-            "axis_distance_m": crossing.axis_distance,
-            "distance_m": crossing.distance,
-            "angle_deg": float(np.degrees(crossing.angle)),
-            "height_m": crossing.height,
+            **row,
         }
-        for i, crossing in enumerate(crossings, start=1)
+        for row in crossing_rows(crossings)
     ]

@@ -27,8 +27,16 @@ def history_path(flight_id: str) -> str:
     return f"flights/{flight_id}.parquet"
 
 
-def history_file(history: pd.DataFrame) -> bytes:
-    """Return a time history as a Parquet file."""
+def history_files(task: Task, history: pd.DataFrame | None, *, planned: int, wanted: int, row: Row) -> dict[str, bytes]:
+    """Return the time history of a flight as a Parquet file, by its path, if there is one and it is kept.
+
+    Parameters
+    ----------
+    history : of the flight, if it has one
+    task, planned, wanted, row : as of ``keeps_history``
+    """
+    if history is None or not keeps_history(task, planned=planned, wanted=wanted, row=row):
+        return {}
     buffer = io.BytesIO()
     history.to_parquet(buffer, index=False)
-    return buffer.getvalue()
+    return {history_path(row["flight_id"]): buffer.getvalue()}

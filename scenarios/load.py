@@ -18,8 +18,16 @@ Study = TypeVar("Study", Scenario, ConvergenceScenario, SeaScenario, SeaTrial, M
 
 AnyStudy = Scenario | ConvergenceScenario | SeaScenario | SeaTrial | MonteCarloScenario | FalsifyScenario
 
-KINDS = ("flights", "paper", "convergence", "sea", "sea_trial", "monte_carlo", "falsify")
-"""What a file may say of ``study``."""
+KINDS: dict[str, type[Any]] = {
+    "flights": Scenario,
+    "paper": Scenario,
+    "convergence": ConvergenceScenario,
+    "sea": SeaScenario,
+    "sea_trial": SeaTrial,
+    "monte_carlo": MonteCarloScenario,
+    "falsify": FalsifyScenario,
+}
+"""What a file may say of ``study``, and the scenario that it then holds."""
 
 _KEYS: dict[type, str] = {
     Scenario: "config",
@@ -95,19 +103,10 @@ def load_study(name: str, overrides: Sequence[str] = ()) -> AnyStudy:
         _take_from_cases(document, key)
         _take_from_draws(document, key)
     study = document.get("study", "flights")
-    if study not in KINDS:
+    if not isinstance(study, str) or study not in KINDS:
         raise InputError(f"study is {study!r}; it must be one of {', '.join(KINDS)}")
-    if study == "convergence":
-        return checked(document, ConvergenceScenario)
-    if study == "sea":
-        return checked(document, SeaScenario)
-    if study == "sea_trial":
-        return checked(document, SeaTrial)
-    if study == "monte_carlo":
-        return checked(document, MonteCarloScenario)
-    if study == "falsify":
-        return checked(document, FalsifyScenario)
-    return checked(document, Scenario)
+    scenario: AnyStudy = checked(document, KINDS[study])
+    return scenario
 
 
 def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:

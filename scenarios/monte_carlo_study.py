@@ -1,7 +1,7 @@
 """Monte Carlo over the real sea: how often, how much, what it depends on, and how sure that is."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from dataclasses import replace
 
 import pandas as pd
 
@@ -79,16 +79,13 @@ class MonteCarloStudy(SeaStudy):
         run.write_json(run.statistics, statistics)
 
     def summary(self, journal: Journal) -> Summary:
-        """Return what the flights have come to, and how many there were to be in the end."""
+        """Return what the flights have come to, and whether the study stopped by itself."""
         found = super().summary(journal)
-        # Of a study that stopped by itself, what is left was not to be flown.
-        trials = {trial: config | {"flights": self.planned} for trial, config in self.opening()["trials"].items()}
-        manifest: dict[str, Any] = found.manifest | {"flights_planned": self.planned, "trials": trials}
+        if not self._stopped:
+            return found
         asked = self._scenario.flights
-        stopped = (
-            [f"stopped after {self.planned} of {asked} flights: what was asked for is as tight as that"] if self._stopped else []
-        )
-        return Summary(done=found.done, met=found.met, lines=[*found.lines, *stopped], manifest=manifest)
+        line = f"stopped after {self.planned} of {asked} flights: what was asked for is as tight as that"
+        return replace(found, lines=[*found.lines, line])
 
 
 def _frame(rows: Iterable[Row], columns: Sequence[str]) -> pd.DataFrame:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from scenarios.config import Scenario
-from scenarios.engine.fingerprint import fingerprint
+from scenarios.engine.fingerprint import differences
 from scenarios.engine.journal import Journal
 from scenarios.engine.study import Fly, Progress, Study, Summary
 from scenarios.engine.work import Row, Task, Work
@@ -135,5 +135,5 @@ class Replay:
 
     def _why(self) -> str:
         """Return what may be the reason."""
-        changed = [name for name, mine in fingerprint().items() if self._begun_with.get(name) != mine]
+        changed = differences(self._begun_with)
         return f"it was flown with another {', '.join(changed)}" if changed else "nothing that results depend on has changed"

@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 
 from reports.files import write_json, write_whole
-from scenarios.engine.fingerprint import fingerprint
+from scenarios.engine.fingerprint import differences, fingerprint
 from scenarios.errors import InputError
 
 
@@ -76,13 +76,13 @@ class RunDirectory:
             raise InputError(
                 f"'{self.path}' was run with another configuration; resume it with the same scenario, --seed and --set values"
             )
-        for name, mine in fingerprint().items():
-            before = theirs.get(name, "unknown")
-            if before != mine:
-                raise InputError(
-                    f"'{self.path}' was begun with {name} {before}, now it is {mine}: results would not go together;"
-                    " resume it with what it was begun with, or start a new run in another --out"
-                )
+        if differing := differences(theirs):
+            name = differing[0]
+            before, now = theirs.get(name, "unknown"), fingerprint()[name]
+            raise InputError(
+                f"'{self.path}' was begun with {name} {before}, now it is {now}: results would not go together;"
+                " resume it with what it was begun with, or start a new run in another --out"
+            )
         self._create()
 
     def sweep(self) -> None:

@@ -12,7 +12,7 @@ from innerloop.schedule import Schedule
 from scenarios.flyable import omega_max
 from scenarios.run_directory import RunDirectory
 from scenarios.sea_config import SeaScenario
-from scenarios.six_dof import SixDof, design_of, six_dof_of, spec_of
+from scenarios.six_dof import SixDof, design_of, six_dof_of, spec_flown
 
 KINEMATIC_BANDWIDTH = 1.0
 """Bandwidth of a kinematic vehicle's airspeed that its guidance reckons with; it follows at once [rad/s]."""
@@ -54,9 +54,8 @@ def design_for(scenario: SeaScenario) -> tuple[Designed | None, str]:
     ------
     InputError : there is no such aircraft
     """
-    if scenario.fidelity == "kinematic" and scenario.aircraft == SeaScenario.model_fields["aircraft"].default:
-        return None, ""
-    return design_of(spec_of(scenario.aircraft), scenario.plume.source_height_m)
+    spec = spec_flown(scenario)
+    return design_of(spec, scenario.plume.source_height_m) if spec else (None, "")
 
 
 def airframe_for(scenario: SeaScenario, directory: Path) -> Airframe:

@@ -3,7 +3,6 @@
 import bisect
 import itertools
 import json
-import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -14,10 +13,10 @@ import pandas as pd
 
 from innerloop.flight import AutopilotedAircraft
 from scenarios.closed_loop import Outcome
-from scenarios.crossings import Crossing
+from scenarios.crossings import crossing_rows
 from scenarios.engine.work import Result, Row, Task
 from scenarios.failure import failure, unflown
-from scenarios.histories import history_file, history_path, keeps_history
+from scenarios.histories import history_files
 from scenarios.interventions import INTERVENTION_COLUMNS
 from scenarios.jsbsim_vehicle import JsbsimVehicle
 from scenarios.kinematic_vehicle import KinematicVehicle
@@ -115,7 +114,7 @@ class SeaWork:
             record = fly_sea(plan, self._vehicle(plan), every_step=task.every_step)
             history = pd.DataFrame(record.every_step, columns=list(SEA_COLUMNS))
             figures, found = sea_figures(plan, record)
-            tables["crossings.csv"] = [named | _crossing_row(i, crossing) for i, crossing in enumerate(found, start=1)]
+            tables["crossings.csv"] = [named | crossing for crossing in crossing_rows(found)]
             tables["interventions.csv"] = [named | stretch._asdict() for stretch in record.interventions]
             row |= figures
             unmet = sea_unmet(row, drawn.scenario.criteria)
@@ -133,11 +132,10 @@ class SeaWork:
     def _result(
         self, task: Task, row: Row, tables: Mapping[str, list[Row]] | None = None, history: pd.DataFrame | None = None
     ) -> Result:
-        kept = history is not None and keeps_history(task, planned=self._ends[-1], wanted=self.histories, row=row)
         return Result(
             task=task,
             tables={"summary.csv": [row], **(tables or {})},
-            files={history_path(row["flight_id"]): history_file(history)} if kept and history is not None else {},
+            files=history_files(task, history, planned=self._ends[-1], wanted=self.histories, row=row),
         )
 
     def _vehicle(self, plan: SeaPlan) -> Vehicle:
@@ -172,14 +170,3 @@ def _drawn_row(drawn: DrawnFlight) -> Row:
 def _plain(values: Mapping[str, object]) -> Row:
     """Return what was drawn as it goes into a table: numbers and words, anything else as JSON."""
     return {key: value if isinstance(value, str | float | int) else json.dumps(value) for key, value in values.items()}
-
-
-def _crossing_row(i: int, crossing: Crossing) -> Row:
-    return {
-        "crossing": i,
-        "time_s": crossing.time,
-        "axis_distance_m": crossing.axis_distance,
-        "distance_m": crossing.distance,
-        "angle_deg": math.degrees(crossing.angle),
-        "height_m": crossing.height,
-    }

@@ -67,7 +67,6 @@ class SeaStudy:
             # A list of trials does not change with what it lists.
             "config_hash": self.config_hash,
             "study": "sea",
-            "trials": {trial: scenario.model_dump(mode="json") for trial, scenario in trials.items()},
             "modes": [mode.value for mode in Mode],
             "trial_parameters": {trial: parameters(scenario) for trial, scenario in trials.items()},
         }
@@ -79,7 +78,14 @@ class SeaStudy:
 
     def opening(self) -> dict[str, Any]:
         """Return what the manifest says before anything has been flown."""
-        return self._manifest | {"flights_planned": self.planned}
+        return self._manifest | self._sizes()
+
+    def _sizes(self) -> dict[str, Any]:
+        """Return what the manifest says of how much there is to fly, which a study may find out as it goes."""
+        trials = {
+            trial: scenario.model_dump(mode="json") | {"flights": self.flights[trial]} for trial, scenario in self.trials.items()
+        }
+        return {"trials": trials, "flights_planned": self.planned}
 
     def work(self, run: RunDirectory) -> SeaWork:
         """Return the flying of its flights, with the aircraft's autopilot written into the run directory."""
@@ -109,9 +115,13 @@ class SeaStudy:
         for nearest, numbers in distances.values():
             order = np.argsort(nearest, kind="stable")
             chosen += [numbers[i] for i in (order[0], order[len(order) // 2])] if len(order) else []
+        return self.unrecorded(chosen, run, journal)
+
+    def unrecorded(self, numbers: Sequence[int], run: RunDirectory, journal: Journal) -> list[Task]:
+        """Return the tasks of those flights that have no time history yet, to be recorded."""
         return [
             replace(self.task(number), recorded=True)
-            for number in chosen
+            for number in numbers
             for row in journal.rows(SUMMARY, first=number, below=number + 1)
             if not (run.path / history_path(row["flight_id"])).is_file()
         ]
@@ -140,7 +150,10 @@ class SeaStudy:
             kept = f"{tally.entries} entries into the keep-out area{nearest}"
             lines.append(f"  {trial}: {tally.met} of {tally.planned} met every criterion; {kept}")
         return Summary(
-            done=whole.done, met=whole.met == whole.planned, lines=[*lines, *whole.unmet_lines("    ")], manifest=whole.manifest()
+            done=whole.done,
+            met=whole.met == whole.planned,
+            lines=[*lines, *whole.unmet_lines("    ")],
+            manifest=whole.manifest() | self._sizes(),
         )
 
 

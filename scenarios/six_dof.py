@@ -11,8 +11,10 @@ from innerloop.flight import AutopilotedAircraft
 from innerloop.jsbsim_root import write_root
 from innerloop.responses import level_trim
 from innerloop.reversal import Reversal, measure_reversal
+from scenarios.config import Scenario
 from scenarios.errors import InputError
 from scenarios.run_directory import RunDirectory
+from scenarios.sea_config import SeaScenario
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,15 +37,17 @@ class SixDof:
     envelope: Envelope
 
 
-def spec_of(name: str) -> AircraftSpec:
-    """Return the aircraft of this name.
+def spec_flown(scenario: Scenario | SeaScenario) -> AircraftSpec | None:
+    """Return the aircraft that flies a scenario, or that kinematic flights of it are fitted to; none where there is neither.
 
     Raises
     ------
-    InputError : there is none, or it is none for an autopilot
+    InputError : there is no such aircraft, or it is none for an autopilot
     """
+    if scenario.fidelity == "kinematic" and scenario.aircraft == type(scenario).model_fields["aircraft"].default:
+        return None
     try:
-        return find_spec(name)
+        return find_spec(scenario.aircraft)
     except AircraftError as error:
         raise InputError(f"aircraft: {error}") from None
 

@@ -17,7 +17,7 @@ from scenarios.flyable import check_flyable
 from scenarios.manifest import opening_manifest
 from scenarios.metrics import SUMMARY_COLUMNS
 from scenarios.run_directory import RunDirectory
-from scenarios.six_dof import design_of, six_dof_of, spec_of
+from scenarios.six_dof import design_of, six_dof_of, spec_flown
 from scenarios.tally import Tally
 
 CROSSING_COLUMNS = ("flight_id", "variant", "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
@@ -39,7 +39,7 @@ class SweepStudy:
     what = "flights"
 
     def __init__(self, scenario: Scenario, name: str, *, overrides: Sequence[str] = ()) -> None:
-        spec = _aircraft(scenario)
+        spec = spec_flown(scenario)
         self._design, refusal = design_of(spec, scenario.plume.source_height_m) if spec else (None, "")
         schedule = self._design.design.schedule if self._design else None
         envelope = schedule.envelope if schedule else spec and spec.envelope
@@ -102,14 +102,6 @@ class SweepStudy:
         )
         manifest = tally.manifest() | {"guidance_lag_s": self._manifest.get("guidance_lag_s")}
         return Summary(done=tally.done, met=tally.met == self.planned, lines=[head, *tally.unmet_lines("  ")], manifest=manifest)
-
-
-def _aircraft(scenario: Scenario) -> AircraftSpec | None:
-    """Return the aircraft that flies the scenario, or that a kinematic flight of it is fitted to; none where there is neither."""
-    kinematic_alone = scenario.fidelity == "kinematic"
-    if kinematic_alone and scenario.aircraft == Scenario.model_fields["aircraft"].default:
-        return None
-    return spec_of(scenario.aircraft)
 
 
 def _check_flights(requests: Sequence[FlightRequest], spec: AircraftSpec, envelope: Envelope) -> None:

@@ -19,7 +19,7 @@ from typing import Any, Self
 import distributed
 
 from scenarios.engine.crew import TRIES
-from scenarios.engine.fingerprint import fingerprint
+from scenarios.engine.fingerprint import differences, fingerprint
 from scenarios.engine.work import Limits, Result, Task, Work
 from scenarios.errors import InputError
 
@@ -89,15 +89,13 @@ class DaskCrew:
 
     def _check_code(self) -> None:
         """Refuse workers that would fly something else."""
-        mine = fingerprint()
         for worker, theirs in self._client.run(fingerprint).items():
-            differing = [name for name in mine if theirs.get(name) != mine[name]]
-            if differing:
+            if differing := differences(theirs):
                 self.__exit__(InputError, None, None)
                 name = differing[0]
                 raise InputError(
-                    f"Dask worker {worker} has {name} {theirs.get(name)}; here it is {mine[name]}: results would differ, so install"
-                    " the same there"
+                    f"Dask worker {worker} has {name} {theirs.get(name)}; here it is {fingerprint()[name]}: results would differ,"
+                    " so install the same there"
                 )
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:

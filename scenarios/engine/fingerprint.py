@@ -4,6 +4,7 @@ import functools
 import hashlib
 import importlib.metadata
 import platform
+from collections.abc import Mapping
 from pathlib import Path
 
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic")
@@ -21,3 +22,8 @@ def fingerprint() -> dict[str, str]:
             digest.update(str(path.relative_to(house)).encode())
             digest.update(path.read_bytes())
     return {"python": platform.python_version(), **versions, "source": digest.hexdigest()[:16]}
+
+
+def differences(theirs: Mapping[str, str]) -> list[str]:
+    """Return in what another fingerprint differs from that of this program."""
+    return [name for name, mine in fingerprint().items() if theirs.get(name) != mine]

@@ -4,7 +4,6 @@ Each has a pipe of its own, and shares no lock with the others: one that dies at
 (Pools that share a channel do not survive that: github.com/noxdafox/pebble/issues/163, and the standard library's gives up.)
 """
 
-import itertools
 import multiprocessing
 import signal
 import time
@@ -194,7 +193,7 @@ def _serve(connection: Connection, inherited: Sequence[Connection], work: Work, 
         other.close()
     limit_memory(memory)
     try:
-        for _ in itertools.count():
+        while True:
             task = connection.recv()
             try:
                 connection.send(work.fly(task))

@@ -23,7 +23,7 @@ from reports.run_data import RunData, read_run
 from scenarios.load import load_study
 from scenarios.manifest import opening_manifest, parameters
 from scenarios.statistics import study_statistics
-from tests.scenarios.study_rows import RADIUS, study_rows
+from tests.scenarios.study_rows import RADIUS, few_indices, study_rows
 
 FLIGHTS = 250
 
@@ -53,11 +53,9 @@ def run_of(rows, inputs, **changes):
 
 
 @pytest.fixture(scope="module", autouse=True)
-def few_indices():
+def quick_statistics():
     """Ask of two figures what drives them, with 3 bootstraps: they take nearly all of the time, and a report shows any alike."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("scenarios.sensitivity.RESAMPLES", 3)
-        patch.setattr("scenarios.statistics.DRIVEN", ("clearance_m", "settling_time_s"))
+    with few_indices("clearance_m", "settling_time_s"):
         yield
 
 

@@ -1,7 +1,10 @@
 """A made-up Monte Carlo study: rows as in ``summary.csv`` and inputs as in ``draws.csv``."""
 
+import contextlib
+
 import numpy as np
 import pandas as pd
+import pytest
 
 RADIUS = 200.0
 PREDICTED = 7.0
@@ -35,3 +38,12 @@ def study_rows(flights, seed=20261121):
     )
     inputs = pd.DataFrame({"flight_id": flight_ids, "trial": "study", "wind.speed_mps": wind, "turbulence.level": level})
     return rows, inputs
+
+
+@contextlib.contextmanager
+def few_indices(*driven):
+    """Ask of some figures alone what drives them, with 3 bootstraps: that takes nearly all of the time of study_statistics."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("scenarios.sensitivity.RESAMPLES", 3)
+        patch.setattr("scenarios.statistics.DRIVEN", driven)
+        yield

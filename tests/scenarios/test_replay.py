@@ -14,25 +14,9 @@ from scenarios.errors import InputError
 from scenarios.load import is_flight, load_study
 from scenarios.replay import Replay
 from scenarios.studies import run_study
+from tests.scenarios.short_trial import short_trial
 
-SEA = """
-study = "sea"
-title = "short"
-fidelity = "kinematic"
-flights = 3
-histories = 3
-speed_ratio = [0.1, 0.9]
-[[draws]]
-key = "wind.speed_mps"
-uniform = [0.0, 5.0]
-[start]
-distance_m = [400.0, 420.0]
-[flight]
-crossings = 0
-duration_max_s = 10.0
-[criteria]
-settles = false
-"""
+SEA = short_trial(flights=3, duration=10.0, histories=3, spread=180.0)
 
 
 @pytest.fixture(scope="module")

@@ -10,25 +10,9 @@ from scenarios.errors import InputError
 from scenarios.load import load_study
 from scenarios.studies import run_study
 from tests.run_tables import rows_of
+from tests.scenarios.short_trial import short_trial
 
-TRIAL = """
-study = "sea"
-title = "short"
-fidelity = "kinematic"
-flights = 4
-speed_ratio = [0.1, 0.9]
-[[draws]]
-key = "wind.speed_mps"
-uniform = [0.0, 5.0]
-[start]
-distance_m = [400.0, 420.0]
-spread_deg = 10.0
-[flight]
-crossings = 0
-duration_max_s = 8.0
-[criteria]
-settles = false
-"""
+TRIAL = short_trial(flights=4, duration=8.0)
 
 
 def written(directory):

@@ -9,7 +9,7 @@ import pytest
 from scenarios.intervals import clopper_pearson, quantile_interval, upper_bound
 from scenarios.statistics import NAMED_MAX, study_statistics
 from scenarios.stopping import confidence_at
-from tests.scenarios.study_rows import PREDICTED, RADIUS, study_rows
+from tests.scenarios.study_rows import PREDICTED, RADIUS, few_indices, study_rows
 
 FLIGHTS = 250
 
@@ -19,11 +19,9 @@ def statistics_of(rows, inputs, **changes):
 
 
 @pytest.fixture(scope="module", autouse=True)
-def few_indices():
+def quick_statistics():
     """Ask of two figures what drives them, with 3 bootstraps: that takes nearly all of the time; test_sensitivity is about it."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("scenarios.sensitivity.RESAMPLES", 3)
-        patch.setattr("scenarios.statistics.DRIVEN", ("clearance_m", "tracking_error_rms_m"))
+    with few_indices("clearance_m", "tracking_error_rms_m"):
         yield
 
 

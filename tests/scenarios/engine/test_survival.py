@@ -14,28 +14,11 @@ import pytest
 from scenarios.engine.hiring import Hiring
 from scenarios.load import load_study
 from scenarios.studies import run_study
+from tests.scenarios.short_trial import short_trial
 
 FLIGHTS = 120
 
-TRIAL = f"""
-study = "sea"
-title = "short"
-fidelity = "kinematic"
-flights = {FLIGHTS}
-histories = 10
-speed_ratio = [0.1, 0.9]
-[[draws]]
-key = "wind.speed_mps"
-uniform = [0.0, 5.0]
-[start]
-distance_m = [400.0, 420.0]
-spread_deg = 10.0
-[flight]
-crossings = 0
-duration_max_s = 12.0
-[criteria]
-settles = false
-"""
+TRIAL = short_trial(flights=FLIGHTS, duration=12.0, histories=10)
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,24 @@
+"""A trial over the real sea for tests of what is about the flights: kinematic, in some wind, over in seconds."""
+
+
+def short_trial(*, flights, duration, histories=200, spread=10.0):
+    """Return a scenario file; ``duration`` in s, ``spread`` of the starts in deg."""
+    return f"""
+study = "sea"
+title = "short"
+fidelity = "kinematic"
+flights = {flights}
+histories = {histories}
+speed_ratio = [0.1, 0.9]
+[[draws]]
+key = "wind.speed_mps"
+uniform = [0.0, 5.0]
+[start]
+distance_m = [400.0, 420.0]
+spread_deg = {spread}
+[flight]
+crossings = 0
+duration_max_s = {duration}
+[criteria]
+settles = false
+"""
