@@ -56,7 +56,7 @@ class Feedback:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Actuator:
-    """What moves one surface or every engine's throttle, and can stick (``aircraft.faults``).
+    """What moves one surface or every engine's throttle, and can stick (``aircraft.simulation.faults``).
 
     Attributes
     ----------

@@ -13,22 +13,22 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from aircraft.fdm import TIME_STEP, Fdm
+from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.spec import X8
 from benchmarks.engine import report_engine
 from benchmarks.sea_guidance import report_sea_guidance
-from innerloop.designer import design_autopilot
-from innerloop.flight import AutopilotedAircraft
-from innerloop.jsbsim_root import write_root
-from innerloop.responses import level_trim, measure_lag
-from innerloop.reversal import measure_reversal
-from scenarios.closed_loop import fly
+from innerloop.designs.designer import design_autopilot
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.step_responses import level_trim, measure_lag
+from innerloop.flight.turn_reversal import measure_reversal
+from innerloop.jsbsim.root import write_root
 from scenarios.flights import guidance_lag, place_vehicle
-from scenarios.history import flight_history
-from scenarios.load import load_scenario, with_values
-from scenarios.metrics import flight_figures
-from scenarios.plan import plan_flight
-from scenarios.six_dof import SixDof
+from scenarios.metrics.figures import flight_figures
+from scenarios.metrics.relative_state import flight_history
+from scenarios.planning.planner import plan_flight
+from scenarios.schema.load import load_scenario, with_values
+from scenarios.simulation.closed_loop import fly
+from scenarios.vehicles.six_dof import SixDof
 
 ROUNDS, STUDIES = 15, 3
 FLOWN = 400.0

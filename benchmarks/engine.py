@@ -11,12 +11,12 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
-from scenarios.engine.hiring import Hiring
-from scenarios.engine.study import fly_study
-from scenarios.engine.work import Task, Work
-from scenarios.load import load_study
-from scenarios.run_directory import RunDirectory
-from scenarios.studies import study_of
+from scenarios.engine.executors import Hiring
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.runner import fly_study
+from scenarios.engine.task import Task, Work
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import study_of
 
 FLIGHTS = 40
 LENGTHS = (50.0, 250.0)

@@ -13,9 +13,9 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from scenarios.engine.hiring import DASK, LOCAL, Hiring
+from scenarios.engine.executors import DASK, LOCAL, Hiring
 from scenarios.engine.journal import Journal
-from scenarios.engine.work import Result, Task
+from scenarios.engine.task import Result, Task
 
 KINEMATIC = ("sea_approach", "fidelity=kinematic", "flight.duration_max_s=2", "criteria.settles=false", "flight.crossings=0")
 SIX_DOF = ("monte_carlo", "sampling=random", "histories=100000")

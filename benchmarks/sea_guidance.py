@@ -17,14 +17,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from gnc.guidance import Guidance
 from gnc.sea_guidance import SeaGuidance
-from scenarios.engine.work import Task
-from scenarios.histories import history_path
-from scenarios.sea_airframe import airframe_for
-from scenarios.sea_config import Reports, SeaFlight, SeaScenario, SeaStart, SeaVessel, Wind
+from gnc.tracker import Guidance
+from scenarios.engine.task import Task
+from scenarios.planning.sea_planner import SeaPlan, plan_sea_flight
+from scenarios.schema.sea_config import Reports, SeaFlight, SeaScenario, SeaStart, SeaVessel, Wind
 from scenarios.sea_flights import SeaWork, Trial
-from scenarios.sea_plan import SeaPlan, plan_sea_flight
+from scenarios.simulation.time_history import history_path
+from scenarios.vehicles.sea_airframe import airframe_for
 
 SETTLED = 150.0
 """From when on steps are timed: the UAV is on its orbit [s]."""

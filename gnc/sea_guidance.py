@@ -7,19 +7,19 @@ round the keep-out area; whatever is asked for passes the keep-out guard.
 
 import math
 
+from gnc.airspeed.pace_hold import airspeed_to_hold
 from gnc.angles import wrap
-from gnc.guidance import Guidance
-from gnc.health import Health, Trouble
-from gnc.keepout_guard import KeepoutGuard
+from gnc.estimation.health import Health, Trouble
+from gnc.estimation.navigation import Navigation
+from gnc.estimation.vessel_filter import VesselFilter, VesselMotion
 from gnc.limits import limited
-from gnc.moving_centre import MovingCentre
-from gnc.navigation import Navigation
-from gnc.reference_steering import mean_motion
+from gnc.mission.transit import Transit
+from gnc.reference.mean_motion import mean_motion
+from gnc.reference.moving_centre import MovingCentre
+from gnc.reference.steered import SteeredReference
+from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.sea_parameters import Mode, SeaParameters
-from gnc.speed_hold import airspeed_to_hold
-from gnc.steered_reference import SteeredReference
-from gnc.transit import Transit
-from gnc.vessel_filter import VesselFilter, VesselMotion
+from gnc.tracker import Guidance
 
 _TRANSIT_GAIN = 2.0
 """Heading rate per course error on the way to the reference, in units of omega_max [-]."""
@@ -168,7 +168,7 @@ class SeaGuidance:
         north, east = navigation.north - navigation.drift_north, navigation.east - navigation.drift_east
         reference, tracking = guidance.reference, self._tracking
         reference_north, reference_east, reference_course = reference.north, reference.east, reference.course
-        # The autopilot turns against the gusty air, the guidance over the mean air: ``gnc.speed_hold.air_turn``.
+        # The autopilot turns against the gusty air, the guidance over the mean air: ``gnc.airspeed.pace_hold.air_turn``.
         faster = max(airspeed, 1.0) / max(speed, 1.0)
         if step % _HEALTH_INTERVAL == 0:
             self._watch(airspeed, heading_rate, servo_error)
@@ -180,7 +180,7 @@ class SeaGuidance:
         elif not tracking:
             command = self._to_centre(x, y, away_north, away_east, course, speed, heading_rate)
         if guard is not None:
-            # A turn away is flown at V_r at least: see ``gnc.guidance``.
+            # A turn away is flown at V_r at least: see ``gnc.tracker``.
             turning = speed if speed > self._speed else self._speed
             command = guard.limit(command, x, y, away_north, away_east, course, turning, heading_rate, extra_radius=self._further)
         guidance.heading_rate_command = command

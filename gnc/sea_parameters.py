@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from gnc.guidance import GuidanceParameters
-from gnc.moving_centre import CentreParameters
-from gnc.navigation import NavigationParameters
-from gnc.speed_hold import SpeedHold
+from gnc.airspeed.pace_hold import SpeedHold
+from gnc.estimation.navigation import NavigationParameters
+from gnc.reference.moving_centre import CentreParameters
+from gnc.tracker import GuidanceParameters
 
 
 class Mode(Enum):

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.command_line import BAD_INPUT, INTERRUPTED, run_command
+from common.command_line import BAD_INPUT, INTERRUPTED, run_command
 
 if TYPE_CHECKING:
-    from innerloop.record import Record
-    from reports.blocks import Table
+    from innerloop.designs.record import Record
+    from reports.document.blocks import Table
 
 
 def command(
@@ -47,7 +47,7 @@ def command(
 
 def _list(altitude: float) -> None:
     """Print a line for every aircraft, as soon as it is known."""
-    from innerloop.discovery import discover
+    from innerloop.designs.listing import discover
 
     print("designing every aircraft that is not remembered; the first time, some minutes", file=sys.stderr)
     flown = 0
@@ -62,17 +62,17 @@ def _list(altitude: float) -> None:
 
 
 def _design(aircraft: str, out: Path, altitude: float, *, no_report: bool) -> None:
-    from aircraft.find import find_spec
+    from aircraft.fleet.find import find_spec
 
     spec = find_spec(aircraft)
     _refuse_another_run(out)
 
-    from innerloop.cache import designed
-    from innerloop.design_manifest import design_manifest
-    from innerloop.jsbsim_root import write_root
-    from innerloop.jsbsim_script import write_script
+    from common.files import write_json
+    from innerloop.designs.cache import designed
+    from innerloop.designs.manifest import design_manifest
+    from innerloop.jsbsim.root import write_root
+    from innerloop.jsbsim.script import write_script
     from reports.build import build_reports
-    from reports.files import write_json
 
     print(f"designing the autopilot of {spec.title}", file=sys.stderr)
     started = time.monotonic()
@@ -105,9 +105,9 @@ def _refuse_another_run(out: Path) -> None:
 def _print(record: "Record") -> None:
     from rich.console import Console
 
-    from reports.design_data import at_middle, complete, excess_overshoot
-    from reports.design_tables import extreme_trims, pole_table, robustness_table, step_table, trim_table, worst_margin_table
-    from reports.design_verdict import design_verdict
+    from reports.design.data import at_middle, complete, excess_overshoot
+    from reports.design.tables import extreme_trims, pole_table, robustness_table, step_table, trim_table, worst_margin_table
+    from reports.design.verdict import design_verdict
 
     design = complete(record)
     tables = [
@@ -133,7 +133,7 @@ def _print(record: "Record") -> None:
 
 
 def _poles(poles: "Record") -> "Table":
-    from reports.blocks import Table
+    from reports.document.blocks import Table
 
     names = {"open_loop": "aircraft", "closed_loop": "under the autopilot"}
     rows = [[name, "  ".join(_pole(*p) for p in poles[kind] if p[1] >= 0.0)] for kind, name in names.items()]

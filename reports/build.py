@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from reports.command_line import BAD_INPUT, run_command
+from common.command_line import BAD_INPUT, run_command
 
 
 def build_reports(directory: Path) -> list[Path]:
@@ -17,12 +17,12 @@ def build_reports(directory: Path) -> list[Path]:
     ------
     ReportError : the directory holds no run that can be reported on, or cannot be written
     """
-    from reports.content import content
+    from common.files import write_whole
     from reports.errors import ReportError
-    from reports.files import write_whole
-    from reports.html import write_html
-    from reports.pdf import write_pdf
-    from reports.run_data import read_run
+    from reports.registry import content
+    from reports.render.html import write_html
+    from reports.render.pdf import write_pdf
+    from reports.run.run_data import read_run
 
     run = read_run(directory)
     print("building the report", file=sys.stderr)

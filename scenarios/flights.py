@@ -9,22 +9,22 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from innerloop.flight import AutopilotedAircraft
-from scenarios.closed_loop import Outcome, fly
-from scenarios.config import Case, Scenario
-from scenarios.crossings import Crossing, crossing_rows
-from scenarios.engine.work import Result, Row, Task
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
-from scenarios.failure import failure, unflown
-from scenarios.histories import history_files
-from scenarios.history import flight_history
-from scenarios.jsbsim_vehicle import JsbsimVehicle
-from scenarios.kinematic_vehicle import KinematicVehicle
-from scenarios.load import with_values
-from scenarios.metrics import flight_figures, plan_row, unmet_criteria
-from scenarios.plan import FlightPlan, plan_flight
-from scenarios.six_dof import SixDof
-from scenarios.vehicle import Vehicle
+from scenarios.metrics.crossings import Crossing, crossing_rows
+from scenarios.metrics.figures import flight_figures, plan_row, unmet_criteria
+from scenarios.metrics.relative_state import flight_history
+from scenarios.planning.planner import FlightPlan, plan_flight
+from scenarios.schema.config import Case, Scenario
+from scenarios.schema.load import with_values
+from scenarios.simulation.closed_loop import Outcome, fly
+from scenarios.simulation.failure import failure, unflown
+from scenarios.simulation.time_history import history_files
+from scenarios.vehicles.jsbsim import JsbsimVehicle
+from scenarios.vehicles.kinematic import KinematicVehicle
+from scenarios.vehicles.six_dof import SixDof
+from scenarios.vehicles.vehicle import Vehicle
 
 STUDY = "study"
 """The variant of flights that count; others are comparisons."""

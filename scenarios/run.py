@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from reports.command_line import BAD_INPUT, INTERRUPTED, run_command
+from common.command_line import BAD_INPUT, INTERRUPTED, run_command
 
 if TYPE_CHECKING:
-    from scenarios.engine.study import Hire
+    from scenarios.engine.runner import Hire
 
 MET, NOT_MET = 0, 1
 
@@ -47,8 +47,8 @@ def command(
     Exit status: 0 every flight completed and met its criteria (or every trajectory converged), 1 some did not, 2 bad input, 130
     interrupted.
     """
-    from scenarios.engine.hiring import Hiring
-    from scenarios.engine.work import Limits
+    from scenarios.engine.executors import Hiring
+    from scenarios.engine.task import Limits
     from scenarios.errors import InputError
 
     try:
@@ -70,7 +70,7 @@ def command(
 def _list() -> int:
     import tomllib
 
-    from scenarios.load import catalog
+    from scenarios.schema.load import catalog
 
     for name, path in catalog().items():
         print(f"{name:24} {tomllib.loads(path.read_text(encoding='utf-8'))['title']}")
@@ -87,7 +87,7 @@ def _run(
     no_report: bool,
 ) -> int:
     from scenarios.errors import InputError
-    from scenarios.load import catalog, is_flight, load_study
+    from scenarios.schema.load import catalog, is_flight, load_study
 
     if name is None:
         raise InputError(f"no scenario given; name a TOML file or one of: {', '.join(catalog())}")
@@ -104,16 +104,16 @@ def _run(
     # Before anything heavy is imported: most mistakes are found here.
     scenario = None if replayed else load_study(name, overrides)
 
-    from scenarios.progress import progress_bar
+    from scenarios.engine.progress import progress_bar
 
     with progress_bar() as progress:
         if scenario is None:
-            from scenarios.engine.study import fly_study
-            from scenarios.replay import Replay
+            from scenarios.engine.runner import fly_study
+            from scenarios.studies.replay import Replay
 
             result = fly_study(Replay(name), directory, hire=hire, resume=resume, progress=progress)
         else:
-            from scenarios.studies import run_study
+            from scenarios.studies.registry import run_study
 
             result = run_study(scenario, stem, directory, hire=hire, resume=resume, progress=progress, overrides=overrides)
     for line in result.summary.lines:

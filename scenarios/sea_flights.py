@@ -11,23 +11,23 @@ from pathlib import Path
 
 import pandas as pd
 
-from innerloop.flight import AutopilotedAircraft
-from scenarios.closed_loop import Outcome
-from scenarios.crossings import crossing_rows
-from scenarios.engine.work import Result, Row, Task
-from scenarios.failure import failure, unflown
-from scenarios.histories import history_files
-from scenarios.interventions import INTERVENTION_COLUMNS
-from scenarios.jsbsim_vehicle import JsbsimVehicle
-from scenarios.kinematic_vehicle import KinematicVehicle
-from scenarios.sea_airframe import KINEMATIC_LAG, Airframe
-from scenarios.sea_config import SeaScenario
-from scenarios.sea_draws import DrawnFlight, drawn_flight
-from scenarios.sea_loop import SEA_COLUMNS, fly_sea
-from scenarios.sea_margin import SpreadTable
-from scenarios.sea_metrics import sea_figures, sea_plan_row, sea_unmet
-from scenarios.sea_plan import SeaPlan, plan_sea_flight
-from scenarios.vehicle import Vehicle
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from scenarios.engine.task import Result, Row, Task
+from scenarios.experiment.draws import DrawnFlight, drawn_flight
+from scenarios.margin.keepout_margin import SpreadTable
+from scenarios.metrics.crossings import crossing_rows
+from scenarios.metrics.sea_figures import sea_figures, sea_plan_row, sea_unmet
+from scenarios.planning.sea_planner import SeaPlan, plan_sea_flight
+from scenarios.schema.sea_config import SeaScenario
+from scenarios.simulation.closed_loop import Outcome
+from scenarios.simulation.failure import failure, unflown
+from scenarios.simulation.interventions import INTERVENTION_COLUMNS
+from scenarios.simulation.sea_loop import SEA_COLUMNS, fly_sea
+from scenarios.simulation.time_history import history_files
+from scenarios.vehicles.jsbsim import JsbsimVehicle
+from scenarios.vehicles.kinematic import KinematicVehicle
+from scenarios.vehicles.sea_airframe import KINEMATIC_LAG, Airframe
+from scenarios.vehicles.vehicle import Vehicle
 
 _CROSSING_COLUMNS = ("flight_id", "trial", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
 

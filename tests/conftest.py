@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from aircraft.fdm import Fdm
-    from innerloop.cache import Designed
-    from innerloop.designer import Design
-    from innerloop.flight import AutopilotedAircraft
-    from innerloop.schedule import Schedule
+    from aircraft.simulation.fdm import Fdm
+    from innerloop.designs.cache import Designed
+    from innerloop.designs.designer import Design
+    from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+    from innerloop.synthesis.schedule import Schedule
 
 # No deadline, for time is not what is tested, and the same examples on every machine.
 settings.register_profile("reproducible", deadline=None, derandomize=True)
@@ -46,8 +46,8 @@ def cache_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture(scope="session")
 def designs(cache_home: Path) -> Callable[[str], Designed]:
     """A function from an aircraft's name to its design and record, made by whichever worker asks first: seconds of work."""
-    from aircraft.find import find_spec
-    from innerloop.cache import designed
+    from aircraft.fleet.find import find_spec
+    from innerloop.designs.cache import designed
 
     @functools.cache
     def design(name: str) -> Designed:
@@ -86,7 +86,7 @@ def x8_schedule(x8_design: Design) -> Schedule:
 @pytest.fixture(scope="session")
 def x8_root(x8_schedule: Schedule, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A JSBSim root that flies the X8 under its autopilot."""
-    from innerloop.jsbsim_root import write_root
+    from innerloop.jsbsim.root import write_root
 
     return write_root(x8_schedule, tmp_path_factory.mktemp("x8_root"))
 
@@ -95,7 +95,7 @@ def x8_root(x8_schedule: Schedule, tmp_path_factory: pytest.TempPathFactory) -> 
 def x8_aircraft(x8_root: Path) -> AutopilotedAircraft:
     """An X8 under its autopilot, as fresh from the factory."""
     from aircraft.spec import X8
-    from innerloop.flight import AutopilotedAircraft
+    from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
     return AutopilotedAircraft(X8, x8_root)
 
@@ -103,7 +103,7 @@ def x8_aircraft(x8_root: Path) -> AutopilotedAircraft:
 @pytest.fixture
 def x8_fdm() -> Fdm:
     """A bare X8."""
-    from aircraft.fdm import Fdm
+    from aircraft.simulation.fdm import Fdm
     from aircraft.spec import X8
 
     return Fdm(X8)

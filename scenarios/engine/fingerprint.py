@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic")
-_SOURCE = ("aircraft", "gnc", "innerloop", "scenarios")
+_SOURCE = ("aircraft", "common", "gnc", "innerloop", "scenarios")
 
 
 @functools.cache

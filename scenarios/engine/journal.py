@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
 
-from scenarios.engine.work import Result, Row, Task
+from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
 
 _LARGEST = 2**63 - 1

@@ -2,7 +2,7 @@
 
 from gnc_cases import SPEED
 
-from gnc.bounds import convergence_time, fastest_within
+from gnc.analysis.bounds import convergence_time, fastest_within
 
 # omega_max of the tables of docs/actuation_bounds.md; paper-notes give 0.503.
 LIMIT = 0.505

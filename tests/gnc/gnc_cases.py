@@ -12,10 +12,10 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from gnc.delta import look_ahead, relative_state, relative_velocity
-from gnc.guidance import Guidance, GuidanceParameters, Law
-from gnc.oscillation import design_oscillation
-from gnc.reference import ReferencePoint, start_reference
+from gnc.laws.delta import look_ahead, relative_state, relative_velocity
+from gnc.reference.oscillating import ReferencePoint, start_reference
+from gnc.reference.oscillation import design_oscillation
+from gnc.tracker import Guidance, GuidanceParameters, Law
 from gnc.unicycle import unicycle_move, unicycle_rates
 
 SPEED = 19.42

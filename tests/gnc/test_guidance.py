@@ -15,12 +15,12 @@ from gnc_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.delta import relative_state, relative_velocity
-from gnc.guidance import Law
-from gnc.keepout_guard import KeepoutGuard
-from gnc.laws import cascade_law, line_of_sight_law, lyapunov_law
-from gnc.placement import PlumeAxis, distance_by_paper
-from gnc.reference import ReferencePoint, start_reference
+from gnc.laws.cascade import cascade_law, line_of_sight_law, lyapunov_law
+from gnc.laws.delta import relative_state, relative_velocity
+from gnc.reference.oscillating import ReferencePoint, start_reference
+from gnc.reference.placement import PlumeAxis, distance_by_paper
+from gnc.safety.keepout_guard import KeepoutGuard
+from gnc.tracker import Law
 
 TIME_STEP = 0.05
 NOWHERE = (0.0, 0.0, 0.0, 0.0)
@@ -41,7 +41,7 @@ def law_command(law, reference, north, east, course, speed):
 
 
 def make_guard():
-    # 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/plan.py). These vehicles answer at once.
+    # 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/planner.py). These vehicles answer at once.
     return KeepoutGuard(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, time_step=TIME_STEP)
 
 
@@ -295,7 +295,7 @@ def test_from_ahead_of_the_vessel_only_the_guard_keeps_the_vehicle_out(nu):
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("nu", [0.0, 0.1, 0.5])
 def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
-    # Starts as in scenarios/config.py: 400 to 800 m away, within 30 degrees of astern, on any course.
+    # Starts as in scenarios/schema/config.py: 400 to 800 m away, within 30 degrees of astern, on any course.
     generator = np.random.default_rng(seed)
     distance, bearing = generator.uniform(400.0, 800.0), math.pi + generator.uniform(-math.pi / 6.0, math.pi / 6.0)
     start = (distance * math.cos(bearing), distance * math.sin(bearing), generator.uniform(-math.pi, math.pi))

@@ -3,7 +3,7 @@
 import control
 import numpy as np
 
-from innerloop.control_law import COMMANDS
+from innerloop.law.control_law import COMMANDS
 
 PADE_ORDER = 4
 """Of the delay of 12.5 ms: exact to 1e-6 rad below 50 rad/s, where all crossovers lie."""

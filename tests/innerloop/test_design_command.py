@@ -5,8 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from reports.content import content
-from reports.run_data import read_run
+from reports.registry import content
+from reports.run.run_data import read_run
 
 PROJECT = Path(__file__).parents[2]
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from scenarios.load import load_scenario
-from scenarios.studies import run_study
+from scenarios.schema.load import load_scenario
+from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
 

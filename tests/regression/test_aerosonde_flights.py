@@ -6,7 +6,7 @@ import pytest
 from study_runs import assert_flown_as_the_issue_asks, fly_study
 
 from aircraft.spec import AEROSONDE
-from innerloop.cache import designed
+from innerloop.designs.cache import designed
 
 NUS = (0.3, 0.5, 0.7)
 

@@ -7,15 +7,15 @@ import pandas as pd
 import pytest
 
 from aircraft.spec import X8
-from innerloop.cache import designed
-from innerloop.flight import AutopilotedAircraft
-from innerloop.jsbsim_root import write_root
-from innerloop.responses import level_trim
-from innerloop.reversal import measure_reversal
-from scenarios.engine.work import Task
+from innerloop.designs.cache import designed
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.step_responses import level_trim
+from innerloop.flight.turn_reversal import measure_reversal
+from innerloop.jsbsim.root import write_root
+from scenarios.engine.task import Task
 from scenarios.flights import FlightWork, flight_requests
-from scenarios.load import load_scenario
-from scenarios.six_dof import SixDof
+from scenarios.schema.load import load_scenario
+from scenarios.vehicles.six_dof import SixDof
 from tests.run_tables import history_in
 
 SPEED = 19.42

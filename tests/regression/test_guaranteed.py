@@ -4,8 +4,8 @@ import pandas as pd
 import pytest
 
 from reports.build import build_reports
-from scenarios.load import load_scenario
-from scenarios.studies import run_study
+from scenarios.schema.load import load_scenario
+from scenarios.studies.registry import run_study
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,9 @@ import json
 import pandas as pd
 import pytest
 
-from scenarios.engine.hiring import Hiring
-from scenarios.load import load_study
-from scenarios.studies import run_study
+from scenarios.engine.executors import Hiring
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
 
 FLIGHTS = 12
 

@@ -11,12 +11,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reports.blocks import Table
 from reports.build import build_reports
-from reports.content import content
-from reports.run_data import read_run
-from scenarios.load import load_scenario
-from scenarios.studies import run_study
+from reports.document.blocks import Table
+from reports.registry import content
+from reports.run.run_data import read_run
+from scenarios.schema.load import load_scenario
+from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
 BOTH = pytest.mark.parametrize("fidelity", ["kinematic", "six_dof"])
@@ -171,7 +171,7 @@ def test_its_report_has_every_figure_for_both_vehicles_and_every_published_numbe
 
 
 def test_saddle_points_are_marked_where_the_relative_courses_meet(directory):
-    from reports.paper_charts import coincidences, find_flight
+    from reports.paper.charts import coincidences, find_flight
 
     flown = find_flight(read_run(directory), "sim1_kinematic")
     times = coincidences(flown)

@@ -5,11 +5,11 @@ import math
 import pytest
 from study_runs import assert_flown_as_the_issue_asks, fly_study
 
-from reports.blocks import FlightPicker, Table
 from reports.build import build_reports
-from reports.chart import Chart
-from reports.content import content
-from reports.run_data import read_run
+from reports.document.blocks import FlightPicker, Table
+from reports.document.chart import Chart
+from reports.registry import content
+from reports.run.run_data import read_run
 from scenarios.errors import InputError
 
 # The issue's speed ratios, as many as fit into the suite's three minutes. All of them, the c172x and the c310 fly all three; a

@@ -5,10 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from reports.blocks import Content, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
-from reports.chart import Chart, Line, Panel
-from reports.html import write_html
-from reports.pdf import write_pdf
+from reports.document.blocks import Content, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
+from reports.document.chart import Chart, Line, Panel
+from reports.render.html import write_html
+from reports.render.pdf import write_pdf
 
 
 def a_chart(name):

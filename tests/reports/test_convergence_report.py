@@ -8,16 +8,16 @@ import pandas as pd
 import pytest
 from convergence_runs import LAWS, REFERENCES, write_convergence_run
 
-from reports import matplotlib_charts, plotly_charts
-from reports.blocks import Table, Text
 from reports.build import build_reports
-from reports.chart import Chart, Line, Panel
-from reports.content import content
-from reports.convergence_charts import CURVE_POINTS, DISTANCE_BINS, HISTORIES_PER_LAW, HISTORY_POINTS, cumulative
-from reports.convergence_tables import FAILED_ROWS
-from reports.convergence_verdict import FAILURES_NAMED, share
+from reports.convergence.charts import CURVE_POINTS, DISTANCE_BINS, HISTORIES_PER_LAW, HISTORY_POINTS, cumulative
+from reports.convergence.tables import FAILED_ROWS
+from reports.convergence.verdict import FAILURES_NAMED, share
+from reports.document.blocks import Table, Text
+from reports.document.chart import Chart, Line, Panel
 from reports.errors import ReportError
-from reports.run_data import read_run
+from reports.registry import content
+from reports.render import matplotlib_charts, plotly_charts
+from reports.run.run_data import read_run
 
 TRAJECTORIES = 1200
 FAILURES = [("lyapunov", 3, "time_up"), ("cascade", 7, "steps_up"), ("cascade", 200, "not_finite")]

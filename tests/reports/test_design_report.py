@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 from design_runs import AIRSPEEDS, BANKS_DEG, CASES, LOOPS, record, write_design
 
-from reports import matplotlib_charts, plotly_charts
-from reports.blocks import Heading, Table, Text
 from reports.build import build_reports
-from reports.chart import Chart
-from reports.content import content
-from reports.design_data import complete, excess_overshoot, where
-from reports.design_loop_charts import disk_region, turned
-from reports.design_margin_charts import margin_charts
-from reports.design_trim_charts import trim_charts
+from reports.design.data import complete, excess_overshoot, where
+from reports.design.loop_charts import disk_region, turned
+from reports.design.margin_charts import margin_charts
+from reports.design.section import innerloop_section
+from reports.design.section_charts import innerloop_charts
+from reports.design.trim_charts import trim_charts
+from reports.document.blocks import Heading, Table, Text
+from reports.document.chart import Chart
 from reports.errors import ReportError
-from reports.innerloop_charts import innerloop_charts
-from reports.innerloop_section import innerloop_section
-from reports.run_data import read_run
+from reports.registry import content
+from reports.render import matplotlib_charts, plotly_charts
+from reports.run.run_data import read_run
 
 FIRST_VERSION_LACKS = ("envelope", "required", "robustness", "verification", "banks_deg")
 LEVEL_LACKS = {"between", "climb_angle_rad", "limits", "rudder", "residual"}

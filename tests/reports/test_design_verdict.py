@@ -3,8 +3,8 @@
 import pytest
 from design_runs import record
 
-from reports.design_data import complete, down
-from reports.design_verdict import design_verdict
+from reports.design.data import complete, down
+from reports.design.verdict import design_verdict
 
 
 def changed(**rows):

@@ -9,20 +9,20 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reports import matplotlib_charts, plotly_charts
-from reports.blocks import Table, Text
-from reports.chart import Chart
-from reports.content import content
+from reports.document.blocks import Table, Text
+from reports.document.chart import Chart
 from reports.errors import ReportError
-from reports.monte_carlo_content import bound_in_words, monte_carlo_sections
-from reports.monte_carlo_driver_charts import NEAREST, SCATTER_MAX, thinned
-from reports.monte_carlo_names import input_label, input_name
-from reports.monte_carlo_spread_charts import cumulative
-from reports.monte_carlo_tables import percent
-from reports.run_data import RunData, read_run
-from scenarios.load import load_study
-from scenarios.manifest import opening_manifest, parameters
-from scenarios.statistics import study_statistics
+from reports.monte_carlo.content import bound_in_words, monte_carlo_sections
+from reports.monte_carlo.driver_charts import NEAREST, SCATTER_MAX, thinned
+from reports.monte_carlo.names import input_label, input_name
+from reports.monte_carlo.spread_charts import cumulative
+from reports.monte_carlo.tables import percent
+from reports.registry import content
+from reports.render import matplotlib_charts, plotly_charts
+from reports.run.run_data import RunData, read_run
+from scenarios.schema.load import load_study
+from scenarios.statistics.estimates import study_statistics
+from scenarios.studies.manifest import opening_manifest, parameters
 from tests.scenarios.study_rows import RADIUS, few_indices, study_rows
 
 FLIGHTS = 250

@@ -10,18 +10,18 @@ import pandas as pd
 import pytest
 from design_runs import record
 
-from reports import matplotlib_charts, plotly_charts
-from reports.blocks import FlightPicker, Table
 from reports.build import build_reports
-from reports.chart import Chart, Line, Panel
-from reports.content import content
+from reports.document.blocks import FlightPicker, Table
+from reports.document.chart import Chart, Line, Panel
+from reports.document.tables import limit
 from reports.errors import ReportError
-from reports.flight_charts import in_kilometres
-from reports.run_data import read_run
-from reports.tables import limit
-from reports.verdict import verdict
-from scenarios.load import load_scenario
-from scenarios.studies import run_study
+from reports.flights.flight_charts import in_kilometres
+from reports.flights.sweep_verdict import verdict
+from reports.registry import content
+from reports.render import matplotlib_charts, plotly_charts
+from reports.run.run_data import read_run
+from scenarios.schema.load import load_scenario
+from scenarios.studies.registry import run_study
 
 # Three crossings are too few for the study's own criteria.
 CRITERIA = ["criteria.tracking_error_rms_m=5.0", "criteria.crossing_interval_error=0.1"]

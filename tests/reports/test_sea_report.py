@@ -10,21 +10,21 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reports import matplotlib_charts, plotly_charts
-from reports.blocks import FlightPicker, Table, Text
 from reports.build import build_reports
-from reports.chart import Chart, Line, Panel
-from reports.content import content
-from reports.run_data import read_run
-from reports.sea_charts import trial_charts
-from reports.sea_content import PICKED_MAX, picked_flights
-from reports.sea_data import Kind, Trial, read_trials
-from reports.sea_flight_charts import sea_flight_charts
-from reports.sea_tables import UNMET_MAX
-from scenarios.load import load_study
-from scenarios.manifest import parameters
-from scenarios.sea_config import SeaTrial
-from scenarios.studies import run_study
+from reports.document.blocks import FlightPicker, Table, Text
+from reports.document.chart import Chart, Line, Panel
+from reports.flights.sea_content import PICKED_MAX, picked_flights
+from reports.flights.single_flight import sea_flight_charts
+from reports.flights.trial_charts import trial_charts
+from reports.flights.trial_tables import UNMET_MAX
+from reports.registry import content
+from reports.render import matplotlib_charts, plotly_charts
+from reports.run.run_data import read_run
+from reports.run.trials import Kind, Trial, read_trials
+from scenarios.schema.load import load_study
+from scenarios.schema.sea_config import SeaTrial
+from scenarios.studies.manifest import parameters
+from scenarios.studies.registry import run_study
 
 # Both settle and cross a few times, within some 150 s; after that the vessel of the second turns, which takes it 40 s at most.
 STEADY = """
@@ -106,7 +106,7 @@ def rows_of(report, title):
 
 def test_a_run_over_the_sea_is_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
     # Drawing takes nearly all of this test's time: one flight tells whether they are.
-    monkeypatch.setattr("reports.sea_content.PICKED_MAX", 1)
+    monkeypatch.setattr("reports.flights.sea_content.PICKED_MAX", 1)
     html, pdf = build_reports(shutil.copytree(run_path, tmp_path / "copy"))
     text = html.read_text(encoding="utf-8")
     assert pdf.read_bytes().startswith(b"%PDF")

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from gnc.sea_parameters import Mode
-from innerloop.reversal import Reversal
-from scenarios.engine.work import Task
-from scenarios.sea_airframe import KINEMATIC_BANDWIDTH, KINEMATIC_LAG, Airframe
-from scenarios.sea_config import SeaScenario
+from innerloop.flight.turn_reversal import Reversal
+from scenarios.engine.task import Task
+from scenarios.schema.sea_config import SeaScenario
 from scenarios.sea_flights import SeaWork, Trial
-from scenarios.sea_loop import SEA_COLUMNS
-from scenarios.vessel_track import VesselTrack
+from scenarios.simulation.sea_loop import SEA_COLUMNS
+from scenarios.vehicles.sea_airframe import KINEMATIC_BANDWIDTH, KINEMATIC_LAG, Airframe
+from scenarios.world.vessel import VesselTrack
 
 SPEED = 19.42
 
@@ -27,7 +27,7 @@ AIRFRAME = Airframe(
     six_dof=None,
     model=None,
 )
-"""As ``scenarios.sea_airframe`` makes it at 20 Hz."""
+"""As ``scenarios.vehicles.sea_airframe`` makes it at 20 Hz."""
 
 ASTERN = {"distance_m": (400.0, 400.0), "spread_deg": 10.0}
 

@@ -44,6 +44,6 @@ def study_rows(flights, seed=20261121):
 def few_indices(*driven):
     """Ask of some figures alone what drives them, with 3 bootstraps: that takes nearly all of the time of study_statistics."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("scenarios.sensitivity.RESAMPLES", 3)
-        patch.setattr("scenarios.statistics.DRIVEN", driven)
+        patch.setattr("scenarios.statistics.sensitivity.RESAMPLES", 3)
+        patch.setattr("scenarios.statistics.estimates.DRIVEN", driven)
         yield

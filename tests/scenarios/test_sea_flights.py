@@ -8,9 +8,9 @@ import pytest
 from sea_cases import ASTERN, SPEED, fly, modes, work
 
 from gnc.sea_parameters import Mode
-from scenarios.engine.work import Task
+from scenarios.engine.task import Task
+from scenarios.metrics.sea_figures import SEA_SUMMARY_COLUMNS
 from scenarios.sea_flights import DETAILS
-from scenarios.sea_metrics import SEA_SUMMARY_COLUMNS
 
 HEARD = {"interval_s": (2.0, 10.0), "latency_max_s": 2.0, "missing": 0.1}
 

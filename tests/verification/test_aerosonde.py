@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from x8_published import equatorial_gravity, standard_density
 
-from aircraft.fdm import TIME_STEP, Fdm
+from aircraft.dynamics.trim import trim
+from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.spec import AEROSONDE, MODELS
-from aircraft.trim import trim
 
 AIRSPEED, ALTITUDE = 25.0, 100.0  # m/s, m: where the authors start their simulations
 WORLD = bm.World(standard_density, equatorial_gravity(ALTITUDE))

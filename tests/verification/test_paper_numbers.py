@@ -7,12 +7,12 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from gnc.bessel import ETA_MAX, eta_for_speed_ratio, mean_speed_ratio
-from gnc.delta import RelativeState, look_ahead, relative_state
-from gnc.laws import lyapunov_law
-from gnc.orbit import f_x, half_widths, offset
-from gnc.oscillation import GRAVITY, design_oscillation, heading_rate_for_bank
-from gnc.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
+from gnc.laws.cascade import lyapunov_law
+from gnc.laws.delta import RelativeState, look_ahead, relative_state
+from gnc.reference.bessel import ETA_MAX, eta_for_speed_ratio, mean_speed_ratio
+from gnc.reference.orbit import f_x, half_widths, offset
+from gnc.reference.oscillation import GRAVITY, design_oscillation, heading_rate_for_bank
+from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
 
 SPEED = 19.42
 HEADING_RATE_MAX = 0.503

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from innerloop.flight import AutopilotedAircraft
-from innerloop.jsbsim_root import write_root
-from innerloop.responses import flown_step, model_step
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.step_responses import flown_step, model_step
+from innerloop.jsbsim.root import write_root
 
 STOCK = ("T37", "737", "J3Cub")
 TURN = 0.5

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from scenarios.engine.fingerprint import fingerprint
-from scenarios.engine.study import Summary, write_tables
-from scenarios.engine.work import Result, Task
+from scenarios.engine.runner import Summary, write_tables
+from scenarios.engine.task import Result, Task
 
 TABLE = "rows.csv"
 COLUMNS = ("number", "square", "reason")

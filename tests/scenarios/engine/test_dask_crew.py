@@ -10,11 +10,11 @@ import sys
 import pandas as pd
 import pytest
 
-from scenarios.engine.hiring import Hiring
-from scenarios.engine.work import Limits
+from scenarios.engine.executors import Hiring
+from scenarios.engine.task import Limits
 from scenarios.errors import InputError
-from scenarios.load import load_study
-from scenarios.studies import run_study
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
 
 SETTINGS = [
     "flights=40",
@@ -91,7 +91,7 @@ def test_a_limit_of_memory_with_which_no_worker_lives_is_refused_in_one_line(tmp
 
 
 def test_a_scheduler_that_is_not_there_is_named_in_one_line(tmp_path, monkeypatch):
-    monkeypatch.setattr("scenarios.engine.dask_crew._CONNECT_TIME", 1.0)
+    monkeypatch.setattr("scenarios.engine.dask_executor._CONNECT_TIME", 1.0)
     with pytest.raises(InputError, match=r"--scheduler tcp://127\.0\.0\.1:\d+ does not answer") as refused:
         fly(tmp_path / "run", executor="dask", scheduler=f"tcp://127.0.0.1:{free_port()}")
     assert "\n" not in str(refused.value)

@@ -1,9 +1,9 @@
 import pytest
 from engine_cases import Squares
 
-from scenarios.engine import hiring
-from scenarios.engine.hiring import DASK, LOCAL, Hiring
-from scenarios.engine.local_crew import LocalCrew
+from scenarios.engine import executors as hiring
+from scenarios.engine.executors import DASK, LOCAL, Hiring
+from scenarios.engine.local_executor import LocalCrew
 from scenarios.errors import InputError
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from scenarios.engine.journal import Journal
-from scenarios.engine.work import Result, Task
+from scenarios.engine.task import Result, Task
 from scenarios.errors import InputError
 
 ROOT = Path(__file__).parents[3]
@@ -19,7 +19,7 @@ HOLDS = """
 import sys
 from pathlib import Path
 from scenarios.engine.journal import Journal
-from scenarios.engine.work import Result, Task
+from scenarios.engine.task import Result, Task
 journal = Journal(Path(sys.argv[1]))
 journal.add(Result(task=Task(number=3), tables={"rows.csv": [{"a": 0.1}]}))
 print("held", flush=True)

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 from engine_cases import TABLE, Squares, begun, workers
 
-from scenarios.engine.crew import TRIES
-from scenarios.engine.local_crew import LocalCrew
-from scenarios.engine.work import Limits, Task
+from scenarios.engine.executor import TRIES
+from scenarios.engine.local_executor import LocalCrew
+from scenarios.engine.task import Limits, Task
 from scenarios.errors import InputError
 
 ROOT = Path(__file__).parents[3]
@@ -196,8 +196,8 @@ import itertools, sys, time
 from pathlib import Path
 sys.path[:0] = sys.argv[2:]
 from engine_cases import Squares
-from scenarios.engine.local_crew import LocalCrew
-from scenarios.engine.work import Limits, Task
+from scenarios.engine.local_executor import LocalCrew
+from scenarios.engine.task import Limits, Task
 from scenarios.errors import InputError
 class Slow(Squares):
     def fly(self, task):

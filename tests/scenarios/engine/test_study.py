@@ -9,11 +9,11 @@ import signal
 import pytest
 from engine_cases import TABLE, Squares, SquareStudy, begun
 
-from scenarios.engine.hiring import Hiring
+from scenarios.engine.executors import Hiring
 from scenarios.engine.journal import Journal
-from scenarios.engine.study import fly_study
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
-from scenarios.run_directory import RunDirectory
 from tests.run_tables import rows_of
 
 
@@ -192,7 +192,7 @@ def test_a_disk_that_is_full_of_the_journal_keeps_what_is_done(marks, out, whole
 
     study = SquareStudy(Squares(marks=marks, text=3000))
     with monkeypatch.context() as patch:
-        patch.setattr("scenarios.engine.study.Journal", Small)
+        patch.setattr("scenarios.engine.runner.Journal", Small)
         refused_for_room(study, out)
     told = []
     assert fly(study, out, resume=True, progress=lambda *report: told.append(report)).all_met

@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from scenarios.engine.hiring import Hiring
-from scenarios.load import load_study
-from scenarios.studies import run_study
+from scenarios.engine.executors import Hiring
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
 from tests.scenarios.short_trial import short_trial
 
 FLIGHTS = 120

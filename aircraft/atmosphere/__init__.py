@@ -1,0 +1,1 @@
+"""Wind, MIL-F-8785C turbulence, discrete gusts."""

@@ -1,0 +1,72 @@
+"""The air that an aircraft flies in: steady wind, turbulence and gusts."""
+
+import math
+from dataclasses import dataclass
+
+from aircraft.atmosphere.gusts import Gust, end_gust
+from aircraft.atmosphere.turbulence import JSBSIM_TYPE, Turbulence
+from aircraft.errors import AircraftError
+from aircraft.simulation.fdm import Fdm
+from aircraft.units import METRES_PER_FOOT
+
+_SEED_MAX = 2**31 - 1
+
+_MILSPEC = "atmosphere/turbulence/milspec"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Weather:
+    """The air of one flight.
+
+    Attributes
+    ----------
+    wind_north, wind_east : velocity of the air mass, so where the wind blows to [m/s]
+    turbulence : about the wind, from the release on; none for smooth air
+    gusts : discrete gusts, none at the same time as another
+    seed : of the turbulence, 0 to 2^31 - 1, which is what JSBSim holds
+
+    Raises
+    ------
+    AircraftError : a value out of range
+    """
+
+    wind_north: float = 0.0
+    wind_east: float = 0.0
+    turbulence: Turbulence | None = None
+    gusts: tuple[Gust, ...] = ()
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name, value in (("wind_north", self.wind_north), ("wind_east", self.wind_east)):
+            if not math.isfinite(value):
+                raise AircraftError(f"weather: {name} is {value} m/s; it must be finite")
+        if not 0 <= self.seed <= _SEED_MAX:
+            raise AircraftError(f"weather: seed is {self.seed}; JSBSim takes whole numbers from 0 to {_SEED_MAX}")
+
+    @property
+    def wind(self) -> tuple[float, float]:
+        """Return the velocity of the air mass, north and east [m/s]."""
+        return self.wind_north, self.wind_east
+
+
+def begin_turbulence(fdm: Fdm, weather: Weather) -> None:
+    """Let the turbulence of ``weather`` rise from smooth air, if it has any; the same seed gives the same turbulence.
+
+    It takes a few times ``scale_lengths()[0]`` over the airspeed to be as strong as it will be: some 30 s for 220 m at 20 m/s.
+    """
+    if weather.turbulence is None:
+        return
+    fdm.write("atmosphere/randomseed", weather.seed)
+    fdm.write("atmosphere/turb-type", JSBSIM_TYPE)
+    fdm.write(f"{_MILSPEC}/windspeed_at_20ft_AGL-fps", weather.turbulence.wind_at_20ft / METRES_PER_FOOT)
+    fdm.write(f"{_MILSPEC}/severity", weather.turbulence.severity)
+
+
+def end_weather(fdm: Fdm) -> None:
+    """End turbulence and gusts and forget them; the aircraft is to be placed next.
+
+    Turbulence has to end before: JSBSim places an aircraft with a time step of 0, by which its turbulence divides.
+    """
+    fdm.write(f"{_MILSPEC}/severity", 0)
+    end_gust(fdm)
+    fdm.renew()

@@ -1,0 +1,1 @@
+"""Trim, linear models, envelope."""

@@ -1,0 +1,161 @@
+"""Where an aircraft can fly the study: the airspeeds between stall and what its engines give, with banked turns to spare."""
+
+import math
+
+from aircraft.dynamics.trim import Trim, TrimOutcome, search_trim, trim
+from aircraft.errors import AircraftError
+from aircraft.simulation.fdm import Fdm
+from aircraft.simulation.state import RigidBodyState, body_velocity
+from aircraft.spec import BANK_RESERVE, AircraftSpec, Envelope
+from aircraft.units import KG_PER_SLUG, METRES_PER_FOOT, NEWTONS_PER_POUND
+
+BANK_LIMITS = ((150.0, 45.0), (5_670.0, 30.0), (math.inf, 25.0))
+"""Largest mass [kg] of a class and the bank it turns with [deg]: aircraft too small to carry people, light aeroplanes (up to
+12,500 lb, where CS-23 drew the line), and larger ones, which bank as airliners do."""
+
+TABLE_REACH = 1.1
+"""The autopilot's tables reach this far past its bank limit, so that an aircraft that overshoots is still in them [-]."""
+
+_STALL_RESERVE = 1.3
+_AIRSPEED_RATIO = 1.6
+_STEPS = 4
+_MACH_MAX = 0.6
+_SPEED_OF_SOUND = 340.3
+_SPAN_MIN = 1.12
+_BANKS_LESS = (1.0, 0.75, 0.5)
+_THROTTLE = (0.03, 0.95)
+_SURFACE = 0.9
+_LIFT_STEP = math.radians(1.0)
+_ALPHA_MAX = 0.4
+_GUESSES = (0.5, 0.35, 0.7, 0.25)
+"""Lift coefficients at which a first equilibrium is sought [-]."""
+
+
+def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
+    """Return the envelope that the aircraft's spec states, or one found by trimming the aircraft.
+
+    The range found begins 1.3 times above stall in the steepest turn of the autopilot's tables, and ends where level flight or that
+    turn takes more than 95 % of the throttle or 90 % of a surface, at 1.6 times its beginning or at Mach 0.6. Where that leaves no
+    range, the bank is cut to three quarters and to a half.
+
+    Parameters
+    ----------
+    fdm : the aircraft; its state is changed
+    altitude : [m]
+
+    Raises
+    ------
+    AircraftError : there is no such range, with what stands in the way
+    """
+    if fdm.spec.envelope is not None:
+        return fdm.spec.envelope
+    level = first_trim(fdm, altitude)
+    stall, notes = _stall_airspeed(fdm, level)
+    bank = bank_by_class(fdm.read("inertia/mass-slugs") * KG_PER_SLUG)
+    why = ""
+    for share in _BANKS_LESS:
+        flown, ended = _airspeeds(fdm, level, stall, share * bank)
+        if flown:
+            if why:
+                notes = (*notes, f"bank cut from {math.degrees(bank):g} deg: {why}")
+            if ended:
+                notes = (*notes, f"airspeeds limited: {ended}")
+            return Envelope(
+                airspeed_min=flown[0],
+                airspeed_max=flown[-1],
+                airspeed=0.5 * (flown[0] + flown[-1]),
+                bank=share * bank,
+                stall=stall,
+                notes=notes,
+            )
+        why = why or ended
+    raise AircraftError(f"aircraft '{fdm.spec.name}' cannot fly the study: {why}")
+
+
+def bank_by_class(mass: float) -> float:
+    """Return the bank that aircraft of a mass [kg] turn with [rad]."""
+    return math.radians(next(bank for largest, bank in BANK_LIMITS if mass <= largest))
+
+
+def first_trim(fdm: Fdm, altitude: float) -> Trim:
+    """Return level flight at some airspeed: where its envelope's is, or where its lift coefficient is an ordinary one."""
+    if fdm.spec.envelope is not None:
+        return trim(fdm, airspeed=fdm.spec.envelope.airspeed, altitude=altitude)
+    weight = fdm.read("inertia/weight-lbs") * NEWTONS_PER_POUND
+    area = fdm.read("metrics/Sw-sqft") * METRES_PER_FOOT**2
+    found: list[Trim] = []
+    for lift_coefficient in _GUESSES:
+        airspeed = math.sqrt(2.0 * weight / (1.225 * area * lift_coefficient))
+        found.append(search_trim(fdm, airspeed=airspeed, altitude=altitude))
+        if found[-1].outcome is TrimOutcome.CONVERGED:
+            return found[-1]
+    nearest = min(found, key=lambda t: t.residual)
+    raise AircraftError(f"aircraft '{fdm.spec.name}' does not trim: {_why(nearest)}")
+
+
+def _why(t: Trim) -> str:
+    held = f", {' and '.join(t.limits)}" if t.limits else ""
+    turn = f" at {math.degrees(t.roll):.0f} deg of bank" if t.yaw_rate else ""
+    return f"{t.outcome.value} at {t.airspeed:.0f} m/s{turn}{held}"
+
+
+def _stall_airspeed(fdm: Fdm, level: Trim) -> tuple[float, tuple[str, ...]]:
+    """Return the airspeed at which the largest lift carries the weight [m/s]: found by turning the held aircraft up to it."""
+    weight = fdm.read("inertia/weight-lbs")
+    lift = fdm.node("forces/fwz-aero-lbs")
+    largest, alpha = 0.0, level.alpha
+    fdm.command(dict(level.inputs))
+    with fdm.frozen():
+        while alpha < _ALPHA_MAX:
+            fdm.place(
+                RigidBodyState(
+                    altitude=level.altitude, roll=0.0, pitch=alpha, velocity_body=body_velocity(level.airspeed, alpha, 0.0)
+                )
+            )
+            fdm.step(2)
+            now = abs(lift.get_double_value())
+            if now < largest:
+                break
+            largest, alpha = now, alpha + _LIFT_STEP
+    notes = () if alpha < _ALPHA_MAX else (f"lift still rises at {math.degrees(_ALPHA_MAX):.0f} deg, taken for the stall",)
+    return level.airspeed * math.sqrt(weight / largest), notes
+
+
+def _airspeeds(fdm: Fdm, level: Trim, stall: float, bank: float) -> tuple[list[float], str]:
+    """Return the airspeeds, ascending, at which level flight and the steepest turns trim with reserve; and what ended the range."""
+    steepest = TABLE_REACH * (bank + BANK_RESERVE)
+    slowest = _STALL_RESERVE * stall / math.sqrt(math.cos(steepest))
+    fastest = min(_AIRSPEED_RATIO * slowest, _MACH_MAX * _SPEED_OF_SOUND)
+    flown: list[float] = []
+    why = ""
+    for i in range(_STEPS + 1):
+        airspeed = slowest * (fastest / slowest) ** (i / _STEPS)
+        near = level
+        for turn in (0.0, steepest, -steepest):
+            found = search_trim(fdm, airspeed=airspeed, altitude=level.altitude, bank=turn, start=near)
+            reason = _lacks(found, fdm.spec)
+            if reason:
+                why = reason
+                break
+            near = found if turn == 0.0 else near
+        else:
+            flown.append(airspeed)
+            continue
+        if flown:
+            break
+    if not flown or flown[-1] / flown[0] < _SPAN_MIN:
+        return [], why or "stall and its largest Mach number leave no range of airspeeds"
+    return flown, why
+
+
+def _lacks(t: Trim, spec: AircraftSpec) -> str:
+    """Return what an equilibrium lacks for the study, or nothing."""
+    if t.outcome is not TrimOutcome.CONVERGED:
+        return f"trim is {_why(t)}"
+    where = f"{t.airspeed:.0f} m/s and {math.degrees(t.roll):.0f} deg of bank"
+    for name, value in t.inputs.items():
+        travel = spec.input(name)
+        low, high = _THROTTLE if name == "throttle" else (_SURFACE * travel.lower, _SURFACE * travel.upper)
+        if not low <= value <= high:
+            return f"{where} take {value:.2f} of {name}; {low:g} to {high:g} leaves a reserve"
+    return ""

@@ -1,0 +1,1 @@
+"""The aircraft: one file each, and those JSBSim brings."""

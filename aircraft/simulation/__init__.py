@@ -1,0 +1,1 @@
+"""JSBSim, and nothing else touches it: load, place, step, fail."""

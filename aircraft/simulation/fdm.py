@@ -1,0 +1,346 @@
+"""A typed view of JSBSim in SI that refuses property names JSBSim does not have."""
+
+import contextlib
+import os
+import re
+import tempfile
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import jsbsim
+
+from aircraft.errors import AircraftError, ReadOnlyPropertyError, UnknownPropertyError
+from aircraft.simulation.model_copy import copy_model
+from aircraft.simulation.state import RigidBodyState, with_wind
+from aircraft.spec import AircraftSpec
+from aircraft.units import METRES_PER_FOOT
+
+TIME_STEP = 1.0 / 120.0
+"""Integration step of JSBSim and of the autopilot inside it [s]."""
+
+EARTH_RATE = 7.292115e-5
+"""Rotation rate of the earth, as in JSBSim's default planet [rad/s]."""
+
+_PROPERTY_NAME = re.compile(r"[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*")
+
+INTEGRATORS = tuple(
+    f"simulation/integrator/{kind}/{motion}" for kind in ("rate", "position") for motion in ("rotational", "translational")
+)
+"""Properties that choose how the rigid body is integrated; 0 in all four holds it still."""
+
+INITIAL_STATE = (
+    "ic/lat-geod-rad", "ic/long-gc-rad", "ic/h-sl-ft", "ic/phi-rad", "ic/theta-rad", "ic/psi-true-rad", "ic/u-fps", "ic/v-fps",
+    "ic/w-fps", "ic/p-rad_sec", "ic/q-rad_sec", "ic/r-rad_sec",
+)  # fmt: skip
+"""JSBSim's initial conditions, in the order in which it must be told: each may change others."""
+
+_ACCELERATION = "accelerations/{}dot-ft_sec2"
+_ANGULAR_ACCELERATION = "accelerations/{}dot-rad_sec2"
+
+WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
+"""Properties of the steady wind: the velocity of the air."""
+
+NORTH_WIND_MIN = 1e-6
+"""Least wind northward [ft/s]: JSBSim does not turn its turbulence into the wind where there is none."""
+
+RESET_ONLY = 2
+"""Resets every model of JSBSim to how it was loaded, without running it."""
+
+START_ENGINES = (("propulsion/set-running", -1.0),)
+"""Property that starts every engine at once, where JSBSim can."""
+
+CRANK = (("propulsion/magneto_cmd", 3.0), ("propulsion/starter_cmd", 1.0))
+STOP_CRANKING = (("propulsion/starter_cmd", 0.0),)
+"""Properties that start an engine as a pilot does: both magnetos, and the starter."""
+
+RUN_UP_STEPS = 1200
+"""Time steps for cranking, and again for running up before an aircraft is placed."""
+
+_SETTLE_STRIDE = 4
+
+
+class Fdm:
+    """One aircraft in JSBSim.
+
+    Parameters
+    ----------
+    spec : the aircraft
+    root : JSBSim root to load it from as it stands, e.g. one with an autopilot written into it; without one, a copy of the
+        aircraft's own model is loaded that has no autopilot, no output, and no play in its servos
+    time_step : integration step [s]
+
+    Raises
+    ------
+    AircraftError : the model's files are missing or JSBSim refuses them
+    """
+
+    def __init__(self, spec: AircraftSpec, root: Path | None = None, time_step: float = TIME_STEP) -> None:
+        self.spec = spec
+        self.time_step = time_step
+        if root is None:
+            with tempfile.TemporaryDirectory() as copy:
+                copy_model(spec.root, spec.model, Path(copy), play=False)
+                self._exec = self._load(Path(copy))
+        else:
+            self._exec = self._load(root)
+        self._exec.disable_output()
+        self._properties = self._exec.get_property_manager()
+        self._initial = [self.writable_node(name) for name in INITIAL_STATE]
+        self._accelerations = [
+            self.node(name) for name in (*_components(_ACCELERATION, "uvw"), *_components(_ANGULAR_ACCELERATION, "pqr"))
+        ]
+        self._engines_run = False
+        self.cranked = False
+        """Whether an engine had to be started with its starter."""
+        self.run = self._exec.run
+        """Advance one time step. Bound directly to JSBSim: the innermost call of every flight."""
+
+    def _load(self, root: Path) -> jsbsim.FGFDMExec:
+        name, model = self.spec.name, self.spec.model
+        model_file = root / "aircraft" / model / f"{model}.xml"
+        if not model_file.is_file():
+            raise AircraftError(f"aircraft '{name}': no model file {model_file}; check the JSBSim root directory")
+        with _silence():
+            jsbsim.FGJSBBase().debug_lvl = 0  # type: ignore[no-untyped-call]
+            executive = jsbsim.FGFDMExec(str(root))
+            executive.set_debug_level(0)
+            executive.set_dt(self.time_step)
+            try:
+                loaded = executive.load_model(model)
+            except jsbsim.BaseError:
+                loaded = False
+        if not loaded:
+            raise AircraftError(f"aircraft '{name}': JSBSim refused its model '{model}'; run JSBSim on it to see why")
+        return executive
+
+    def has(self, name: str) -> bool:
+        """Return whether there is a property of this name."""
+        return self._find(name) is not None
+
+    def node(self, name: str) -> jsbsim.FGPropertyNode:
+        """Return the node of an existing property, for repeated access at the least cost."""
+        node = self._find(name)
+        if node is None:
+            raise UnknownPropertyError(f"aircraft '{self.spec.name}' has no JSBSim property '{name}'; check its spelling")
+        return node
+
+    def _find(self, name: str) -> jsbsim.FGPropertyNode | None:
+        # A name that is not one ends the whole process in JSBSim's property tree.
+        return self._properties.get_node(name) if _PROPERTY_NAME.fullmatch(name) else None
+
+    def writable_node(self, name: str) -> jsbsim.FGPropertyNode:
+        """Return the node of an existing property that takes writes."""
+        node = self.node(name)
+        if not node.get_attribute(jsbsim.Attribute.WRITE):
+            raise ReadOnlyPropertyError(f"JSBSim property '{name}' is read-only; a write to it would be ignored")
+        return node
+
+    def read(self, name: str) -> float:
+        """Return a property in JSBSim's own unit."""
+        return float(self.node(name).get_double_value())
+
+    def write(self, name: str, value: float) -> None:
+        """Set a property in JSBSim's own unit."""
+        self.writable_node(name).set_double_value(value)
+
+    def place(self, state: RigidBodyState, wind: tuple[float, float] | None = None) -> None:
+        """Put the aircraft into ``state``, configured as its spec says. Engines go on as they were; the first time they start.
+
+        Parameters
+        ----------
+        state : against the air
+        wind : velocity of the air, north and east [m/s]; none for still air
+        """
+        self._initialise(state, wind)
+        if not self._engines_run and self._start_engines():
+            self._initialise(state, wind)
+
+    def renew(self) -> None:
+        """Make every model of JSBSim as it was loaded, to be placed next: filters of turbulence, gusts and engines forget."""
+        self._exec.reset_to_initial_conditions(RESET_ONLY)
+        self._engines_run = False
+
+    def revive(self) -> None:
+        """Let engines that have stopped start again when the aircraft is placed next: too little throttle can stall them."""
+        self._engines_run = self._engines_run and self._running()
+
+    def _initialise(self, state: RigidBodyState, wind: tuple[float, float] | None) -> None:
+        over_ground = with_wind(state, wind) if wind else state
+        for node, (_, value) in zip(self._initial, initial_conditions(over_ground), strict=True):
+            node.set_double_value(value)
+        try:
+            with contextlib.nullcontext() if self._engines_run else _silence():
+                placed = self._exec.run_ic()
+        except jsbsim.BaseError as error:
+            reason = " ".join(str(error).split(") ", 1)[-1].split())
+            raise AircraftError(f"aircraft '{self.spec.name}' does not run in JSBSim alone: {reason}") from None
+        if not placed:
+            raise AircraftError(f"aircraft '{self.spec.name}': JSBSim refused the initial state {state}")
+        for name, value in self.spec.configuration:
+            self.write(name, value)
+        if wind:
+            # JSBSim sets the wind of its initial conditions when it runs them, which is none.
+            north, east = (speed / METRES_PER_FOOT for speed in wind)
+            for name, value in zip(WIND, (north if abs(north) > NORTH_WIND_MIN else NORTH_WIND_MIN, east, 0.0), strict=True):
+                self.write(name, value)
+
+    def _start_engines(self) -> bool:
+        """Start every engine, at once or as a pilot does, and run them up, the body held; return whether that took any time.
+
+        A governed propeller that comes from idle can stay at its fine stop, wind-milling; from full throttle it governs.
+        """
+        self._engines_run = True
+        for name, value in START_ENGINES:
+            self.write(name, value)
+        if not self.spec.engine_flags:
+            return False
+        throttles = {name: self.read(name) for name in self.spec.input("throttle").commands}
+        with self.frozen():
+            for name in throttles:
+                self.write(name, 1.0)
+            self.cranked = not self._running()
+            if self.cranked:
+                for name, value in CRANK:
+                    self.write(name, value)
+            self.step(RUN_UP_STEPS)
+            for name, value in STOP_CRANKING:
+                self.write(name, value)
+            self.step(RUN_UP_STEPS)
+        for name, value in throttles.items():
+            self.write(name, value)
+        if not self._running():
+            seconds = RUN_UP_STEPS * self.time_step
+            raise AircraftError(
+                f"aircraft '{self.spec.name}': an engine does not run after {seconds:g} s of cranking and as much without"
+            )
+        return True
+
+    def _running(self) -> bool:
+        return all(self.read(name) > 0.5 for name in self.spec.engine_flags)
+
+    def command(self, inputs: dict[str, float]) -> None:
+        """Set control inputs by name [-], unclipped."""
+        for name, value in inputs.items():
+            control_input = self.spec.input(name)
+            for command in control_input.commands:
+                self.write(command, control_input.command(value))
+
+    def step(self, count: int = 1) -> None:
+        """Advance ``count`` time steps."""
+        for _ in range(count):
+            self.run()
+
+    @contextlib.contextmanager
+    def frozen(self) -> Iterator[None]:
+        """Hold the rigid body where it is while servos, propellers and forces go on, for trim and linearisation."""
+        before = {name: self.read(name) for name in INTEGRATORS}
+        for name in INTEGRATORS:
+            self.write(name, 0.0)
+        try:
+            yield
+        finally:
+            for name, value in before.items():
+                self.write(name, value)
+
+    def hold(self, state: RigidBodyState, steps: int, wind: tuple[float, float] | None = None) -> None:
+        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else at rest.
+
+        Parameters
+        ----------
+        state : against the air
+        steps : long enough for servos and engines to stand still
+        wind : velocity of the air, north and east [m/s]; none for still air
+        """
+        self.revive()
+        self.place(before_hold(state, steps * self.time_step), wind)
+        with self.frozen():
+            self.step(steps)
+
+    def settle(self, tolerance: float = 1e-9, steps_max: int = 4800) -> bool:
+        """Step, inside ``frozen``, until no acceleration [m/s^2, rad/s^2] moves by more than ``tolerance`` a step.
+
+        Returns
+        -------
+        bool : whether that was reached within ``steps_max`` steps
+        """
+        run, nodes = self.run, self._accelerations
+        before: list[float] = []
+        for _ in range(0, steps_max, _SETTLE_STRIDE):
+            for _ in range(_SETTLE_STRIDE):
+                run()
+            after = [node.get_double_value() for node in nodes]
+            limit = _SETTLE_STRIDE * tolerance
+            if before and all(abs(a - b) <= limit * max(1.0, abs(a)) for a, b in zip(after, before, strict=True)):
+                return True
+            before = after
+        return False
+
+    def velocity_body(self) -> tuple[float, float, float]:
+        """Return forward, right and down velocity against the air [m/s]."""
+        return self._vector("velocities/{}-aero-fps", "uvw", METRES_PER_FOOT)
+
+    def acceleration_body(self) -> tuple[float, float, float]:
+        """Return the rates of the body velocity components [m/s^2], as they stand after the last step."""
+        return self._vector(_ACCELERATION, "uvw", METRES_PER_FOOT)
+
+    def rates_body(self) -> tuple[float, float, float]:
+        """Return roll, pitch and yaw rate [rad/s]."""
+        return self._vector("velocities/{}-rad_sec", "pqr", 1.0)
+
+    def angular_acceleration(self) -> tuple[float, float, float]:
+        """Return the rates of p, q and r [rad/s^2], as they stand after the last step."""
+        return self._vector(_ANGULAR_ACCELERATION, "pqr", 1.0)
+
+    def _vector(self, pattern: str, components: str, scale: float) -> tuple[float, float, float]:
+        x, y, z = (self.read(name) * scale for name in _components(pattern, components))
+        return x, y, z
+
+
+def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
+    """Return the properties, and their values in JSBSim's units, that set an initial state.
+
+    The order matters to the last digit: JSBSim works each one into those before it.
+    """
+    u, v, w = (speed / METRES_PER_FOOT for speed in state.velocity_body)
+    values = (
+        state.latitude,
+        state.longitude,
+        state.altitude / METRES_PER_FOOT,
+        state.roll,
+        state.pitch,
+        state.yaw,
+        u,
+        v,
+        w,
+        *state.rates_body,
+    )
+    return list(zip(INITIAL_STATE, values, strict=True))
+
+
+def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
+    """Return where to place a body that is to be in ``state`` after it was held for ``duration`` [s].
+
+    A body that is held stands still among the stars while the earth turns under it, so it is placed as far east as it will drift
+    west.
+    """
+    return replace(state, longitude=state.longitude + EARTH_RATE * duration)
+
+
+def _components(pattern: str, components: str) -> list[str]:
+    return [pattern.format(component) for component in components]
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    """Keep the banner and the warnings that JSBSim prints in C++ off standard output and standard error."""
+    saved = {stream: os.dup(stream) for stream in (1, 2)}
+    try:
+        with Path(os.devnull).open("w", encoding="utf-8") as sink:
+            for stream in saved:
+                os.dup2(sink.fileno(), stream)
+            yield
+    finally:
+        for stream, copy in saved.items():
+            os.dup2(copy, stream)
+            os.close(copy)

@@ -1,0 +1,1 @@
+"""What every room uses: whole files, command lines, provenance."""

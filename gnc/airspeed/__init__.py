@@ -1,0 +1,1 @@
+"""Airspeed laws: along-track trim, pace hold."""

@@ -1,0 +1,1 @@
+"""Proofs in numbers: Lyapunov functions, bounds, ensembles."""

@@ -1,0 +1,184 @@
+"""The largest command of the cascade law by search, to measure bounds against."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import minimize
+
+from gnc.analysis.bounds import heading_rate_bound
+from gnc.errors import InfeasibleError
+from gnc.laws.delta import LookAhead
+
+_Array = npt.NDArray[np.float64]
+
+_REFINED = 4
+"""How many of the worst samples start a refinement."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tightness:
+    """How close a bound comes to the largest command that a search finds.
+
+    Attributes
+    ----------
+    bound : of the heading rate, over all states [rad/s]
+    largest : command found [rad/s]
+    """
+
+    bound: float
+    largest: float
+
+    @property
+    def ratio(self) -> float:
+        """Bound over largest command; 1 would be tight [-]."""
+        return self.bound / self.largest
+
+
+def tightness(
+    parameters: LookAhead,
+    *,
+    speed: float,
+    reference_heading_rate_max: float,
+    gain: float,
+    steering_max: float,
+    samples: int,
+    generator: np.random.Generator,
+) -> Tightness:
+    """Return the bound of ``heading_rate_bound`` beside the command of ``largest_heading_rate``, which explains the parameters."""
+    return Tightness(
+        bound=heading_rate_bound(
+            parameters, speed=speed, reference_heading_rate_max=reference_heading_rate_max, steering_max=steering_max
+        ),
+        largest=largest_heading_rate(
+            parameters,
+            speed=speed,
+            reference_heading_rate_max=reference_heading_rate_max,
+            gain=gain,
+            steering_max=steering_max,
+            samples=samples,
+            generator=generator,
+        ),
+    )
+
+
+def largest_heading_rate(
+    parameters: LookAhead,
+    *,
+    speed: float,
+    reference_heading_rate_max: float,
+    gain: float,
+    steering_max: float,
+    samples: int,
+    generator: np.random.Generator,
+) -> float:
+    """Return the largest |omega| [rad/s] of the cascade law that random states, refined by search, come to.
+
+    Half of the states spread over all geometries, half gather where commands are largest: at d = sqrt(R/epsilon), nearly head on to
+    the reference, and across z. A number found by search: the supremum may be larger.
+
+    Parameters
+    ----------
+    parameters : of the look-ahead
+    speed : V, of vehicle and reference [m/s]
+    reference_heading_rate_max : |omega_r| of all states [rad/s]
+    gain : slope of h(phi) [1/s]
+    steering_max : largest |h(phi)| [rad/s]
+    samples : how many random states, at least 1
+    generator : of the states
+
+    Raises
+    ------
+    InfeasibleError : no samples
+    """
+    if samples < 1:
+        raise InfeasibleError(f"samples is {samples}; at least 1 state is needed to search from")
+    states = _random_states(parameters, samples, generator)
+    turns = generator.choice([-reference_heading_rate_max, reference_heading_rate_max], samples)
+
+    def commands(state: _Array, turn: _Array | float) -> _Array:
+        log_distance, direction, course = state
+        distance = np.exp(log_distance)
+        return np.abs(
+            heading_rates(
+                parameters,
+                north=distance * np.cos(direction),
+                east=distance * np.sin(direction),
+                reference_course=0.0,
+                course=course,
+                speed=speed,
+                reference_heading_rate=turn,
+                gain=gain,
+                steering_max=steering_max,
+            )
+        )
+
+    found = commands(states, turns)
+    largest = float(found.max())
+    for worst in np.argsort(found)[-_REFINED:]:
+        turn = float(turns[worst])
+
+        def negative(state: _Array, turn: float = turn) -> float:
+            return -float(commands(state, turn))
+
+        refined = minimize(
+            negative, states[:, worst], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-10, "maxiter": 2000}
+        )
+        # Any state's command is a lower bound of the largest, so a refinement that has not converged still counts.
+        largest = max(largest, -float(refined.fun))
+    return largest
+
+
+def heading_rates(
+    parameters: LookAhead,
+    *,
+    north: npt.ArrayLike,
+    east: npt.ArrayLike,
+    reference_course: npt.ArrayLike,
+    course: npt.ArrayLike,
+    speed: float,
+    reference_heading_rate: npt.ArrayLike,
+    gain: float,
+    steering_max: float,
+) -> _Array:
+    """Return commands of the cascade law for arrays of states, from vectors alone: equations (14), (15), (17) and (30).
+
+    omega_rho is the cross product of z with its rate, over rho^2, instead of (18) in the frame of z.
+
+    Parameters
+    ----------
+    parameters : of the look-ahead
+    north, east : d, from vehicle to reference [m]
+    reference_course, course : chi_r and chi [rad]
+    speed : V, of vehicle and reference [m/s]
+    reference_heading_rate : omega_r [rad/s]
+    gain : slope of h(phi) [1/s]
+    steering_max : largest |h(phi)| [rad/s]
+    """
+    north, east, turn = (np.asarray(part, dtype=np.float64) for part in (north, east, reference_heading_rate))
+    ahead_north, ahead_east = np.cos(reference_course), np.sin(reference_course)
+    own_north, own_east = np.cos(course), np.sin(course)
+    closing_north, closing_east = speed * (ahead_north - own_north), speed * (ahead_east - own_east)
+    delta = parameters.epsilon * (north * north + east * east) + parameters.radius
+    delta_rate = 2.0 * parameters.epsilon * (north * closing_north + east * closing_east)
+    z_north, z_east = north + delta * ahead_north, east + delta * ahead_east
+    rate_north = closing_north + delta_rate * ahead_north - delta * turn * ahead_east
+    rate_east = closing_east + delta_rate * ahead_east + delta * turn * ahead_north
+    omega_rho = (z_north * rate_east - z_east * rate_north) / (z_north * z_north + z_east * z_east)
+    phi = np.arctan2(z_north * own_east - z_east * own_north, z_north * own_north + z_east * own_east)
+    return np.asarray(omega_rho - np.clip(gain * phi, -steering_max, steering_max))
+
+
+def _random_states(parameters: LookAhead, samples: int, generator: np.random.Generator) -> _Array:
+    """Return log distance, direction of d against the reference's course, and the vehicle's course against it: three rows."""
+    critical = 0.5 * math.log(parameters.radius / parameters.epsilon)
+    gathered = generator.random(samples) < 0.5
+    log_distance = critical + np.where(gathered, generator.normal(0.0, 0.3, samples), generator.uniform(-7.0, 5.0, samples))
+    # Directions gather on half a turn at every scale from 0.001 rad on.
+    nearly = 10.0 ** generator.uniform(-3.0, 0.0, samples) * generator.choice([-1.0, 1.0], samples)
+    direction = math.pi + np.where(gathered, nearly, generator.uniform(-math.pi, math.pi, samples))
+    # Head on to the reference z points along its course, so that courses across z are courses across the reference's.
+    across = 0.5 * math.pi * generator.choice([-1.0, 1.0], samples) + generator.normal(0.0, 0.3, samples)
+    course = np.where(gathered, across, generator.uniform(-math.pi, math.pi, samples))
+    return np.stack([log_distance, direction, course])

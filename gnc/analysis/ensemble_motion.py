@@ -1,0 +1,299 @@
+"""Motion of many vehicles relative to their references under each steering law, in variables that are not stiff.
+
+Positions are d = p_r - p, from the vehicle to its reference. The course is no state where the law cancels omega_rho: with
+chi = chi_rho + phi the rate of d needs chi_r, z and phi alone, and phi is known in closed form.
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from gnc.analysis.turning_reference import TurningReferences
+from gnc.laws.delta import LookAhead
+
+Array = npt.NDArray[np.float64]
+
+
+class Steering(Enum):
+    """How the vehicles of an ensemble are steered."""
+
+    LYAPUNOV = "lyapunov"
+    CASCADE = "cascade"
+    CASCADE_CUT = "cascade_cut"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Vehicle:
+    """What the vehicles of an ensemble have in common.
+
+    Attributes
+    ----------
+    speed : V, of vehicle and reference [m/s]
+    look_ahead : of the delta formulation
+    gain : of h(phi) in the cascade law [1/s]
+    steering_max : largest h [rad/s]
+    k_1 : gain of the Lyapunov law [1/m^2]
+    heading_rate_max : omega_max, at which ``Steering.CASCADE_CUT`` cuts its command [rad/s]
+    """
+
+    speed: float
+    look_ahead: LookAhead
+    gain: float
+    steering_max: float
+    k_1: float
+    heading_rate_max: float
+
+
+class _View(NamedTuple):
+    """The geometry of one instant: unit vector along chi_r, squared distance, delta, z and the length of z."""
+
+    cos_r: Array
+    sin_r: Array
+    distance_squared: Array
+    delta: Array
+    z_north: Array
+    z_east: Array
+    rho: Array
+
+
+class Motion(ABC):
+    """Relative motion of n vehicles.
+
+    Every state starts with d, north and east [m]; a third component is the law's own.
+
+    Parameters
+    ----------
+    vehicle, references : what flies, and after what
+    """
+
+    def __init__(self, vehicle: Vehicle, references: TurningReferences) -> None:
+        self._vehicle = vehicle
+        self._references = references
+
+    @abstractmethod
+    def start(self, to_reference: Array, course: Array) -> Array:
+        """Return the first state, shape (states, n), of d, shape (2, n) [m], and course chi, shape (n,) [rad]; remember phi."""
+
+    @abstractmethod
+    def take(self, which: npt.NDArray[Any]) -> Self:
+        """Return the motion of an index or mask ``which``."""
+
+    @abstractmethod
+    def rates(self, time: Array, state: Array) -> Array:
+        """Return the rates of the states, shape (states, n), at each vehicle's own ``time``, shape (n,) [s]."""
+
+    @abstractmethod
+    def phi(self, time: Array, state: Array) -> Array:
+        """Return phi [rad], between -pi and pi, shape (n,)."""
+
+    @abstractmethod
+    def command(self, time: Array, state: Array, rates: Array) -> Array:
+        """Return the heading rate commanded [rad/s], shape (n,), from a state and its rates."""
+
+    def offset_error(self, state: Array, error: Array) -> Array | None:  # noqa: ARG002 - the laws without a third state have none
+        """Return how far [m] the vehicle gets off before the law corrects an ``error`` of a third state, or None without one."""
+        return None
+
+    def _view(self, time: Array, state: Array) -> _View:
+        """Return the geometry, by equations (14) and (15)."""
+        north, east = state[0], state[1]
+        chi_r = self._references.course_at(time)
+        cos_r, sin_r = np.cos(chi_r), np.sin(chi_r)
+        epsilon, radius = self._vehicle.look_ahead
+        distance_squared = north * north + east * east
+        delta = epsilon * distance_squared + radius
+        z_north, z_east = north + delta * cos_r, east + delta * sin_r
+        return _View(cos_r, sin_r, distance_squared, delta, z_north, z_east, np.sqrt(z_north * z_north + z_east * z_east))
+
+    def _position_rates(self, view: _View, cos_phi: Array, sin_phi: Array, out: Array) -> None:
+        """Write the rates of d: velocity of the reference less V along z turned by phi."""
+        speed = self._vehicle.speed
+        along, across = speed / view.rho * cos_phi, speed / view.rho * sin_phi
+        out[0] = speed * view.cos_r - (along * view.z_north - across * view.z_east)
+        out[1] = speed * view.sin_r - (along * view.z_east + across * view.z_north)
+
+    def _omega_rho(self, view: _View, state: Array, rates: Array, reference_heading_rate: Array) -> Array:
+        """Return the rate of the course of z [rad/s], equation (18), from z and its rate (17) in the inertial frame."""
+        delta_rate = 2.0 * self._vehicle.look_ahead.epsilon * (state[0] * rates[0] + state[1] * rates[1])
+        swing = view.delta * reference_heading_rate
+        north = rates[0] + delta_rate * view.cos_r - swing * view.sin_r
+        east = rates[1] + delta_rate * view.sin_r + swing * view.cos_r
+        turn: Array = (view.z_north * east - view.z_east * north) / (view.rho * view.rho)
+        return turn
+
+
+def phi_of_courses(view: _View, course: Array) -> Array:
+    """Return phi [rad], course against that of z, between -pi and pi."""
+    cos_v, sin_v = np.cos(course), np.sin(course)
+    phi: Array = np.arctan2(view.z_north * sin_v - view.z_east * cos_v, view.z_north * cos_v + view.z_east * sin_v)
+    return phi
+
+
+class CascadeMotion(Motion):
+    """Law (30) with h(phi) = gain phi within a bound; states d.
+
+    phi runs off at the bound until gain phi is within it, and decays exponentially from there, whatever the reference does.
+    """
+
+    def start(self, to_reference: Array, course: Array) -> Array:
+        """Return the first state and remember phi."""
+        self._begin(phi_of_courses(self._view(np.zeros_like(course), to_reference), course))
+        return to_reference.copy()
+
+    def _begin(self, phi_0: Array) -> None:
+        size, linear = np.abs(phi_0), self._vehicle.steering_max / self._vehicle.gain
+        self._phi_0 = phi_0
+        self._size_below_bound = np.minimum(size, linear)
+        self._time_at_bound = np.maximum(size - linear, 0.0) / self._vehicle.steering_max
+
+    def take(self, which: npt.NDArray[Any]) -> Self:
+        """Return the motion of an index or mask ``which``."""
+        taken = type(self)(self._vehicle, self._references.take(which))
+        taken._begin(self._phi_0[which])
+        return taken
+
+    def phi(self, time: Array, state: Array) -> Array:  # noqa: ARG002 - phi depends on time alone
+        """Return phi [rad]: equation (30) makes its rate -h(phi), here integrated."""
+        vehicle = self._vehicle
+        remaining = self._time_at_bound - time
+        size = self._size_below_bound * np.exp(vehicle.gain * np.minimum(remaining, 0.0))
+        size += vehicle.steering_max * np.maximum(remaining, 0.0)
+        phi: Array = np.copysign(size, self._phi_0)
+        return phi
+
+    def rates(self, time: Array, state: Array) -> Array:
+        """Return the rates of d, shape (2, n)."""
+        phi = self.phi(time, state)
+        out = np.empty_like(state)
+        self._position_rates(self._view(time, state), np.cos(phi), np.sin(phi), out)
+        return out
+
+    def command(self, time: Array, state: Array, rates: Array) -> Array:
+        """Return the heading rate of equation (30) [rad/s]."""
+        vehicle = self._vehicle
+        omega_rho = self._omega_rho(self._view(time, state), state, rates, self._references.heading_rate_at(time))
+        steering = np.clip(vehicle.gain * self.phi(time, state), -vehicle.steering_max, vehicle.steering_max)
+        command: Array = omega_rho - steering
+        return command
+
+
+class LyapunovMotion(Motion):
+    """Law (24); states d and s = k_1 V/2 times the integral of rho, with which sin(phi/2) = sin(phi_0/2) exp(-s).
+
+    In these variables nothing is singular at phi = pi. There the course leaves pi at once, by 2 sqrt(2 s) to first order, to the
+    side of phi_0's sign (to the right of exactly pi, where the law itself has no value and both sides solve the equation): only
+    the command is unbounded, as 1/(pi - |phi|), and for so short a time that the turn stays one of at most pi.
+    """
+
+    def start(self, to_reference: Array, course: Array) -> Array:
+        """Return the first state and remember phi."""
+        phi_0 = phi_of_courses(self._view(np.zeros_like(course), to_reference), course)
+        self._sine_0 = np.sin(0.5 * phi_0)
+        self._cosine_0_squared = np.cos(0.5 * phi_0) ** 2
+        return np.vstack([to_reference, np.zeros_like(course)])
+
+    def take(self, which: npt.NDArray[Any]) -> Self:
+        """Return the motion of an index or mask ``which``."""
+        taken = type(self)(self._vehicle, self._references.take(which))
+        taken._sine_0 = self._sine_0[which]
+        taken._cosine_0_squared = self._cosine_0_squared[which]
+        return taken
+
+    def _half(self, state: Array) -> tuple[Array, Array]:
+        """Return sine and cosine of phi/2."""
+        decay = np.exp(-state[2])
+        sine = self._sine_0 * decay
+        # cos^2 = cos_0^2 + sin_0^2 (1 - decay^2): no difference of nearly equal numbers towards phi = pi.
+        return sine, np.sqrt(self._cosine_0_squared + self._sine_0 * self._sine_0 * ((1.0 - decay) * (1.0 + decay)))
+
+    def phi(self, time: Array, state: Array) -> Array:  # noqa: ARG002 - phi depends on the state alone
+        """Return phi [rad]: equation (24) makes its rate -k_1 rho V tan(phi/2), here integrated."""
+        phi: Array = 2.0 * np.arctan2(*self._half(state))
+        return phi
+
+    def rates(self, time: Array, state: Array) -> Array:
+        """Return the rates of d and s, shape (3, n)."""
+        sine, cosine = self._half(state)
+        view = self._view(time, state)
+        out = np.empty_like(state)
+        self._position_rates(view, 1.0 - 2.0 * sine * sine, 2.0 * sine * cosine, out)
+        out[2] = 0.5 * self._vehicle.k_1 * self._vehicle.speed * view.rho
+        return out
+
+    def command(self, time: Array, state: Array, rates: Array) -> Array:
+        """Return the heading rate of equation (24) [rad/s]."""
+        sine, cosine = self._half(state)
+        view = self._view(time, state)
+        omega_rho = self._omega_rho(view, state, rates, self._references.heading_rate_at(time))
+        command: Array = omega_rho - self._vehicle.k_1 * view.rho * self._vehicle.speed * sine / cosine
+        return command
+
+    def offset_error(self, state: Array, error: Array) -> Array | None:
+        """Return what an error of s does to sin(phi/2), times 2 for phi, times V and the law's time 2/(k_1 V R)."""
+        arm = 4.0 / (self._vehicle.k_1 * self._vehicle.look_ahead.radius)
+        offset: Array = np.abs(arm * self._sine_0 * np.exp(-state[2]) * error[2])
+        return offset
+
+
+class CascadeCutMotion(Motion):
+    """Law (30) as it is flown, its command cut at omega_max; states d and phi, not wrapped.
+
+    Of this motion the paper proves nothing: while the command is cut, phi moves at the rate that is left. While it is not, phi
+    decays as under the law itself, and has no part in how long a step may be.
+    """
+
+    def start(self, to_reference: Array, course: Array) -> Array:
+        """Return the first state."""
+        return np.vstack([to_reference, phi_of_courses(self._view(np.zeros_like(course), to_reference), course)])
+
+    def take(self, which: npt.NDArray[Any]) -> Self:
+        """Return the motion of an index or mask ``which``."""
+        return type(self)(self._vehicle, self._references.take(which))
+
+    def phi(self, time: Array, state: Array) -> Array:  # noqa: ARG002 - phi is a state
+        """Return phi [rad]."""
+        return wrapped(state[2])
+
+    def rates(self, time: Array, state: Array) -> Array:
+        """Return the rates of d and phi, the heading rate of equation (30) cut at omega_max; shape (3, n)."""
+        view = self._view(time, state)
+        out = np.empty_like(state)
+        self._position_rates(view, np.cos(state[2]), np.sin(state[2]), out)
+        command, omega_rho = self._command(view, time, state, out)
+        out[2] = command - omega_rho
+        return out
+
+    def command(self, time: Array, state: Array, rates: Array) -> Array:
+        """Return the heading rate of equation (30) [rad/s], cut at omega_max."""
+        return self._command(self._view(time, state), time, state, rates)[0]
+
+    def offset_error(self, state: Array, error: Array) -> Array | None:  # noqa: ARG002 - phi is a state
+        """Return the error of phi times V and the law's time 1/gain."""
+        offset: Array = np.abs(self._vehicle.speed / self._vehicle.gain * error[2])
+        return offset
+
+    def _command(self, view: _View, time: Array, state: Array, rates: Array) -> tuple[Array, Array]:
+        """Return what is commanded and omega_rho [rad/s]."""
+        vehicle = self._vehicle
+        omega_rho = self._omega_rho(view, state, rates, self._references.heading_rate_at(time))
+        steering = np.clip(vehicle.gain * wrapped(state[2]), -vehicle.steering_max, vehicle.steering_max)
+        return np.clip(omega_rho - steering, -vehicle.heading_rate_max, vehicle.heading_rate_max), omega_rho
+
+
+def wrapped(angle: Array) -> Array:
+    """Return angles [rad] brought to between -pi and pi."""
+    turn = 2.0 * np.pi
+    result: Array = angle - turn * np.rint(angle / turn)
+    return result
+
+
+MOTIONS: dict[Steering, type[Motion]] = {
+    Steering.LYAPUNOV: LyapunovMotion,
+    Steering.CASCADE: CascadeMotion,
+    Steering.CASCADE_CUT: CascadeCutMotion,
+}
+"""The motion under each law."""

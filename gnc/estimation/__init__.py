@@ -1,0 +1,1 @@
+"""Own motion, wind, vessel motion, health."""

@@ -1,0 +1,113 @@
+"""Where the vehicle is and how it moves, from its sensors; through a loss of satellite navigation by dead reckoning."""
+
+import bisect
+import math
+from dataclasses import dataclass
+
+from gnc.estimation.wind_filter import WindFilter
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NavigationParameters:
+    """What the navigation knows beforehand.
+
+    Attributes
+    ----------
+    crab_banks, crab_offsets : course through the air minus heading, over bank, ascending [rad]
+    airspeed_sigma, course_sigma, wind_drift, wind_prior : of ``gnc.estimation.wind_filter.WindFilter`` [m/s, rad, m/s, m/s]
+    wind_interval : guidance steps between measurements of the wind
+    time_step : of the guidance [s]
+    """
+
+    crab_banks: tuple[float, ...]
+    crab_offsets: tuple[float, ...]
+    airspeed_sigma: float
+    course_sigma: float
+    wind_drift: float
+    wind_prior: float
+    wind_interval: int
+    time_step: float
+
+
+class Navigation:
+    """Own motion over the ground and through the air.
+
+    The air mass has a frame of its own, which drifts with the estimated wind; in calm it is that of the ground. The guidance works
+    in it, for there the vehicle flies at its airspeed.
+
+    Attributes
+    ----------
+    north, east : over the ground [m]
+    velocity_north, velocity_east : over the ground [m/s]
+    drift_north, drift_east : how far the frame of the air mass has drifted [m]
+    wind : the estimate
+    lost : for how long there has been no satellite navigation [s]
+    """
+
+    __slots__ = (
+        "_parameters",
+        "_step_east",
+        "_step_north",
+        "_until_measured",
+        "drift_east",
+        "drift_north",
+        "east",
+        "lost",
+        "north",
+        "velocity_east",
+        "velocity_north",
+        "wind",
+    )
+
+    def __init__(self, parameters: NavigationParameters) -> None:
+        self._parameters = parameters
+        self.wind = WindFilter(
+            airspeed_sigma=parameters.airspeed_sigma,
+            course_sigma=parameters.course_sigma,
+            drift=parameters.wind_drift,
+            prior_sigma=parameters.wind_prior,
+        )
+        self.north = self.east = self.velocity_north = self.velocity_east = 0.0
+        self.drift_north = self.drift_east = self.lost = 0.0
+        self._step_north = self._step_east = 0.0
+        self._until_measured = 0
+
+    def update(self, position: tuple[float, float, float, float] | None, airspeed: float, heading: float, roll: float) -> None:
+        """Take in what the sensors say now.
+
+        Parameters
+        ----------
+        position : north, east [m], north and east velocity over the ground [m/s] by satellite navigation, if there is any
+        airspeed : [m/s]
+        heading, roll : of the body [rad]
+        """
+        if position is None:
+            self._reckon(airspeed, heading + self._crab(roll))
+        else:
+            self.north, self.east, self.velocity_north, self.velocity_east = position
+            self.lost = 0.0
+            self._until_measured -= 1
+            if self._until_measured < 0:
+                self._measure(airspeed, heading + self._crab(roll))
+        self.drift_north += self._step_north
+        self.drift_east += self._step_east
+
+    def _measure(self, airspeed: float, air_course: float) -> None:
+        p, wind = self._parameters, self.wind
+        self._until_measured = p.wind_interval - 1
+        wind.update(airspeed, air_course, self.velocity_north, self.velocity_east, p.wind_interval * p.time_step)
+        self._step_north, self._step_east = p.time_step * wind.north, p.time_step * wind.east
+
+    def _reckon(self, airspeed: float, air_course: float) -> None:
+        time_step, wind = self._parameters.time_step, self.wind
+        self.velocity_north = wind.north + airspeed * math.cos(air_course)
+        self.velocity_east = wind.east + airspeed * math.sin(air_course)
+        self.north += time_step * self.velocity_north
+        self.east += time_step * self.velocity_east
+        self.lost += time_step
+
+    def _crab(self, roll: float) -> float:
+        banks, offsets = self._parameters.crab_banks, self._parameters.crab_offsets
+        i = min(max(bisect.bisect(banks, roll), 1), len(banks) - 1)
+        share = (roll - banks[i - 1]) / (banks[i] - banks[i - 1])
+        return offsets[i - 1] + share * (offsets[i] - offsets[i - 1])

@@ -1,0 +1,1 @@
+"""The virtual target: oscillation, orbit, placement, motion."""

@@ -1,0 +1,51 @@
+"""What mean motion takes a reference's orbit to where it should be.
+
+It is that of the centre of oscillation, and a drift towards it. Along the centre's motion a drift changes the amplitude alone;
+across, it turns the mean course, which moves the orbit's centre by itself, the more the slower the orbit.
+"""
+
+import math
+
+from gnc.limits import limited
+from gnc.reference.moving_centre import MovingCentre
+
+_CENTRE_GAIN = 0.1
+"""Wanted drift of the orbit's centre per distance from where it should be, in units of omega_max [-]."""
+
+_ALONG_SHARE = 0.3
+"""Largest share of the vehicle's speed that such a drift takes along the centre's motion [-]; that changes the amplitude alone."""
+
+_ACROSS_SHARE = 0.4
+"""Largest share of the centre's speed that it takes across [-]: more would turn the orbit instead of moving it."""
+
+_STILL = 0.05
+"""Speed ratio below which a centre's motion gives no direction to an orbit [-]: then it lies across the plume."""
+
+_SLOW = 0.25
+"""Speed ratio below which that gain falls in proportion [-]: turning the mean course by a little moves a slow orbit by much."""
+
+
+def mean_motion(
+    centre: MovingCentre, off_north: float, off_east: float, speed: float, heading_rate_max: float
+) -> tuple[float, float]:
+    """Return the mean course [rad] and the mean speed over the speed [-] that are wanted.
+
+    Parameters
+    ----------
+    centre : of oscillation, where the orbit's centre should be
+    off_north, off_east : from the orbit's centre to it [m]
+    speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
+    """
+    moving = math.hypot(centre.velocity_north, centre.velocity_east)
+    if moving > _STILL * speed:
+        cos_m, sin_m = centre.velocity_north / moving, centre.velocity_east / moving
+    else:
+        cos_m, sin_m = -math.cos(centre.axis), -math.sin(centre.axis)
+    gain = _CENTRE_GAIN * heading_rate_max
+    most = _ALONG_SHARE * speed
+    along = moving + limited(gain * (off_north * cos_m + off_east * sin_m), most)
+    gain *= min(1.0, max(_CENTRE_GAIN, moving / (_SLOW * speed)))
+    most = _ACROSS_SHARE * max(moving, 0.1 * speed)
+    across = limited(gain * (off_east * cos_m - off_north * sin_m), most)
+    turned = math.atan2(across, max(along, 2.0 * _STILL * speed))
+    return math.atan2(sin_m, cos_m) + turned, along / math.cos(turned) / speed

@@ -1,0 +1,110 @@
+"""How fast the reference may oscillate."""
+
+import math
+from dataclasses import dataclass
+
+from gnc.errors import InfeasibleError
+from gnc.reference.bessel import eta_for_speed_ratio
+
+GRAVITY = 9.80665
+"""Standard acceleration of free fall [m/s^2]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Oscillation:
+    """The reference's course oscillation about the vessel's course.
+
+    Attributes
+    ----------
+    nu : speed ratio [-]
+    speed : V_r [m/s]
+    eta : course amplitude [rad]
+    omega_0 : frequency [rad/s]
+    limit : what set the frequency, ``heading rate`` or ``roll rate``
+    """
+
+    nu: float
+    speed: float
+    eta: float
+    omega_0: float
+    limit: str
+
+    @property
+    def amplitude(self) -> float:
+        """A, the amplitude of the reference's heading rate [rad/s]."""
+        return self.eta * self.omega_0
+
+    @property
+    def period(self) -> float:
+        """T = 2 pi/omega_0 [s]."""
+        return 2.0 * math.pi / self.omega_0
+
+    @property
+    def crossing_interval(self) -> float:
+        """Time between crossings of the centre of oscillation, half a period [s]."""
+        return math.pi / self.omega_0
+
+
+def design_oscillation(
+    *,
+    nu: float,
+    speed: float,
+    heading_rate_max: float,
+    reserve: float = 0.0,
+    vessel_heading_rate: float = 0.0,
+    roll_rate_max: float = math.inf,
+) -> Oscillation:
+    """Return the fastest oscillation that the vehicle can follow.
+
+    Equation (8) bounds omega_0 by the heading rate: eta omega_0 <= (1 - reserve) omega_max - |omega_V|. As nu approaches 1, eta
+    approaches 0 and that bound grows without limit, so omega_0 also respects the roll rate: near level flight g/V times the roll
+    rate is the heading acceleration, whose amplitude is eta omega_0^2.
+
+    Parameters
+    ----------
+    nu : speed ratio [-]
+    speed : V_r [m/s]
+    heading_rate_max : omega_max [rad/s]
+    reserve : fraction of omega_max that the reference leaves to feedback, 0 for the paper's bound
+    vessel_heading_rate : omega_V [rad/s]
+    roll_rate_max : [rad/s]
+
+    Raises
+    ------
+    InfeasibleError : nu of 1 or more, or nothing left of omega_max
+    """
+    for name, value, unit in (
+        ("speed", speed, "m/s"),
+        ("heading_rate_max", heading_rate_max, "rad/s"),
+        ("roll_rate_max", roll_rate_max, "rad/s"),
+    ):
+        if not value > 0.0:
+            raise InfeasibleError(f"{name} is {value:g} {unit}; it must be above 0: give what the vehicle can fly")
+    if not 0.0 <= reserve < 1.0:
+        raise InfeasibleError(f"reserve is {reserve:g} of omega_max; it must be at least 0 and below 1: a tenth is plenty")
+    if nu >= 1.0:
+        raise InfeasibleError(
+            f"speed ratio nu is {nu:g}; it must be below 1: at 1 the reference flies straight and never crosses the plume,"
+            " above 1 the vessel outruns the UAV; fly faster"
+        )
+    eta = eta_for_speed_ratio(nu)
+    available = (1.0 - reserve) * heading_rate_max - abs(vessel_heading_rate)
+    if not available > 0.0:
+        raise InfeasibleError(
+            f"vessel heading rate is {vessel_heading_rate:g} rad/s; with a reserve of {reserve:g} it must stay below"
+            f" {(1.0 - reserve) * heading_rate_max:g} rad/s: raise omega_max or lower the reserve"
+        )
+    by_heading_rate = available / eta
+    by_roll_rate = math.sqrt(GRAVITY * roll_rate_max / (speed * eta))
+    limit = "heading rate" if by_heading_rate <= by_roll_rate else "roll rate"
+    return Oscillation(nu=nu, speed=speed, eta=eta, omega_0=min(by_heading_rate, by_roll_rate), limit=limit)
+
+
+def heading_rate_for_bank(bank: float, speed: float) -> float:
+    """Return the heading rate [rad/s] of a coordinated turn at ``bank`` [rad] and ``speed`` [m/s]."""
+    return GRAVITY * math.tan(bank) / speed
+
+
+def bank_for_heading_rate(heading_rate: float, speed: float) -> float:
+    """Return the bank [rad] of a coordinated turn at ``heading_rate`` [rad/s] and ``speed`` [m/s]."""
+    return math.atan(heading_rate * speed / GRAVITY)

@@ -1,0 +1,1 @@
+"""The keep-out guard, whatever the law asks."""

@@ -1,0 +1,1 @@
+"""Margins, robustness, gust response of the linear loop."""

@@ -1,0 +1,75 @@
+"""The linear aircraft against the aircraft itself: small doublets of each control, flown in JSBSim and predicted."""
+
+from typing import Any
+
+import control
+import numpy as np
+import numpy.typing as npt
+
+from aircraft.dynamics.trim import Trim
+from aircraft.simulation.fdm import Fdm
+from aircraft.units import METRES_PER_FOOT
+
+OUTPUTS: dict[str, tuple[str, float]] = {
+    "airspeed": ("velocities/vt-fps", METRES_PER_FOOT),
+    "alpha": ("aero/alpha-rad", 1.0),
+    "beta": ("aero/beta-rad", 1.0),
+    "p": ("velocities/p-rad_sec", 1.0),
+    "q": ("velocities/q-rad_sec", 1.0),
+    "r": ("velocities/r-rad_sec", 1.0),
+    "roll": ("attitude/phi-rad", 1.0),
+    "pitch": ("attitude/theta-rad", 1.0),
+}
+"""States that are compared: JSBSim property and SI value of its unit."""
+
+_SHOWN = {"elevator": ("alpha", "q", "pitch"), "aileron": ("p", "roll"), "rudder": ("beta", "r"), "throttle": ("airspeed",)}
+"""What a control is there to move; what else it moves, it moves little, and an error relative to that says little."""
+
+_DURATION = 6.0
+_HALF = 1.0
+_SIZE = 0.01
+_FINE = 8
+"""JSBSim's first-order stepping is part of the aircraft that flies, not of the linear model: this many smaller steps a step [-]."""
+
+Array = npt.NDArray[np.float64]
+
+
+def verify_model(fdm: Fdm, model: control.StateSpace, level: Trim) -> list[dict[str, Any]]:
+    """Return the largest error of each prediction over the largest excursion flown, by control and state.
+
+    Parameters
+    ----------
+    fdm : the aircraft, whose spec is flown again at a finer time step
+    model : its linear model about ``level``
+    level : the equilibrium
+    """
+    fine = Fdm(fdm.spec, time_step=fdm.time_step / _FINE)
+    records = []
+    for control_input in fdm.spec.inputs:
+        name = control_input.name
+        time, flown = _flown(fine, level, name)
+        doublet = np.where(time < _HALF, _SIZE, np.where(time < 2.0 * _HALF, -_SIZE, 0.0))
+        response = control.forced_response(model[:, name], time, doublet)
+        for output in _SHOWN.get(name, ()):
+            predicted = response.outputs[model.output_labels.index(output)]
+            excursion = float(np.max(np.abs(flown[output])))
+            error = float(np.max(np.abs(predicted - flown[output])))
+            records.append({"input": name, "output": output, "error": error / excursion if excursion else None})
+    return records
+
+
+def _flown(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
+    """Return time [s] and the deviations of ``OUTPUTS`` after a doublet, one second each way."""
+    count = round(_DURATION / fdm.time_step)
+    nodes = {output: (fdm.node(prop), scale) for output, (prop, scale) in OUTPUTS.items()}
+    fdm.command(dict(level.inputs))
+    fdm.hold(level.state(), round(fdm.spec.settle_time / fdm.time_step))
+    values = {output: np.empty(count) for output in nodes}
+    for i in range(count):
+        for output, (node, scale) in nodes.items():
+            values[output][i] = node.get_double_value() * scale
+        t = i * fdm.time_step
+        now = _SIZE if t < _HALF else -_SIZE if t < 2.0 * _HALF else 0.0
+        fdm.command({name: level.inputs[name] + now})
+        fdm.step()
+    return fdm.time_step * np.arange(count, dtype=np.float64), {output: v - v[0] for output, v in values.items()}

@@ -1,0 +1,238 @@
+"""Loop margins of the autopilot on the full linear aircraft: classical at each loop break, and disk margins.
+
+Everything comes from two frequency responses, of the aircraft (with its servos, its engine and the computing delay, as the exact
+exponential) and of the autopilot. With every loop closed, the sensitivity at a break is S = 1/(1 + L), where L is the loop
+opened there and closed elsewhere; so L = 1/S - 1 follows for all breaks from one inverse.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import control
+import numpy as np
+import numpy.typing as npt
+from slycot import ab13md
+
+from innerloop.law.control_law import COMMANDS
+from innerloop.synthesis.weights import DELAY
+
+SENSOR_BREAKS = ("airspeed", "altitude", "heading_rate", "beta")
+"""Measurements at which the loop is opened, besides the controls."""
+
+BREAK_NAMES = {"beta": "sideslip"}
+"""What breaks are called where they are shown, if not as in the model."""
+
+ALL_CONTROLS = "all controls"
+"""What the row of margins is called that stands for changes in every control at once."""
+
+_MU_STRIDE = 4
+"""The structured singular value takes a hundred times as long as a gain, and every fourth frequency shows its peak [-]."""
+
+FREQUENCIES = np.logspace(-3.0, 2.4, 300)
+"""Where loops are evaluated [rad/s]: from below any integral action to beyond any servo."""
+
+_WELL_CONDITIONED = 1e7
+
+Array = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Margin:
+    """Margins with one loop opened and every other closed.
+
+    Attributes
+    ----------
+    loop : where the loop is opened
+    gain_db : least change of gain, up or down, that brings instability [dB]; infinite where none does
+    phase_deg : least change of phase that does [deg]; infinite where none does
+    crossover : highest gain crossover [rad/s]; nan where the gain never crosses 1
+    disk_gain_db, disk_phase_deg : guaranteed for simultaneous changes of gain and phase [dB, deg]
+    """
+
+    loop: str
+    gain_db: float
+    phase_deg: float
+    crossover: float
+    disk_gain_db: float
+    disk_phase_deg: float
+
+
+class Loops:
+    """The closed loop of an aircraft and its autopilot at one operating point, over frequency.
+
+    Parameters
+    ----------
+    aircraft : linear model, as ``aircraft.dynamics.linearise`` returns it
+    autopilot : as ``innerloop.law.linear_controller.linear_controller`` returns it
+    delay : between measurement and servo [s]
+    frequencies : [rad/s]
+    """
+
+    def __init__(
+        self,
+        aircraft: control.StateSpace,
+        autopilot: control.StateSpace,
+        delay: float = DELAY,
+        frequencies: Array = FREQUENCIES,
+    ) -> None:
+        self._aircraft, self._autopilot, self._delay = aircraft, autopilot, delay
+        self.frequencies = frequencies
+        self.controls = tuple(autopilot.output_labels)
+        self.measurements = tuple(name for name in autopilot.input_labels if name not in COMMANDS)
+        self._rows = [aircraft.output_labels.index(name) for name in self.measurements]
+        self._columns = [aircraft.input_labels.index(name) for name in self.controls]
+        self._reads = [autopilot.input_labels.index(name) for name in self.measurements]
+        plant = _response(aircraft, frequencies)[:, self._rows][:, :, self._columns]
+        plant = plant * np.exp(-1j * frequencies * delay)[:, None, None]
+        law = -_response(autopilot, frequencies)[:, :, self._reads]
+        self._sensitivity = np.linalg.inv(np.eye(len(self.controls)) + law @ plant)
+        # At the measurements S = 1 - P (1 + K P)^-1 K; only its diagonal is asked for.
+        self._at_measurements = 1.0 - np.einsum("fik,fki->fi", plant @ self._sensitivity, law)
+
+    def opened(self, name: str) -> Complex:
+        """Return the loop opened at a control or a measurement, closed elsewhere, over frequency, for negative feedback."""
+        if name in self.controls:
+            i = self.controls.index(name)
+            sensitivity = self._sensitivity[:, i, i]
+        else:
+            sensitivity = self._at_measurements[:, self.measurements.index(name)]
+        return np.asarray(1.0 / sensitivity - 1.0)
+
+    @property
+    def breaks(self) -> tuple[str, ...]:
+        """Return where loops are opened: at each control and at each regulated measurement."""
+        return (*self.controls, *(name for name in SENSOR_BREAKS if name in self.measurements))
+
+    def margins(self, *, together: bool = True) -> list[Margin]:
+        """Return the margins at each of ``breaks`` and, if asked for, at all controls at once."""
+        margins = [loop_margin(BREAK_NAMES.get(name, name), self.opened(name), self.frequencies) for name in self.breaks]
+        if not together:
+            return margins
+        gain_db, phase_deg = self._disk_at_all_controls()
+        nan = math.nan
+        return [
+            *margins,
+            Margin(loop=ALL_CONTROLS, gain_db=nan, phase_deg=nan, crossover=nan, disk_gain_db=gain_db, disk_phase_deg=phase_deg),
+        ]
+
+    @property
+    def stable(self) -> bool:
+        """Whether every pole of the closed loop lies to the left of the imaginary axis."""
+        return bool(np.all(self.poles().real < 0.0))
+
+    def poles(self) -> Complex:
+        """Return the poles of the closed loop [1/s], the delay as a second-order Pade approximation."""
+        plant, law = self._aircraft, self._autopilot
+        pade = control.ss(control.tf(*control.pade(self._delay, 2)))
+        n_controls = len(self.controls)
+        # Law, delays, aircraft, one after the other; the aircraft's outputs come back to the law.
+        delayed = (np.kron(np.eye(n_controls), m) for m in (pade.A, pade.B, pade.C, pade.D))
+        chain = _series(
+            delayed, (plant.A, plant.B[:, self._columns], plant.C[self._rows], plant.D[np.ix_(self._rows, self._columns)])
+        )
+        a, b, c, d = _series((law.A, law.B[:, self._reads], law.C, law.D[:, self._reads]), chain)
+        return np.asarray(np.linalg.eigvals(a + b @ np.linalg.solve(np.eye(len(d)) - d, c)))
+
+    def _disk_at_all_controls(self) -> tuple[float, float]:
+        """Return disk margins for simultaneous, independent changes in all controls, by the structured singular value."""
+        n = len(self.controls)
+        one, complex_block = np.ones(n, dtype=int), np.full(n, 2)
+        balanced = self._sensitivity[::_MU_STRIDE] - 0.5 * np.eye(n)
+        mu = max(float(ab13md(matrix, one, complex_block)[0]) for matrix in balanced)
+        return _disk(1.0 / mu)
+
+
+Matrices = tuple[Array, Array, Array, Array]
+
+
+def _series(first: Iterable[Array], then: Matrices) -> Matrices:
+    """Return A, B, C, D of one system behind another."""
+    a1, b1, c1, d1 = first
+    a2, b2, c2, d2 = then
+    a = np.block([[a1, np.zeros((len(a1), len(a2)))], [b2 @ c1, a2]])
+    return a, np.vstack([b1, b2 @ d1]), np.hstack([d2 @ c1, c2]), d2 @ d1
+
+
+def _disk(alpha: float) -> tuple[float, float]:
+    """Return the guaranteed gain [dB] and phase [deg] margins of a balanced disk of size ``alpha``."""
+    gain_db = 20.0 * math.log10((2.0 + alpha) / (2.0 - alpha)) if alpha < 2.0 else math.inf
+    return gain_db, math.degrees(2.0 * math.atan(0.5 * alpha))
+
+
+def _response(system: control.StateSpace, frequencies: Array) -> Complex:
+    """Return C (jw - A)^-1 B + D over frequency, shape (frequencies, outputs, inputs), along the eigenvectors of A."""
+    values, vectors = np.linalg.eig(system.A)
+    if np.linalg.cond(vectors) < _WELL_CONDITIONED:
+        left, right = system.C @ vectors, np.linalg.solve(vectors, system.B.astype(np.complex128))
+        gains = 1.0 / (1j * frequencies[:, None] - values)
+        return np.asarray((left * gains[:, None, :]) @ right + system.D)
+    resolvent = 1j * frequencies[:, None, None] * np.eye(len(values)) - system.A
+    forcing = np.broadcast_to(system.B.astype(np.complex128), (len(frequencies), *system.B.shape))
+    return np.asarray(system.C @ np.linalg.solve(resolvent, forcing) + system.D)
+
+
+def loop_margin(name: str, loop: Complex, frequencies: Array) -> Margin:
+    """Return the margins of a single loop known over frequency, its crossings interpolated between frequencies."""
+    logs = np.log(np.abs(loop))
+    phase = np.unwrap(np.angle(loop))
+    gains = [float(np.interp(0.0, *_ordered(phase[i : i + 2] - turn, logs[i : i + 2]))) for i, turn in _crossings(phase)]
+    at_unity = np.nonzero(np.sign(logs[:-1]) != np.sign(logs[1:]))[0]
+    shares = [logs[i] / (logs[i] - logs[i + 1]) for i in at_unity]
+    phases = [phase[i] + share * (phase[i + 1] - phase[i]) for i, share in zip(at_unity, shares, strict=True)]
+    crossovers = [
+        frequencies[i] * (frequencies[i + 1] / frequencies[i]) ** share for i, share in zip(at_unity, shares, strict=True)
+    ]
+    away = [abs(math.remainder(p - math.pi, 2.0 * math.pi)) for p in phases]
+    disk_gain_db, disk_phase_deg = _disk(float(np.min(2.0 * np.abs(1.0 + loop) / np.abs(1.0 - loop))))
+    return Margin(
+        loop=name,
+        gain_db=min((abs(20.0 * g / math.log(10.0)) for g in gains), default=math.inf),
+        phase_deg=math.degrees(min(away, default=math.inf)),
+        crossover=max(crossovers, default=math.nan),
+        disk_gain_db=disk_gain_db,
+        disk_phase_deg=disk_phase_deg,
+    )
+
+
+def _crossings(phase: Array) -> list[tuple[int, float]]:
+    """Return where an unwrapped phase passes an odd multiple of pi, and that multiple."""
+    turns = np.floor((phase - math.pi) / (2.0 * math.pi))
+    crossed = np.nonzero(turns[:-1] != turns[1:])[0]
+    return [(int(i), math.pi + 2.0 * math.pi * float(max(turns[i], turns[i + 1]))) for i in crossed]
+
+
+def _ordered(x: Array, y: Array) -> tuple[Array, Array]:
+    order = np.argsort(x)
+    return x[order], y[order]
+
+
+def closed_loop(aircraft: control.StateSpace, autopilot: control.StateSpace, delay: float = DELAY) -> control.StateSpace:
+    """Return the closed loop from the autopilot's commands to every output of the aircraft and to the controls.
+
+    What else the aircraft has for inputs, such as gusts, follows the commands.
+    """
+    controls: Sequence[str] = autopilot.output_labels
+    others = [name for name in aircraft.input_labels if name not in controls]
+    pade = control.ss(control.tf(*control.pade(delay, 2)))
+    plant = control.ss(aircraft, inputs=aircraft.input_labels, outputs=aircraft.output_labels, name="aircraft")
+    delays = [control.ss(pade, inputs=[f"{name}_delayed_in"], outputs=[name], name=f"{name}_delay") for name in controls]
+    connections: list[list[object]] = [
+        [f"autopilot.{name}", f"aircraft.{name}"] for name in autopilot.input_labels if name not in COMMANDS
+    ]
+    for block, name in zip(delays, controls, strict=True):
+        connections += [
+            [f"aircraft.{name}", f"{block.name}.{name}"],
+            [f"{block.name}.{name}_delayed_in", f"autopilot.{name}"],
+        ]
+    return control.interconnect(
+        [plant, autopilot, *delays],
+        connections=connections,
+        inplist=[*(f"autopilot.{name}" for name in COMMANDS), *(f"aircraft.{name}" for name in others)],
+        outlist=[*(f"aircraft.{name}" for name in aircraft.output_labels), *(f"autopilot.{name}" for name in controls)],
+        inputs=[*COMMANDS, *others],
+        outputs=[*aircraft.output_labels, *(f"{name}_command" for name in controls)],
+        warn_duplicate=False,
+        check_unused=False,
+    )

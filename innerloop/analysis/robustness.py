@@ -1,0 +1,308 @@
+"""Margins at every operating point of a design, between them, and with an aircraft that is not quite the one modelled."""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import control
+import numpy as np
+import numpy.typing as npt
+
+from aircraft.dynamics.linearise import BODY_STATES
+from aircraft.dynamics.trim import Trim
+from aircraft.simulation.fdm import TIME_STEP
+from innerloop.analysis.margins import ALL_CONTROLS, Loops, Margin
+from innerloop.law.control_law import ControlLaw
+from innerloop.law.linear_controller import linear_controller
+from innerloop.synthesis.schedule import GAIN_BANKS, TRIM_BANKS, Schedule
+from innerloop.synthesis.weights import DELAY, STANDARD_GRAVITY
+
+NOMINAL = "as modelled"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Requirement:
+    """Least margins.
+
+    Attributes
+    ----------
+    gain_db, phase_deg : of the aircraft as modelled, each loop opened alone
+    perturbed_gain_db, perturbed_phase_deg : of the aircraft changed
+    """
+
+    gain_db: float = 6.0
+    phase_deg: float = 45.0
+    perturbed_gain_db: float = 4.0
+    perturbed_phase_deg: float = 30.0
+
+
+REQUIRED = Requirement()
+"""Nominal: MIL-F-9490D's 6 dB and 45 deg. A fifth of effectiveness is 1.6 to 1.9 dB, so 4 dB of it must be left."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Check:
+    """The margins of one operating point, with the aircraft as modelled or changed.
+
+    Attributes
+    ----------
+    case : what was changed
+    airspeed, bank : [m/s, rad]
+    between : whether the point lies between those of the design's grid
+    stable : whether the closed loop is
+    margins : of every loop
+    """
+
+    case: str
+    airspeed: float
+    bank: float
+    between: bool
+    stable: bool
+    margins: tuple[Margin, ...]
+
+    @property
+    def required(self) -> tuple[float, float]:
+        """Return the least gain [dB] and phase [deg]."""
+        if self.case == NOMINAL:
+            return REQUIRED.gain_db, REQUIRED.phase_deg
+        return REQUIRED.perturbed_gain_db, REQUIRED.perturbed_phase_deg
+
+    @property
+    def short_loops(self) -> tuple[str, ...]:
+        """Return the loops with too little margin; all of them if the closed loop is unstable."""
+        gain, phase = self.required
+        judged = [m for m in self.margins if m.loop != ALL_CONTROLS]
+        return tuple(m.loop for m in judged if not (self.stable and m.gain_db >= gain and m.phase_deg >= phase))
+
+    @property
+    def met(self) -> bool:
+        """Whether every margin is there."""
+        return self.stable and not self.short_loops
+
+    @property
+    def worst_gain(self) -> Margin:
+        """Return the loop with the least gain margin."""
+        return min(self.margins, key=lambda m: math.inf if math.isnan(m.gain_db) else m.gain_db)
+
+    @property
+    def worst_phase(self) -> Margin:
+        """Return the loop with the least phase margin."""
+        return min(self.margins, key=lambda m: math.inf if math.isnan(m.phase_deg) else m.phase_deg)
+
+    @property
+    def shortfall(self) -> float:
+        """Return the smallest margin as a share of what is required; below 0 if unstable."""
+        gain, phase = self.required
+        return min(self.worst_gain.gain_db / gain, self.worst_phase.phase_deg / phase) if self.stable else -1.0
+
+    def describe(self) -> str:
+        """Return the least margins in words."""
+        where = f"at {self.airspeed:.1f} m/s and {math.degrees(self.bank):.0f} deg of bank, {self.case}"
+        if not self.stable:
+            return f"an unstable closed loop {where}"
+        gain, phase = self.worst_gain, self.worst_phase
+        return f"{gain.gain_db:.1f} dB ({gain.loop}) and {phase.phase_deg:.1f} deg ({phase.loop}) {where}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OperatingPoint:
+    """Where margins are computed: an equilibrium, the aircraft about it, and whether it lies between those of the grid.
+
+    ``bank`` is that of the grid [rad]: straight flight has 0, also where it takes a little bank against the propeller's torque.
+    """
+
+    trim: Trim
+    bank: float
+    model: control.StateSpace
+    between: bool
+
+
+def operating_points(schedule: Schedule) -> list[OperatingPoint]:
+    """Return the points of the grid, and those in the middle between them along airspeed and along bank.
+
+    Between, the linear model is interpolated, and so is the equilibrium: both are smooth there. Where two neighbours' measured lags
+    are of different order there is nothing to interpolate, and the point is checked with either aircraft.
+    """
+    columns = [TRIM_BANKS.index(share) for share in GAIN_BANKS]
+    at = {
+        (i, j): OperatingPoint(trim=row[columns[j]], bank=schedule.gain_banks[j], model=schedule.models[i][j], between=False)
+        for i, row in enumerate(schedule.trims)
+        for j in range(len(columns))
+    }
+    points = list(at.values())
+    for (i, j), point in at.items():
+        for neighbour in ((i + 1, j), (i, j + 1)):
+            if neighbour in at:
+                points += _middle(point, at[neighbour])
+    return points
+
+
+def _middle(first: OperatingPoint, second: OperatingPoint) -> list[OperatingPoint]:
+    def mean(a: float, b: float) -> float:
+        return 0.5 * (a + b)
+
+    p, q = first.trim, second.trim
+    trim = Trim(
+        **{name: mean(getattr(p, name), getattr(q, name)) for name in ("airspeed", "altitude", "climb_angle", "alpha", "beta")},
+        roll=mean(p.roll, q.roll),
+        pitch=mean(p.pitch, q.pitch),
+        rates_body=(
+            mean(p.rates_body[0], q.rates_body[0]),
+            mean(p.rates_body[1], q.rates_body[1]),
+            mean(p.rates_body[2], q.rates_body[2]),
+        ),
+        yaw_rate=mean(p.yaw_rate, q.yaw_rate),
+        inputs={name: mean(value, q.inputs[name]) for name, value in p.inputs.items()},
+        driven={},
+        outcome=p.outcome,
+        residuals=p.residuals,
+        limits=(),
+    )
+    bank = mean(first.bank, second.bank)
+    models = _between(first.model, second.model)
+    return [OperatingPoint(trim=trim, bank=bank, model=model, between=True) for model in models]
+
+
+def _between(first: control.StateSpace, second: control.StateSpace) -> list[control.StateSpace]:
+    """Return the mean of two models, or both where their states differ."""
+    if list(first.state_labels) != list(second.state_labels):
+        return [first, second]
+    a, b, c, d = (0.5 * (x + y) for x, y in zip(_matrices(first), _matrices(second), strict=True))
+    return [_like(first, a, b, c, d)]
+
+
+def _matrices(model: control.StateSpace) -> tuple[npt.NDArray[np.float64], ...]:
+    return model.A, model.B, model.C, model.D
+
+
+def check_design(schedule: Schedule, *, changed: bool = True) -> list[Check]:
+    """Return the margins at every operating point, as modelled and, if asked for, with the aircraft changed."""
+    law = ControlLaw(schedule)
+    cases = CASES if changed else {NOMINAL: CASES[NOMINAL]}
+    return [check for point in operating_points(schedule) for check in _checks(law, point, cases)]
+
+
+def _checks(law: ControlLaw, point: OperatingPoint, cases: "dict[str, tuple[Change, float]]") -> Iterator[Check]:
+    autopilot = linear_controller(law, point.trim)
+    for case, (change, delay) in cases.items():
+        loops = Loops(change(point.model, point.trim), autopilot, delay)
+        yield Check(
+            case=case,
+            airspeed=point.trim.airspeed,
+            bank=point.bank,
+            between=point.between,
+            stable=loops.stable,
+            margins=tuple(loops.margins(together=case == NOMINAL and not point.between)),
+        )
+
+
+Change = Callable[[control.StateSpace, Trim], control.StateSpace]
+
+
+def _unchanged(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+    del trim
+    return model
+
+
+def _effectiveness(factor: float) -> Change:
+    """Return a change of what every control does to the aircraft."""
+
+    def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+        del trim
+        b = model.B.copy()
+        rows = [i for i, name in enumerate(model.state_labels) if name in BODY_STATES]
+        driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES]
+        a, c, d = model.A.copy(), model.C.copy(), model.D * factor
+        b[rows] *= factor
+        a[np.ix_(rows, driven)] *= factor
+        extras = [i for i, name in enumerate(model.output_labels) if name not in model.state_labels]
+        c[np.ix_(extras, driven)] *= factor
+        return _like(model, a, b, c, d)
+
+    return change
+
+
+def _inertia(factor: float) -> Change:
+    """Return a change of all moments of inertia: angular accelerations by forces of the air and the engine divide by it."""
+
+    def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+        del trim
+        a, b = model.A.copy(), model.B.copy()
+        rows = [model.state_labels.index(name) for name in "pqr"]
+        a[rows] /= factor
+        b[rows] /= factor
+        return _like(model, a, b, model.C, model.D)
+
+    return change
+
+
+def _mass(factor: float) -> Change:
+    """Return a change of mass: accelerations by air and engine divide by it, those by gravity and turning do not."""
+
+    def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+        a, b, c, d = (m.copy() for m in _matrices(model))
+        rows = [model.state_labels.index(name) for name in ("airspeed", "alpha", "beta")]
+        kinematic = gravity_and_turning(trim, list(model.state_labels))
+        a[rows] = kinematic + (a[rows] - kinematic) / factor
+        b[rows] /= factor
+        # Rate of the course: side force over mass and speed, but for what attitude gives: an aircraft in equilibrium carries its
+        # weight whatever that is, so bank turns it by g/V as before.
+        row = model.output_labels.index("heading_rate")
+        columns = [i for i, name in enumerate(model.state_labels) if name not in ("roll", "pitch")]
+        c[row, columns] /= factor
+        d[row] /= factor
+        return _like(model, a, b, c, d)
+
+    return change
+
+
+def gravity_and_turning(trim: Trim, states: list[str]) -> npt.NDArray[np.float64]:
+    """Return how airspeed, angle of attack and sideslip change without any force of air or engine, shape (3, states).
+
+    Differences of the rigid body's own equations: gravity along the body's axes, and the axes' turning.
+    """
+    names = ("airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch")
+    point = np.array([trim.airspeed, trim.alpha, trim.beta, *trim.rates_body, trim.roll, trim.pitch])
+
+    def rates(x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        v, alpha, beta, p, q, r, roll, pitch = x
+        along, side, down = math.cos(alpha) * math.cos(beta), math.sin(beta), math.sin(alpha) * math.cos(beta)
+        u, w = v * along, v * down
+        g = STANDARD_GRAVITY
+        gravity = (-g * math.sin(pitch), g * math.sin(roll) * math.cos(pitch), g * math.cos(roll) * math.cos(pitch))
+        u_dot = gravity[0] - (q * w - r * v * side)
+        side_dot = gravity[1] - (r * u - p * w)
+        w_dot = gravity[2] - (p * v * side - q * u)
+        v_dot = along * u_dot + side * side_dot + down * w_dot
+        alpha_dot = (u * w_dot - w * u_dot) / (u * u + w * w)
+        return np.array([v_dot, alpha_dot, (side_dot - v_dot * side) / (v * math.cos(beta))])
+
+    result = np.zeros((3, len(states)))
+    for i, name in enumerate(names):
+        step = np.zeros(len(names))
+        step[i] = 1e-5
+        result[:, states.index(name)] = (rates(point + step) - rates(point - step)) / 2e-5
+    return result
+
+
+def _like(
+    model: control.StateSpace,
+    a: npt.NDArray[np.float64],
+    b: npt.NDArray[np.float64],
+    c: npt.NDArray[np.float64],
+    d: npt.NDArray[np.float64],
+) -> control.StateSpace:
+    return control.ss(a, b, c, d, states=model.state_labels, inputs=model.input_labels, outputs=model.output_labels)
+
+
+CASES: dict[str, tuple[Change, float]] = {
+    NOMINAL: (_unchanged, DELAY),
+    "control effectiveness +20 %": (_effectiveness(1.2), DELAY),
+    "control effectiveness -20 %": (_effectiveness(0.8), DELAY),
+    "mass +20 %": (_mass(1.2), DELAY),
+    "mass -20 %": (_mass(0.8), DELAY),
+    "inertia +20 %": (_inertia(1.2), DELAY),
+    "inertia -20 %": (_inertia(0.8), DELAY),
+    "one more step of delay": (_unchanged, DELAY + TIME_STEP),
+}
+"""What is changed: the linear aircraft, and the delay between measurement and servo [s]."""

@@ -1,0 +1,1 @@
+"""Designing, recording, caching and listing autopilots."""

@@ -1,0 +1,143 @@
+"""From an aircraft to its autopilot: trim, linearise, weigh, design, check; slower where margins are too small, or refused."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import control
+
+from aircraft.dynamics.control_effectiveness import straightened
+from aircraft.dynamics.envelope import find_envelope, first_trim
+from aircraft.dynamics.flight_idle import flight_idle, idling_at
+from aircraft.dynamics.linearise import linearise
+from aircraft.dynamics.trim import Trim, trim
+from aircraft.errors import AircraftError
+from aircraft.simulation.fdm import Fdm
+from aircraft.spec import AircraftSpec, Envelope
+from innerloop.analysis.robustness import REQUIRED, Check, check_design
+from innerloop.synthesis.gains import design_gains
+from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL, LEVEL_GAINS, TRIM_BANKS, Schedule, table_banks
+from innerloop.synthesis.weights import Speeds, control_weights, design_weights, reachable_speeds
+
+_SLOWER = 0.8
+_ATTEMPTS = 10
+_LATERAL_LOOPS = ("aileron", "rudder", "heading_rate", "sideslip")
+_AIRSPEED_LOOPS = ("throttle", "airspeed")
+
+
+class DesignError(AircraftError):
+    """No design of an aircraft has the margins that are required."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Design:
+    """An autopilot and what was found out about its margins.
+
+    Attributes
+    ----------
+    schedule : the autopilot's tables
+    speeds : how fast its loops were made
+    checks : margins at every grid point, between, and with the aircraft changed
+    """
+
+    schedule: Schedule
+    speeds: Speeds
+    checks: tuple[Check, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Grid:
+    """An aircraft over airspeed and bank: what designs start from.
+
+    Attributes
+    ----------
+    spec, envelope, altitude : the aircraft, where it flies, and at which altitude [m]
+    trims, models : as in ``Schedule``
+    """
+
+    spec: AircraftSpec
+    envelope: Envelope
+    altitude: float
+    trims: tuple[tuple[Trim, ...], ...]
+    models: tuple[tuple[control.StateSpace, ...], ...]
+
+
+def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
+    """Design the autopilot of an aircraft at ``altitude`` [m].
+
+    Loops start as fast as the aircraft can follow and are slowed, one axis at a time, until every margin holds.
+
+    Raises
+    ------
+    AircraftError : the aircraft cannot fly the study, or one of its design conditions
+    DesignError : no design has the margins
+    """
+    grid = linear_grid(spec, altitude)
+    speeds = reachable_speeds([row[LEVEL_GAINS] for row in grid.models], grid.envelope.bank)
+    short: list[Check] = []
+    for _ in range(_ATTEMPTS):
+        schedule = schedule_at(grid, speeds)
+        checks = check_design(schedule)
+        short = [check for check in checks if not check.met]
+        if not short:
+            return Design(schedule=schedule, speeds=speeds, checks=tuple(checks))
+        speeds = _slower(speeds, short)
+    worst = min(short, key=lambda check: check.shortfall)
+    raise DesignError(
+        f"aircraft '{spec.name}': no design has {REQUIRED.gain_db:g} dB and {REQUIRED.phase_deg:g} deg at every operating point;"
+        f" the slowest tried has {worst.describe()}. It is not flown"
+    )
+
+
+def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
+    """Trim and linearise an aircraft over its airspeeds and banks at ``altitude`` [m]."""
+    fdm = Fdm(spec)
+    spec = straightened(fdm, first_trim(fdm, altitude))
+    fdm = Fdm(spec)
+    envelope = find_envelope(fdm, altitude)
+    banks = table_banks(envelope, TRIM_BANKS)
+    trims: list[tuple[Trim, ...]] = []
+    models = []
+    near: Trim | None = None
+    for airspeed in envelope.design_airspeeds:
+        near = trim(fdm, airspeed=airspeed, altitude=altitude, start=near)
+        row = tuple(
+            near if bank == 0.0 else trim(fdm, airspeed=airspeed, altitude=altitude, bank=bank, start=near) for bank in banks
+        )
+        trims.append(row)
+        models.append(tuple(linearise(fdm, row[TRIM_BANKS.index(share)]) for share in GAIN_BANKS))
+    spec = idling_at(spec, flight_idle(fdm, trims[len(trims) // 2][LEVEL]))
+    return Grid(spec=spec, envelope=envelope, altitude=altitude, trims=tuple(trims), models=tuple(models))
+
+
+def schedule_at(grid: Grid, speeds: Speeds) -> Schedule:
+    """Return the autopilot whose loops have these speeds."""
+    airspeeds = tuple(row[LEVEL].airspeed for row in grid.trims)
+    weights = design_weights(speeds, airspeeds[len(airspeeds) // 2])
+    gains = []
+    for row, models in zip(grid.trims, grid.models, strict=True):
+        controls = control_weights(models[LEVEL_GAINS], speeds, weights)
+        at = [row[TRIM_BANKS.index(share)] for share in GAIN_BANKS]
+        gains.append(tuple(design_gains(model, t, weights, controls) for model, t in zip(models, at, strict=True)))
+    return Schedule(
+        spec=grid.spec,
+        envelope=grid.envelope,
+        weights=weights,
+        altitude=grid.altitude,
+        airspeeds=airspeeds,
+        trims=grid.trims,
+        models=grid.models,
+        gains=tuple(gains),
+    )
+
+
+def _slower(speeds: Speeds, short: Sequence[Check]) -> Speeds:
+    """Return speeds lower in the axes whose loops have too little margin."""
+    loops = {name for check in short for name in check.short_loops}
+    lateral = any(name in _LATERAL_LOOPS for name in loops)
+    airspeed = any(name in _AIRSPEED_LOOPS for name in loops)
+    longitudinal = bool(loops - set(_LATERAL_LOOPS) - set(_AIRSPEED_LOOPS)) or not (lateral or airspeed)
+    return speeds.slower(
+        lateral=_SLOWER if lateral else 1.0,
+        longitudinal=_SLOWER if longitudinal else 1.0,
+        airspeed=_SLOWER if airspeed or longitudinal else 1.0,
+    )

@@ -1,0 +1,94 @@
+"""Which of all known aircraft can be flown, and why the others cannot: found by designing every one of them."""
+
+import math
+import multiprocessing
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+
+from aircraft.errors import AircraftError
+from aircraft.fleet.find import aircraft_names, find_spec
+from common.interrupt import ignore_interrupt
+from innerloop.analysis.robustness import NOMINAL
+from innerloop.designs.cache import designed
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Discovered:
+    """An aircraft and whether it can be flown.
+
+    Attributes
+    ----------
+    name, title : what the user types, and what the model calls itself
+    flies : whether there is an autopilot for it
+    text : where it flies and with which margins, or why it does not
+    """
+
+    name: str
+    title: str
+    flies: bool
+    text: str
+
+
+def discover(altitude: float, jobs: int) -> Iterator[Discovered]:
+    """Yield every known aircraft in the order of ``aircraft_names``, as soon as it is known whether it flies.
+
+    Parameters
+    ----------
+    altitude : of the designs [m]
+    jobs : processes; an aircraft that JSBSim cannot survive costs its process, not the list
+    """
+    names = aircraft_names()
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=ignore_interrupt)
+    try:
+        futures = {name: pool.submit(examine, name, altitude) for name in names}
+        for name, future in futures.items():
+            try:
+                yield future.result()
+            except BrokenProcessPool:
+                yield _alone(name, altitude)
+    finally:
+        # Interrupted, the list leaves what is being designed: an aircraft that does not trim can take a minute to say so.
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in multiprocessing.active_children():
+            process.terminate()
+
+
+def _alone(name: str, altitude: float) -> Discovered:
+    """Examine an aircraft in a process of its own, after another one broke the pool."""
+    with ProcessPoolExecutor(max_workers=1, mp_context=multiprocessing.get_context("spawn")) as pool:
+        try:
+            return pool.submit(examine, name, altitude).result()
+        except BrokenProcessPool:
+            return Discovered(name=name, title=name, flies=False, text="JSBSim ends the whole process with it")
+
+
+def examine(name: str, altitude: float) -> Discovered:
+    """Return whether one aircraft flies, by designing its autopilot at ``altitude`` [m]."""
+    title = name
+    try:
+        spec = find_spec(name)
+        title = spec.title
+        design = designed(spec, altitude).design
+    except AircraftError as error:
+        return Discovered(name=name, title=title, flies=False, text=_reason(name, str(error)))
+    except Exception as error:  # noqa: BLE001 - one aircraft that nobody foresaw does not end the list
+        return Discovered(name=name, title=title, flies=False, text=f"{type(error).__name__}: {error}")
+    envelope = design.schedule.envelope
+    nominal = [check for check in design.checks if check.case == NOMINAL]
+    gain = min(check.worst_gain.gain_db for check in nominal)
+    phase = min(check.worst_phase.phase_deg for check in nominal)
+    text = (
+        f"{envelope.airspeed_min:.0f} to {envelope.airspeed_max:.0f} m/s, {math.degrees(envelope.bank):.0f} deg of bank,"
+        f" margins {math.floor(10.0 * gain) / 10.0:.1f} dB and {math.floor(phase):.0f} deg"
+    )
+    return Discovered(name=name, title=title, flies=True, text=text)
+
+
+def _reason(name: str, message: str) -> str:
+    """Return the reason alone: which aircraft it is stands beside it."""
+    for prefix in (f"aircraft '{name}' cannot be flown: ", f"aircraft '{name}' cannot fly the study: ", f"aircraft '{name}' "):
+        message = message.removeprefix(prefix)
+    return message.removeprefix(f"aircraft '{name}': ")

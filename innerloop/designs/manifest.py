@@ -1,0 +1,33 @@
+"""What a design says about itself."""
+
+from typing import Any
+
+from common.provenance import provenance
+from innerloop.designs.record import Record
+
+
+def design_manifest(record: Record, *, wall_time: float) -> dict[str, Any]:
+    """Return the manifest of a design, from which its report takes title, description and provenance.
+
+    Parameters
+    ----------
+    record : the design record
+    wall_time : how long the design took [s]
+    """
+    airspeeds = record["airspeeds_mps"]
+    return {
+        "study": "design",
+        "name": record["aircraft"],
+        "title": f"Autopilot of the {record['title']}",
+        "overrides": [],
+        "state": "complete",
+        "config": {
+            "study": "design",
+            "description": f"Designed at {record['altitude_m']:g} m of altitude for {airspeeds[0]:.4g} to {airspeeds[-1]:.4g} m/s:"
+            " equilibria, linear models, gains, margins, and what JSBSim flies.",
+            "aircraft": record["aircraft"],
+            "altitude_m": record["altitude_m"],
+        },
+        **provenance(),
+        "wall_time_s": wall_time,
+    }

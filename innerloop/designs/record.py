@@ -1,0 +1,219 @@
+"""Everything a reader of a report wants to know of an autopilot's design, as plain data."""
+
+import math
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from aircraft.dynamics.trim import Trim, TrimOutcome, search_trim
+from aircraft.simulation.fdm import Fdm
+from aircraft.spec import Envelope
+from innerloop.analysis.linear_model_check import verify_model
+from innerloop.analysis.margins import BREAK_NAMES, Loops, Margin
+from innerloop.analysis.robustness import NOMINAL, REQUIRED, Check
+from innerloop.designs.designer import Design
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.step_responses import Response, flown_step, measure_lag, model_step, predicted_step
+from innerloop.law.control_law import ControlLaw
+from innerloop.law.linear_controller import linear_controller
+from innerloop.synthesis.schedule import LEVEL_GAINS, Schedule
+from innerloop.synthesis.weights import STANDARD_GRAVITY
+
+_STEP_DURATION = 36.0
+"""Of the flown steps, over one over the frequency of the heading-rate answer [-]."""
+
+_SAMPLES = 360
+_FREQUENCIES = np.logspace(-2.5, 2.2, 220)
+_CLIMB_ANGLES_DEG = (-3.0, -1.5, 1.5, 3.0)
+
+Record = dict[str, Any]
+
+
+def design_record(design: Design, root: Path) -> Record:
+    """Compute trims, poles, margins, loop shapes and responses of a design, the responses also flown in JSBSim.
+
+    Parameters
+    ----------
+    design : what ``innerloop.designs.designer.design_autopilot`` returned
+    root : JSBSim root that ``write_root`` made of it
+    """
+    schedule = design.schedule
+    aircraft = AutopilotedAircraft(schedule.spec, root)
+    level = schedule.level(schedule.middle)
+    return {
+        "aircraft": schedule.spec.name,
+        "title": schedule.spec.title,
+        "source": schedule.spec.source,
+        "altitude_m": schedule.altitude,
+        "envelope": _envelope_record(schedule.envelope),
+        "design_airspeed_mps": level.airspeed,
+        "airspeeds_mps": list(schedule.airspeeds),
+        "banks_deg": [math.degrees(bank) for bank in schedule.banks],
+        "weights": asdict(schedule.weights),
+        "speeds_rad_s": asdict(design.speeds),
+        "model_frequency_rad_s": schedule.weights.model_frequency,
+        "model_damping": schedule.weights.model_damping,
+        "trims": [_trim_record(t, bank) for row in schedule.trims for t, bank in zip(row, schedule.banks, strict=True)]
+        + _climbs(schedule),
+        "poles": _poles(schedule),
+        "margins": [row for check in design.checks if check.case == NOMINAL for row in _margin_records(check)],
+        "robustness": [_robustness_record(check) for check in design.checks if check.case != NOMINAL],
+        "required": asdict(REQUIRED),
+        "loops": _loops(schedule),
+        "responses": _responses(schedule, aircraft),
+        "verification": verify_model(Fdm(schedule.spec), schedule.models[schedule.middle][LEVEL_GAINS], level),
+        "heading_rate_lag_s": measure_lag(aircraft, level, schedule.envelope.bank),
+    }
+
+
+def step_sizes(schedule: Schedule) -> dict[str, float]:
+    """Return the steps that are predicted and flown [rad/s, m/s, m]: half the study's turn, and half of what still works harder."""
+    turn = STANDARD_GRAVITY * math.tan(schedule.envelope.bank) / schedule.level(schedule.middle).airspeed
+    room = 0.25 * (schedule.envelope.airspeed_max - schedule.envelope.airspeed_min)
+    sizes = {
+        "heading_rate": 0.5 * turn,
+        "airspeed": min(0.5 * schedule.weights.airspeed_error_max, room),
+        "altitude": 0.5 * schedule.weights.altitude_error_max,
+    }
+    return {name: float(f"{size:.2g}") for name, size in sizes.items()}
+
+
+def _envelope_record(envelope: Envelope) -> Record:
+    return {
+        "airspeed_min_mps": envelope.airspeed_min,
+        "airspeed_max_mps": envelope.airspeed_max,
+        "airspeed_mps": envelope.airspeed,
+        "stall_airspeed_mps": _finite(envelope.stall),
+        "bank_deg": math.degrees(envelope.bank),
+        "bank_max_deg": math.degrees(envelope.bank_max),
+        "notes": list(envelope.notes),
+    }
+
+
+def _trim_record(t: Trim, bank: float) -> Record:
+    """Return an equilibrium; ``bank`` is the grid's [rad], 0 in straight flight whatever roll balances the propeller's torque."""
+    return {
+        "airspeed_mps": t.airspeed,
+        "bank_rad": bank,
+        "roll_rad": t.roll,
+        "climb_angle_rad": t.climb_angle,
+        "alpha_rad": t.alpha,
+        "sideslip_rad": t.beta,
+        "pitch_rad": t.pitch,
+        "yaw_rate_rad_s": t.yaw_rate,
+        "residual": t.residual,
+        "limits": list(t.limits),
+        **dict(t.inputs),
+        **dict(t.driven),
+    }
+
+
+def _climbs(schedule: Schedule) -> list[Record]:
+    """Return climbs and descents at the middle airspeed, as far as there are equilibria."""
+    fdm, level = Fdm(schedule.spec), schedule.level(schedule.middle)
+    found = [
+        search_trim(fdm, airspeed=level.airspeed, altitude=schedule.altitude, climb_angle=math.radians(angle), start=level)
+        for angle in _CLIMB_ANGLES_DEG
+    ]
+    return [_trim_record(t, 0.0) for t in found if t.outcome is TrimOutcome.CONVERGED]
+
+
+def _margin_records(check: Check) -> list[Record]:
+    point = {"airspeed_mps": check.airspeed, "bank_rad": check.bank, "between": check.between, "stable": check.stable}
+    return [point | {f.name: _finite(getattr(margin, f.name)) for f in fields(Margin)} for margin in check.margins]
+
+
+def _robustness_record(check: Check) -> Record:
+    gain, phase = check.worst_gain, check.worst_phase
+    return {
+        "case": check.case,
+        "airspeed_mps": check.airspeed,
+        "bank_rad": check.bank,
+        "between": check.between,
+        "stable": check.stable,
+        "gain_db": _finite(gain.gain_db),
+        "gain_loop": gain.loop,
+        "phase_deg": _finite(phase.phase_deg),
+        "phase_loop": phase.loop,
+    }
+
+
+def _finite(value: float | str) -> float | str | None:
+    """JSON has no infinity and no nan; a margin that does not exist is null."""
+    return value if isinstance(value, str) or np.isfinite(value) else None
+
+
+def _poles(schedule: Schedule) -> list[Record]:
+    law = ControlLaw(schedule)
+    return [
+        {
+            "airspeed_mps": t.airspeed,
+            "bank_rad": schedule.gain_banks[j],
+            "open_loop": _pairs(model.poles()),
+            "closed_loop": _pairs(Loops(model, linear_controller(law, t)).poles()),
+        }
+        for i, row in enumerate(schedule.models)
+        for j, model in enumerate(row)
+        for t in (schedule.gain_trim(i, j),)
+    ]
+
+
+def _pairs(poles: Any) -> list[list[float]]:
+    return [[float(p.real), float(p.imag)] for p in sorted(poles, key=lambda p: (p.real, p.imag))]
+
+
+def _loops(schedule: Schedule) -> list[Record]:
+    level = schedule.level(schedule.middle)
+    model = schedule.models[schedule.middle][LEVEL_GAINS]
+    loops = Loops(model, linear_controller(ControlLaw(schedule), level), frequencies=_FREQUENCIES)
+    records = []
+    for name in loops.breaks:
+        response = loops.opened(name)
+        records.append(
+            {
+                "loop": BREAK_NAMES.get(name, name),
+                "airspeed_mps": level.airspeed,
+                "bank_rad": 0.0,
+                "frequency_rad_s": _FREQUENCIES.tolist(),
+                "gain_db": (20.0 * np.log10(np.abs(response))).tolist(),
+                "phase_deg": np.degrees(np.unwrap(np.angle(response))).tolist(),
+            }
+        )
+    return records
+
+
+def _responses(schedule: Schedule, aircraft: AutopilotedAircraft) -> list[Record]:
+    duration = _STEP_DURATION / schedule.weights.model_frequency
+    slow = _STEP_DURATION / min(schedule.weights.model_frequency, 2.0 / schedule.weights.anti_windup_rate)
+    level = schedule.level(schedule.middle)
+    records = []
+    for command, size in step_sizes(schedule).items():
+        time = duration if command == "heading_rate" else slow
+        if command == "heading_rate":
+            records.append(_response_record("model", model_step(schedule, size, time)))
+        records.append(_response_record("predicted", predicted_step(schedule, schedule.middle, command, size, time)))
+        records.append(_response_record("flown", flown_step(aircraft, level, command, size, time)))
+    return records
+
+
+def _response_record(kind: str, response: Response) -> Record:
+    stride = max(1, len(response.time) // _SAMPLES)
+    return {
+        "kind": kind,
+        "command": response.command,
+        "size": response.size,
+        "rise_time_s": _finite(response.rise_time()),
+        "overshoot": response.overshoot(),
+        **{f"{name}_largest_{unit}": response.largest(name) for name, unit in _UPSET.items() if name in response.channels},
+        "time_s": response.time[::stride].round(6).tolist(),
+        "channels": {_CHANNEL_NAMES.get(name, name): values[::stride].tolist() for name, values in response.channels.items()},
+    }
+
+
+_UPSET = {"altitude": "m", "airspeed": "mps"}
+"""What a step should not move, and its unit."""
+
+_CHANNEL_NAMES = {"beta": "sideslip", "elevator_command": "elevator", "aileron_command": "aileron"}
+"""What channels are called where they are shown, if not as in the closed loop."""

@@ -1,0 +1,1 @@
+"""The aircraft with its autopilot, and flight tests of it."""

@@ -1,0 +1,100 @@
+"""An aircraft that flies under its autopilot in JSBSim."""
+
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from aircraft.atmosphere.gusts import gusty_run
+from aircraft.atmosphere.weather import Weather, begin_turbulence, end_weather
+from aircraft.errors import AircraftError
+from aircraft.simulation.faults import Faults, failable_root
+from aircraft.simulation.fdm import Fdm
+from aircraft.simulation.state import RigidBodyState
+from aircraft.spec import AircraftSpec
+from innerloop.jsbsim.system import (
+    AIRSPEED_COMMAND,
+    ALTITUDE_COMMAND,
+    CONTROL_COMMAND,
+    ELEVATOR_HELD,
+    HEADING_RATE_COMMAND,
+    HELD_ELEVATOR,
+    RESET,
+)
+
+
+class AutopilotedAircraft:
+    """An aircraft and its autopilot, as ``innerloop.jsbsim.root.write_root`` wrote them.
+
+    Parameters
+    ----------
+    spec : the aircraft
+    root : JSBSim root with the autopilot
+    failable : whether parts of it can fail in flight; it is then flown from a copy of ``root`` that has been prepared for that
+
+    Attributes
+    ----------
+    fdm : the simulation
+    run : advances it by one time step, through the weather that it was released in
+    command_airspeed, command_altitude, command_heading_rate : setters of the commands [m/s, m, rad/s]
+    """
+
+    def __init__(self, spec: AircraftSpec, root: Path, *, failable: bool = False) -> None:
+        if failable:
+            with tempfile.TemporaryDirectory() as copy:
+                self.fdm = Fdm(spec, failable_root(spec, root, Path(copy)))
+        else:
+            self.fdm = Fdm(spec, root)
+        self.run: Callable[[], object] = self.fdm.run
+        self._faults = Faults(self.fdm) if failable else None
+        self._weathered = False
+        self.command_airspeed: Callable[[float], object] = self.fdm.writable_node(AIRSPEED_COMMAND).set_double_value
+        self.command_altitude: Callable[[float], object] = self.fdm.writable_node(ALTITUDE_COMMAND).set_double_value
+        self.command_heading_rate: Callable[[float], object] = self.fdm.writable_node(HEADING_RATE_COMMAND).set_double_value
+
+    def release(self, state: RigidBodyState, *, airspeed: float, altitude: float, weather: Weather | None = None) -> None:
+        """Start a flight from a straight and level equilibrium, commanded to stay in it, whatever was flown before.
+
+        Parameters
+        ----------
+        state : the equilibrium's state, against the air
+        airspeed, altitude : commands [m/s, m]
+        weather : the air it flies in; none for still air. The wind blows from the start; turbulence begins with the release, and
+            the times of gusts count from it.
+        """
+        if self._weathered or (self._faults and self._faults.failed):
+            end_weather(self.fdm)
+        if self._faults:
+            self._faults.mend()
+        self._weathered = weather is not None
+        self.command_airspeed(airspeed)
+        self.command_altitude(altitude)
+        self.command_heading_rate(0.0)
+        self.fdm.write(ELEVATOR_HELD, 0.0)
+        self.fdm.write(RESET, -1.0)
+        self.fdm.hold(state, round(self.fdm.spec.settle_time / self.fdm.time_step), weather.wind if weather else None)
+        self.fdm.write(RESET, 0.0)
+        self.fdm.write(HELD_ELEVATOR, self.fdm.read(CONTROL_COMMAND.format("elevator")))
+        if self._faults:
+            self._faults.note_trim()
+        self.run = self.fdm.run
+        if weather:
+            begin_turbulence(self.fdm, weather)
+            self.run = gusty_run(self.fdm, weather.gusts)
+
+    def hold_elevator(self) -> None:
+        """Hold the elevator where it was at the release from now on; pitch is then left to the aircraft's own stability.
+
+        What is left of the controls after one has failed then has one task instead of two that contradict each other.
+        """
+        self.fdm.write(ELEVATOR_HELD, 1.0)
+
+    def fail(self, name: str) -> None:
+        """Let a part fail from the next time step on, by a name from ``aircraft.simulation.faults.fault_names``.
+
+        Raises
+        ------
+        AircraftError : there is no such part, or the aircraft was not made ``failable``
+        """
+        if self._faults is None:
+            raise AircraftError(f"aircraft '{self.fdm.spec.name}': '{name}' cannot fail; make it with failable=True")
+        self._faults.fail(name)

@@ -1,0 +1,86 @@
+"""How an aircraft's heading rate follows a reversal of its turn: the largest change of command that the guidance can give."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import brentq
+
+from aircraft.dynamics.trim import Trim
+from aircraft.errors import AircraftError
+from aircraft.simulation.fdm import TIME_STEP
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.jsbsim.system import HEADING_RATE
+from innerloop.synthesis.weights import STANDARD_GRAVITY
+
+Array = npt.NDArray[np.float64]
+
+_ROOM = 0.01
+"""By which the model may be ahead, per what the aircraft falls behind in all [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reversal:
+    """A dead time and a first-order lag after it, which displace the aircraft as its heading rate does.
+
+    Attributes
+    ----------
+    delay : [s]
+    lag : [s]
+    """
+
+    delay: float
+    lag: float
+
+
+def measure_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> Reversal:
+    """Return the dead time and lag of a reversal from a settled turn at ``bank`` [rad] to the left to one to the right.
+
+    What counts is where the aircraft gets, which goes with the integral of the course that it falls behind by. Dead time and lag
+    are equal, and the shortest for which the model is nowhere ahead of the aircraft over a quarter of a turn, but for 1 % of what
+    it falls behind in all. The lag of slow commands, ``measure_lag``, is shorter: the aircraft rolls through twice the bank.
+
+    Parameters
+    ----------
+    aircraft : with its autopilot; whatever it flew before is over
+    start : straight and level equilibrium
+    bank : [rad]
+
+    Raises
+    ------
+    AircraftError : it does not follow the reversal
+    """
+    rate = STANDARD_GRAVITY * math.tan(bank) / start.airspeed
+    aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
+    node = aircraft.fdm.node(HEADING_RATE)
+    aircraft.command_heading_rate(-rate)
+    for _ in range(round(2.0 * math.pi / rate / TIME_STEP)):
+        aircraft.fdm.run()
+    aircraft.command_heading_rate(rate)
+    time = TIME_STEP * np.arange(1.0, round(0.5 * math.pi / rate / TIME_STEP) + 1.0)
+    behind = np.empty(time.size)
+    for i in range(time.size):
+        aircraft.fdm.run()
+        behind[i] = 0.5 * (1.0 - node.get_double_value() / rate)
+    flown = np.cumsum(np.cumsum(behind)) * TIME_STEP**2
+
+    def least_lead(half: float) -> float:
+        return float(np.min(displacement(time, Reversal(delay=half, lag=half)) - flown)) + _ROOM * float(flown[-1])
+
+    shortest, longest = TIME_STEP, float(time[-1])
+    if not least_lead(longest) >= 0.0:
+        raise AircraftError(
+            f"{aircraft.fdm.spec.name} at {start.airspeed:g} m/s does not turn right within {longest:.1f} s of being told to in a"
+            f" left turn at {math.degrees(bank):.0f} deg of bank; lower the bank"
+        )
+    half = shortest if least_lead(shortest) >= 0.0 else float(brentq(least_lead, shortest, longest, xtol=1e-4))
+    return Reversal(delay=half, lag=half)
+
+
+def displacement(time: Array, reversal: Reversal) -> Array:
+    """Return the integral of the course fallen behind by [s2], per change of the commanded heading rate, ``time`` [s] after it."""
+    after = np.maximum(time - reversal.delay, 0.0)
+    lag = reversal.lag
+    late = np.minimum(time, reversal.delay)
+    return 0.5 * late**2 + reversal.delay * after + lag * after + lag**2 * np.expm1(-after / lag)

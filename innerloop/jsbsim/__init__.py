@@ -1,0 +1,1 @@
+"""The autopilot as a JSBSim system, script and root."""

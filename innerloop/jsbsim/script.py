@@ -1,0 +1,285 @@
+"""A JSBSim script that flies an aircraft under its autopilot without Python."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.sax.saxutils import escape, quoteattr
+
+from aircraft.dynamics.trim import Trim
+from aircraft.errors import AircraftError, UnknownPropertyError
+from aircraft.simulation.fdm import (
+    CRANK,
+    INTEGRATORS,
+    RUN_UP_STEPS,
+    START_ENGINES,
+    STOP_CRANKING,
+    TIME_STEP,
+    Fdm,
+    before_hold,
+    initial_conditions,
+)
+from aircraft.spec import Envelope
+from innerloop.jsbsim.system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, BANK_COMMAND, HEADING_RATE, HEADING_RATE_COMMAND, RESET
+from innerloop.synthesis.schedule import Schedule
+from innerloop.synthesis.weights import STANDARD_GRAVITY
+
+OUTPUT_RATE = 20.0
+"""Rows of the script's output file a second [Hz]."""
+
+_AFTERWARDS = 10.0
+"""Flight after the last command [s]."""
+
+_MOTION = (
+    "position/lat-geod-deg",
+    "position/long-gc-deg",
+    "position/h-sl-meters",
+    "autopilot/airspeed-mps",
+    "autopilot/climb-rate-mps",
+    "attitude/phi-rad",
+    "attitude/theta-rad",
+    "attitude/psi-rad",
+    "aero/alpha-rad",
+    "aero/beta-rad",
+    HEADING_RATE,
+    AIRSPEED_COMMAND,
+    ALTITUDE_COMMAND,
+    HEADING_RATE_COMMAND,
+    BANK_COMMAND,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Command:
+    """A command to the autopilot.
+
+    Attributes
+    ----------
+    time : when it is given, from release on [s]
+    name : JSBSim property that takes it, one of ``innerloop.jsbsim.system``
+    value : [m/s, m or rad/s]
+    note : what it asks for, in words
+    """
+
+    time: float
+    name: str
+    value: float
+    note: str
+
+
+def demonstration(
+    envelope: Envelope,
+    start: Trim,
+    *,
+    heading_rate: float | None = None,
+    altitude_step: float | None = None,
+    airspeed_step: float | None = None,
+) -> tuple[Command, ...]:
+    """Return commands that show what the autopilot does: turn right, climb, change speed, come back from both, turn left.
+
+    Parameters
+    ----------
+    envelope, start : where the aircraft may fly, and the level equilibrium it starts from
+    heading_rate : of both turns [rad/s], positive; by default a quarter of what the largest commanded bank gives
+    altitude_step : [m]; by default what the aircraft flies in half a second
+    airspeed_step : [m/s]; by default a tenth of the airspeed or half the room that the envelope leaves, whichever is less, towards
+        the side with more room
+
+    Raises
+    ------
+    AircraftError : the heading rate is not positive
+    """
+    if heading_rate is None:
+        heading_rate = 0.25 * STANDARD_GRAVITY * math.tan(envelope.bank_max) / start.airspeed
+    if not heading_rate > 0.0:
+        raise AircraftError(f"heading rate of the turns is {heading_rate} rad/s; it must be above 0, for the first is to the right")
+    if altitude_step is None:
+        altitude_step = 0.5 * start.airspeed
+    if airspeed_step is None:
+        below, above = start.airspeed - envelope.airspeed_min, envelope.airspeed_max - start.airspeed
+        airspeed_step = math.copysign(min(0.1 * start.airspeed, 0.5 * max(below, above)), above - below)
+    turn = f"{math.degrees(heading_rate):.3g} degrees a second"
+    return tuple(
+        Command(time=time, name=name, value=value, note=note)
+        for time, name, value, note in (
+            (5.0, HEADING_RATE_COMMAND, heading_rate, f"Turn right at {turn}."),
+            (20.0, HEADING_RATE_COMMAND, 0.0, "Fly straight on."),
+            (25.0, ALTITUDE_COMMAND, start.altitude + altitude_step, f"Change altitude by {altitude_step:+.3g} m."),
+            (40.0, AIRSPEED_COMMAND, start.airspeed + airspeed_step, f"Change airspeed by {airspeed_step:+.3g} m/s."),
+            (55.0, ALTITUDE_COMMAND, start.altitude, "Come back to the altitude of the start."),
+            (55.0, AIRSPEED_COMMAND, start.airspeed, "Come back to the airspeed of the start."),
+            (70.0, HEADING_RATE_COMMAND, -heading_rate, f"Turn left at {turn}."),
+            (85.0, HEADING_RATE_COMMAND, 0.0, "Fly straight on."),
+        )
+    )
+
+
+def write_script(schedule: Schedule, root: Path, *, commands: Sequence[Command] | None = None) -> Path:
+    """Write a JSBSim script, and the initialisation file it starts from, into a root of ``innerloop.jsbsim.root.write_root``.
+
+    The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock, from level flight at the middle
+    design airspeed.
+
+    Parameters
+    ----------
+    schedule : the design
+    root : JSBSim root with its autopilot
+    commands : what is flown; by default ``demonstration``
+
+    Returns
+    -------
+    Path : the script
+
+    Raises
+    ------
+    UnknownPropertyError, ReadOnlyPropertyError : the aircraft has no such property, or it takes no writes
+    AircraftError : a command is given before release, or a value is not finite
+    """
+    spec, start = schedule.spec, schedule.level(schedule.middle)
+    commands = demonstration(schedule.envelope, start) if commands is None else commands
+    fdm = Fdm(spec, root)
+    fdm.place(start.state())
+    _check(fdm, commands)
+    name = f"{spec.model}_autopilot"
+    (root / "aircraft" / spec.model / f"{name}_init.xml").write_text(_INITIALISATION.format(name=name), encoding="utf-8")
+    held, preparations = _preparations(fdm)
+    release = [*((integrator, fdm.read(integrator)) for integrator in INTEGRATORS), (RESET, 0.0)]
+    events = [
+        *preparations,
+        _event("Release: let the body and the autopilot's integrators go.", 0, release),
+        *(_event(c.note, round(c.time / TIME_STEP), [(c.name, c.value)]) for c in commands),
+    ]
+    script = root / "scripts" / f"{name}.xml"
+    script.parent.mkdir(exist_ok=True)
+    text = _SCRIPT.format(
+        title=escape(spec.title),
+        name=name,
+        model=spec.model,
+        start=-held * TIME_STEP,
+        end=max((c.time for c in commands), default=0.0) + _AFTERWARDS,
+        step=TIME_STEP,
+        rate=OUTPUT_RATE,
+        before=_before(start, held * TIME_STEP),
+        events="\n".join(events),
+        columns="\n".join(f'    <property caption="{column}">{column}</property>' for column in columns(fdm)),
+    )
+    script.write_text(text, encoding="utf-8")
+    return script
+
+
+def _preparations(fdm: Fdm) -> tuple[int, list[str]]:
+    """Return for how many steps the body is held before release, and the events in that time."""
+    settle = round(fdm.spec.settle_time / TIME_STEP)
+    run_up = 2 * RUN_UP_STEPS if fdm.spec.engine_flags else 0
+    held = settle + run_up
+    still = [(integrator, 0.0) for integrator in INTEGRATORS]
+    cranking = CRANK if fdm.cranked else ()
+    start = [*START_ENGINES, *cranking, *fdm.spec.configuration, *still]
+    events = [_event("Start the engines, and hold the body still while servos and engines settle.", -held, start)]
+    if fdm.cranked:
+        events.append(_event("Let the starter go.", -held + RUN_UP_STEPS, STOP_CRANKING))
+    if run_up:
+        events.append(_event("Gear, fuel and levers again, as they are in flight.", -settle, fdm.spec.configuration))
+    return held, events
+
+
+def columns(fdm: Fdm) -> list[str]:
+    """Return the properties that the script's output file has as columns, after ``Time``: motion, commands, controls, engines.
+
+    Parameters
+    ----------
+    fdm : the aircraft under its autopilot
+    """
+    names = [*_MOTION, *(command for i in fdm.spec.inputs for command in i.commands), *(s.position for s in fdm.spec.driven_states)]
+    for name in names:
+        fdm.node(name)
+    engine = 0
+    while True:
+        # Not set-running, which stays 0 for an electric motor that runs.
+        thrust = f"propulsion/engine[{engine}]/thrust-lbs"
+        try:
+            fdm.node(thrust)
+        except UnknownPropertyError:
+            return names
+        names.append(thrust)
+        engine += 1
+
+
+def _check(fdm: Fdm, commands: Sequence[Command]) -> None:
+    """Raise what ``write_script`` says; JSBSim itself would stop in mid-flight, or not say anything."""
+    for command in commands:
+        if not (math.isfinite(command.time) and command.time >= 0.0):
+            raise AircraftError(f"command {command.name} is given at {command.time} s; it must be at or after release, at 0 s")
+        fdm.writable_node(command.name)
+        if not math.isfinite(command.value):
+            raise AircraftError(f"script of '{fdm.spec.name}': {command.name} is set to {command.value}; it must be finite")
+
+
+def _before(start: Trim, held: float) -> str:
+    """Return the properties that are set before JSBSim runs its initial state, for a body that is then ``held`` [s]."""
+    values = (
+        *initial_conditions(before_hold(start.state(), held)),
+        (AIRSPEED_COMMAND, start.airspeed),
+        (ALTITUDE_COMMAND, start.altitude),
+        (HEADING_RATE_COMMAND, 0.0),
+        (RESET, -1.0),
+    )
+    return "\n".join(f'    <property value="{value!r}">{name}</property>' for name, value in values)
+
+
+def _event(note: str, step: int, values: Sequence[tuple[str, float]]) -> str:
+    """Return an event that sets values when ``step`` time steps from release are complete, before the next one.
+
+    JSBSim advances its clock before it looks at events, and adds up rounding in it: the half step is far from both neighbours.
+    """
+    lines = "\n".join(f'      <set name="{name}" value="{float(value)!r}"/>' for name, value in values)
+    comment = note.replace("--", "- -")  # a comment in XML may not have two dashes
+    condition = f"simulation/sim-time-sec ge {(step + 0.5) * TIME_STEP!r}"
+    return _EVENT.format(comment=comment, note=quoteattr(note), condition=condition, time=step * TIME_STEP, sets=lines)
+
+
+_INITIALISATION = """<?xml version="1.0"?>
+<!-- Written by innerloop.jsbsim.script. JSBSim asks for this file; scripts/{name}.xml itself sets the state, in the order that
+     makes the flight the same to the last digit as one from Python. -->
+<initialize name="{name}_init">
+</initialize>
+"""
+
+_SCRIPT = """<?xml version="1.0"?>
+<!-- Written by innerloop.jsbsim.script; write it again rather than editing. -->
+<runscript name="{title} under its autopilot">
+  <description>
+    Flies the {title} under its autopilot, in JSBSim alone. To run it, in the directory that holds scripts/ and aircraft/:
+
+      JSBSim --script=scripts/{name}.xml
+
+    or from anywhere, where ROOT is that directory and OUT the one for the result, both as full paths:
+
+      JSBSim --root=ROOT --outputpath=OUT --script=scripts/{name}.xml
+
+    Where JSBSim came with its Python package, the program is called jsbsim. The result is {name}.csv. Its columns are JSBSim
+    properties with the unit in their names; those without one are -1 to 1 or, for throttles, 0 to 1. The clock is 0 s at release.
+  </description>
+
+  <use aircraft="{model}" initialize="{name}_init"/>
+
+  <run start="{start!r}" end="{end!r}" dt="{step!r}">
+    <!-- In force from the start: level flight, as far east of its place as the earth turns while the body is held; commands to
+         stay there; the autopilot's integrators held at 0. -->
+{before}
+{events}
+  </run>
+
+  <output name="{name}.csv" type="CSV" rate="{rate:g}">
+{columns}
+  </output>
+</runscript>
+"""
+
+_EVENT = """
+    <!-- At {time:g} s: {comment} -->
+    <event name={note}>
+      <condition>{condition}</condition>
+{sets}
+      <notify/>
+    </event>"""

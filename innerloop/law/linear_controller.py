@@ -1,0 +1,73 @@
+"""The autopilot as a linear system about an equilibrium: what margins and predicted responses are computed from."""
+
+from collections.abc import Mapping
+
+import control
+import numpy as np
+
+from aircraft.dynamics.trim import Trim
+from innerloop.law.control_law import COMMANDS, STATES, ControlLaw, measurements
+
+_STEP = 1e-4
+"""Step of differences [SI]: the law is made of products and of straight pieces of tables, so only rounding limits it from below."""
+
+
+def linear_controller(law: ControlLaw, trim: Trim) -> control.StateSpace:
+    """Return the autopilot, linear about an equilibrium of the aircraft.
+
+    Inputs are ``COMMANDS`` and the measurements, outputs are the control inputs, all as deviations from trim. States are
+    ``STATES``. At an edge between two pieces of a table the slope is the mean of both.
+    """
+    point = operating_point(law, trim)
+    measured_names = measurements(law.schedule)
+    inputs = [*COMMANDS, *measured_names]
+    controls = list(law.schedule.controls)
+
+    def column(name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        sides = []
+        for sign in (1.0, -1.0):
+            moved = {**point, name: point[name] + sign * _STEP}
+            rates, outputs = evaluate_at(law, moved)
+            sides.append(np.array([*(rates[s] for s in STATES), *(outputs[c] for c in controls)]))
+        return np.asarray((sides[0] - sides[1]) / (2.0 * _STEP))
+
+    by_state = np.column_stack([column(name) for name in STATES])
+    by_input = np.column_stack([column(name) for name in inputs])
+    n = len(STATES)
+    kept = [i for i, name in enumerate(STATES) if name != "rudder_integral" or "rudder" in controls]
+    return control.ss(
+        by_state[:n][np.ix_(kept, kept)],
+        by_input[:n][kept],
+        by_state[n:][:, kept],
+        by_input[n:],
+        states=[STATES[i] for i in kept],
+        inputs=inputs,
+        outputs=controls,
+        name="autopilot",
+    )
+
+
+def operating_point(law: ControlLaw, trim: Trim) -> dict[str, float]:
+    """Return commands, measurements and the autopilot's states while the aircraft flies an equilibrium under it."""
+    model_bank = law.model_bank(trim.yaw_rate, trim.airspeed, trim.airspeed)
+    return {
+        "airspeed_command": trim.airspeed,
+        "altitude_command": trim.altitude,
+        "heading_rate_command": trim.yaw_rate,
+        "airspeed": trim.airspeed,
+        "altitude": trim.altitude,
+        "climb_rate": 0.0,
+        "pitch": trim.pitch,
+        "roll": trim.roll,
+        "beta": trim.beta,
+        "heading_rate": trim.yaw_rate,
+        **dict(zip("pqr", trim.rates_body, strict=True)),
+        **dict.fromkeys(STATES, 0.0),
+        "bank_integral": trim.roll - model_bank,
+        "model_rate": trim.yaw_rate,
+    }
+
+
+def evaluate_at(law: ControlLaw, point: Mapping[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+    """Return what ``ControlLaw.evaluate`` makes of a point that holds commands, measurements and states by name."""
+    return law.evaluate(point, point, point)

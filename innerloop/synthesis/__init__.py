@@ -1,0 +1,1 @@
+"""From linear models to scheduled LQR gains."""

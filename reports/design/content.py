@@ -1,0 +1,130 @@
+"""The report of an autopilot's design."""
+
+from pathlib import Path
+
+from reports.design.data import Record, climbing, complete
+from reports.design.loop_charts import loop_charts
+from reports.design.margin_charts import margin_charts
+from reports.design.pole_chart import pole_chart
+from reports.design.response_charts import response_charts
+from reports.design.tables import (
+    envelope_table,
+    extreme_trims,
+    pole_table,
+    robustness_table,
+    step_table,
+    trim_table,
+    verification_table,
+    weight_table,
+    worst_margin_table,
+)
+from reports.design.trim_charts import trim_charts
+from reports.design.verdict import design_verdict
+from reports.document.blocks import Block, Heading, Section, Text, Verdict
+from reports.errors import ReportError
+from reports.run.run_data import RunData
+
+
+def design_content(run: RunData) -> tuple[Verdict, list[Section]]:
+    """Return the verdict and the sections of the report of a design.
+
+    Raises
+    ------
+    ReportError : the directory holds no design record
+    """
+    if run.innerloop is None:
+        raise ReportError(f"'{run.path}' holds no design record (no innerloop.json); run innerloop.design again")
+    design = complete(run.innerloop)
+    sections = [
+        _margins(design),
+        Section(anchor="loops", title="Loop shapes", blocks=loop_charts(design)),
+        Section(anchor="responses", title="Step responses", blocks=[*response_charts(design), step_table(design)]),
+        _equilibria(design),
+        Section(anchor="poles", title="Poles", blocks=[pole_chart(design), pole_table(design)]),
+        _verification(design),
+        _weights(design),
+        _elsewhere(run.path / "model"),
+    ]
+    return design_verdict(design), sections
+
+
+def _margins(design: Record) -> Section:
+    required = design["required"]
+    blocks: list[Block] = [
+        Heading(f"Worst of the grid, loop by loop; required are {required['gain_db']:g} dB and {required['phase_deg']:g}°"),
+        worst_margin_table(design),
+        *margin_charts(design),
+    ]
+    if design["robustness"]:
+        asked = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
+        blocks += [
+            Heading(f"Of a perturbed aircraft, worst of loops and grid; required are {asked}"),
+            robustness_table(design),
+        ]
+    return Section(anchor="margins", title="Margins", blocks=blocks)
+
+
+def _equilibria(design: Record) -> Section:
+    blocks: list[Block] = []
+    if design["envelope"]:
+        blocks += [envelope_table(design["envelope"]), *(Text(note) for note in design["envelope"].get("notes", []))]
+    blocks += trim_charts(design)
+    shown = extreme_trims(design)
+    climbs = any(climbing(t) for t in shown)
+    title = "Level flight and the largest banks" + (", and the steepest climb and descent" if climbs else "")
+    blocks += [Heading(title), trim_table(shown)]
+    residuals = [float(t["residual"]) for t in design["trims"] if t.get("residual") is not None]
+    if residuals:
+        blocks.append(Text(f"Largest residual of any of the {len(residuals)} equilibria: {max(residuals):.1e}."))
+    return Section(anchor="equilibria", title="Equilibria", blocks=blocks)
+
+
+def _verification(design: Record) -> Section:
+    blocks: list[Block] = []
+    if design["verification"]:
+        text = (
+            "The linear model's answer to a small input against that of the simulation itself: largest error as a share of the"
+            " largest excursion."
+        )
+        blocks = [Text(text), verification_table(design)]
+    return Section(anchor="linearisation", title="Is the linear model right?", nav_title="Linear model", blocks=blocks)
+
+
+def _weights(design: Record) -> Section:
+    text = (
+        "Gains follow from the linear models by these weights, a set for the whole grid. By Bryson's rule the weight of a quantity"
+        " is one over the square of its acceptable deviation, which is what the table lists, in SI units; a control's is a share of"
+        " its travel."
+    )
+    return Section(
+        anchor="weights", title="What the design asks for", nav_title="Weights", blocks=[Text(text), weight_table(design)]
+    )
+
+
+def _elsewhere(root: Path) -> Section:
+    """Return how to fly the design without this project, by the files that are there."""
+    named = [
+        (what, path.relative_to(root).as_posix())
+        for what, pattern in (
+            ("the aircraft", "aircraft/*/*.xml"),
+            ("its autopilot", "systems/*_autopilot.xml"),
+            ("a script", "scripts/*.xml"),
+        )
+        for path in sorted(root.glob(pattern))
+        if what != "the aircraft" or path.stem == path.parent.name
+    ]
+    if not named:
+        return Section(anchor="elsewhere", title="Fly it elsewhere", blocks=[])
+    files = "; ".join(f"{what}, {path}" for what, path in named)
+    blocks: list[Block] = [Text(f"The directory “model” beside this report is a JSBSim root: {files}. It needs nothing else.")]
+    scripts = [path for what, path in named if what == "a script"]
+    if scripts:
+        commands = "; ".join(f"JSBSim --root=model --script={path}" for path in scripts)
+        written = "; ".join(f"model/{Path(path).stem}.csv" for path in scripts)
+        blocks.append(
+            Text(
+                f"To fly it in any JSBSim, from the directory of this report: {commands}. With JSBSim's Python package the program"
+                f" is called jsbsim. It writes {written}; the script says how to write elsewhere."
+            )
+        )
+    return Section(anchor="elsewhere", title="Fly it elsewhere", blocks=blocks)

@@ -1,0 +1,19 @@
+"""How each loop of an autopilot is drawn, the same in every figure."""
+
+from reports.document.chart import Style
+
+LOOP_STYLES: dict[str, tuple[str, Style]] = {
+    "elevator": ("blue", "solid"),
+    "aileron": ("vermillion", "solid"),
+    "throttle": ("green", "solid"),
+    "rudder": ("purple", "solid"),
+    "altitude": ("blue", "dash"),
+    "heading_rate": ("vermillion", "dash"),
+    "airspeed": ("green", "dash"),
+    "sideslip": ("purple", "dash"),
+    "all controls": ("black", "solid"),
+}
+"""Colour and style by loop: a measurement has the colour of the control that mostly regulates it, dashed."""
+
+OTHER_LOOP: tuple[str, Style] = ("grey", "solid")
+"""Of a loop that the table does not know."""

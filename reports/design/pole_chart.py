@@ -1,0 +1,97 @@
+"""The s-plane of a design: its poles over the whole grid, open and closed."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from reports.design.data import Record, speed
+from reports.document.chart import Chart, Line, Note, Panel
+
+_FAST = 45.0
+"""Poles farther out [rad/s] belong to servos and delays, and would hide those of the flight."""
+
+_SLOW = 1.5
+"""Size of the magnified part about the origin [rad/s]."""
+
+_DAMPING_RATIOS = (0.2, 0.4, 0.6, 0.8)
+_COLOURS = ("blue", "sky", "green", "orange", "vermillion", "purple", "black")
+
+
+def pole_chart(design: Record) -> Chart:
+    """Return the upper half of the s-plane, whole and about the origin, with rays of equal damping."""
+    return Chart(
+        name="gridpoles",
+        caption="Poles at every point of the grid, by airspeed; the lower half is its mirror image. Left the bare aircraft with"
+        f" servos and engine, right under the autopilot; below, magnified about the origin. Poles beyond {_FAST:g} rad/s (servos,"
+        " delays) are left out. Rays: damping ratio ζ.",
+        panels=[
+            *(_panel(design, kind, title, _reach(design)) for kind, title in _KINDS),
+            *(_panel(design, kind, "", _SLOW) for kind, _ in _KINDS),
+        ],
+        columns=2,
+        panel_height=0.36,
+    )
+
+
+_KINDS = (("open_loop", "Aircraft"), ("closed_loop", "Under the autopilot"))
+
+
+def _reach(design: Record) -> float:
+    """Return the distance from the origin of the farthest pole that is shown."""
+    sizes = [math.hypot(*pole) for poles in design["poles"] for kind, _ in _KINDS for pole in poles[kind]]
+    return max((size for size in sizes if size < _FAST), default=_FAST)
+
+
+def _panel(design: Record, kind: str, title: str, reach: float) -> Panel:
+    x_range, y_range = (-1.1 * reach, 0.3 * reach), (-0.04 * reach, 1.1 * reach)
+    lines, notes = _rays(x_range, y_range, reach)
+    airspeeds = sorted({float(poles["airspeed_mps"]) for poles in design["poles"]})
+    for i, airspeed in enumerate(airspeeds):
+        points = _points([poles for poles in design["poles"] if poles["airspeed_mps"] == airspeed], kind, x_range, y_range)
+        lines.append(
+            Line(
+                x=points[:, 0],
+                y=points[:, 1],
+                label=speed(airspeed),
+                colour=_COLOURS[i % len(_COLOURS)],
+                style="points",
+            )
+        )
+    return Panel(
+        x_label="Real part [1/s]",
+        y_label="Imaginary part [rad/s]",
+        lines=lines,
+        title=title,
+        x_range=x_range,
+        y_range=y_range,
+        notes=notes,
+    )
+
+
+def _points(
+    rows: Sequence[Record], kind: str, x_range: tuple[float, float], y_range: tuple[float, float]
+) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    """Return the poles of ``rows`` inside a panel, shape (n, 2); nan where there is none, so that the legend is complete."""
+    inside = [
+        pole
+        for poles in rows
+        for pole in poles[kind]
+        if pole[1] >= 0.0 and x_range[0] <= pole[0] <= x_range[1] and pole[1] <= y_range[1]
+    ]
+    return np.array(inside or [[math.nan, math.nan]])
+
+
+def _rays(x_range: tuple[float, float], y_range: tuple[float, float], reach: float) -> tuple[list[Line], list[Note]]:
+    """Return the rays of equal damping with their figures, and the limit of stability."""
+    lines = [Line(x=np.zeros(2), y=np.array([0.0, y_range[1]]), label="limit of stability", colour="black", style="dash")]
+    notes = []
+    for ratio in _DAMPING_RATIOS:
+        direction = np.array([-ratio, math.sqrt(1.0 - ratio**2)])
+        # To the nearer edge of the panel, and the figure a little before it.
+        length = min(x_range[0] / direction[0], y_range[1] / direction[1])
+        end = length * direction
+        lines.append(Line(x=np.array([0.0, end[0]]), y=np.array([0.0, end[1]]), label="equal damping", colour="grey", style="dot"))
+        at = 0.88 * end
+        notes.append(Note(x=float(at[0]) + 0.03 * reach, y=float(at[1]) + 0.04 * reach, text=f"ζ = {ratio:g}", align="left"))
+    return lines, notes

@@ -1,0 +1,93 @@
+"""Figures of the step responses of a design: predicted, flown, and as the reference model asks."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from reports.design.data import Record, minus, responses_of, speed
+from reports.document.chart import Chart, Line, Panel, Style
+
+RESPONSE_STYLES: dict[str, tuple[str, str, Style]] = {
+    "model": ("reference model", "black", "dot"),
+    "predicted": ("linear design", "orange", "dash"),
+    "flown": ("flown in JSBSim", "blue", "solid"),
+}
+"""Label, colour and style by the kind of a response."""
+
+_DEGREES = math.degrees(1.0)
+_CHANNELS: dict[str, tuple[str, float]] = {
+    "heading_rate": ("Heading rate [rad/s]", 1.0),
+    "roll": ("Bank [deg]", _DEGREES),
+    "sideslip": ("Sideslip [deg]", _DEGREES),
+    "altitude": ("Altitude [m]", 1.0),
+    "airspeed": ("Airspeed [m/s]", 1.0),
+    "pitch": ("Pitch [deg]", _DEGREES),
+    "elevator": ("Elevator command [-]", 1.0),
+    "throttle": ("Throttle command [-]", 1.0),
+    "elevator_position": ("Elevator [deg]", _DEGREES),
+    "aileron_position": ("Aileron [deg]", _DEGREES),
+}
+"""Axis and scale by channel, in the order of their panels."""
+
+_TURN = ("heading_rate", "roll", "sideslip", "altitude", "airspeed", "aileron_position")
+_CLIMB = ("airspeed", "altitude", "pitch", "elevator", "throttle", "elevator_position")
+
+
+def response_charts(design: Record) -> list[Chart]:
+    """Return the responses to a step of heading rate, and those to steps of airspeed and altitude."""
+    charts = [_turn(design), _climb(design)]
+    return [chart for chart in charts if chart.panels]
+
+
+def _turn(design: Record) -> Chart:
+    responses = responses_of(design, "heading_rate")
+    # An even number of panels leaves no gap.
+    channels = _present(_TURN, responses)
+    channels = channels[: len(channels) // 2 * 2] or channels
+    model = " Dotted: the reference model that it is to follow." if "model" in {row["kind"] for row in responses} else ""
+    return Chart(
+        name="turnresponse",
+        caption=f"A step of the heading-rate command by {_size(responses)} rad/s from level flight at"
+        f" {speed(design['design_airspeed_mps'])}; deviations from trim.{model}",
+        panels=[_panel(responses, channel) for channel in channels],
+        columns=2,
+        panel_height=0.28,
+    )
+
+
+def _climb(design: Record) -> Chart:
+    panels = []
+    for command, title in (("airspeed", "Airspeed step"), ("altitude", "Altitude step")):
+        responses = responses_of(design, command)
+        others = [channel for channel in _present(_CLIMB, responses) if channel != command]
+        panels += [
+            _panel(responses, channel, title=title if channel == command else "") for channel in (command, *others[:2]) if responses
+        ]
+    return Chart(
+        name="climbresponse",
+        caption=f"Steps of the airspeed command by {_size(responses_of(design, 'airspeed'))} m/s and of the altitude command by"
+        f" {_size(responses_of(design, 'altitude'))} m, and what else moves. Deviations from trim.",
+        panels=panels,
+        columns=max(1, len(panels) // 2),
+        panel_height=0.26,
+    )
+
+
+def _present(channels: Sequence[str], responses: Sequence[Record]) -> list[str]:
+    return [channel for channel in channels if any(channel in response["channels"] for response in responses)]
+
+
+def _size(responses: Sequence[Record]) -> str:
+    return " and ".join(dict.fromkeys(minus(f"{response['size']:g}") for response in responses))
+
+
+def _panel(responses: Sequence[Record], channel: str, title: str = "") -> Panel:
+    axis, scale = _CHANNELS[channel]
+    lines = []
+    for response in responses:
+        if channel in response["channels"]:
+            label, colour, style = RESPONSE_STYLES[response["kind"]]
+            x, y = np.array(response["time_s"]), scale * np.array(response["channels"][channel])
+            lines.append(Line(x=x, y=y, label=label, colour=colour, style=style))
+    return Panel(x_label="Time [s]", y_label=axis, lines=lines, title=title)

@@ -1,0 +1,56 @@
+"""The autopilot's design, as a section of a report."""
+
+from reports.design.data import Record, at_middle, bank_deg, complete, grid_trims
+from reports.design.section_charts import innerloop_charts
+from reports.design.tables import step_table, trim_table
+from reports.document.blocks import Heading, Section, Table
+from reports.document.tables import number
+
+_BANK_SHOWN = 45.0
+"""Bank of the equilibria shown beside those in level flight [deg], where a record does not say with which bank it is flown."""
+
+
+def innerloop_section(record: Record) -> Section:
+    """Return the section on a design record: step responses, margins, loop shapes, poles and trims."""
+    design = complete(record)
+    flown = float((design.get("envelope") or {}).get("bank_deg") or _BANK_SHOWN)
+    bank = min({bank_deg(t) for t in design["trims"]}, key=lambda known: abs(known - flown))
+    trims = sorted((t for t in grid_trims(design) if bank_deg(t) in (0.0, bank)), key=lambda t: float(t["airspeed_mps"]))
+    responses, *others = innerloop_charts(design)
+    return Section(
+        anchor="innerloop",
+        title="Autopilot",
+        blocks=[
+            responses,
+            step_table(design),
+            Heading("Margins at the middle design airspeed"),
+            _margin_table(design),
+            *others,
+            Heading(f"Equilibria: level, and at {bank:.3g} degrees of bank"),
+            trim_table(trims),
+        ],
+    )
+
+
+def _margin_table(design: Record) -> Table:
+    """Return the margins at the middle design airspeed in level flight."""
+    rows = [
+        [
+            m["loop"].replace("_", " "),
+            _margin(m["gain_db"], "{:.1f}", m["loop"]),
+            _margin(m["phase_deg"], "{:.1f}", m["loop"]),
+            number(m["crossover"], "{:.2f}"),
+            number(m["disk_gain_db"], "{:.1f}"),
+            number(m["disk_phase_deg"], "{:.1f}"),
+        ]
+        for m in at_middle(design, design["margins"])
+        if not m["between"]
+    ]
+    head = ["Loop opened at", "Gain [dB]", "Phase [deg]", "Crossover [rad/s]", "Disk gain [dB]", "Disk phase [deg]"]
+    return Table(head=head, rows=rows, widths=[1.6, 1.0, 1.0, 1.2, 1.1, 1.2])
+
+
+def _margin(value: float | None, pattern: str, loop: str) -> str:
+    if value is None:
+        return "–" if loop == "all controls" else "∞"
+    return pattern.format(value)

@@ -1,0 +1,153 @@
+"""Figures of the equilibria of a design: over airspeed and bank, and over the climb angle."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from reports.design.data import Record, bank_deg, climb_trims, grid_trims, minus, speed
+from reports.document.chart import Chart, Line, Panel, Style
+
+_BANK_COLOURS = ("black", "blue", "orange", "green", "purple", "sky", "vermillion")
+"""By the size of the bank, level first."""
+
+_NEAR_LIMIT = 0.4
+"""Share of a control's travel from which its limit is drawn: nearer to neutral it would only flatten the curves."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Quantity:
+    """A quantity of an equilibrium: its field, its axis, the unit that it is drawn in, its limits."""
+
+    key: str
+    label: str
+    scale: float = 1.0
+    limits: tuple[float, float] | None = None
+
+
+_ALPHA = _Quantity(key="alpha_rad", label="Angle of attack [deg]", scale=math.degrees(1.0))
+_ELEVATOR = _Quantity(key="elevator", label="Elevator command [-]", limits=(-1.0, 1.0))
+_THROTTLE = _Quantity(key="throttle", label="Throttle command [-]", limits=(0.0, 1.0))
+_QUANTITIES = (
+    _ALPHA,
+    _ELEVATOR,
+    _THROTTLE,
+    _Quantity(key="aileron", label="Aileron command [-]", limits=(-1.0, 1.0)),
+    _Quantity(key="rudder", label="Rudder command [-]", limits=(-1.0, 1.0)),
+    _Quantity(key="sideslip_rad", label="Sideslip [deg]", scale=math.degrees(1.0)),
+)
+_YAW_RATE = _Quantity(key="yaw_rate_rad_s", label="Yaw rate [rad/s]")
+
+
+def trim_charts(design: Record) -> list[Chart]:
+    """Return the trim map, and the equilibria of straight climbs and descents where the record has some."""
+    climbs = climb_trims(design)
+    return [_trim_map(design), *([_climb_chart(design, climbs)] if len({t["climb_angle_rad"] for t in climbs}) > 1 else [])]
+
+
+def _trim_map(design: Record) -> Chart:
+    trims = grid_trims(design)
+    # Without a rudder its place goes to the yaw rate, so that no panel is empty.
+    quantities = [q if q.key in trims[0] else _YAW_RATE for q in _QUANTITIES]
+    caption = "Equilibria over airspeed, a curve per bank; to the left dashed, to the right solid."
+    if design["envelope"]:
+        caption += " Upright lines: the limits of the commanded airspeed, and the stall where it is near."
+    if any(t.get("limits") for t in trims):
+        caption += " Diamonds: equilibria at a limit, which the table names."
+    return Chart(
+        name="trims",
+        caption=caption,
+        panels=[_map_panel(design, trims, quantity) for quantity in quantities],
+        columns=2,
+        panel_height=0.28,
+    )
+
+
+def _map_panel(design: Record, trims: Sequence[Record], quantity: _Quantity) -> Panel:
+    banks = sorted({bank_deg(t) for t in trims}, key=lambda bank: (abs(bank), -bank))
+    sizes = sorted({abs(bank) for bank in banks})
+    lines = []
+    for bank in banks:
+        rows = [t for t in trims if bank_deg(t) == bank]
+        style: Style = "solid" if bank >= 0.0 else "dash"
+        label = minus(f"bank {bank:+g}°") if bank else "level"
+        lines.append(_line(rows, "airspeed_mps", quantity, label, _colour(sizes.index(abs(bank))), style))
+    at_limit = [t for t in trims if t.get("limits")]
+    if at_limit:
+        lines.append(_line(at_limit, "airspeed_mps", quantity, "at a limit", "vermillion", "diamonds"))
+    y_range = _limits_of(lines, quantity)
+    airspeeds = [float(t["airspeed_mps"]) for t in trims]
+    lines += _limit_lines(quantity, y_range, (min(airspeeds), max(airspeeds)))
+    lines += _envelope_lines(design["envelope"], y_range, (min(airspeeds), max(airspeeds)))
+    x = np.concatenate([line.x for line in lines])
+    room = 0.03 * float(x.max() - x.min())
+    x_range = (float(x.min()) - room, float(x.max()) + room)
+    return Panel(x_label="Airspeed [m/s]", y_label=quantity.label, lines=lines, x_range=x_range, y_range=y_range)
+
+
+def _line(rows: Sequence[Record], over: str, quantity: _Quantity, label: str, colour: str, style: Style) -> Line:
+    x = np.array([float(row[over]) for row in rows])
+    y = quantity.scale * np.array([float(row[quantity.key]) for row in rows])
+    return Line(x=x, y=y, label=label, colour=colour, style=style)
+
+
+def _colour(index: int) -> str:
+    return _BANK_COLOURS[index % len(_BANK_COLOURS)]
+
+
+def _limits_of(lines: Sequence[Line], quantity: _Quantity) -> tuple[float, float]:
+    """Return the range of an axis: what is drawn, and the limits that it comes near to."""
+    values = np.concatenate([line.y for line in lines])
+    lowest, highest = float(np.nanmin(values)), float(np.nanmax(values))
+    if quantity.limits:
+        lower, upper = quantity.limits
+        lowest = min(lowest, lower) if lower == 0.0 or lowest < _NEAR_LIMIT * lower else lowest
+        highest = max(highest, upper) if highest > _NEAR_LIMIT * upper else highest
+    # A curve without any height still needs an axis with some.
+    room = max(0.08 * (highest - lowest), 0.01)
+    return lowest - room, highest + room
+
+
+def _limit_lines(quantity: _Quantity, y_range: tuple[float, float], x_range: tuple[float, float]) -> list[Line]:
+    shown = [limit for limit in quantity.limits or () if y_range[0] < limit < y_range[1]]
+    ends = np.array(x_range)
+    return [Line(x=ends, y=np.array([limit, limit]), label="limit of a control", colour="grey", style="dash") for limit in shown]
+
+
+def _envelope_lines(envelope: Record | None, y_range: tuple[float, float], x_range: tuple[float, float]) -> list[Line]:
+    if not envelope:
+        return []
+    marks: list[tuple[float | None, str, Style]] = [
+        (envelope["airspeed_min_mps"], "envelope", "solid"),
+        (envelope["airspeed_max_mps"], "envelope", "solid"),
+        (envelope.get("stall_airspeed_mps"), "stall", "dot"),
+    ]
+    # A stall far below the grid would push the curves to the edge.
+    reach = x_range[0] - 0.5 * (x_range[1] - x_range[0])
+    return [
+        Line(x=np.array([at, at]), y=np.array(y_range), label=label, colour="grey", style=style)
+        for at, label, style in marks
+        if at is not None and at >= reach
+    ]
+
+
+def _climb_chart(design: Record, climbs: Sequence[Record]) -> Chart:
+    trims = [{**t, "climb_deg": math.degrees(t["climb_angle_rad"])} for t in climbs]
+
+    def panel(quantity: _Quantity) -> Panel:
+        lines = [_line(trims, "climb_deg", quantity, "equilibria", "blue", "solid")]
+        at_limit = [t for t in trims if t.get("limits")]
+        if at_limit:
+            lines.append(_line(at_limit, "climb_deg", quantity, "at a limit", "vermillion", "diamonds"))
+        y_range = _limits_of(lines, quantity)
+        lines += _limit_lines(quantity, y_range, (trims[0]["climb_deg"], trims[-1]["climb_deg"]))
+        return Panel(x_label="Climb angle [deg]", y_label=quantity.label, lines=lines, y_range=y_range)
+
+    return Chart(
+        name="climbs",
+        caption=f"Straight climbs and descents at {speed(design['design_airspeed_mps'])}.",
+        panels=[panel(quantity) for quantity in (_ALPHA, _ELEVATOR, _THROTTLE)],
+        columns=3,
+        panel_height=0.28,
+    )

@@ -1,0 +1,151 @@
+"""Panels that figures of trials over the real sea are put together from: a marker per flight, or the flights counted."""
+
+import itertools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from reports.document.chart import Array, Line, Panel
+from reports.run.trials import Mask
+
+CLASS_COLOURS = ("sky", "blue", "orange", "vermillion")
+"""From the least to the most."""
+
+_BINS = 24
+_SPREAD = 0.32
+"""Half-width of a row of markers that would hide each other, in rows."""
+
+_OUTLIERS = 1.6
+"""Largest ordinate that is shown, over the limit or twice the median, whichever is larger."""
+
+
+def classes(values: Array, bounds: Sequence[float], what: str, unit: str) -> list[tuple[Mask, str, str]]:
+    """Return which values lie in each class, its name and its colour. What is not a number lies in none.
+
+    Parameters
+    ----------
+    values, bounds : three bounds make four classes
+    what, unit : for the names
+    """
+    names = [
+        f"{what} below {bounds[0]:g} {unit}",
+        *(f"{low:g} to {high:g} {unit}" for low, high in itertools.pairwise(bounds)),
+        f"above {bounds[-1]:g} {unit}",
+    ]
+    place = np.where(np.isfinite(values), np.searchsorted(bounds, values, side="right"), -1)
+    return [(place == i, name, colour) for i, (name, colour) in enumerate(zip(names, CLASS_COLOURS, strict=True))]
+
+
+def quartiles(values: Array, step: float) -> list[float]:
+    """Return three rising bounds that part the values into four about equal shares, each a multiple of ``step``."""
+    known = values[np.isfinite(values)]
+    found = np.round(np.quantile(known, [0.25, 0.5, 0.75]) / step) if len(known) else np.zeros(3)
+    first, second, third = (float(v) for v in found)
+    second = max(second, first + 1.0)
+    return [step * first, step * second, step * max(third, second + 1.0)]
+
+
+def points(x: Array, y: Array, groups: Sequence[tuple[Mask, str, str]]) -> list[Line]:
+    """Return markers in groups of a name and a colour each; none for a group without any."""
+    known = np.isfinite(x) & np.isfinite(y)
+    return [
+        Line(x=x[known & mask], y=y[known & mask], label=label, colour=colour, style="points")
+        for mask, label, colour in groups
+        if (known & mask).any()
+    ]
+
+
+def capped(x: Array, y: Array, groups: Sequence[tuple[Mask, str, str]], limit: float) -> tuple[list[Line], float]:
+    """Return markers as ``points`` does, those far above all others on the upper edge, and where that is."""
+    known = y[np.isfinite(y)]
+    top = _OUTLIERS * max(2.0 * float(np.median(known)) if len(known) else 1.0, 0.0 if math.isnan(limit) else limit)
+    beyond = y > top
+    lines = points(np.where(beyond, np.nan, x), y, groups)
+    if beyond.any():
+        edge = np.full(int(np.count_nonzero(beyond)), 0.97 * top)
+        lines.append(Line(x=x[beyond], y=edge, label="beyond the panel", colour="black", style="diamonds"))
+    return lines, top
+
+
+def level(x: Array, value: float, label: str, colour: str = "vermillion") -> Line:
+    """Return a dashed line across a panel whose abscissae are ``x``."""
+    known = x[np.isfinite(x)]
+    low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)
+    spare = 0.04 * (high - low) or 0.05
+    return Line(x=np.array([low - spare, high + spare]), y=np.array([value, value]), label=label, colour=colour, style="dash")
+
+
+def histogram(series: Sequence[tuple[Array, str, str]], x_label: str, upright: Sequence[tuple[float, str]] = ()) -> Panel | None:
+    """Return a panel that counts flights by a figure, or None if no flight has it.
+
+    Parameters
+    ----------
+    series : figures, name and colour
+    x_label : of the figure
+    upright : values to be marked, by name
+    """
+    every = np.concatenate([values[np.isfinite(values)] for values, _, _ in series])
+    if not len(every):
+        return None
+    edges = np.histogram_bin_edges(every, bins=_BINS)
+    marked = np.array([value for value, _ in upright])
+    lines, most = [], 1
+    for values, label, colour in series:
+        counts, _ = np.histogram(values[np.isfinite(values)], edges)
+        most = max(most, int(counts.max()))
+        outline = np.concatenate([[0.0], np.repeat(counts, 2), [0.0]])
+        lines.append(Line(x=np.repeat(edges, 2), y=outline, label=label, colour=colour, fill=True))
+    for value, label in upright:
+        mark = np.array([value, value])
+        lines.append(Line(x=mark, y=np.array([0.0, 1.05 * most]), label=label, colour="vermillion", style="dash"))
+    return Panel(x_label=x_label, y_label="Flights [-]", lines=lines, x_range=_around([edges, marked]), y_range=(0.0, 1.08 * most))
+
+
+def strips(
+    values: Array,
+    kinds: Sequence[str],
+    x_label: str,
+    y_label: str,
+    groups: Sequence[tuple[Mask, str, str]],
+    upright: Sequence[tuple[float, str]],
+    *,
+    named: bool,
+) -> Panel:
+    """Return a panel with a row of markers per kind.
+
+    Parameters
+    ----------
+    values, kinds : of each flight
+    x_label, y_label : of the figure, and of the kinds
+    groups : as in ``points``
+    upright : values to be marked, by name
+    named : whether the rows have their names, which a panel to the right of one that has needs not
+    """
+    rows = list(dict.fromkeys(kinds))
+    place = np.array([len(rows) - 1.0 - rows.index(kind) for kind in kinds])
+    for row in np.unique(place):
+        members = np.flatnonzero(place == row)
+        place[members] += np.linspace(-_SPREAD, _SPREAD, len(members)) if len(members) > 1 else 0.0
+    lines = points(values, place, groups)
+    reach = np.array([-0.6, len(rows) - 0.4])
+    lines += [Line(x=np.array([value, value]), y=reach, label=label, colour="vermillion", style="dash") for value, label in upright]
+    names = [(len(rows) - 1.0 - i, row if named else "") for i, row in enumerate(rows)]
+    return Panel(
+        x_label=x_label,
+        y_label=y_label,
+        lines=lines,
+        x_range=_around([values, np.array([value for value, _ in upright])]),
+        y_range=(float(reach[0]), float(reach[1])),
+        y_names=names,
+    )
+
+
+def _around(values: Sequence[Array]) -> tuple[float, float] | None:
+    """Return limits of an axis with room to spare on both sides, or None without values."""
+    every = np.concatenate(values)
+    known = every[np.isfinite(every)]
+    if not len(known):
+        return None
+    spare = 0.04 * float(np.ptp(known)) or 1.0
+    return float(known.min()) - spare, float(known.max()) + spare

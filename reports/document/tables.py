@@ -1,0 +1,107 @@
+"""Tables that every report has, and how their cells are written."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import pandas as pd
+
+from reports.document.blocks import Table
+from reports.run.run_data import RunData
+
+
+def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
+    """Return every parameter of the run with its unit and meaning, and rows for what follows from them."""
+    rows = [[p["key"], parameter_value(p["value"], p["key"]), p["unit"], p["meaning"]] for p in run.manifest["parameters"]]
+    return Table(
+        head=["Parameter", "Value", "Unit", "Meaning and equation"],
+        rows=[*rows, *derived],
+        widths=[3.1, 1.2, 0.7, 3.9],
+        left_columns=4,
+        prose=True,
+        breakable=True,
+    )
+
+
+def provenance_table(run: RunData) -> Table:
+    """Return where the run comes from."""
+    manifest = run.manifest
+    design = manifest.get("study") == "design"
+    seed = manifest["config"].get("seed")
+    seeds = "each trial's own" if seed is None else str(seed)
+    rows = [
+        ["Design" if design else "Scenario", f"{manifest['name']}: {manifest['title']}"],
+        *_vehicle(run),
+        # A design is made without chance, and of no more than its title says.
+        *([] if design else [["Seed", seeds], ["Configuration hash", manifest["config_hash"]]]),
+        ["Source revision", manifest["git_revision"]],
+        ["Python", f"{manifest['python']} on {manifest['platform']}"],
+        ["Packages", ", ".join(f"{name} {version}" for name, version in manifest["packages"].items())],
+        ["State", manifest["state"]],
+    ]
+    if "wall_time_s" in manifest:
+        rows.append(["Wall time", f"{manifest['wall_time_s']:.1f} s"])
+    return Table(head=["", ""], rows=rows, widths=[1.0, 4.0], left_columns=2, prose=True, print_size_pt=8.0)
+
+
+def _vehicle(run: RunData) -> list[list[str]]:
+    """Return the rows on what flew; in all trials of one run that is the same."""
+    config = next(iter(run.manifest.get("trials", {}).values()), run.manifest["config"])
+    rows = []
+    if run.innerloop:
+        rows.append(["Aircraft", f"{run.innerloop['title']}. {run.innerloop['source']}"])
+    elif config.get("fidelity", "six_dof") == "six_dof":
+        rows.append(["Aircraft", str(config.get("aircraft", "unknown"))])
+    if config.get("fidelity") in ("kinematic", "both"):
+        rows.append(
+            [
+                "Kinematic vehicle",
+                "Equation (1) of the paper: it has the commanded speed at once, and is steered by its heading rate.",
+            ]
+        )
+    return rows
+
+
+def kinematic(run: RunData) -> str:
+    """Return what the kinematic vehicle of a run is: equation (1), with a lag if it has one."""
+    lag = float(run.manifest["config"].get("kinematic", {}).get("heading_rate_lag_s", 0.0))
+    return f"eq. (1) with a heading-rate lag of {lag:g} s" if lag else "eq. (1)"
+
+
+def length(metres: float) -> str:
+    """Return a distance in the unit that suits its size."""
+    if metres >= 0.1:
+        return f"{metres:.2f} m"
+    return f"{1000.0 * metres:.1f} mm" if metres >= 1e-4 else "< 0.1 mm"
+
+
+def limit(value: float) -> str:
+    """Return a limit to three digits: one that is fitted to an aircraft has many."""
+    return f"{float(f'{value:.3g}'):g}"
+
+
+def aircraft(run: RunData) -> str:
+    """Return the name of the aircraft that flew a run, or was to."""
+    return str(run.innerloop["title"] if run.innerloop else run.manifest["config"].get("aircraft", "unknown"))
+
+
+def number(value: Any, pattern: str) -> str:
+    """Return a value by its pattern, and a dash if there is none."""
+    return "–" if value is None or pd.isna(value) else pattern.format(float(value))
+
+
+def outcome(row: "pd.Series[Any]") -> str:
+    """Return how a flight ended, in words."""
+    if row["criteria_met"]:
+        return "met"
+    ended, message = str(row["outcome"]).replace("_", " "), str(row["message"])
+    return f"{ended}: {message}" if message else ended
+
+
+def parameter_value(value: Any, key: str = "") -> str:
+    """Return the value of a parameter in words; some lists mean a range, which their key tells."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, list):
+        # Of all lists the starting distances alone are a range.
+        return (" to " if key == "start.distance_m" else ", ").join(parameter_value(v) for v in value)
+    return "not set" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

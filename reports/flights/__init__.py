@@ -1,0 +1,1 @@
+"""Any set of flights: verdict, charts, tables, single flights."""

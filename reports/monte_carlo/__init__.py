@@ -1,0 +1,1 @@
+"""How sure, how bad, what drives it."""

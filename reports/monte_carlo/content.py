@@ -1,0 +1,82 @@
+"""What a report shows of a Monte Carlo study, before all else: how sure it is of what, how flights are spread, what drives them."""
+
+from typing import Any
+
+from reports.document.blocks import Block, Heading, Section, Text
+from reports.monte_carlo.driver_charts import driver_charts, scatter_charts
+from reports.monte_carlo.spread_charts import spread_charts
+from reports.monte_carlo.tables import ending_table, left_out_rows, percent, quantile_table, violation_table
+from reports.run.run_data import RunData
+
+
+def monte_carlo_sections(run: RunData) -> list[Section]:
+    """Return the sections of a run with ``statistics.json``, and none of any other."""
+    statistics = run.statistics
+    if statistics is None:
+        return []
+    return [
+        Section(anchor="study", title="What the study shows", nav_title="Study", blocks=_shown(statistics)),
+        Section(anchor="spread", title="How the flights are spread", nav_title="Spread", blocks=_spread(run, statistics)),
+        Section(anchor="drivers", title="What drives the figures", nav_title="Drivers", blocks=_drivers(run, statistics)),
+    ]
+
+
+def _shown(statistics: dict[str, Any]) -> list[Block]:
+    return [
+        Text(bound_in_words(statistics)),
+        violation_table(statistics),
+        Heading("How the flights ended"),
+        ending_table(statistics),
+    ]
+
+
+def bound_in_words(statistics: dict[str, Any]) -> str:
+    """Return the bound on the probability that a flight enters the keep-out area, with its confidence and what it assumes."""
+    confidence = percent(statistics["confidence"])
+    measured, worst = statistics["violation"]["measured"], statistics["violation"]["pessimistic"]
+    unknown = sum(found["flights"] for found in statistics["flights"]["unknown"].values())
+    if not measured["flights"]:
+        return "No flight was measured: nothing is known of the probability that a flight enters the keep-out area."
+    words = (
+        f"With {confidence} confidence a flight of this study enters the keep-out area with a probability of at most"
+        f" {percent(measured['upper'])}, about one flight in {round(1.0 / measured['upper']):,}: {measured['events']:,} of"
+        f" {measured['flights']:,} flights did (one-sided bound of Clopper and Pearson)."
+    )
+    if unknown:
+        words += (
+            f" {unknown:,} {'flight is' if unknown == 1 else 'flights are'} of unknown end, without a measurement or out of"
+            f" control; with each of them as an entry the bound is {percent(worst['upper'])}."
+        )
+    if statistics["look_number"] is not None:
+        words += (
+            f" The study was looked at up to {statistics['look_number']} times, to stop once it knew enough: for all looks together"
+            f" to hold with {confidence}, bounds and intervals are made with {percent(statistics['interval_confidence'])}."
+        )
+    return words + (
+        " The bound is on flights drawn as these were, in this simulation; it says nothing of what the simulation leaves out. It is"
+        " that of independent flights, and is kept for inputs from a low-discrepancy design, where it is too high as a rule."
+    )
+
+
+def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
+    text = (
+        f"Quantiles of the flights' figures, each with an interval in brackets that holds that of all such flights with"
+        f" {percent(statistics['interval_confidence'])} confidence, whatever the distribution (from order statistics); a dash where"
+        " there are too few flights for that side. Keep-out figures count from a flight's first second, the others from settling."
+    )
+    return [Text(text), quantile_table(statistics), *spread_charts(run, statistics)]
+
+
+def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
+    text = (
+        "Borgonovo's δ says how much the distribution of a figure changes once an input is known: 0 not at all, 1 completely."
+        " The first-order index S₁ is the share of the figure's variance that the input explains by itself. Of a finite number of"
+        " flights neither is 0 for an input that does nothing: the noise floor is the largest index of some that do nothing, and"
+        f" what matters has an interval (at {percent(statistics['confidence'])}) above it."
+    )
+    return [
+        Text(text),
+        *(Text(line) for line in left_out_rows(statistics["sensitivity"])),
+        *driver_charts(statistics),
+        *scatter_charts(run, statistics),
+    ]

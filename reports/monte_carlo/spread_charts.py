@@ -1,0 +1,103 @@
+"""Figures of how the flights of a Monte Carlo study are spread. Thousands of flights become some hundred points."""
+
+from typing import Any
+
+import numpy as np
+
+from reports.document.chart import Array, Chart, Line, Panel
+from reports.document.panels import histogram
+from reports.monte_carlo.names import FIGURES
+from reports.run.run_data import RunData
+from reports.run.trials import clearance, column, interval_error
+
+CURVE_POINTS = 400
+"""Points of a cumulative curve at most."""
+
+_SHOWN = 0.005
+"""Share of flights at an end that go into the outermost bars of a histogram."""
+
+_NEARER = 0.9
+"""Share of flights that the curve of the nearest goes up to."""
+
+_CLEARANCE = FIGURES["clearance_m"].label
+
+
+def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
+    """Return how the clearance and the other figures of the flights are spread."""
+    rows = run.summary
+    near = clearance(rows)
+    counted_near = histogram([(_within(near, lowest=0.0), "flights", "blue")], _CLEARANCE, [(0.0, "r_min")])
+    if counted_near is None:
+        return []
+    kept = Chart(
+        name="clearance",
+        caption="Closest approach of each flight beyond r_min. Left: flights counted, the farthest half per cent in the last bar."
+        " Right: share of flights that came as near or nearer, with the intervals of its quantiles; the scale is logarithmic to"
+        " show the few nearest.",
+        panels=[counted_near, _tail(near, statistics)],
+        columns=2,
+        panel_height=0.4,
+    )
+    values = {
+        "crossing_interval_error": interval_error(rows),
+        "tracking_error_rms_m": column(rows, "tracking_error_rms_m"),
+        "crossing_distance_min_m": column(rows, "crossing_distance_min_m"),
+        "settling_time_s": column(rows, "settling_time_s"),
+    }
+    counted = [_counted(key, figure, statistics["figures"][key]["quantiles"]) for key, figure in values.items()]
+    panels = [panel for panel in counted if panel is not None]
+    others = Chart(
+        name="spread",
+        caption="Flights counted by their other figures, of those that have them. The lowest and the highest half per cent are"
+        " in the outermost bars.",
+        panels=panels,
+        columns=2,
+        panel_height=0.34,
+    )
+    return [kept, *([others] if panels else [])]
+
+
+def _within(values: Array, lowest: float = _SHOWN) -> Array:
+    """Return known values, a share of the ``lowest`` and ``_SHOWN`` of the highest moved to where the others end."""
+    known = values[np.isfinite(values)]
+    return np.clip(known, *np.quantile(known, [lowest, 1.0 - _SHOWN])) if len(known) else known
+
+
+def _counted(key: str, values: Array, quantiles: list[dict[str, Any]]) -> Panel | None:
+    figure = FIGURES[key]
+    label = "quantiles 5 %, 50 %, 95 %"
+    marks = [
+        (figure.scale * q["value"], label) for q in quantiles if q["probability"] in (0.05, 0.5, 0.95) and q["value"] is not None
+    ]
+    return histogram([(figure.scale * _within(values), "flights", "blue")], figure.label, marks)
+
+
+def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
+    x, share = cumulative(near)
+    every = statistics["figures"]["clearance_m"]["quantiles"]
+    quantiles = [q for q in every if q["probability"] <= 0.5 and None not in (q["low"], q["high"])]
+    gap = np.nan
+    ends = np.array([end for q in quantiles for end in (q["low"], q["high"], gap)])
+    heights = np.array([height for q in quantiles for height in (100.0 * q["probability"], 100.0 * q["probability"], gap)])
+    least = 100.0 * float(share[0])
+    far = float(np.quantile(near[np.isfinite(near)], _NEARER))
+    nearest = min(0.0, float(x[0]))
+    return Panel(
+        x_label=_CLEARANCE,
+        y_label="Flights as near or nearer [%]",
+        lines=[
+            Line(x=x, y=100.0 * share, label="flights", colour="blue"),
+            Line(x=ends, y=heights, label="interval of a quantile", colour="black"),
+            Line(x=np.zeros(2), y=np.array([0.7 * least, 100.0]), label="r_min", colour="vermillion", style="dash"),
+        ],
+        log_y=True,
+        x_range=(nearest - 0.04 * (far - nearest), far),
+        y_range=(0.7 * least, 130.0),
+    )
+
+
+def cumulative(values: Array) -> tuple[Array, Array]:
+    """Return values in rising order, all of the lowest and ever fewer of the others, and which share of all known is no larger."""
+    known = np.sort(values[np.isfinite(values)])
+    ranks = np.unique(np.geomspace(1.0, len(known), CURVE_POINTS).round().astype(np.int64))
+    return known[ranks - 1], ranks / len(known)

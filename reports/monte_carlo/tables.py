@@ -1,0 +1,84 @@
+"""Tables of a Monte Carlo study."""
+
+from typing import Any
+
+from reports.document.blocks import Table
+from reports.monte_carlo.names import FIGURES, Figure, input_name
+
+Record = dict[str, Any]
+
+
+def violation_table(statistics: Record) -> Table:
+    """Return how many flights entered the keep-out area, and within what their probability is."""
+    level = percent(statistics["interval_confidence"])
+    shares = [("Flights with a measurement", "measured"), ("All, those of unknown end counted as entries", "pessimistic")]
+    return Table(
+        head=["Counted", "Flights", "Entered", "Share", f"Probability, two-sided at {level}", f"At most, one-sided at {level}"],
+        rows=[_share(name, statistics["violation"][key]) for name, key in shares],
+        widths=[2.4, 0.7, 0.7, 0.8, 1.9, 1.5],
+    )
+
+
+def _share(name: str, share: Record) -> list[str]:
+    known = share["share"] is not None
+    return [
+        name,
+        f"{share['flights']:,}",
+        f"{share['events']:,}",
+        percent(share["share"]) if known else "–",
+        f"{percent(share['low'])} to {percent(share['high'])}",
+        percent(share["upper"]),
+    ]
+
+
+def ending_table(statistics: Record) -> Table:
+    """Return how flights ended, and which are of unknown end."""
+    unknown = statistics["flights"]["unknown"]
+    rows = [
+        ["Outcomes", _counted(statistics["outcomes"])],
+        ["Modes at the end", _counted(statistics["modes_at_end"])],
+        *([f"Of unknown end: {outcome.replace('_', ' ')}", _flights(found)] for outcome, found in unknown.items()),
+    ]
+    return Table(head=["", ""], rows=rows, widths=[1.0, 4.0], left_columns=2, prose=True)
+
+
+def _counted(counts: dict[str, int]) -> str:
+    return ", ".join(f"{count:,} {word.replace('_', ' ')}" for word, count in counts.items()) or "none"
+
+
+def _flights(found: Record) -> str:
+    more = found["flights"] - len(found["flight_ids"])
+    return f"{found['flights']:,}: {', '.join(found['flight_ids'])}" + (f" and {more:,} more, in summary.csv" if more else "")
+
+
+def quantile_table(statistics: Record) -> Table:
+    """Return quantiles of each figure, each with its interval."""
+    figures = {figure: statistics["figures"][key] for key, figure in FIGURES.items()}
+    every = sorted({quantile["probability"] for figure in figures.values() for quantile in figure["quantiles"]})
+    rows = []
+    for figure, found in figures.items():
+        quantiles = {quantile["probability"]: quantile for quantile in found["quantiles"]}
+        missing = f", {found['missing']:,} {figure.missing}" if found["missing"] else ""
+        cells = [_quantile(figure, quantiles.get(probability)) for probability in every]
+        rows.append([figure.label, f"{found['known']:,}{missing}", *cells])
+    head = ["Figure", "Flights", *(percent(probability) for probability in every)]
+    return Table(head=head, rows=rows, widths=[1.5, 0.9, *([1.1] * len(every))], print_size_pt=6.5)
+
+
+def _quantile(figure: Figure, quantile: Record | None) -> str:
+    if quantile is None or quantile["value"] is None:
+        return "–"
+    return f"{figure.text(quantile['value'])} ({figure.text(quantile['low'])} to {figure.text(quantile['high'])})"
+
+
+def left_out_rows(sensitivity: Record) -> list[str]:
+    """Return, in sentences, which figures have no indices and which inputs have none."""
+    lines = [f"{FIGURES[key].name}: {found['message']}." for key, found in sensitivity.items() if found["message"]]
+    reasons = {(key, why) for found in sensitivity.values() if not found["message"] for key, why in found["left_out"].items()}
+    return [*lines, *(f"{input_name(key)} has no index: {why}." for key, why in sorted(reasons))]
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent, to three digits, and to four where it is nearly all. No line breaks before the sign."""
+    digits = 3 if share < 0.99 else 4
+    return f"{100.0 * share:.{digits}g}\N{NO-BREAK SPACE}%"

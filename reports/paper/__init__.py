@@ -1,0 +1,1 @@
+"""The three simulations against the printed numbers."""

@@ -1,0 +1,293 @@
+"""The paper's figures 3 to 9, each on its kinematic vehicle and on the aircraft, side by side."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from reports.document.chart import Array, Chart, Line, Panel
+from reports.document.tables import kinematic
+from reports.run.run_data import RunData
+from reports.run.time_history import thinned, tracking_error
+
+VEHICLES = ("kinematic", "six_dof")
+"""Fidelities, in the order of panels and columns."""
+
+_POINTS_MAX = 1500
+
+_PHI_GONE = 0.02
+"""|phi| below which a coincidence of phi and phi_r counts as one at zero [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """A flight: its row and its time history."""
+
+    row: "pd.Series[float]"
+    history: pd.DataFrame
+
+    def column(self, name: str) -> Array:
+        """Return a column of the history."""
+        return self.history[name].to_numpy(dtype=np.float64)
+
+    @property
+    def time(self) -> Array:
+        """Time of every sample [s]."""
+        return self.column("time_s")
+
+    @property
+    def distance(self) -> Array:
+        """Distance to the reference [m]."""
+        return tracking_error(self.history)
+
+    def until(self, time: float) -> "Flown":
+        """Return the flight up to ``time`` [s], thinned to what a figure shows."""
+        return Flown(self.row, thinned(self.history[self.history["time_s"] <= time], _POINTS_MAX))
+
+
+def vehicle_name(run: RunData, fidelity: str) -> str:
+    """Return what the vehicle of a fidelity is called."""
+    return f"kinematic vehicle, {kinematic(run)}" if fidelity == "kinematic" else "aircraft, six degrees of freedom"
+
+
+def find_flight(run: RunData, flight_id: str) -> Flown | None:
+    """Return a flight of the study or of its comparisons, or none if it has no record."""
+    history = run.history(flight_id)
+    rows = pd.concat([frame[frame["flight_id"] == flight_id] for frame in (run.summary, run.comparison)])
+    if history is None or len(history) < 2 or not len(rows):
+        return None
+    return Flown(rows.iloc[0], history)
+
+
+def sim_1_charts(run: RunData) -> list[Chart]:
+    """Return figures 3, 4 and 5: a circular reference, opposite initial headings."""
+    return [
+        _side_by_side(
+            run, ["sim1"], _figure_3, name="fig3", equal=True, panel_height=0.55, labels=("East [m]", "North [m]"),
+            caption="To put beside the paper's figure 3: the circular reference and the UAV. Diamonds: where each is at the start.",
+        ),
+        _side_by_side(
+            run, ["sim1"], _figure_4, name="fig4", labels=("Time [s]", "Angle [rad]"),
+            caption="Figure 4: φ, course of the UAV against that of z, goes to zero first; then φ_r follows as the unforced system"
+            " does.",
+        ),
+        _side_by_side(
+            run, ["sim1"], _figure_5, name="fig5", labels=("Time [s]", "Distance to the reference [m]"),
+            caption="Figure 5: while |φ| ≤ |φ_r| the distance does not rise. Where φ_r = φ the rate of V₁ vanishes, eq. (35): a"
+            " peak or a trough of the distance while φ is not zero, a saddle point once it is. The aircraft closes in there too,"
+            " for it trims its airspeed.",
+        ),
+    ]  # fmt: skip
+
+
+def sim_2_charts(run: RunData) -> list[Chart]:
+    """Return figures 6 and 7, and the distance, which the paper does not show: line of sight against the delta formulation."""
+    cases = ["sim2_los", "sim2_delta"]
+    return [
+        _side_by_side(
+            run, cases, _figure_6, name="fig6", equal=True, panel_height=0.42, labels=("East [m]", "North [m]"),
+            caption="Figure 6: both UAVs start in front of the reference and fly the other way. UAV 1 steers by the line of sight,"
+            " UAV 2 by the δ formulation. Diamonds: starts.",
+        ),
+        _side_by_side(
+            run, cases, _figure_7, name="fig7", labels=("Time [s]", "Heading rate asked for [rad/s]"),
+            caption="Figure 7: what each law asks for. Dashed: ±ω_max. The kinematic UAV 1 flies what it asks for, as in the paper;"
+            " the aircraft's commands are cut at ω_max.",
+        ),
+        _side_by_side(
+            run, cases, _distances, name="sim2distance", labels=("Time [s]", "Distance to the reference [m]"),
+            caption="Not in the paper: UAV 1 is near sooner, but at constant speed stays behind the reference. The aircraft trims"
+            " its airspeed and catches up, and there its line of sight swings again and again. UAV 2 gets onto the reference.",
+        ),
+    ]  # fmt: skip
+
+
+def sim_3_charts(run: RunData) -> list[Chart]:
+    """Return figures 8 and 9, of the smoke plume; none of flights without a vessel."""
+    flights = run.summary[run.summary["flight_id"].astype(str).str.startswith("sim3_")]
+    if flights["nu"].isna().any():
+        return []
+    speed = float(run.manifest["config"]["guidance"]["airspeed_mps"])
+    course = math.radians(run.manifest["config"]["vessel"]["course_deg"])
+    source_height = float(run.manifest["config"]["plume"]["source_height_m"])
+
+    def figure_8(flights: dict[str, Flown]) -> list[Line]:
+        flown = flights["sim3"]
+        way = float(flown.row["nu"]) * speed * flown.time
+        times = run.crossings_of(str(flown.row["flight_id"]))["time_s"].to_numpy(dtype=np.float64)
+        times = times[times <= flown.time[-1]]
+        east, north = (np.interp(times, flown.time, flown.column(name)) for name in ("east_m", "north_m"))
+        return [
+            Line(x=way * math.sin(course), y=way * math.cos(course), label="vessel", colour="black"),
+            Line(x=flown.column("reference_east_m"), y=flown.column("reference_north_m"), label="reference", colour="orange"),
+            Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour="blue"),
+            _diamonds(east, north, "plume crossing"),
+        ]
+
+    def figure_9(flights: dict[str, Flown]) -> list[Line]:
+        flown = flights["sim3"]
+        way = float(flown.row["nu"]) * speed * flown.time
+        ahead = flown.column("north_m") - way * math.cos(course), flown.column("east_m") - way * math.sin(course)
+        distance = np.sqrt(ahead[0] ** 2 + ahead[1] ** 2 + (flown.column("altitude_m") - source_height) ** 2)
+        crossings = run.crossings_of(str(flown.row["flight_id"]))
+        return [
+            _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
+            Line(x=flown.time, y=distance, label="UAV", colour="blue"),
+            _diamonds(
+                crossings["time_s"].to_numpy(dtype=np.float64), crossings["distance_m"].to_numpy(dtype=np.float64), "plume crossing"
+            ),
+        ]
+
+    return [
+        _side_by_side(
+            run, ["sim3"], figure_8, name="fig8", equal=True, labels=("East [m]", "North [m]"), shown_after=100.0, columns=1,
+            panel_height=0.2,
+            caption="Figure 8: over the ground. The UAV starts at a random place behind the vessel. Diamonds: plume crossings"
+            " after settling, of which the first hundred seconds are shown.",
+        ),
+        _side_by_side(
+            run, ["sim3"], figure_9, name="fig9", labels=("Time [s]", "Distance to the vessel [m]"), shown_after=math.inf,
+            caption="Figure 9: distance between the vessel, at its funnel, and the UAV; dashed the radius of the keep-out area.",
+        ),
+    ]  # fmt: skip
+
+
+def coincidences(flown: Flown) -> Array:
+    """Return the times at which phi_r = phi [s], linear between samples. Jumps by a turn are none."""
+    gap = flown.column("phi_r_rad") - flown.column("phi_rad")
+    at = np.nonzero((gap[:-1] * gap[1:] < 0.0) & (np.abs(np.diff(gap)) < math.pi))[0]
+    share = gap[at] / (gap[at] - gap[at + 1])
+    return flown.time[at] + share * (flown.time[at + 1] - flown.time[at])
+
+
+Lines = Callable[[dict[str, Flown]], list[Line]]
+
+
+def _side_by_side(
+    run: RunData,
+    cases: list[str],
+    lines: Lines,
+    *,
+    name: str,
+    caption: str,
+    labels: tuple[str, str],
+    equal: bool = False,
+    shown_after: float = 20.0,
+    columns: int = 2,
+    panel_height: float = 0.4,
+) -> Chart:
+    """Return a panel for each vehicle that has flown every case, up to ``shown_after`` [s] after the last of them has settled."""
+    found = {fidelity: {case: find_flight(run, f"{case}_{fidelity}") for case in cases} for fidelity in VEHICLES}
+    pairs = {fidelity: {c: f for c, f in flights.items() if f is not None} for fidelity, flights in found.items()}
+    pairs = {fidelity: flights for fidelity, flights in pairs.items() if len(flights) == len(cases)}
+    settled = [float(f.row["settling_time_s"]) for flights in pairs.values() for f in flights.values()]
+    until = max((time for time in settled if not math.isnan(time)), default=math.inf) + shown_after
+    drawn = {
+        vehicle_name(run, key): lines({c: flown.until(until) for c, flown in flights.items()}) for key, flights in pairs.items()
+    }
+    x_range, y_range = _common_ranges([line for curves in drawn.values() for line in curves]) if drawn else (None, None)
+    panels = [
+        Panel(
+            x_label=labels[0], y_label=labels[1], title=title[0].upper() + title[1:], equal=equal, lines=curves,
+            x_range=x_range, y_range=y_range,
+        )
+        for title, curves in drawn.items()
+    ]  # fmt: skip
+    return Chart(name=name, caption=caption, panels=panels, columns=columns, panel_height=panel_height)
+
+
+def _common_ranges(lines: list[Line]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return ranges that hold every curve, so that panels side by side compare at a glance."""
+    x, y = (np.concatenate(curves) for curves in zip(*((line.x, line.y) for line in lines), strict=True))
+    across, up = 0.02 * float(np.ptp(x)), 0.05 * float(np.ptp(y))
+    return (float(np.min(x)) - across, float(np.max(x)) + across), (float(np.min(y)) - up, float(np.max(y)) + up)
+
+
+def _figure_3(flights: dict[str, Flown]) -> list[Line]:
+    flown = flights["sim1"]
+    return [
+        Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour="blue"),
+        _reference(flown),
+        _starts([flown]),
+    ]
+
+
+def _figure_4(flights: dict[str, Flown]) -> list[Line]:
+    flown = flights["sim1"]
+    return [
+        Line(x=flown.time, y=flown.column("phi_rad"), label="φ", colour="blue"),
+        Line(x=flown.time, y=flown.column("phi_r_rad"), label="φ_r", colour="orange"),
+        *_coincidence_marks(flown, flown.column("phi_r_rad")),
+    ]
+
+
+def _figure_5(flights: dict[str, Flown]) -> list[Line]:
+    flown = flights["sim1"]
+    return [Line(x=flown.time, y=flown.distance, label="distance d", colour="blue"), *_coincidence_marks(flown, flown.distance)]
+
+
+def _coincidence_marks(flown: Flown, curve: Array) -> list[Line]:
+    """Return marks on a curve over time where phi_r = phi: saddle points of the distance apart from its peaks and troughs."""
+    times = coincidences(flown)
+    saddle = np.abs(np.interp(times, flown.time, flown.column("phi_rad"))) < _PHI_GONE
+    marks = (
+        (saddle, "φ_r = φ = 0, a saddle point of d", "vermillion"),
+        (~saddle, "φ_r = φ ≠ 0, a peak or trough of d", "green"),
+    )
+    return [
+        Line(x=times[which], y=np.interp(times[which], flown.time, curve), label=label, colour=colour, style="diamonds")
+        for which, label, colour in marks
+        if which.any()
+    ]
+
+
+_UAVS = {"sim2_los": ("UAV 1, line of sight", "vermillion"), "sim2_delta": ("UAV 2, δ formulation", "blue")}
+
+
+def _figure_6(flights: dict[str, Flown]) -> list[Line]:
+    first = next(iter(flights.values()))
+    tracks = [
+        Line(x=flown.column("east_m"), y=flown.column("north_m"), label=_UAVS[case][0], colour=_UAVS[case][1])
+        for case, flown in flights.items()
+    ]
+    return [*tracks, _reference(first), _starts(list(flights.values()))]
+
+
+def _figure_7(flights: dict[str, Flown]) -> list[Line]:
+    commands = [
+        Line(x=flown.time, y=flown.column("heading_rate_wanted_rad_s"), label=_UAVS[case][0], colour=_UAVS[case][1])
+        for case, flown in flights.items()
+    ]
+    first = next(iter(flights.values()))
+    limit = float(first.row["heading_rate_limit_rad_s"])
+    return [*commands, *(_level(first.time, value, "±ω_max", "black") for value in (limit, -limit))]
+
+
+def _distances(flights: dict[str, Flown]) -> list[Line]:
+    return [Line(x=flown.time, y=flown.distance, label=_UAVS[case][0], colour=_UAVS[case][1]) for case, flown in flights.items()]
+
+
+def _reference(flown: Flown) -> Line:
+    """Return the circle of the reference, to be drawn over the tracks that come to lie on it."""
+    east, north = flown.column("reference_east_m"), flown.column("reference_north_m")
+    return Line(x=east, y=north, label="reference", colour="orange", style="dash")
+
+
+def _starts(flights: list[Flown]) -> Line:
+    places = [
+        (float(flown.column(east)[0]), float(flown.column(north)[0]))
+        for flown in flights
+        for east, north in (("east_m", "north_m"), ("reference_east_m", "reference_north_m"))
+    ]
+    x, y = np.array(places).T
+    return _diamonds(x, y, "start")
+
+
+def _diamonds(x: Array, y: Array, label: str) -> Line:
+    return Line(x=x, y=y, label=label, colour="green" if label == "start" else "vermillion", style="diamonds")
+
+
+def _level(time: Array, value: float, label: str, colour: str = "vermillion") -> Line:
+    return Line(x=time[[0, -1]], y=np.array([value, value]), label=label, colour=colour, style="dash")

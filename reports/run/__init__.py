@@ -1,0 +1,1 @@
+"""The run directory: what is on disk, read and written."""

@@ -1,0 +1,1 @@
+"""Which flights: sweep, cases, variants, draws."""

@@ -1,0 +1,162 @@
+"""From a trial to its flights: each with the keys that are drawn for it, from the trial's seed and the flight's number alone."""
+
+import math
+import zlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from scenarios.errors import InputError
+from scenarios.schema.load import with_values
+from scenarios.schema.sea_config import Draw, SeaScenario
+from scenarios.world.weather import vessel_track
+
+_TRIES = 1000
+
+_ALMOST_ALL = 1.0 - 1e-15
+"""The share of a distribution up to its end, where it has none."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrawnFlight:
+    """One flight of a trial.
+
+    Attributes
+    ----------
+    scenario : with what was drawn set
+    seed : of its start, air and noise
+    nu : speed ratio at the start [-]
+    values : what was drawn, by key
+    """
+
+    scenario: SeaScenario
+    seed: int
+    nu: float
+    values: dict[str, object]
+
+
+def drawn_flight(trial: str, scenario: SeaScenario, number: int, point: Sequence[float] = ()) -> DrawnFlight:
+    """Return one flight of a trial.
+
+    Parameters
+    ----------
+    trial : its name
+    scenario : the trial
+    number : of the flight, from 0
+    point : where each key is to be in its distribution, from 0 to 1, in the order of the draws; at random if it is empty. Where
+        that has no speed ratio within ``scenario.speed_ratio``, the flight is drawn again at random.
+
+    Raises
+    ------
+    InputError : a drawn key does not exist or is out of range, or no draw has a speed ratio within ``scenario.speed_ratio``
+    """
+    sequence = np.random.SeedSequence([scenario.seed, zlib.crc32(trial.encode()), number])
+    low, high = scenario.speed_ratio
+    for values in _tried(scenario.draws, np.random.default_rng(sequence), number, point):
+        flight = with_values(scenario, values) if values else scenario
+        least, most, nu = _speed_ratios(flight)
+        if low <= least and most <= high:
+            seed = int(sequence.generate_state(1)[0]) if flight.flight_seed is None else flight.flight_seed
+            return DrawnFlight(scenario=flight, seed=seed, nu=nu, values=values)
+    raise InputError(
+        f"trial '{trial}': {_TRIES} draws had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
+        f" {most:.3f}: widen speed_ratio, or draw other winds and vessel speeds"
+    )
+
+
+def speed_ratio_excess(scenario: SeaScenario, point: Sequence[float]) -> float:
+    """Return how far outside ``scenario.speed_ratio`` the flight at a point gets; such flights are drawn again [-].
+
+    Parameters
+    ----------
+    scenario : a trial
+    point : as of ``drawn_flight``
+    """
+    flight = with_values(scenario, _values_at(scenario.draws, point))
+    (low, high), (least, most, _) = scenario.speed_ratio, _speed_ratios(flight)
+    return max(0.0, low - least, most - high)
+
+
+def _speed_ratios(flight: SeaScenario) -> tuple[float, float, float]:
+    """Return a flight's least and greatest speed ratio, and that at its start [-]."""
+    track, speed = vessel_track(flight), flight.guidance.airspeed_mps
+    least, most = track.apparent_wind_range
+    return least / speed, most / speed, track.apparent_wind_at_start / speed
+
+
+def value_at(draw: Draw, share: float) -> object:
+    """Return the value of a drawn key that the given share of its distribution, from 0 to 1, lies below."""
+    if draw.uniform is not None:
+        low, high = draw.uniform
+        return low + (high - low) * share
+    if draw.choice is not None:
+        weights = np.cumsum(draw.weights or [1.0] * len(draw.choice))
+        return draw.choice[int(np.searchsorted(weights, min(share, _ALMOST_ALL) * weights[-1], side="right"))]
+    low, high = (_share_below(draw, limit) for limit in draw.within) if draw.within else (0.0, 1.0)
+    # A distribution without an end has no value at it.
+    share = min(max(low + (high - low) * share, 1.0 - _ALMOST_ALL), _ALMOST_ALL)
+    if draw.normal is not None:
+        mean, sigma = draw.normal
+        value = mean + sigma * float(ndtri(share))
+    else:
+        shape, scale = draw.weibull or (1.0, 1.0)
+        value = scale * (-math.log1p(-share)) ** (1.0 / shape)
+    return min(max(value, draw.within[0]), draw.within[1]) if draw.within else value
+
+
+def _values_at(draws: Sequence[Draw], point: Sequence[float]) -> dict[str, object]:
+    return {draw.key: value_at(draw, share) for draw, share in zip(draws, point, strict=True)}
+
+
+def _share_below(draw: Draw, limit: float) -> float:
+    """Return the share of a normal or Weibull distribution that lies below a limit."""
+    if draw.normal is not None:
+        mean, sigma = draw.normal
+        return float(ndtr((limit - mean) / sigma))
+    shape, scale = draw.weibull or (1.0, 1.0)
+    return -math.expm1(-((max(limit, 0.0) / scale) ** shape))
+
+
+def _tried(
+    draws: Sequence[Draw], generator: np.random.Generator, number: int, point: Sequence[float]
+) -> Iterator[dict[str, object]]:
+    """Yield what to try for a flight, one after the other."""
+    if point:
+        yield _values_at(draws, point)
+    for _ in range(_TRIES):
+        values: dict[str, object] = {}
+        dealt = number
+        for draw in draws:
+            if draw.choice is None or draw.weights is not None or point:
+                values[draw.key] = value_at(draw, float(generator.random()))
+            else:
+                # Several choices are dealt like the digits of a number: every combination comes equally often.
+                dealt, i = divmod(dealt, len(draw.choice))
+                values[draw.key] = draw.choice[i]
+        yield values
+
+
+def check_draws(trial: str, scenario: SeaScenario) -> None:
+    """Check every choice, and both ends of what is drawn between limits, before anything is flown.
+
+    Raises
+    ------
+    InputError : as of ``drawn_flight``
+    """
+    for draw in scenario.draws:
+        if draw.within is not None and not _share_below(draw, draw.within[0]) < _share_below(draw, draw.within[1]):
+            raise InputError(
+                f"draw of '{draw.key}' has within {list(draw.within)}, which holds nothing of its distribution; widen it"
+            )
+    for number in range(max((len(draw.choice or ()) for draw in scenario.draws), default=0) or 1):
+        for end in (0.0, 1.0):
+            with_values(
+                scenario,
+                {
+                    draw.key: draw.choice[number % len(draw.choice)] if draw.choice else value_at(draw, end)
+                    for draw in scenario.draws
+                },
+            )
+    drawn_flight(trial, scenario, 0)

@@ -1,0 +1,1 @@
+"""The keep-out margin, predicted from spectra."""

@@ -1,0 +1,50 @@
+"""Turbulence as an aircraft meets it that flies an orbit: its course swings through air whose gusts do not swing with it.
+
+A gust along a fixed direction is one along the path times the cosine of the course between them. For a course
+eta cos(omega_0 t + phase) the mean over the phases of cos(course now - course tau ago) is J_0(2 eta sin(omega_0 tau/2)), whose
+Fourier series, by Graf's addition theorem, is the sum of J_n(eta)^2 cos(n omega_0 tau): slow gusts come back as sidebands of the
+orbit's frequency, with these weights.
+"""
+
+import control
+import numpy as np
+import numpy.typing as npt
+from scipy.special import jv
+
+from gnc.reference.oscillation import Oscillation
+from innerloop.analysis.gust_response import GUSTS
+
+_SIDEBANDS = np.arange(-12, 13)
+"""J_13(2.4)^2 is below 1e-15, and eta is no more than 2.405."""
+
+_TURNED = (("gust_along", "gust_right"), ("gust_p", "gust_q"))
+"""Components that the course turns into each other."""
+
+Array = npt.NDArray[np.float64]
+
+
+def gusts_on_orbit(filters: control.StateSpace, oscillation: Oscillation, frequencies: Array) -> Array:
+    """Return the power spectral densities of ``GUSTS`` in the axes of the path, shape (frequencies, 6), averaged over the orbit.
+
+    The variance is the integral over positive frequencies over pi. Components are taken as independent: those that the course turns
+    into each other are so in the mean over the orbit, up to the difference between their spectra.
+
+    Parameters
+    ----------
+    filters : ``innerloop.analysis.dryden.dryden_filters``, in axes that do not turn
+    oscillation : of the reference's course
+    frequencies : [rad/s], above 0
+    """
+    spectra = _spectra(filters, frequencies)
+    weights = jv(_SIDEBANDS, oscillation.eta) ** 2
+    shifted = [_spectra(filters, np.abs(frequencies - n * oscillation.omega_0)) for n in _SIDEBANDS]
+    for pair in _TURNED:
+        columns = [GUSTS.index(name) for name in pair]
+        mean = sum(weight * s[:, columns].mean(axis=1) for weight, s in zip(weights, shifted, strict=True))
+        spectra[:, columns] = np.asarray(mean)[:, None]
+    return spectra
+
+
+def _spectra(filters: control.StateSpace, frequencies: Array) -> Array:
+    response = np.moveaxis(filters(1j * frequencies, squeeze=False), -1, 0)
+    return np.asarray(np.sum(np.abs(response) ** 2, axis=2))

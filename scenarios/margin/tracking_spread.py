@@ -1,0 +1,178 @@
+"""How far from the keep-out area the orbit is planned, so that turbulence hardly ever carries the aircraft into it.
+
+Predicted from the linear closed loop and the spectrum of the turbulence: the spread of the tracking error, how fast it varies, and
+by Rice's formula (S. O. Rice, "Mathematical Analysis of Random Noise", 1944) how often it goes beyond a margin.
+
+Of the linear loop this is an upper bound: the orbit touches the keep-out area only where it comes closest, and is taken to be there
+all the time, at its largest bank, with its error in the worst direction.
+
+Gusts beyond what the aircraft's airspeeds can make up carry it along as long as they last. A Gaussian process near a high peak
+L is L (1 - (nu t)^2/2), where nu is the ratio of its rate's deviation to its own; what of it exceeds a limit adds up to a distance
+in closed form, and that is added to the margin, with the peak that is passed as often as touches are allowed.
+
+Not in it is how hard the aircraft can brake. Where turbulence closes the throttle, the spread is larger than predicted: 1.4 to 2.9
+times on the X8 in moderate turbulence, which the second part of the margin made up for in 13 hours of flights. In severe turbulence
+an X8 can lose its reference, and no such margin holds.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from gnc.airspeed.pace_hold import SpeedHold
+from gnc.reference.oscillation import Oscillation
+from gnc.tracker import GuidanceParameters
+from innerloop.analysis.dryden import GustStatistics, dryden_filters
+from innerloop.synthesis.schedule import Schedule
+from scenarios.margin.gusts_on_orbit import gusts_on_orbit
+from scenarios.margin.tracking_response import RESPONSES, tracking_response
+
+TOUCHES_PER_HOUR = 1e-3
+"""Hundred flights of five minutes are 8.3 hours: one chance in a hundred and twenty that any of them touches the area [1/h]."""
+
+FREQUENCIES = np.logspace(-2.5, 1.9, 400)
+"""Where spectra are integrated [rad/s]: from far below the corner of a gust, V/L = 0.09, to beyond the hold of the commands."""
+
+_SECONDS_PER_HOUR = 3600.0
+_ORBIT_POINTS = 60
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread:
+    """Predicted standard deviations of a flight in turbulence.
+
+    Attributes
+    ----------
+    along, across : error along and across the reference's course, in the mean over the orbit [m]
+    radial, radial_rate : towards the vessel, and its rate: upper bounds [m, m/s]
+    airspeed, airspeed_rate : of the airspeed that keeping pace takes, as fast as the aircraft gives it, and its rate [m/s, m/s^2]
+    airspeed_limit : how far airspeed may go from the reference's speed, to the nearer side [m/s]
+    """
+
+    along: float
+    across: float
+    radial: float
+    radial_rate: float
+    airspeed: float
+    airspeed_rate: float
+    airspeed_limit: float
+
+
+def tracking_spread(
+    schedule: Schedule,
+    turbulence: GustStatistics,
+    oscillation: Oscillation,
+    guidance: GuidanceParameters,
+    hold: SpeedHold,
+    *,
+    span: float,
+) -> Spread:
+    """Return the spread that the linear closed loop predicts at the design airspeed nearest to the reference's speed.
+
+    Parameters
+    ----------
+    schedule : the autopilot
+    turbulence, span : the air, and the wing that averages its rotation [m]
+    oscillation, guidance, hold : the reference, and how it is tracked
+    """
+    speed = oscillation.speed
+    index = int(np.argmin(np.abs(np.array(schedule.airspeeds) - speed)))
+    gusts = gusts_on_orbit(dryden_filters(turbulence, airspeed=speed, span=span), oscillation, FREQUENCIES)
+    responses = [tracking_response(schedule, index, j, guidance, hold, speed, FREQUENCIES) for j in range(len(schedule.gain_banks))]
+    densities = [np.einsum("fig,fg,fjg->fij", r, gusts, r.conj()).real for r in responses]
+    now = [_integral(density) for density in densities]
+    rates = [_integral(density * FREQUENCIES[:, None, None] ** 2) for density in densities]
+
+    phases = 2.0 * math.pi * (np.arange(_ORBIT_POINTS) + 0.5) / _ORBIT_POINTS
+    turns = oscillation.amplitude * np.sin(phases)
+    steps = [schedule.gain_trim(index, j).yaw_rate for j in range(len(schedule.gain_banks))]
+    mean, mean_rate = (_over_turns(turns, steps, matrices).mean(axis=0) for matrices in (now, rates))
+    steep = np.array([-oscillation.amplitude, oscillation.amplitude])
+    largest, fastest = (np.linalg.eigvalsh(_over_turns(steep, steps, m)[:, :2, :2]).max() for m in (now, rates))
+    airspeed = RESPONSES.index("pace")
+    return Spread(
+        along=math.sqrt(mean[0, 0]),
+        across=math.sqrt(mean[1, 1]),
+        radial=math.sqrt(largest),
+        radial_rate=math.sqrt(fastest),
+        airspeed=math.sqrt(mean[airspeed, airspeed]),
+        airspeed_rate=math.sqrt(mean_rate[airspeed, airspeed]),
+        airspeed_limit=min(speed - hold.airspeed_min, hold.airspeed_max - speed),
+    )
+
+
+def planned_margin(
+    spread: Spread, *, other_sigma: float = 0.0, other_sigma_rate: float = 0.0, touches_per_hour: float = TOUCHES_PER_HOUR
+) -> float:
+    """Return the margin [m] to plan between orbit and keep-out area.
+
+    Parameters
+    ----------
+    spread : in turbulence
+    other_sigma, other_sigma_rate : standard deviations of independent errors, such as those of navigation and of the vessel's
+        place, and of their rate [m, m/s]
+    touches_per_hour : how often the area may be touched [1/h]
+
+    Raises
+    ------
+    ValueError : ``touches_per_hour`` is not above 0, a deviation is below 0, or there are errors none of which varies
+    """
+    if not (other_sigma >= 0.0 and other_sigma_rate >= 0.0):
+        raise ValueError(f"other_sigma is {other_sigma:g} m, its rate {other_sigma_rate:g} m/s; standard deviations are at least 0")
+    sigma, rate = math.hypot(spread.radial, other_sigma), math.hypot(spread.radial_rate, other_sigma_rate)
+    return level_crossed(sigma, rate, touches_per_hour) + beyond_limits(spread, touches_per_hour)
+
+
+def crossings_per_hour(sigma: float, sigma_rate: float, level: float) -> float:
+    """Return how often a Gaussian process goes above a level [1/h]: Rice's formula.
+
+    Parameters
+    ----------
+    sigma, sigma_rate : standard deviations of the process and of its rate [m, m/s]
+    level : above the mean [m]
+    """
+    return _SECONDS_PER_HOUR * sigma_rate / (2.0 * math.pi * sigma) * math.exp(-0.5 * (level / sigma) ** 2)
+
+
+def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
+    """Return the level that a Gaussian process goes above so often; 0 if it does so less often even at its mean.
+
+    Parameters are those of ``crossings_per_hour``; ``per_hour`` is above 0 [1/h].
+
+    Raises
+    ------
+    ValueError : ``per_hour`` is not above 0, or the process has a deviation and never varies
+    """
+    if not per_hour > 0.0:
+        raise ValueError(f"crossings per hour are {per_hour:g}; no margin is large enough for none: allow some, such as 0.001")
+    if sigma == 0.0:
+        return 0.0
+    if not sigma_rate > 0.0:
+        raise ValueError(f"an error of {sigma:g} m that never varies crosses no level: give how fast it does (other_sigma_rate)")
+    return sigma * math.sqrt(2.0 * math.log(max(1.0, crossings_per_hour(sigma, sigma_rate, 0.0) / per_hour)))
+
+
+def beyond_limits(spread: Spread, per_hour: float) -> float:
+    """Return how far gusts that the airspeed cannot make up carry the aircraft off its reference [m], so often [1/h]."""
+    peak = level_crossed(spread.airspeed, spread.airspeed_rate, per_hour)
+    excess = peak - spread.airspeed_limit
+    if excess <= 0.0:
+        return 0.0
+    half_time = math.sqrt(2.0 * excess / peak) * spread.airspeed / spread.airspeed_rate
+    return 4.0 / 3.0 * excess * half_time
+
+
+def _integral(density: Array) -> Array:
+    """Return the variance of a density over ``FREQUENCIES``."""
+    return np.asarray(np.trapezoid(density, FREQUENCIES, axis=0) / math.pi)
+
+
+def _over_turns(turns: Array, at: list[float], matrices: list[Array]) -> Array:
+    """Interpolate matrices, given at ascending heading rates [rad/s], at others, shape (turns, 3, 3); beyond, the last ones."""
+    stacked = np.stack(matrices)
+    columns = [np.interp(turns, at, stacked[:, i, j]) for i in range(3) for j in range(3)]
+    return np.column_stack(columns).reshape(-1, 3, 3)

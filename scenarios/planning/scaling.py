@@ -1,0 +1,93 @@
+"""A scenario scaled to an aircraft: keys that it does not set follow from the aircraft's airspeed and tightest turn.
+
+The defaults of ``scenarios.schema.config`` are numbers for an aircraft that flies 19.42 m/s and turns with 45 degrees of bank.
+One that flies V with omega_max = g tan(bank)/V has a unit of time, 1/omega_max, and one of length, V/omega_max; in these units
+every aircraft flies the same study. The vessel and its keep-out area keep their sizes.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from aircraft.spec import Envelope
+from gnc.reference.oscillation import heading_rate_for_bank
+from scenarios.schema.config import Guidance
+from scenarios.schema.load import Flown, with_values
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Units:
+    """How many times larger an aircraft's units are than those of the defaults [-]."""
+
+    length: float
+    time: float
+
+    @property
+    def speed(self) -> float:
+        """Return the unit of speed."""
+        return self.length / self.time
+
+
+_FITTED: dict[str, Callable[[Units], float]] = {
+    "guidance.roll_rate_max_deg_s": lambda unit: 1.0 / unit.time,
+    "guidance.tracking_allowance_m": lambda unit: unit.length,
+    "guidance.bound_speed_margin_mps": lambda unit: unit.speed,
+    "guidance.epsilon_per_m": lambda unit: 1.0 / unit.length,
+    "guidance.look_ahead_m": lambda unit: unit.length,
+    "guidance.gain_per_s": lambda unit: 1.0 / unit.time,
+    "guidance.steering_max_rad_s": lambda unit: 1.0 / unit.time,
+    "guidance.lyapunov_gain_per_m2": lambda unit: 1.0 / unit.length**2,
+    "guidance.airspeed_gain_per_s": lambda unit: 1.0 / unit.time,
+    "guidance.airspeed_trim_max_mps": lambda unit: unit.speed,
+    "start.distance_m": lambda unit: unit.length,
+    "flight.duration_max_s": lambda unit: unit.time,
+    "flight.settling_band_m": lambda unit: unit.length,
+    "following.margin_min_m": lambda unit: unit.length,
+    "following.standoff_m": lambda unit: unit.length,
+    "following.join_distance_m": lambda unit: unit.length,
+    "following.tracked_m": lambda unit: unit.length,
+    "criteria.tracking_error_rms_m": lambda unit: unit.length,
+    "criteria.airspeed_error_rms_mps": lambda unit: unit.speed,
+    "criteria.altitude_error_max_m": lambda unit: unit.speed,
+}
+"""Keys that are fitted, and by what their defaults are multiplied. Altitude follows pitch at a given speed, not the turn."""
+
+
+def fitted(scenario: Flown, envelope: Envelope) -> Flown:
+    """Return the scenario with every key that it does not set itself fitted to an aircraft.
+
+    Parameters
+    ----------
+    scenario : as it was read, so that it knows which keys it sets
+    envelope : of the aircraft; its airspeed and bank are flown where the scenario sets neither
+
+    Raises
+    ------
+    InputError : a fitted value is out of range
+    """
+    unit = units(envelope)
+    values: dict[str, object] = {
+        "guidance.airspeed_mps": envelope.airspeed,
+        "guidance.bank_deg": math.degrees(envelope.bank),
+    }
+    for key, factor in _FITTED.items():
+        section, name = key.split(".")
+        default = getattr(getattr(scenario, section, None), name, None)
+        if default is None:
+            continue
+        values[key] = tuple(x * factor(unit) for x in default) if isinstance(default, tuple) else default * factor(unit)
+    return with_values(scenario, {key: value for key, value in values.items() if not _is_set(scenario, key)})
+
+
+def units(envelope: Envelope) -> Units:
+    """Return an aircraft's units over those of the defaults."""
+    default = Guidance()
+    default_rate = heading_rate_for_bank(math.radians(default.bank_deg), default.airspeed_mps)
+    rate = heading_rate_for_bank(envelope.bank, envelope.airspeed)
+    time = default_rate / rate
+    return Units(time=time, length=envelope.airspeed / default.airspeed_mps * time)
+
+
+def _is_set(scenario: Flown, key: str) -> bool:
+    section, name = key.split(".")
+    return name in getattr(scenario, section).model_fields_set

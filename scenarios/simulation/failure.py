@@ -1,0 +1,33 @@
+"""From what stopped a flight to its row."""
+
+import traceback
+from pathlib import Path
+
+from aircraft.errors import AircraftError
+from gnc.errors import InfeasibleError
+from scenarios.engine.task import Row
+from scenarios.errors import InputError
+from scenarios.simulation.closed_loop import Outcome
+
+
+def failure(error: Exception) -> Row:
+    """Return the outcome and the message of a flight that an error ended.
+
+    Raises
+    ------
+    MemoryError : if that is the error: the same flight may do in a process of its own
+    """
+    if isinstance(error, MemoryError):
+        raise error
+    if isinstance(error, InfeasibleError):
+        return {"outcome": Outcome.INFEASIBLE.value, "message": str(error), "criteria_met": False}
+    message = str(error)
+    if not isinstance(error, AircraftError | InputError):
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        message = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
+    return {"outcome": Outcome.FAILED.value, "message": message, "criteria_met": False}
+
+
+def unflown(outcome: Outcome, message: str) -> Row:
+    """Return the outcome and the message of a flight that was never begun, or whose process was lost."""
+    return {"outcome": outcome.value, "message": message, "criteria_met": False}

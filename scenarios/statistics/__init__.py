@@ -1,0 +1,1 @@
+"""Intervals, sensitivity, stopping rules."""

@@ -1,0 +1,143 @@
+"""What the flights of a Monte Carlo study say, with how sure that is: ``statistics.json``.
+
+Intervals are those of independent flights. Noise, turbulence and sensors have seeds of their own, which are independent; inputs
+are so only in plain sampling. In a Latin hypercube they are not, but a mean over n of its flights, and so a share, has at most
+n/(n - 1) times the variance that n independent ones have, and usually less: A. B. Owen, "Monte Carlo variance of scrambled net
+quadrature", SIAM Journal on Numerical Analysis 34 (1997). The intervals of shares and of quantiles, which are shares of the flights
+below them, are kept for it: they are rather too wide. A bound on a variance is not one on an interval's tails, so this is a reason
+and no proof. Of a scrambled Sobol' sequence the same paper bounds the ratio of variances by e, 2.72, for the worst figure there is.
+"""
+
+import math
+from collections import Counter
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from scenarios.statistics.intervals import clopper_pearson, quantile_interval, upper_bound
+from scenarios.statistics.sensitivity import sensitivity
+from scenarios.statistics.stopping import confidence_at
+from scenarios.statistics.violations import Violations, count_violations
+
+PROBABILITIES = (0.01, 0.05, 0.5, 0.95, 0.99)
+"""Of the quantiles that every figure has."""
+
+EXTREMES = (0.001, 0.999)
+"""Of the quantiles that a figure has where there are flights enough for an interval: 3,688 at a confidence of 0.95."""
+
+NAMED_MAX = 10
+"""Flights of each outcome that are named; ``summary.csv`` has all."""
+
+COLUMNS = (
+    "flight_id", "outcome", "mode_at_end", "min_distance_m", "keepout_radius_m", "keepout_violations", "crossing_interval_mean_s",
+    "crossing_interval_predicted_s", "crossing_distance_min_m", "tracking_error_rms_m", "settling_time_s",
+)  # fmt: skip
+"""Columns of the summary that are looked at."""
+
+DRIVEN = ("clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
+"""Figures that it is asked of what drives them."""
+
+Array = npt.NDArray[np.float64]
+Json = dict[str, Any]
+
+
+def study_statistics(
+    rows: pd.DataFrame, inputs: pd.DataFrame, *, confidence: float, seed: int, look_number: int | None = None
+) -> Json:
+    """Return everything that ``statistics.json`` says; what is not a number is None.
+
+    Parameters
+    ----------
+    rows : of the summary ``COLUMNS``, a row per flight that is done, also of those that failed
+    inputs : ``draws.csv``: ``flight_id``, ``trial`` and a column per drawn key
+    confidence : of each interval, between 0 and 1; not of all of them together
+    seed : of what is drawn by lot for the sensitivity indices
+    look_number : at which the study stopped, from 1; intervals are made wider for the looks before
+        (``scenarios.statistics.stopping``). None for a study that is looked at only at its end
+    """
+    level = confidence if look_number is None else confidence_at(look_number, confidence)
+    found = count_violations(rows)
+    figures = study_figures(rows)
+    drawn = inputs.set_index("flight_id").reindex(rows["flight_id"]).drop(columns="trial", errors="ignore")
+    statistics = {
+        "confidence": confidence,
+        "look_number": look_number,
+        "interval_confidence": level,
+        "flights": {"done": found.flights, "measured": found.measured, "unknown": _named(found)},
+        "outcomes": _counts(rows["outcome"]),
+        "modes_at_end": _counts(rows["mode_at_end"]),
+        "violation": {
+            "measured": _share(found.events, found.measured, level),
+            "pessimistic": _share(found.events_at_most, found.flights, level),
+        },
+        "figures": {name: _figure(values, level) for name, values in figures.items()},
+        "sensitivity": {name: asdict(sensitivity(drawn, figures[name], confidence=confidence, seed=seed)) for name in DRIVEN},
+    }
+    plain: Json = _without_nan(statistics)
+    return plain
+
+
+def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
+    """Return what a study is judged by: of each flight, shape (n,), not a number where it has no such figure.
+
+    Distances in metres, the clearance from r_min; the error of the mean crossing interval relative to the predicted one [-]; the
+    settling time in seconds, which a flight that never settled does not have.
+    """
+
+    def column(name: str) -> Array:
+        return pd.to_numeric(rows[name], errors="coerce").to_numpy(dtype=np.float64)
+
+    return {
+        "min_distance_m": column("min_distance_m"),
+        "clearance_m": column("min_distance_m") - column("keepout_radius_m"),
+        "crossing_interval_error": column("crossing_interval_mean_s") / column("crossing_interval_predicted_s") - 1.0,
+        "crossing_distance_min_m": column("crossing_distance_min_m"),
+        "tracking_error_rms_m": column("tracking_error_rms_m"),
+        "settling_time_s": column("settling_time_s"),
+    }
+
+
+def _named(found: Violations) -> Json:
+    return {
+        outcome: {"flights": len(flights), "flight_ids": flights[:NAMED_MAX]} for outcome, flights in sorted(found.unknown.items())
+    }
+
+
+def _counts(words: "pd.Series[str]") -> dict[str, int]:
+    """Return how often each word occurs, the most frequent first; flights that have none are left out."""
+    return dict(Counter(str(word) for word in words.dropna()).most_common())
+
+
+def _share(events: int, flights: int, level: float) -> Json:
+    interval = clopper_pearson(events, flights, level)
+    return {
+        "events": events,
+        "flights": flights,
+        "share": events / flights if flights else math.nan,
+        "low": interval.low,
+        "high": interval.high,
+        "upper": upper_bound(events, flights, level),
+    }
+
+
+def _figure(values: Array, level: float) -> Json:
+    known = values[np.isfinite(values)]
+    quantiles = []
+    for probability in sorted((*PROBABILITIES, *EXTREMES)):
+        interval = quantile_interval(known, probability, level)
+        if probability in PROBABILITIES or math.isfinite(interval.width):
+            value = float(np.quantile(known, probability)) if len(known) else math.nan
+            quantiles.append({"probability": probability, "value": value, "low": interval.low, "high": interval.high})
+    return {"known": len(known), "missing": len(values) - len(known), "quantiles": quantiles}
+
+
+def _without_nan(value: Any) -> Any:
+    """Return a nested value with None for what is not a number, which JSON cannot say."""
+    if isinstance(value, dict):
+        return {key: _without_nan(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_nan(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

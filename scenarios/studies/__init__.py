@@ -1,0 +1,1 @@
+"""Sweep, paper, trials, Monte Carlo, falsification, convergence."""

@@ -1,0 +1,1 @@
+"""Global convergence of the steering laws, from many starts."""

@@ -1,0 +1,248 @@
+"""From how many of 10,000 starts a vehicle reaches its reference, and how fast."""
+
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from gnc.analysis.averaged_motion import averaged_settling_time
+from gnc.analysis.ensemble import DISTANCE_CONVERGED, EnsembleResult, Outcome, Tolerances, fly_ensemble
+from gnc.analysis.ensemble_motion import Steering, Vehicle
+from gnc.analysis.turning_reference import TurningReferences
+from scenarios.engine.task import Row
+from scenarios.errors import InputError
+from scenarios.studies.convergence.cases import CIRCLE_HEADING_RATES, REFERENCES, Case, draw_case, references_of
+
+BLOCK = 1250
+"""Trajectories that one process flies before the next are handed out, at most."""
+PATIENCE = 20.0
+"""A trajectory may take this many times what the averaged motion predicts; of 20,000 the slowest took 7 times as long."""
+PATIENCE_CUT = 2.0
+"""Under cut commands, where some never arrive, this many times."""
+PATIENCE_STRAIGHT = 10.0
+"""But at least this many times what the straightest way there takes on what turning the reference leaves."""
+
+COLUMNS = (
+    "trajectory", "law", "reference", "reference_heading_rate_max_rad_s", "start_north_m", "start_east_m", "start_distance_m",
+    "start_course_rad", "reference_course_rad", "start_phi_rad", "outcome", "message", "settling_time_s",
+    "settling_time_predicted_s", "distance_final_m", "phi_final_rad", "duration_s", "distance_max_m", "heading_rate_max_rad_s",
+    "reference_terms",
+)  # fmt: skip
+"""Columns of the table, in order. A settling time that a trajectory does not have is empty."""
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Block:
+    """Trajectories of one law and one kind of reference, to be flown together."""
+
+    law: Steering
+    vehicle: Vehicle
+    cases: tuple[Case, ...]
+    predicted: Array
+    settling_band: float
+    time_max: Array
+
+
+def convergence_blocks(
+    *,
+    trajectories: int,
+    seed: int,
+    distance_max: float,
+    vehicle: Vehicle,
+    settling_band: float,
+    time_max: float,
+    laws: Sequence[str],
+) -> list[Block]:
+    """Return a study's trajectories, one per start and law, in blocks that are to be flown together; those that take long first.
+
+    Starts are uniform over the disc about the reference, their courses uniform; the references are a circle, an oscillation and a
+    random course in turn. The rows of a block depend neither on the other laws nor on the other blocks, bit for bit.
+
+    Parameters
+    ----------
+    trajectories, seed : how many, and the seed of their draws
+    distance_max : of the starts [m]
+    vehicle : what flies; its heading_rate_max is also what oscillations are designed for
+    settling_band : distance below which a trajectory counts as settled [m]
+    time_max : limit [s]; the patiences of this file give more to starts from which more is expected to be needed
+    laws : values of ``gnc.analysis.ensemble_motion.Steering``
+
+    Raises
+    ------
+    InputError : unknown law, a number out of range, or a vehicle that cannot turn as fast as its references
+    """
+    if unknown := [law for law in laws if law not in {known.value for known in Steering}]:
+        raise InputError(f"law {unknown[0]!r} is unknown; choose from {', '.join(law.value for law in Steering)}")
+    for name, value in (("trajectories", trajectories), ("distance_max", distance_max), ("time_max", time_max)):
+        if not value > 0:
+            raise InputError(f"{name} is {value:g}; it must be above 0")
+    if not vehicle.heading_rate_max > CIRCLE_HEADING_RATES[1]:
+        raise InputError(
+            f"heading_rate_max is {vehicle.heading_rate_max:g} rad/s; circles turn at up to {CIRCLE_HEADING_RATES[1]:g}: raise it"
+        )
+    cases = [
+        draw_case(seed, trajectory, distance_max, vehicle.speed, vehicle.heading_rate_max) for trajectory in range(trajectories)
+    ]
+    blocks = [
+        block for law in laws for block in _blocks(Steering(law), vehicle, cases, settling_band=settling_band, time_max=time_max)
+    ]
+    # The longest first: the last to finish is then a short one.
+    return sorted(blocks, key=lambda block: -float(block.time_max.max()))
+
+
+def convergence_table(rows: Iterable[Row], laws: Sequence[str]) -> pd.DataFrame:
+    """Return rows by trajectory and then in the order of ``laws``, with columns ``COLUMNS``."""
+    order = {law: i for i, law in enumerate(laws)}
+    ordered: list[Row] = sorted(rows, key=lambda row: (row["trajectory"], order[row["law"]]))
+    return pd.DataFrame(ordered, columns=list(COLUMNS))
+
+
+def counterexamples(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows that did not converge."""
+    return frame[frame["outcome"] != Outcome.CONVERGED.value]
+
+
+def trajectory_of(row: pd.Series, *, vehicle: Vehicle, settling_band: float, step_max: float = 0.5) -> pd.DataFrame:
+    """Return the time history of one row, flown again with steps of at most ``step_max`` [s].
+
+    Columns: time_s, north_m, east_m, course_rad of the vehicle, the same of the reference (which starts at 0, 0), distance_m,
+    phi_rad and heading_rate_rad_s. It ends where the row ends, to within the tolerances of the integration.
+    """
+    terms = json.loads(row["reference_terms"])
+    references = TurningReferences(
+        course=[row["reference_course_rad"]],
+        rate=[terms["rate"]],
+        **{name: np.array(terms[name], dtype=float).reshape(-1, 1) for name in ("amplitude", "frequency", "phase")},
+    )
+    steps: list[tuple[float, ...]] = []
+
+    def observe(_: npt.NDArray[np.int64], time: Array, state: Array, phi: Array, command: Array) -> None:
+        steps.append((float(time[0]), float(state[0, 0]), float(state[1, 0]), float(phi[0]), float(command[0])))
+
+    fly_ensemble(
+        Steering(row["law"]),
+        vehicle,
+        references,
+        to_reference=[[-row["start_north_m"]], [-row["start_east_m"]]],
+        course=[row["start_course_rad"]],
+        settling_band=settling_band,
+        time_max=row["duration_s"],
+        tolerances=Tolerances(step_max=step_max),
+        observe=observe,
+    )
+    time, to_north, to_east, phi, command = np.array(steps).T
+    course_r = _course(references, time)
+    north_r, east_r = _reference_track(references, vehicle.speed, time)
+    delta = vehicle.look_ahead.epsilon * (to_north**2 + to_east**2) + vehicle.look_ahead.radius
+    course_z = np.arctan2(to_east + delta * np.sin(course_r), to_north + delta * np.cos(course_r))
+    return pd.DataFrame({
+        "time_s": time,
+        "north_m": north_r - to_north,
+        "east_m": east_r - to_east,
+        "course_rad": course_z + phi,
+        "reference_north_m": north_r,
+        "reference_east_m": east_r,
+        "reference_course_rad": course_r,
+        "distance_m": np.hypot(to_north, to_east),
+        "phi_rad": phi,
+        "heading_rate_rad_s": command,
+    })  # fmt: skip
+
+
+def _course(references: TurningReferences, time: Array) -> Array:
+    """Return the course of one reference at many times [rad]."""
+    return references.take(np.zeros(len(time), dtype=np.int64)).course_at(time)
+
+
+def _reference_track(references: TurningReferences, speed: float, time: Array) -> tuple[Array, Array]:
+    """Return north and east [m] of one reference: its velocity integrated between times by Gauss's rule of three points."""
+    nodes, weights = np.polynomial.legendre.leggauss(3)
+    step = np.diff(time)
+    north, east = np.zeros_like(step), np.zeros_like(step)
+    for node, weight in zip(nodes, weights, strict=True):
+        course = _course(references, time[:-1] + 0.5 * step * (1.0 + node))
+        north += 0.5 * weight * speed * step * np.cos(course)
+        east += 0.5 * weight * speed * step * np.sin(course)
+    return np.concatenate([[0.0], np.cumsum(north)]), np.concatenate([[0.0], np.cumsum(east)])
+
+
+def _blocks(law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_band: float, time_max: float) -> Iterator[Block]:
+    """Yield the trajectories in blocks of one kind of reference, the longest first.
+
+    A block takes at least as long as its longest trajectory, so that like belongs with like.
+    """
+    for kind in REFERENCES:
+        chosen = [case for case in cases if case.kind == kind]
+        if not chosen:
+            continue
+        references = references_of(chosen)
+        to_reference = -np.array([[case.north for case in chosen], [case.east for case in chosen]])
+        predicted = averaged_settling_time(vehicle.look_ahead, vehicle.speed, references, to_reference, settling_band)
+        limit = averaged_settling_time(vehicle.look_ahead, vehicle.speed, references, to_reference, DISTANCE_CONVERGED)
+        limit *= PATIENCE_CUT if law is Steering.CASCADE_CUT else PATIENCE
+        if law is Steering.CASCADE_CUT:
+            # Turning once at omega_max leaves 1 - omega_r/omega_max of the reference's time of turn to fly straight.
+            straight = vehicle.speed * (1.0 - np.abs(references.rate) / vehicle.heading_rate_max)
+            limit = np.maximum(limit, PATIENCE_STRAIGHT * np.hypot(*to_reference) / straight)
+        limit = np.maximum(limit, time_max)
+        order = np.argsort(-limit, kind="stable")
+        for first in range(0, len(chosen), BLOCK):
+            which = order[first : first + BLOCK]
+            yield Block(
+                law=law,
+                vehicle=vehicle,
+                cases=tuple(chosen[i] for i in which),
+                predicted=predicted[which],
+                settling_band=settling_band,
+                time_max=limit[which],
+            )
+
+
+def fly_block(block: Block) -> list[Row]:
+    """Return the rows of a block."""
+    result = fly_ensemble(
+        block.law,
+        block.vehicle,
+        references_of(block.cases),
+        to_reference=-np.array([[case.north for case in block.cases], [case.east for case in block.cases]]),
+        course=[case.course for case in block.cases],
+        settling_band=block.settling_band,
+        time_max=block.time_max,
+    )
+    return [_row(block, result, i) for i in range(len(block.cases))]
+
+
+def _row(block: Block, result: EnsembleResult, i: int) -> Row:
+    case = block.cases[i]
+    return {
+        "trajectory": case.trajectory,
+        "law": block.law.value,
+        "reference": case.kind,
+        "reference_heading_rate_max_rad_s": abs(case.rate) + sum(abs(term.amplitude) for term in case.terms),
+        "start_north_m": case.north,
+        "start_east_m": case.east,
+        "start_distance_m": float(np.hypot(case.north, case.east)),
+        "start_course_rad": case.course,
+        "reference_course_rad": case.reference_course,
+        "start_phi_rad": float(result.phi_0[i]),
+        "outcome": result.outcome[i].value,
+        "message": result.message[i],
+        "settling_time_s": float(result.settling_time[i]),
+        "settling_time_predicted_s": float(block.predicted[i]),
+        "distance_final_m": float(result.distance[i]),
+        "phi_final_rad": float(result.phi[i]),
+        "duration_s": float(result.duration[i]),
+        "distance_max_m": float(result.distance_max[i]),
+        "heading_rate_max_rad_s": float(result.heading_rate_max[i]),
+        "reference_terms": json.dumps({
+            "rate": case.rate,
+            "amplitude": [term.amplitude for term in case.terms],
+            "frequency": [term.frequency for term in case.terms],
+            "phase": [term.phase for term in case.terms],
+        }),
+    }  # fmt: skip

@@ -1,0 +1,1 @@
+"""What flies, its sensors and its payload."""

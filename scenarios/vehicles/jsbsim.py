@@ -1,0 +1,89 @@
+"""The aircraft in six degrees of freedom: JSBSim with the autopilot, both at 120 Hz in C++."""
+
+import math
+from dataclasses import replace
+
+from aircraft.atmosphere.weather import Weather
+from aircraft.dynamics.trim import Trim
+from aircraft.simulation.local_frame import LocalFrame
+from aircraft.spec import Envelope
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.servo_monitor import ServoWatch
+from scenarios.vehicles.telemetry import Telemetry
+
+_BANK_LIMIT = 1.4
+_AIRSPEED_LIMITS = (8.0 / 15.0, 1.8)
+"""Out of control below and above these shares of the slowest and the fastest airspeed of the envelope [-]."""
+
+_ALTITUDE_MIN = 1.0
+
+
+class JsbsimVehicle:
+    """An aircraft released from straight and level flight.
+
+    Parameters
+    ----------
+    aircraft : with its autopilot; whatever it flew before is over. What is to fail on the way takes one made ``failable``
+    start : straight and level equilibrium
+    envelope : where the autopilot may fly it
+    north, east, altitude : where it is released [m]
+    course : of its velocity against the air, which without wind is that over the ground [rad]
+    time_step : of the guidance, a multiple of the simulation's [s]
+    weather : the air it flies in; none for still air
+    """
+
+    __slots__ = (
+        "_airspeed_limits", "_command_airspeed", "_command_heading_rate", "_run", "_runs", "air_data", "command_altitude", "fail",
+        "hold_elevator", "motion", "sample", "servo_error",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        aircraft: AutopilotedAircraft,
+        start: Trim,
+        envelope: Envelope,
+        *,
+        north: float,
+        east: float,
+        altitude: float,
+        course: float,
+        time_step: float,
+        weather: Weather | None = None,
+    ) -> None:
+        frame = LocalFrame(altitude=altitude)
+        latitude, longitude = frame.to_geodetic(north, east)
+        state = replace(start.state(latitude, longitude, course - start.course_offset()), altitude=altitude)
+        aircraft.release(state, airspeed=start.airspeed, altitude=altitude, weather=weather)
+        telemetry = Telemetry(aircraft.fdm, frame)
+        self.motion = telemetry.motion
+        self.air_data = telemetry.air_data
+        self.sample = telemetry.sample
+        self.command_altitude = aircraft.command_altitude
+        self.fail = aircraft.fail
+        self.hold_elevator = aircraft.hold_elevator
+        self.servo_error = ServoWatch(aircraft.fdm, time_step).error
+        self._command_airspeed = aircraft.command_airspeed
+        self._command_heading_rate = aircraft.command_heading_rate
+        self._airspeed_limits = (_AIRSPEED_LIMITS[0] * envelope.airspeed_min, _AIRSPEED_LIMITS[1] * envelope.airspeed_max)
+        self._run = aircraft.run
+        self._runs = range(round(time_step / aircraft.fdm.time_step))
+
+    def advance(self, heading_rate: float, airspeed: float) -> None:
+        """Fly one guidance step with these commands [rad/s, m/s]."""
+        self._command_heading_rate(heading_rate)
+        self._command_airspeed(airspeed)
+        run = self._run
+        for _ in self._runs:
+            run()
+
+    def fault(self, sample: tuple[float, ...]) -> str:
+        """Return why the aircraft is out of control, or nothing. A value that is not a number is never within its limits."""
+        altitude, airspeed, roll = sample[:3]
+        low, high = self._airspeed_limits
+        if not abs(roll) < _BANK_LIMIT:
+            return f"bank reached {math.degrees(roll):.0f} deg against a limit of {math.degrees(_BANK_LIMIT):.0f}"
+        if not low < airspeed < high:
+            return f"airspeed reached {airspeed:.1f} m/s outside {low:.1f} to {high:.1f}"
+        if not altitude > _ALTITUDE_MIN:
+            return f"altitude fell to {altitude:.1f} m"
+        return ""

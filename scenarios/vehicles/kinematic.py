@@ -1,0 +1,98 @@
+"""The paper's vehicle: equation (1), in the same closed loop as JSBSim's."""
+
+import math
+
+from gnc.reference.oscillation import bank_for_heading_rate
+from gnc.unicycle import lagged_move, unicycle_move
+from scenarios.errors import InputError
+from scenarios.vehicles.vehicle import SAMPLE_COLUMNS
+
+_NONE = (math.nan,) * (len(SAMPLE_COLUMNS) - 4)
+
+
+class KinematicVehicle:
+    """A vehicle that flies the commanded airspeed at once and turns at the commanded heading rate, at once or with a lag.
+
+    It keeps its altitude, whatever it is told, and drifts with a steady wind. Its bank is that of a coordinated turn, for
+    comparison only: nothing bounds it.
+
+    Parameters
+    ----------
+    north, east, altitude : where it starts [m]
+    course : against the air, which without wind is that over the ground [rad]
+    speed : against the air [m/s]
+    time_step : of the guidance [s]
+    lag : time constant of the heading rate behind its command [s]; 0 for equation (1) as it stands
+    wind_north, wind_east : velocity of the air, so where the wind blows to [m/s]
+    """
+
+    __slots__ = (
+        "_altitude", "_course", "_east", "_heading_rate", "_lag", "_north", "_speed", "_time_step", "_wind_east", "_wind_north",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        *,
+        north: float,
+        east: float,
+        altitude: float,
+        course: float,
+        speed: float,
+        time_step: float,
+        lag: float,
+        wind_north: float = 0.0,
+        wind_east: float = 0.0,
+    ) -> None:
+        self._north, self._east, self._altitude = north, east, altitude
+        self._course, self._speed = course, speed
+        self._heading_rate = 0.0
+        self._time_step, self._lag = time_step, lag
+        self._wind_north, self._wind_east = wind_north, wind_east
+
+    def motion(self) -> tuple[float, float, float, float, float]:
+        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate against the air [rad/s]."""
+        velocity_north = self._speed * math.cos(self._course) + self._wind_north
+        velocity_east = self._speed * math.sin(self._course) + self._wind_east
+        return self._north, self._east, velocity_north, velocity_east, self._heading_rate
+
+    def air_data(self) -> tuple[float, float, float]:
+        """Return airspeed [m/s], heading, not wrapped, and the bank of a coordinated turn [rad]."""
+        return self._speed, self._course, bank_for_heading_rate(self._heading_rate, self._speed)
+
+    def sample(self) -> tuple[float, ...]:
+        """Return ``SAMPLE_COLUMNS``."""
+        airspeed, _, bank = self.air_data()
+        return self._altitude, airspeed, bank, 0.0, *_NONE
+
+    def advance(self, heading_rate: float, airspeed: float) -> None:
+        """Fly one guidance step with these commands [rad/s, m/s]."""
+        self._speed = airspeed
+        if self._lag > 0.0:
+            self._north, self._east, self._course, self._heading_rate = lagged_move(
+                self._north, self._east, self._course, self._heading_rate, airspeed, heading_rate, self._lag, self._time_step
+            )
+        else:
+            self._north, self._east, self._course = unicycle_move(
+                self._north, self._east, self._course, airspeed, heading_rate, self._time_step
+            )
+            self._heading_rate = heading_rate
+        self._north += self._wind_north * self._time_step
+        self._east += self._wind_east * self._time_step
+
+    def command_altitude(self, altitude: float, /) -> None:
+        """Do nothing: equation (1) has no altitude."""
+
+    def servo_error(self) -> float:
+        """Return 0: equation (1) has no servos."""
+        return 0.0
+
+    def hold_elevator(self) -> None:
+        """Do nothing: equation (1) has no elevator."""
+
+    def fail(self, name: str) -> None:
+        """Raise InputError: equation (1) has no parts."""
+        raise InputError(f"'{name}' cannot fail in a kinematic flight, which has no parts; fly it with fidelity six_dof")
+
+    def fault(self, sample: tuple[float, ...]) -> str:
+        """Return nothing, unless the guidance commanded what is not a number: equation (1) is never out of control."""
+        return "" if math.isfinite(sample[2] + self._north + self._east) else "the motion is not a number"

@@ -1,0 +1,62 @@
+"""What the UAV's sensors say: the truth, and errors that are drawn for a whole flight at once."""
+
+import math
+
+import numpy as np
+from scipy.signal import lfilter
+
+from scenarios.schema.sea_config import Sensors
+
+NAVIGATION_TIME = 60.0
+"""Time constant with which the error of satellite navigation wanders [s]."""
+
+Reading = tuple[tuple[float, float, float, float] | None, float, float]
+"""North, east [m], north and east velocity [m/s], or none while satellite navigation is lost; airspeed [m/s]; heading [rad]."""
+
+
+class SensorErrors:
+    """Errors of one flight's sensors.
+
+    Parameters
+    ----------
+    sensors : how large they are
+    steps : number of readings
+    time_step : between them [s]
+    generator : of their random numbers
+
+    Attributes
+    ----------
+    airspeed_bias : of this flight [m/s]
+    """
+
+    def __init__(self, sensors: Sensors, *, steps: int, time_step: float, generator: np.random.Generator) -> None:
+        self.airspeed_bias = float(generator.uniform(-1.0, 1.0)) * sensors.airspeed_bias_mps
+        heading_bias = math.radians(float(generator.uniform(-1.0, 1.0)) * sensors.heading_bias_deg)
+        white = generator.standard_normal((6, steps))
+        kept = math.exp(-time_step / NAVIGATION_TIME)
+        before = generator.standard_normal((2, 1))
+        wander, _ = lfilter([math.sqrt(1.0 - kept**2)], [1.0, -kept], white[:2], axis=-1, zi=kept * before)
+        errors = [
+            sensors.position_sigma_m * wander.T,
+            sensors.velocity_sigma_mps * white[2:4].T,
+            self.airspeed_bias + sensors.airspeed_sigma_mps * white[4],
+            heading_bias + math.radians(sensors.heading_sigma_deg) * white[5],
+        ]
+        # One flat list: thousands of small ones take longer to make than all of them to read.
+        self._errors: list[float] = np.column_stack(errors).ravel().tolist()
+
+    def read(
+        self, step: int, motion: tuple[float, float, float, float, float], airspeed: float, heading: float, *, satellites: bool
+    ) -> Reading:
+        """Return what is read at a step.
+
+        Parameters
+        ----------
+        step : number of the reading
+        motion : true north, east [m], their rates [m/s] and heading rate [rad/s]
+        airspeed, heading : true ones [m/s, rad]
+        satellites : whether satellite navigation works
+        """
+        north, east, v_north, v_east, air, turned = self._errors[6 * step : 6 * step + 6]
+        position = (motion[0] + north, motion[1] + east, motion[2] + v_north, motion[3] + v_east) if satellites else None
+        return position, airspeed + air, heading + turned

@@ -1,0 +1,1 @@
+"""Truth outside the UAV: vessel, plume, weather, reports, faults."""

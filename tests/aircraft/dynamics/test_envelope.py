@@ -1,0 +1,84 @@
+"""Where an aircraft can fly the study: stall, banks by class, reserve at the ends."""
+
+import math
+
+import numpy as np
+import pytest
+
+from aircraft.dynamics.envelope import bank_by_class, find_envelope, first_trim
+from aircraft.dynamics.trim import TrimOutcome, search_trim
+from aircraft.errors import AircraftError
+from aircraft.fleet.find import find_spec
+from aircraft.simulation.fdm import Fdm
+from aircraft.simulation.state import RigidBodyState, body_velocity
+from aircraft.spec import AEROSONDE, BANK_RESERVE, X8
+from aircraft.units import NEWTONS_PER_POUND
+
+ALTITUDE = 100.0
+STEEPEST = 1.1  # the autopilot's tables reach a tenth past its largest bank
+
+
+@pytest.fixture(scope="module")
+def jet():
+    return Fdm(find_spec("T37"))
+
+
+@pytest.fixture(scope="module")
+def envelope(jet):
+    return find_envelope(jet, ALTITUDE)
+
+
+@pytest.mark.parametrize("spec", [X8, AEROSONDE], ids=lambda spec: spec.name)
+def test_an_envelope_that_the_spec_states_is_taken_as_it_is(spec):
+    assert find_envelope(Fdm(spec), ALTITUDE) is spec.envelope
+
+
+@pytest.mark.parametrize(
+    ("mass", "bank_deg"),
+    # Small unmanned aircraft turn steeply; up to 12,500 lb (5670 kg), CS-23's limit, as light aeroplanes do; above as airliners.
+    [(3.4, 45.0), (150.0, 45.0), (151.0, 30.0), (1100.0, 30.0), (5670.0, 30.0), (5671.0, 25.0), (60_000.0, 25.0)],
+)
+def test_the_bank_goes_with_the_class(mass, bank_deg):
+    assert math.degrees(bank_by_class(mass)) == pytest.approx(bank_deg)
+
+
+def test_the_stall_is_where_the_largest_lift_just_carries_the_weight(jet, envelope):
+    # Independently: at the stall airspeed itself, over all angles of attack, by steps ten times finer than the search's, lift just
+    # reaches the weight. Coefficients are the same at that speed (Mach 0.12 against 0.2); 1 degree of steps at the flat top of lift
+    # is 1 %, its root half of it.
+    lifts = []
+    with jet.frozen():
+        for alpha in np.radians(np.arange(0.0, 23.0, 0.1)):
+            velocity = body_velocity(envelope.stall, float(alpha), 0.0)
+            jet.place(RigidBodyState(altitude=ALTITUDE, roll=0.0, pitch=float(alpha), velocity_body=velocity))
+            jet.step(2)
+            lifts.append(-jet.read("forces/fwz-aero-lbs") * NEWTONS_PER_POUND)
+    weight = jet.read("inertia/weight-lbs") * NEWTONS_PER_POUND
+    assert max(abs(lift) for lift in lifts) == pytest.approx(weight, rel=0.03)
+
+
+def test_the_slowest_airspeed_leaves_three_tenths_above_stall_in_the_steepest_turn(envelope):
+    steepest = STEEPEST * (envelope.bank + BANK_RESERVE)
+    # In a turn stall rises with the root of the load, 1/cos(bank).
+    assert envelope.airspeed_min == pytest.approx(1.3 * envelope.stall / math.sqrt(math.cos(steepest)))
+    assert envelope.airspeed_max <= 1.6 * envelope.airspeed_min * (1.0 + 1e-9)
+    assert envelope.airspeed_min < envelope.airspeed < envelope.airspeed_max
+    assert len(envelope.design_airspeeds) == 5
+    assert envelope.design_airspeeds[-1] == pytest.approx(envelope.airspeed_max)
+    assert envelope.bank_max == pytest.approx(envelope.bank + math.radians(5.0))
+
+
+def test_both_ends_fly_level_and_steepest_turns_with_reserve(jet, envelope):
+    steepest = STEEPEST * envelope.bank_max
+    for airspeed in (envelope.airspeed_min, envelope.airspeed_max):
+        for bank in (0.0, steepest, -steepest):
+            found = search_trim(jet, airspeed=airspeed, altitude=ALTITUDE, bank=bank)
+            assert found.outcome is TrimOutcome.CONVERGED
+            assert 0.03 <= found.inputs["throttle"] <= 0.95
+            assert max(abs(found.inputs[name]) for name in ("elevator", "aileron", "rudder")) <= 0.9
+
+
+def test_an_aircraft_that_trims_nowhere_is_refused_with_what_holds_it():
+    # At 25 km there is a thirtieth of the air, which neither the T-37's wing nor its engines can live on.
+    with pytest.raises(AircraftError, match=r"'T37' does not trim: .* at .* m/s"):
+        first_trim(Fdm(find_spec("T37")), 25_000.0)

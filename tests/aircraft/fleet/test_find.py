@@ -1,0 +1,97 @@
+"""Finding aircraft by name: those of this project, those of JSBSim, and why some of those cannot be flown."""
+
+import re
+from pathlib import Path
+
+import jsbsim
+import pytest
+
+from aircraft.errors import AircraftError
+from aircraft.fleet.find import aircraft_names, find_spec
+from aircraft.fleet.stock import stock_names
+from aircraft.spec import AEROSONDE, X8
+
+STOCK = Path(jsbsim.get_default_root_dir()) / "aircraft"
+
+
+def reason(name):
+    with pytest.raises(AircraftError) as caught:
+        find_spec(name)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_the_projects_own_aircraft_are_found_first():
+    assert find_spec("x8") is X8
+    assert find_spec("aerosonde") is AEROSONDE
+    assert aircraft_names()[:2] == ["x8", "aerosonde"]
+    assert len(set(aircraft_names())) == len(aircraft_names())
+
+
+def test_every_aircraft_that_jsbsim_brings_has_a_name_here():
+    # A directory with a model file of its name, as JSBSim loads it.
+    expected = {path.parent.name for path in STOCK.glob("*/*.xml") if path.stem == path.parent.name}
+    assert set(stock_names()) == expected
+    assert len(expected) > 40
+    assert expected <= set(aircraft_names())
+
+
+@pytest.mark.parametrize("name", stock_names())
+def test_every_aircraft_of_jsbsim_is_found_or_refused_with_a_reason(name):
+    try:
+        spec = find_spec(name)
+    except AircraftError as error:
+        spec, refusal = None, str(error)
+    if spec is None:
+        assert re.fullmatch(rf"aircraft '{name}' cannot be flown: [^\n]{{10,}}", refusal)
+        return
+    assert (spec.name, spec.model, spec.root) == (name, name, STOCK.parent)
+    assert {i.name for i in spec.inputs} == {"elevator", "aileron", "throttle", "rudder"}
+    # A throttle for each engine in the model's own file.
+    text = (STOCK / name / f"{name}.xml").read_text(encoding="utf-8", errors="replace")
+    engines = len(re.findall(r"<engine\s", re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)))
+    assert len(spec.input("throttle").commands) == engines
+    assert len(set(spec.input("throttle").commands)) == engines
+    assert "own autopilot off" in spec.source
+
+
+@pytest.mark.parametrize("name", ["c172x", "c310", "T37", "737", "J3Cub"])
+def test_aeroplanes_with_engines_are_found(name):
+    assert find_spec(name).envelope is None  # which is found by trimming it
+
+
+def test_a_spec_has_a_throttle_and_a_running_flag_for_each_engine_that_must_be_started():
+    twin = find_spec("c310")
+    assert twin.input("throttle").commands == ("fcs/throttle-cmd-norm", "fcs/throttle-cmd-norm[1]")
+    assert twin.engine_flags == ("propulsion/engine/set-running", "propulsion/engine[1]/set-running")
+    # An electric motor turns when it gets current.
+    assert X8.engine_flags == ()
+
+
+# Each is what its name says; the reason names what it is or has not.
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("ah1s", "rotorcraft"),
+        ("weather-balloon", "lighter than air"),
+        ("Submarine_Scout", "lighter than air"),
+        ("J246", "rocket"),
+        ("X15", "rocket"),
+        ("SGS", "no engine"),
+        ("ball", "no engine"),
+    ],
+)
+def test_what_is_no_aeroplane_with_engines_is_refused_for_what_it_is(name, why):
+    assert why in reason(name)
+
+
+def test_an_unknown_name_is_refused_with_its_nearest_neighbour_and_where_names_are_listed():
+    assert "unknown aircraft 'c172'; did you mean 'c172" in reason("c172")
+    assert "unknown aircraft 'aerosond'; did you mean 'aerosonde'" in reason("aerosond")
+    assert "python -m innerloop.design --list" in reason("zeppelin NT")
+    assert "did you mean" not in reason("zzz")
+
+
+@pytest.mark.parametrize("name", ["", "..", "../aircraft/c172x", "c172x/", "/"])
+def test_what_is_no_name_is_unknown_and_no_path(name):
+    assert "unknown aircraft" in reason(name)

@@ -1,0 +1,80 @@
+"""JSBSim's own aircraft in the wrapper: engines run, gear is up, fuel stays, and places are reached again."""
+
+import pytest
+
+from aircraft.fleet.find import find_spec
+from aircraft.simulation.fdm import Fdm
+from aircraft.simulation.state import RigidBodyState, body_velocity
+
+AIRSPEEDS = {"c172x": 55.0, "c310": 75.0, "T37": 80.0, "737": 150.0}  # m/s, each somewhere in its flight manual's range
+
+
+@pytest.fixture(scope="module", params=AIRSPEEDS)
+def placed(request):
+    """An aircraft that has been placed in flight, and its state."""
+    name = request.param
+    fdm = Fdm(find_spec(name))
+    state = RigidBodyState(altitude=1000.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(AIRSPEEDS[name], 0.05, 0.0))
+    fdm.command({"elevator": 0.0, "aileron": 0.0, "throttle": 0.7, "rudder": 0.0})
+    fdm.place(state)
+    return name, fdm, state
+
+
+def test_every_engine_runs_after_the_first_placing_and_pulls(placed):
+    _, fdm, _ = placed
+    with fdm.frozen():
+        fdm.step(240)
+    for flag in fdm.spec.engine_flags:
+        assert fdm.read(flag) == 1.0
+        # 0.7 of throttle at these airspeeds: no propeller wind-mills and no turbine idles.
+        assert fdm.read(flag.replace("set-running", "thrust-lbs")) > 100.0
+
+
+def test_engines_that_jsbsim_starts_at_once_are_not_cranked(placed):
+    _, fdm, _ = placed
+    assert not fdm.cranked
+
+
+def test_an_engine_that_jsbsim_does_not_start_at_once_is_started_by_its_starter():
+    # The Mustang's: asked to run at once, its running flag stays 0.
+    fdm = Fdm(find_spec("p51d"))
+    fdm.command({"throttle": 0.7})
+    fdm.place(RigidBodyState(altitude=1000.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(110.0, 0.05, 0.0)))
+    assert fdm.cranked
+    assert fdm.read("propulsion/engine/set-running") == 1.0
+    assert fdm.read("propulsion/starter_cmd") == 0.0
+    assert fdm.read("fcs/throttle-cmd-norm") == 0.7  # as it was commanded before
+
+
+def test_the_gear_is_up_and_neither_fuel_nor_mass_changes_in_flight(placed):
+    _, fdm, state = placed
+    fdm.place(state)
+    assert fdm.read("gear/gear-pos-norm") == 0.0
+    weight = fdm.read("inertia/weight-lbs")
+    with fdm.frozen():
+        fdm.step(1200)
+    # Ten seconds of a 737's engines would be 15 kg.
+    assert fdm.read("inertia/weight-lbs") == weight
+
+
+def test_engines_come_to_rest_and_the_same_place_gives_the_same_accelerations(placed):
+    name, fdm, state = placed
+    found = []
+    for _ in range(2):
+        with fdm.frozen():
+            fdm.place(state)
+            assert fdm.settle()
+            found.append([*fdm.acceleration_body(), *fdm.angular_acceleration()])
+            # Elsewhere in between, with another throttle.
+            fdm.command({"throttle": 0.9})
+            fdm.place(RigidBodyState(altitude=2000.0, roll=0.3, pitch=0.0, velocity_body=(AIRSPEEDS[name], 1.0, 2.0)))
+            fdm.step(600)
+            fdm.command({"throttle": 0.7})
+    # Settled to 1e-9 a step, behind engines as slow as a second or two (120 to 240 steps).
+    assert found[0] == pytest.approx(found[1], abs=2e-6)
+
+
+def test_a_command_reaches_every_engine():
+    fdm = Fdm(find_spec("c310"))
+    fdm.command({"throttle": 0.37})
+    assert [fdm.read(name) for name in ("fcs/throttle-cmd-norm", "fcs/throttle-cmd-norm[1]")] == [0.37, 0.37]

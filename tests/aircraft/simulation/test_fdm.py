@@ -1,0 +1,198 @@
+"""The JSBSim wrapper: property names, placing, holding, and silence."""
+
+import math
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+
+from aircraft.errors import AircraftError, ReadOnlyPropertyError, UnknownPropertyError
+from aircraft.simulation.fdm import TIME_STEP, Fdm
+from aircraft.simulation.local_frame import LocalFrame
+from aircraft.simulation.state import RigidBodyState, body_velocity
+from aircraft.spec import MODELS, X8
+
+SOMEWHERE = RigidBodyState(
+    latitude=0.2,
+    longitude=-0.3,
+    altitude=120.0,
+    roll=0.3,
+    pitch=0.1,
+    yaw=1.234,
+    velocity_body=body_velocity(20.0, 0.04, -0.02),
+    rates_body=(0.3, -0.2, 0.1),
+)
+
+
+@pytest.mark.parametrize("use", ["read", "node", "writable_node"])
+def test_a_misspelt_property_is_refused_by_name_on_reading(x8_fdm, use):
+    with pytest.raises(UnknownPropertyError, match="'aero/alpha-rd'"):
+        getattr(x8_fdm, use)("aero/alpha-rd")
+
+
+@pytest.mark.parametrize("name", ["aero/alpha rad", "", "/aero", "aero//alpha-rad", "aero/alpha-rad "])
+def test_what_is_not_a_property_name_is_refused_before_it_can_end_the_process(x8_fdm, name):
+    with pytest.raises(UnknownPropertyError):
+        x8_fdm.read(name)
+
+
+def test_a_misspelt_property_is_refused_by_name_on_writing_and_not_created(x8_fdm):
+    with pytest.raises(UnknownPropertyError, match="'fcs/elevator-cmd-nrm'"):
+        x8_fdm.write("fcs/elevator-cmd-nrm", 0.1)
+    with pytest.raises(UnknownPropertyError):
+        x8_fdm.read("fcs/elevator-cmd-nrm")
+
+
+def test_a_read_only_property_is_refused_by_name_on_writing_but_can_be_read(x8_fdm):
+    with pytest.raises(ReadOnlyPropertyError, match="'aero/alpha-rad'"):
+        x8_fdm.write("aero/alpha-rad", 0.1)
+    assert math.isfinite(x8_fdm.read("aero/alpha-rad"))
+
+
+def test_a_written_property_reads_back(x8_fdm):
+    x8_fdm.write("fcs/elevator-cmd-norm", -0.123)
+    assert x8_fdm.read("fcs/elevator-cmd-norm") == -0.123  # stored, not computed with: exact
+
+
+def test_an_unknown_control_input_gets_one_line_that_lists_those_there_are(x8_fdm):
+    with pytest.raises(AircraftError, match=r"'rudder'.*elevator, aileron, throttle") as caught:
+        x8_fdm.command({"rudder": 0.1})
+    assert "\n" not in str(caught.value)
+
+
+def test_a_root_without_the_model_gets_one_line_that_names_file_and_remedy(tmp_path):
+    with pytest.raises(AircraftError, match=r"x8\.xml; check") as caught:
+        Fdm(X8, tmp_path)
+    assert "\n" not in str(caught.value)
+    assert str(tmp_path) in str(caught.value)
+
+
+def test_a_root_without_the_engine_files_gets_one_line_that_names_the_model(tmp_path):
+    shutil.copytree(MODELS / "aircraft", tmp_path / "aircraft")
+    with pytest.raises(AircraftError, match="refused its model 'x8'") as caught:
+        Fdm(X8, tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_model_that_is_not_xml_is_refused_as_an_aircraft_error(tmp_path):
+    shutil.copytree(MODELS, tmp_path, dirs_exist_ok=True)
+    (tmp_path / "aircraft" / "x8" / "x8.xml").write_text("<fdm_config>", encoding="utf-8")
+    with pytest.raises(AircraftError, match="refused its model 'x8'") as caught:
+        Fdm(X8, tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+def test_loading_and_flying_prints_nothing(capfd):
+    fdm = Fdm(X8)
+    fdm.place(SOMEWHERE)
+    fdm.step(3)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_nothing_is_left_in_a_buffer_to_be_printed_when_the_program_ends():
+    # C++ flushes its own buffer at exit, which capfd would not see.
+    program = "from aircraft.fdm import Fdm; from aircraft.spec import X8; Fdm(X8); print('mine')"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=MODELS.parents[1])
+    assert (done.stdout, done.stderr) == ("mine\n", "")
+
+
+def test_standard_output_works_again_after_loading(capfd):
+    Fdm(X8)
+    print("still here")
+    assert capfd.readouterr().out == "still here\n"
+
+
+def test_a_step_lasts_one_hundred_and_twentieth_of_a_second(x8_fdm):
+    x8_fdm.place(SOMEWHERE)
+    before = x8_fdm.read("simulation/sim-time-sec")
+    x8_fdm.step(12)
+    assert TIME_STEP == 1.0 / 120.0
+    assert x8_fdm.read("simulation/sim-time-sec") - before == pytest.approx(0.1, abs=1e-12)  # rounding of twelve additions
+
+
+def test_a_placed_aircraft_is_where_and_as_it_was_asked(x8_fdm):
+    x8_fdm.place(SOMEWHERE)
+    # Feet and quaternions in between: twelve digits survive.
+    assert x8_fdm.read("position/lat-geod-rad") == pytest.approx(0.2, abs=1e-12)
+    assert x8_fdm.read("position/long-gc-rad") == pytest.approx(-0.3, abs=1e-12)
+    assert x8_fdm.read("position/h-sl-meters") == pytest.approx(120.0, abs=1e-6)  # a metre in 6.4 million, twice
+    assert x8_fdm.velocity_body() == pytest.approx(SOMEWHERE.velocity_body, abs=1e-11)
+    assert x8_fdm.rates_body() == pytest.approx(SOMEWHERE.rates_body, abs=1e-12)
+    for name, angle in (("phi", 0.3), ("theta", 0.1), ("psi", 1.234)):
+        assert x8_fdm.read(f"attitude/{name}-rad") == pytest.approx(angle, abs=1e-12)
+
+
+@pytest.mark.parametrize("latitude", [0.0, 0.9])
+@pytest.mark.parametrize("yaw", [0.0, 1.234, -2.5])
+def test_hold_releases_at_the_asked_place_with_the_asked_yaw_and_motion(x8_fdm, latitude, yaw):
+    state = replace(SOMEWHERE, latitude=latitude, yaw=yaw)
+    x8_fdm.hold(state, 240)
+    frame = LocalFrame(latitude, state.longitude, state.altitude)
+    north, east = frame.to_local(x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad"))
+    # In two seconds the equator turns away by 930 m; 0.1 m is a thousandth of a percent of a plume crossing of kilometres.
+    assert math.hypot(north, east) < 0.1
+    assert x8_fdm.read("position/h-sl-meters") == pytest.approx(120.0, abs=0.1)
+    # The earth turns by 1.5e-4 rad meanwhile: an attitude held against the stars instead would be that far off.
+    off = x8_fdm.read("attitude/psi-rad") - yaw
+    assert math.remainder(off, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-6)
+    assert x8_fdm.read("attitude/phi-rad") == pytest.approx(0.3, abs=1e-6)
+    assert x8_fdm.read("attitude/theta-rad") == pytest.approx(0.1, abs=1e-6)
+    assert x8_fdm.velocity_body() == pytest.approx(state.velocity_body, abs=1e-6)
+    assert x8_fdm.rates_body() == pytest.approx(state.rates_body, abs=1e-6)
+
+
+def test_hold_lets_servos_and_propeller_come_to_rest(x8_fdm):
+    x8_fdm.command({"elevator": 0.1, "aileron": 0.05, "throttle": 0.6})
+    x8_fdm.hold(SOMEWHERE, 240)
+    # Elevons mix to command times 0.5236 rad (model file). Two seconds are 80 servo time constants: nothing is left.
+    assert x8_fdm.read("fcs/elevator-pos-rad") == pytest.approx(0.05236, abs=1e-12)
+    assert x8_fdm.read("fcs/aileron-pos-rad") == pytest.approx(0.02618, abs=1e-12)
+    speed = x8_fdm.read("propulsion/engine/propeller-rpm")
+    with x8_fdm.frozen():
+        assert x8_fdm.settle()
+    # Forty of the propeller's time constants of about 0.05 s.
+    assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(speed, rel=1e-6)
+
+
+def test_a_frozen_body_keeps_its_velocity_and_rates_while_forces_go_on(x8_fdm):
+    x8_fdm.command({"elevator": -0.5, "aileron": 0.0, "throttle": 1.0})
+    x8_fdm.place(SOMEWHERE)
+    with x8_fdm.frozen():
+        x8_fdm.step(60)
+        assert x8_fdm.velocity_body() == pytest.approx(SOMEWHERE.velocity_body, abs=1e-6)
+        assert x8_fdm.rates_body() == pytest.approx(SOMEWHERE.rates_body, abs=1e-6)
+        assert max(abs(a) for a in x8_fdm.acceleration_body()) > 1.0
+
+
+def test_frozen_restores_motion_also_after_an_error(x8_fdm):
+    x8_fdm.place(SOMEWHERE)
+    with pytest.raises(RuntimeError), x8_fdm.frozen():
+        raise RuntimeError
+    x8_fdm.step(12)
+    # A tenth of a second of unbalanced flight: several hundredths of a radian and two metres.
+    assert abs(x8_fdm.read("attitude/phi-rad") - SOMEWHERE.roll) > 0.01
+    frame = LocalFrame(SOMEWHERE.latitude, SOMEWHERE.longitude, SOMEWHERE.altitude)
+    north, east = frame.to_local(x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad"))
+    assert math.hypot(north, east) == pytest.approx(2.0, abs=0.2)  # 20 m/s for 0.1 s, slightly climbing and accelerating
+
+
+def test_settle_says_whether_there_was_enough_time(x8_fdm):
+    x8_fdm.command({"elevator": 0.5, "aileron": 0.0, "throttle": 0.6})
+    x8_fdm.place(SOMEWHERE)
+    with x8_fdm.frozen():
+        # Five steps of the propeller's run-up of a second or so from rest.
+        assert not x8_fdm.settle(steps_max=5)
+        assert x8_fdm.settle()
+        speed = x8_fdm.read("propulsion/engine/propeller-rpm")
+        x8_fdm.step(120)
+    assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(speed, rel=1e-7)  # 1e-9 a step, dying out
+
+
+def test_two_aircraft_do_not_share_state(x8_fdm):
+    other = Fdm(X8)
+    x8_fdm.place(SOMEWHERE)
+    other.place(replace(SOMEWHERE, roll=-0.3))
+    other.step(5)
+    assert x8_fdm.read("attitude/phi-rad") == pytest.approx(0.3, abs=1e-12)  # as placed, see above

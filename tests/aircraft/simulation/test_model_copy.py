@@ -1,0 +1,168 @@
+"""Copies of models: what is left out, what stays, and that the originals are as they were."""
+
+import hashlib
+import shutil
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
+import pytest
+
+from aircraft.errors import AircraftError
+from aircraft.fleet.find import find_spec
+from aircraft.simulation.fdm import Fdm
+from aircraft.simulation.model_copy import copy_model
+from aircraft.spec import MODELS
+
+ROOT = find_spec("c172x").root
+FLIGHT = """<fdm_config name="probe" version="2.0">
+  <input port="1139"/>
+  <output name="localhost" type="SOCKET" port="1138" rate="20"/>
+  <system name="GNCUtilities"/>
+  <autopilot name="probe autopilot">
+    <property value="1">ap/heading_hold</property>
+    <channel name="roll">
+      <pure_gain name="Wing Leveler"><input>ap/heading_hold</input><gain>2</gain><output>ap/aileron_cmd</output></pure_gain>
+      <summer name="ap/named/already"><input>ap/heading_hold</input></summer>
+    </channel>
+  </autopilot>
+  <system name="autothrottle"><property>ap/thrust_hold</property></system>
+  <system file="Autopilot"/>
+  <system name="map of flaps"><property>flaps/map</property></system>
+  <flight_control name="fcs">
+    <channel name="servo"><actuator name="fcs/servo">
+      <input>fcs/elevator-cmd-norm</input><lag>10</lag><hysteresis_width>0.05</hysteresis_width><deadband_width>0.01</deadband_width>
+    </actuator></channel>
+  </flight_control>
+</fdm_config>"""
+
+
+@pytest.fixture
+def probe(tmp_path):
+    """A root with a model that has one of everything that is left out, and a file for its autopilot."""
+    folder = tmp_path / "root" / "aircraft" / "probe"
+    (folder / "Systems").mkdir(parents=True)
+    (folder / "probe.xml").write_text(FLIGHT, encoding="utf-8")
+    (folder / "Systems" / "Autopilot.xml").write_text(
+        '<system name="any"><property>ap/from-file</property></system>', encoding="utf-8"
+    )
+    return tmp_path / "root"
+
+
+def copied(root, model, directory, **options):
+    return ET.parse(copy_model(root, model, directory, **options)).getroot()
+
+
+def digest(folder):
+    whole = hashlib.sha256()
+    for path in sorted(p for p in folder.rglob("*") if p.is_file()):
+        whole.update(str(path.relative_to(folder)).encode() + path.read_bytes())
+    return whole.hexdigest()
+
+
+@pytest.mark.parametrize("name", ["c172x", "c310", "737", "T37"])
+def test_the_original_on_disk_is_the_same_after_its_copy_has_flown(name):
+    spec = find_spec(name)
+    folders = [spec.root / part for part in (f"aircraft/{name}", "engine", "systems")]
+    before = [digest(folder) for folder in folders]
+    fdm = Fdm(spec)
+    fdm.step(3)
+    assert [digest(folder) for folder in folders] == before
+
+
+def test_outputs_inputs_and_autopilots_are_left_out_and_other_systems_stay(probe, tmp_path):
+    config = copied(probe, "probe", tmp_path / "copy")
+    assert config.find("output") is None
+    assert config.find("input") is None
+    assert config.find("autopilot") is None
+    # "map" has "ap" in it and is none; nor is a system of utilities.
+    names = [system.get("name") for system in config.findall("system")]
+    assert names == ["GNCUtilities", "map of flaps", "The model's own autopilot, off"]
+
+
+def test_the_autopilots_properties_stay_at_rest_before_the_flight_controls_that_read_them(probe, tmp_path):
+    config = copied(probe, "probe", tmp_path / "copy")
+    rest = config.findall("system")[-1]
+    values = {p.text: float(p.get("value")) for p in rest}
+    # Declared ones, written ones, and components by the name that JSBSim gives them, from the model and from files.
+    assert values == dict.fromkeys(
+        ("ap/heading_hold", "ap/wing-leveler", "ap/aileron_cmd", "ap/named/already", "ap/thrust_hold", "ap/from-file"), 0.0
+    )
+    order = [element.tag for element in config]
+    assert order.index("flight_control") == list(config).index(rest) + 1
+
+
+@pytest.mark.parametrize(("play", "parts"), [(True, ["hysteresis_width", "deadband_width"]), (False, [])])
+def test_servos_keep_their_play_only_if_asked_to(probe, tmp_path, play, parts):
+    config = copied(probe, "probe", tmp_path / "copy", play=play)
+    actuator = next(config.iter("actuator"))
+    assert [e.tag for e in actuator if e.tag.endswith("_width")] == parts
+    # What a linear model can have stays.
+    assert actuator.find("lag").text == "10"
+
+
+def test_play_is_taken_out_of_the_systems_files_too(probe, tmp_path):
+    actuator = '<actuator name="fcs/a"><input>fcs/b</input><hysteresis_width>0.1</hysteresis_width></actuator>'
+    text = f'<system name="servo"><channel name="c">{actuator}</channel></system>'
+    file = probe / "aircraft" / "probe" / "Systems" / "servo.xml"
+    file.write_text(text, encoding="utf-8")
+    copy_model(probe, "probe", tmp_path / "copy", play=False)
+    assert "hysteresis" not in (tmp_path / "copy" / "aircraft" / "probe" / "Systems" / "servo.xml").read_text(encoding="utf-8")
+    assert file.read_text(encoding="utf-8") == text
+
+
+def test_engines_propellers_and_systems_of_the_common_folders_come_along(tmp_path):
+    copy_model(ROOT, "c310", tmp_path)
+    model = ET.parse(tmp_path / "aircraft" / "c310" / "c310.xml").getroot()
+    for element in model.iterfind("propulsion/engine"):
+        for part in (element, element.find("thruster")):
+            assert (tmp_path / "engine" / f"{part.get('file')}.xml").is_file()
+    # And nothing else: JSBSim has more than a hundred engine files.
+    assert len(list((tmp_path / "engine").iterdir())) < 5
+
+
+@pytest.mark.parametrize(("name", "prop"), [("c310", "ap/elevator_cmd"), ("c172x", "ap/heading_hold")])
+def test_a_stock_aircrafts_own_autopilot_is_off(name, prop):
+    fdm = Fdm(find_spec(name))
+    fdm.step(3)
+    assert fdm.read(prop) == 0.0
+
+
+def test_a_copy_flies_under_the_stick_alone_as_the_original_does(tmp_path):
+    # The original with its autopilot off flies as the copy without one: the T-37 has none, so the two are the same model but for
+    # outputs. Its whole root is given to JSBSim as it stands.
+    spec = find_spec("T37")
+    shutil.copytree(spec.root / "engine", tmp_path / "engine")
+    shutil.copytree(spec.root / "aircraft" / "T37", tmp_path / "aircraft" / "T37")
+    from aircraft.simulation.state import RigidBodyState
+
+    state = RigidBodyState(altitude=1000.0, roll=0.1, pitch=0.05, velocity_body=(80.0, 0.0, 4.0))
+    flights = []
+    for fdm in (Fdm(spec), Fdm(spec, tmp_path)):
+        fdm.command({"elevator": -0.1, "aileron": 0.05, "throttle": 0.6, "rudder": 0.02})
+        fdm.hold(state, 240)
+        fdm.step(240)
+        flights.append([fdm.read(n) for n in ("attitude/phi-rad", "attitude/theta-rad", "velocities/vt-fps", "position/h-sl-ft")])
+    assert flights[0] == flights[1]
+
+
+def test_an_original_with_an_output_into_a_file_leaves_none(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    fdm = Fdm(find_spec("c172x"))
+    fdm.step(10)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_projects_own_models_are_copied_as_they_are(tmp_path):
+    config = copied(MODELS, "x8", tmp_path)
+    original = ET.parse(MODELS / "aircraft" / "x8" / "x8.xml").getroot()
+    assert [ET.tostring(e) for e in config] == [ET.tostring(e) for e in original]
+
+
+def test_a_model_that_is_missing_or_no_xml_is_refused_in_a_line(tmp_path):
+    spec = replace(find_spec("T37"), root=tmp_path)
+    with pytest.raises(AircraftError, match=r"no model file .*T37\.xml; check the JSBSim root"):
+        Fdm(spec)
+    (tmp_path / "aircraft" / "T37").mkdir(parents=True)
+    (tmp_path / "aircraft" / "T37" / "T37.xml").write_text("<fdm_config>", encoding="utf-8")
+    with pytest.raises(AircraftError, match=r"T37\.xml is not valid XML: .*; mend it"):
+        Fdm(spec)

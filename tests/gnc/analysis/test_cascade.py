@@ -1,0 +1,312 @@
+"""Section IV.D by machine: the cascade of equations (31) to (35), and what is true of its argument for bounded trajectories."""
+
+import math
+
+import numpy as np
+import pytest
+from gnc_cases import (
+    LOOK_AHEAD,
+    OSCILLATION,
+    SPEED,
+    circling,
+    courses,
+    delta_steering,
+    examples,
+    moved,
+    oscillating,
+    relative,
+    tracking_motion,
+    tracking_starts,
+)
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad, solve_ivp
+
+from gnc.analysis.cascade_system import (
+    DrivenState,
+    delta_bound,
+    driven_rates,
+    driving_rate,
+    excursion_time,
+    h,
+    unforced_rates,
+    v_1_rate_split,
+    v_1_unforced_acceleration,
+    v_1_unforced_rate,
+)
+from gnc.analysis.dynamics import state_rates, v_1_rate
+from gnc.laws.cascade import cascade_law
+from gnc.laws.delta import RelativeState, look_ahead, relative_velocity
+
+heading_rates = st.floats(-0.5, 0.5)
+speeds = st.floats(5.0, 40.0)
+gains = st.floats(0.05, 5.0)
+rates_max = st.floats(0.05, 1.0)
+# Any numbers, also those that no place of vehicle and reference has: as algebra the equations do not know of (15).
+any_driven = st.builds(DrivenState, st.floats(60.0, 3000.0), st.floats(10.0, 3000.0), courses)
+
+
+def cascade_steering(gain, rate_max, reference_heading_rate):
+    return delta_steering(lambda state, omega_rho: cascade_law(state.phi, omega_rho, gain, rate_max), reference_heading_rate)
+
+
+def fly_law_30(start, reference_heading_rate, *, gain, rate_max, duration, interval):
+    """Fly (30) in Cartesian coordinates; return times, relative states and distances [m] every ``interval`` seconds."""
+    motion = tracking_motion(cascade_steering(gain, rate_max, reference_heading_rate), reference_heading_rate)
+    times = np.linspace(0.0, duration, round(duration / interval) + 1)
+    solution = solve_ivp(motion, (0.0, duration), start, t_eval=times, max_step=0.25, rtol=1e-8, atol=1e-8)
+    assert solution.success
+    north, east = solution.y[0] - solution.y[3], solution.y[1] - solution.y[4]
+    return times, [relative(state) for state in solution.y.T], np.hypot(north, east)
+
+
+def cartesian_v_1_rate(state):
+    """d . (v_r - v) [m^2/s], nothing of the delta formulation."""
+    return (state[0] - state[3]) * SPEED * (math.cos(state[2]) - math.cos(state[5])) + (state[1] - state[4]) * SPEED * (
+        math.sin(state[2]) - math.sin(state[5])
+    )
+
+
+@examples(200)
+@given(phi=courses, gain=gains, rate_max=rates_max)
+def test_h_has_the_sign_of_phi_and_is_proportional_within_its_bound(phi, gain, rate_max):
+    # Equation (30): h(0) = 0, phi h(phi) > 0 elsewhere, though the product itself may be too small for a floating-point number.
+    assert math.copysign(1.0, h(phi, gain, rate_max)) == math.copysign(1.0, phi)
+    # The shape is the code's own choice, and exact.
+    assert abs(h(phi, gain, rate_max)) == min(gain * abs(phi), rate_max)
+    assert h(-phi, gain, rate_max) == -h(phi, gain, rate_max)
+
+
+@examples(200)
+@given(driven=any_driven, phi=courses, speed=speeds, reference_heading_rate=heading_rates, gain=gains, rate_max=rates_max)
+def test_under_law_30_the_system_21_is_the_cascade_31(driven, phi, speed, reference_heading_rate, gain, rate_max):
+    state = RelativeState(*driven, phi)
+    _, omega_rho = relative_velocity(LOOK_AHEAD, state, speed, speed, reference_heading_rate)
+    whole = state_rates(LOOK_AHEAD, state, speed, reference_heading_rate, cascade_law(phi, omega_rho, gain, rate_max))
+    # (31a) is exact: the same lines. In (31b) omega_rho cancels but for its rounding; it reaches some 1e4 rad/s where rho is short
+    # and delta long.
+    assert whole[:3] == driven_rates(LOOK_AHEAD, driven, phi, speed, reference_heading_rate)
+    assert whole.phi == pytest.approx(driving_rate(phi, gain, rate_max), rel=0.0, abs=1e-15 * abs(omega_rho) + 1e-15)
+
+
+@examples(200)
+@given(
+    driven=any_driven,
+    epsilon=st.floats(0.0045, 0.05),
+    speed=speeds,
+    reference_heading_rate=heading_rates,
+    heading_rate=st.floats(-1.0, 1.0),
+)
+def test_the_unforced_system_32_is_21_at_phi_zero_whatever_the_heading_rate(
+    driven, epsilon, speed, reference_heading_rate, heading_rate
+):
+    parameters = look_ahead(epsilon, 60.0)
+    whole = state_rates(parameters, RelativeState(*driven, 0.0), speed, reference_heading_rate, heading_rate)
+    unforced = unforced_rates(parameters, driven, speed, reference_heading_rate)
+    # Roundings of terms up to 2 * 0.05 * 40 * 6,000 * 2 = 5e4 m/s, over no less than rho.
+    assert (unforced.delta, unforced.rho) == pytest.approx((whole.delta, whole.rho), rel=0.0, abs=1e-10)
+    assert unforced.phi_r == pytest.approx(whole.phi_r, rel=0.0, abs=1e-10 / driven.rho + 1e-15)
+
+
+@examples(100)
+@given(driven=any_driven, speed=speeds, reference_heading_rate=heading_rates)
+def test_equation_32_is_as_printed_but_for_the_factor_v_r_that_its_first_line_lacks(driven, speed, reference_heading_rate):
+    delta, rho, phi_r = driven
+    epsilon, c_r, s_r = LOOK_AHEAD.epsilon, math.cos(phi_r), math.sin(phi_r)
+    printed = (
+        -2.0 * epsilon * (rho + delta) * (1.0 - c_r),
+        -speed * (1.0 - c_r) - delta * reference_heading_rate * s_r - 2.0 * epsilon * speed * c_r * (rho + delta) * (1.0 - c_r),
+        reference_heading_rate
+        - (speed * s_r + delta * reference_heading_rate * c_r - 2.0 * epsilon * speed * s_r * (rho + delta) * (1.0 - c_r)) / rho,
+    )
+    rates = unforced_rates(LOOK_AHEAD, driven, speed, reference_heading_rate)
+    # Roundings of terms up to 1e4 m/s, over no less than 10 m.
+    assert rates == pytest.approx((speed * printed[0], printed[1], printed[2]), rel=0.0, abs=1e-10)
+
+
+@examples(200)
+@given(driven=any_driven, speed=speeds)
+def test_equation_33_is_23_at_phi_zero_and_never_positive(driven, speed):
+    unforced = v_1_unforced_rate(driven, speed)
+    # Rounding of 40 m/s * 6 km * 2.
+    assert unforced == pytest.approx(v_1_rate(RelativeState(*driven, 0.0), speed), rel=0.0, abs=1e-9)
+    assert unforced <= 0.0
+
+
+@examples(200)
+@given(driven=any_driven, phi=courses, speed=speeds)
+def test_equation_35_is_23_whatever_the_state(driven, phi, speed):
+    state = RelativeState(*driven, phi)
+    # Rounding of 40 m/s * 3 km * 2, a few times over.
+    assert v_1_rate_split(state, speed) == pytest.approx(v_1_rate(state, speed), rel=0.0, abs=1e-9)
+
+
+@examples(150)
+@given(start=tracking_starts(), reference_heading_rate=heading_rates, heading_rate=heading_rates)
+def test_equation_35_is_the_numerical_rate_of_half_the_squared_distance(start, reference_heading_rate, heading_rate):
+    motion = tracking_motion(lambda *_: heading_rate, lambda _: reference_heading_rate)
+    step = 1e-3
+    ahead, behind = (moved(motion, 0.0, start, way) for way in (step, -step))
+    half_squares = [0.5 * ((s[0] - s[3]) ** 2 + (s[1] - s[4]) ** 2) for s in (ahead, behind)]
+    numerical = (half_squares[0] - half_squares[1]) / (2.0 * step)
+    # step^2/6 = 2e-7 of the third derivative, some 3e3 m^2/s^3. Over 3,000 random states it erred by 6e-4 m^2/s, a hundred times
+    # more at ten times the step; corners are allowed some three times that. The rate itself reaches 1e4.
+    assert v_1_rate_split(relative(start), SPEED) == pytest.approx(numerical, rel=0.0, abs=2e-3)
+
+
+@examples(150)
+@given(start=tracking_starts(phi_max=0.0), time=st.floats(0.0, 20.0))
+def test_equation_33_is_the_numerical_rate_of_half_the_squared_distance_while_phi_is_zero(start, time):
+    # A vehicle that turns as z does keeps phi = 0, where it starts.
+    motion = tracking_motion(delta_steering(lambda _, omega_rho: omega_rho, oscillating), oscillating)
+    step = 1e-4
+    ahead, behind = (moved(motion, time, start, way) for way in (step, -step))
+    half_squares = [0.5 * ((s[0] - s[3]) ** 2 + (s[1] - s[4]) ** 2) for s in (ahead, behind)]
+    numerical = (half_squares[0] - half_squares[1]) / (2.0 * step)
+    # As above; over 3,000 random states it erred by 1.2e-4 m^2/s, a hundred times more at ten times the step. The rate reaches 4e3.
+    assert v_1_unforced_rate(DrivenState(*relative(start)[:3]), SPEED) == pytest.approx(numerical, rel=0.0, abs=1e-3)
+
+
+@examples(150)
+@given(start=tracking_starts(phi_max=0.0), time=st.floats(0.0, 20.0))
+def test_equation_34_is_the_numerical_rate_of_33_along_the_unforced_system(start, time):
+    def motion(moment, driven):
+        return np.array(unforced_rates(LOOK_AHEAD, DrivenState(*driven), SPEED, oscillating(moment)))
+
+    here = DrivenState(*relative(start)[:3])
+    step = 1e-5
+    ahead, behind = (DrivenState(*moved(motion, time, here, way)) for way in (step, -step))
+    numerical = (v_1_unforced_rate(ahead, SPEED) - v_1_unforced_rate(behind, SPEED)) / (2.0 * step)
+    acceleration = v_1_unforced_acceleration(here, DrivenState(*motion(time, here)), SPEED)
+    # Over 3,000 random states it erred by 1.3e-5 m^2/s^2, a hundred times more at ten times the step; corners are allowed some ten
+    # times that. The second rate itself reaches 6e3.
+    assert acceleration == pytest.approx(numerical, rel=0.0, abs=2e-4)
+
+
+@examples(300)
+@given(start=tracking_starts(), share=st.floats(-1.0, 1.0))
+def test_distance_does_not_rise_where_phi_is_within_phi_r(start, share):
+    # Turn the vehicle so that |phi| <= |phi_r|.
+    there = relative(start)
+    state = [*start[:5], start[5] - there.phi + share * there.phi_r]
+    # Equation (35): no term is positive there. First in Cartesian coordinates, where roundings reach 1e-16 of 424 m * 39 m/s and
+    # of the angles through z, 5e-16 of delta's 1 km times 39 m/s; then by the equation, without.
+    assert cartesian_v_1_rate(state) <= 1e-10
+    assert v_1_rate_split(there._replace(phi=share * there.phi_r), SPEED) <= 0.0
+
+
+@examples(200)
+@given(d=st.floats(1.0, 300.0), reference_course=courses, beyond=st.floats(0.01, 1.0))
+def test_distance_rises_right_behind_the_reference_as_soon_as_phi_is_not_zero(d, reference_course, beyond):
+    # So the bound |phi| <= |phi_r| is tight: with phi_r = 0 and d behind the reference, rho - delta = d, and (35) becomes
+    # (rho - delta) V_r (1 - cos phi) = d V_r (1 - cos phi) > 0.
+    north, east = -d * math.cos(reference_course), -d * math.sin(reference_course)
+    state = [0.0, 0.0, reference_course, north, east, reference_course + beyond]
+    # Roundings of angles, 5e-16 of 300 m * 39 m/s; the least rise is 1 m * 19.42 m/s * 5e-5.
+    assert cartesian_v_1_rate(state) == pytest.approx(d * SPEED * (1.0 - math.cos(beyond)), rel=0.0, abs=1e-10)
+
+
+@examples(25)
+@given(
+    start=tracking_starts(phi_max=3.1),
+    gain=st.floats(0.1, 2.0),
+    rate_max=st.floats(0.1, 0.5),
+    reference_heading_rate=st.sampled_from([oscillating, circling]),
+)
+def test_along_flights_under_law_30_distance_does_not_rise_while_phi_is_within_phi_r(start, gain, rate_max, reference_heading_rate):
+    _, states, distances = fly_law_30(start, reference_heading_rate, gain=gain, rate_max=rate_max, duration=30.0, interval=0.02)
+    within = np.array([abs(state.phi) <= abs(state.phi_r) for state in states])
+    # In 300 random flights it never rose by more than 1.3e-8 m from one such sample to the next, the integration's tolerance; in
+    # between phi_r may dip below phi, by the square of the interval. Where d does rise, it rises by up to 0.8 m a sample.
+    throughout = within[:-1] & within[1:]
+    assert np.max(np.diff(distances)[throughout], initial=-1.0) <= 1e-6
+
+
+def test_the_distance_can_rise_again_after_phi_was_first_within_phi_r():
+    # Section IV.D says that it cannot, from the first such instant on. But phi_r passes through zero while phi still dies out.
+    start = [0.0, 0.0, OSCILLATION.eta, -150.0, 0.0, 2.0]
+    times, states, distances = fly_law_30(start, oscillating, gain=0.1, rate_max=0.4, duration=40.0, interval=0.02)
+    within = np.array([abs(state.phi) <= abs(state.phi_r) for state in states])
+    first = int(np.argmax(within))
+    after = distances[first:]
+    # Measured once, to the tenth: phi is first within phi_r after 9.0 s, later outside again, and d rises by 1.5 m.
+    assert times[first] == pytest.approx(9.0, abs=0.1)
+    assert np.count_nonzero(~within[first:]) > 0
+    assert np.max(after - np.minimum.accumulate(after)) == pytest.approx(1.5, abs=0.1)
+
+
+@examples(100)
+@given(phi=st.floats(-math.pi, math.pi), gain=gains, rate_max=rates_max)
+def test_the_excursion_time_is_the_integral_of_one_minus_cos_phi_along_31b(phi, gain, rate_max):
+    # Time runs as -dphi/h(phi) along (31b); the integrand is 0/0 at 0, where it goes to 0, and has a kink where h is held.
+    expected, _ = quad(
+        lambda angle: (1.0 - math.cos(angle)) / h(angle, gain, rate_max) if angle > 0.0 else 0.0,
+        0.0,
+        abs(phi),
+        points=[min(rate_max / gain, abs(phi))],
+        epsabs=1e-11,
+        epsrel=1e-11,
+    )
+    # Quadrature's tolerance.
+    assert excursion_time(phi, gain, rate_max) == pytest.approx(expected, rel=1e-9, abs=1e-10)
+
+
+def test_the_excursion_time_of_a_held_half_turn_and_of_a_small_angle():
+    # Held all the way at 0.5 rad/s, pi - sin(pi) over it; a small angle of a proportional law, phi^2/(4 gain) to phi^2/24.
+    assert excursion_time(math.pi, 1e9, 0.5) == pytest.approx(2.0 * math.pi, rel=1e-8)
+    assert excursion_time(0.01, 2.0, 1.0) == pytest.approx(0.01**2 / 8.0, rel=1e-5)
+    assert excursion_time(0.0, 2.0, 1.0) == 0.0
+
+
+@examples(200)
+@given(start=tracking_starts(), epsilon=st.floats(1e-3, 0.1), excess=st.floats(1.001, 50.0))
+def test_delta_grows_no_faster_than_the_bound_says(start, epsilon, excess):
+    parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
+    state = relative(start, parameters)
+    # EQUATIONS.md, "Why trajectories are bounded": delta-dot = 2 epsilon V_1-dot, V_1-dot <= rho V_r (1 - cos phi) by (35), and rho
+    # <= delta + d <= delta (1 + 1/(2 sqrt(epsilon R))). Relative roundings, of delta 100 times the least.
+    share = 1.0 + 0.5 / math.sqrt(epsilon * parameters.radius)
+    assert state.rho <= share * state.delta * (1.0 + 1e-14)
+    rate = 2.0 * epsilon * cartesian_v_1_rate(start)
+    limit = 2.0 * epsilon * SPEED * share * state.delta * (1.0 - math.cos(state.phi))
+    assert rate <= limit + 1e-12 * epsilon * SPEED * state.delta
+
+
+@examples(100)
+@given(epsilon=st.floats(1e-3, 0.1), excess=st.floats(1.001, 50.0), reference_course=courses)
+def test_rho_reaches_its_largest_share_of_delta_right_behind_the_reference(epsilon, excess, reference_course):
+    parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
+    # d/(epsilon d^2 + R) is largest at d = sqrt(R/epsilon), and rho = delta + d with the vehicle right behind.
+    d = math.sqrt(parameters.radius / epsilon)
+    behind = [0.0, 0.0, reference_course, -d * math.cos(reference_course), -d * math.sin(reference_course), 0.0]
+    state = relative(behind, parameters)
+    assert state.rho / state.delta == pytest.approx(1.0 + 0.5 / math.sqrt(epsilon * parameters.radius), rel=1e-13)
+
+
+@examples(25)
+@given(
+    start=tracking_starts(phi_max=3.1),
+    gain=st.floats(0.1, 2.0),
+    rate_max=st.floats(0.1, 0.5),
+    reference_heading_rate=st.sampled_from([oscillating, circling]),
+)
+def test_along_flights_under_law_30_delta_stays_below_its_bound(start, gain, rate_max, reference_heading_rate):
+    _, states, _ = fly_law_30(start, reference_heading_rate, gain=gain, rate_max=rate_max, duration=60.0, interval=0.25)
+    # At every instant, for what is left to come from there; 1e-6 for the integration's 1e-8 over some hundred steps.
+    left = np.array([delta_bound(LOOK_AHEAD, state, SPEED, gain, rate_max) for state in states])
+    deltas = np.array([state.delta for state in states])
+    ever_after = np.maximum.accumulate(deltas[::-1])[::-1]
+    assert np.all(ever_after <= left * (1.0 + 1e-6))
+    # And the bound itself never rises along a flight, as it grows in delta and phi just as fast as they may.
+    assert np.all(np.diff(left) <= 1e-6 * left[:-1])
+
+
+def test_a_flight_from_the_reference_on_the_opposite_course_and_its_bound():
+    # phi = pi is as far as phi goes, and I, the integral of 1 - cos phi, is Cin(0.2667)/1.5 + (pi - 0.2667 + sin 0.2667)/0.4 =
+    # 0.0118 + 7.8462 s. Exponent: 2 * 0.005/m * 19.42 m/s * (1 + 1/(2 sqrt(0.3))) * I = 0.37147/s * 7.858 s = 2.919; exp is 18.52.
+    start = [0.0, 0.0, OSCILLATION.eta, 0.0, 0.0, OSCILLATION.eta + 3.1]
+    _, states, _ = fly_law_30(start, oscillating, gain=1.5, rate_max=0.4, duration=60.0, interval=0.25)
+    opposite = states[0]._replace(phi=math.pi)
+    assert delta_bound(LOOK_AHEAD, opposite, SPEED, 1.5, 0.4) == pytest.approx(60.0 * 18.52, rel=1e-3)
+    # The flight itself: d rises from 0 to 127 m, delta from 60 m to 141 m; measured once, to the metre.
+    assert max(state.delta for state in states) == pytest.approx(141.0, abs=1.0)

@@ -1,0 +1,82 @@
+import math
+
+import pytest
+from gnc_cases import examples
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from gnc.errors import InfeasibleError
+from gnc.reference.bessel import ETA_MAX, eta_for_speed_ratio, mean_speed_ratio
+
+ratios = st.floats(0.0, 1.0)
+
+
+@pytest.mark.parametrize("eta", [0.0, 0.3, 1.0, 1.521144, 2.2, ETA_MAX])
+def test_the_mean_speed_ratio_is_the_mean_of_equation_5(eta):
+    mean_along, _ = quad(lambda angle: math.cos(eta * math.cos(angle)) / (2.0 * math.pi), 0.0, 2.0 * math.pi, epsabs=1e-13)
+    # Tolerance of the quadrature.
+    assert mean_speed_ratio(eta) == pytest.approx(mean_along, rel=0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("eta", [0.3, 1.521144, ETA_MAX])
+def test_the_reference_makes_no_way_across_the_vessels_course(eta):
+    # Equation (5), second line.
+    mean_across, _ = quad(lambda angle: math.sin(eta * math.cos(angle)), 0.0, 2.0 * math.pi, epsabs=1e-13)
+    assert mean_across == pytest.approx(0.0, abs=1e-12)
+
+
+@examples(300)
+@given(nu=ratios)
+def test_eta_gives_back_the_speed_ratio(nu):
+    # brentq stops at 1e-14 of eta, and |J_0'| = |J_1| <= 0.582.
+    assert mean_speed_ratio(eta_for_speed_ratio(nu)) == pytest.approx(nu, rel=0.0, abs=1e-13)
+
+
+@examples(300)
+@given(eta=st.floats(1e-3, ETA_MAX))
+def test_the_speed_ratio_gives_back_eta(eta):
+    # nu rounds by 1e-16, and d eta/d nu = 1/J_1(eta) <= 2000 for eta >= 0.001.
+    assert eta_for_speed_ratio(max(0.0, mean_speed_ratio(eta))) == pytest.approx(eta, rel=0.0, abs=1e-12)
+
+
+@examples(300)
+@given(one=ratios, other=ratios)
+def test_a_faster_vessel_needs_a_smaller_oscillation(one, other):
+    slow, fast = min(one, other), max(one, other)
+    # eta resolves 1e-13 of nu; see above.
+    if fast - slow > 1e-12:
+        assert eta_for_speed_ratio(slow) > eta_for_speed_ratio(fast)
+    else:
+        assert eta_for_speed_ratio(slow) >= eta_for_speed_ratio(fast) - 1e-5
+
+
+@examples(100)
+@given(nu=ratios)
+def test_eta_lies_between_zero_and_the_first_zero_of_j_0(nu):
+    # Section III.C: the domain on which J_0 is inverted. The bound itself is rounded.
+    assert 0.0 <= eta_for_speed_ratio(nu) <= ETA_MAX + 1e-13
+
+
+def test_a_vessel_at_rest_needs_the_first_zero_of_j_0():
+    # paper-notes, care 6; Abramowitz and Stegun, table 9.5: j_0,1 = 2.40482 55577. Tolerances are roundings.
+    assert pytest.approx(2.404825557695773, abs=1e-15) == ETA_MAX
+    assert eta_for_speed_ratio(0.0) == pytest.approx(2.404825557695773, abs=1e-14)
+
+
+def test_a_vessel_as_fast_as_the_uav_needs_no_oscillation():
+    # J_0(0) = 1.
+    assert eta_for_speed_ratio(1.0) == 0.0
+    assert mean_speed_ratio(0.0) == 1.0
+
+
+def test_near_equal_speeds_eta_follows_the_series_of_j_0():
+    # J_0(eta) = 1 - eta^2/4 + eta^4/64: eta = 2 sqrt(1 - nu) to a relative (1 - nu)/8.
+    assert eta_for_speed_ratio(1.0 - 1e-6) == pytest.approx(2e-3, rel=2e-7)
+
+
+@pytest.mark.parametrize("nu", [-0.01, 1.01, math.nan, math.inf, -math.inf])
+def test_speed_ratios_that_j_0_does_not_take_are_refused(nu):
+    with pytest.raises(InfeasibleError, match=r"speed ratio nu is .*must lie within 0 and 1: give the vessel a speed") as refusal:
+        eta_for_speed_ratio(nu)
+    assert f"{nu:g}" in str(refusal.value)

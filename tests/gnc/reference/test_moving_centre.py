@@ -1,0 +1,179 @@
+import math
+
+import numpy as np
+import pytest
+from gnc_cases import SPEED, paper_oscillation
+
+from gnc.reference.moving_centre import CentreParameters, MovingCentre
+from gnc.reference.orbit import half_widths
+from gnc.reference.placement import PlumeAxis, distance_by_paper
+
+RATIO_MAX = 0.97
+DISTANCE_MIN = 203.0
+TIME_STEP = 0.5
+
+
+def make(plume_heading=None):
+    widths = [half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0))) for nu in np.linspace(0.0, RATIO_MAX, 49)]
+    return MovingCentre(
+        CentreParameters(
+            distance_min=DISTANCE_MIN,
+            speed_ratio_max=RATIO_MAX,
+            along=tuple(along for along, _ in widths),
+            across=tuple(across for _, across in widths),
+            plume_heading=plume_heading,
+            apparent_wind_min=1.0,
+            speed=SPEED,
+            heading_rate_max=0.505,
+        )
+    )
+
+
+def move(centre, velocity, *, acceleration=(0.0, 0.0), wind=(0.0, 0.0), time_step=TIME_STEP, further=0.0):
+    centre.move(
+        time_step,
+        vessel_north=velocity[0],
+        vessel_east=velocity[1],
+        acceleration_north=acceleration[0],
+        acceleration_east=acceleration[1],
+        wind_north=wind[0],
+        wind_east=wind[1],
+        further=further,
+    )
+
+
+def paper_distance(nu, heading=math.pi):
+    oscillation = paper_oscillation(nu, roll_rate_max=math.radians(40.0))
+    return distance_by_paper(oscillation, PlumeAxis(heading=heading), DISTANCE_MIN)
+
+
+@pytest.mark.parametrize("nu", [0.1, 0.5, 0.9])
+def test_behind_a_steady_vessel_it_is_where_equations_9_to_11_put_it(nu):
+    centre = make()
+    course = 0.6
+    velocity = (nu * SPEED * math.cos(course), nu * SPEED * math.sin(course))
+    move(centre, velocity, time_step=0.0)
+    # Half-widths from a table of 49 ratios, linear in between: second differences of the widths, up to 0.03 m.
+    assert centre.distance == pytest.approx(paper_distance(nu), abs=0.05)
+    assert (centre.x, centre.y) == pytest.approx(
+        (-centre.distance * math.cos(course), -centre.distance * math.sin(course)), abs=1e-9
+    )
+    assert (centre.velocity_north, centre.velocity_east) == pytest.approx(velocity, abs=1e-9)
+    assert centre.speed_ratio == pytest.approx(nu)
+    assert centre.in_place
+
+
+@pytest.mark.parametrize("heading_deg", [90.0, -90.0, 135.0])
+def test_with_a_given_plume_the_distance_knows_its_heading(heading_deg):
+    heading = math.radians(heading_deg)
+    centre = make(plume_heading=heading)
+    move(centre, (0.5 * SPEED, 0.0), time_step=0.0)
+    # Equation (11): the orbit reaches sideways of the vessel's course by d_y, 68 m at nu = 0.5, along it by 14 m only. As above.
+    assert centre.distance == pytest.approx(paper_distance(0.5, heading), abs=0.05)
+
+
+def test_a_given_plume_keeps_its_bearing_from_the_bow():
+    centre = make(plume_heading=math.radians(150.0))
+    move(centre, (0.0, 8.0), wind=(5.0, -5.0), time_step=0.0)
+    # Course east, plume 150 degrees to the right of the bow; the wind does not matter. Rounding.
+    assert math.remainder(centre.axis - math.radians(240.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
+    assert centre.plume_known
+
+
+def test_the_plume_trails_behind_the_motion_through_the_air():
+    centre = make()
+    # A vessel at rest in a wind to the south-east: smoke blows to the south-east, 135 degrees.
+    move(centre, (0.0, 0.0), wind=(-5.0, 5.0), time_step=0.0)
+    assert centre.axis == pytest.approx(math.radians(135.0), abs=1e-12)
+    # Seen from the air mass, vessel and centre move to the north-west at the speed of the wind.
+    assert (centre.velocity_north, centre.velocity_east) == pytest.approx((5.0, -5.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("wind", [(0.0, 0.0), (3.0, -4.0)])
+@pytest.mark.parametrize(("turn_rate", "acceleration"), [(0.02, 0.0), (-0.015, 0.05), (0.0, 0.1)])
+@pytest.mark.parametrize("plume_heading", [None, 2.6])
+def test_its_velocity_is_the_rate_of_its_place(plume_heading, turn_rate, acceleration, wind):
+    time_step = 0.01
+    centre = make(plume_heading)
+    north = east = 0.0
+    places, velocities = [], []
+    for step in range(1501):
+        time = step * time_step
+        speed, course = 8.0 + acceleration * time, 0.4 + turn_rate * time
+        velocity = (speed * math.cos(course), speed * math.sin(course))
+        rate = (
+            acceleration * math.cos(course) - turn_rate * velocity[1],
+            acceleration * math.sin(course) + turn_rate * velocity[0],
+        )
+        move(
+            centre,
+            velocity,
+            acceleration=rate,
+            wind=wind,
+            time_step=time_step if step else 0.0,
+            further=20.0 if time > 5.0 else 0.0,
+        )
+        # In the frame of the air mass; the vessel's place by the trapezoidal rule, 1e-6 m a step.
+        places.append((north + centre.x, east + centre.y))
+        velocities.append((centre.velocity_north, centre.velocity_east))
+        ahead = time + time_step
+        then = (8.0 + acceleration * ahead, 0.4 + turn_rate * ahead)
+        north += time_step * (0.5 * (velocity[0] + then[0] * math.cos(then[1])) - wind[0])
+        east += time_step * (0.5 * (velocity[1] + then[0] * math.sin(then[1])) - wind[1])
+    measured = np.diff(places, axis=0) / time_step
+    mean = 0.5 * (np.array(velocities)[1:] + np.array(velocities)[:-1])
+    jump = round(5.0 / time_step)
+    kept = np.abs(np.arange(len(measured)) - jump) > 2
+    # Steps are by Euler's rule: half a step of the rate at which axis and distance change theirs, 0.005 s of up to 0.4 m/s^2.
+    np.testing.assert_allclose(measured[kept], mean[kept], rtol=0.0, atol=5e-3)
+    # The centre was really swung, or moved out.
+    assert np.ptp(np.hypot(*(np.array(velocities).T))) > 0.05
+
+
+def test_a_vessel_that_turns_moves_it_by_omega_cross_r():
+    # paper-notes, 11: V_V plus omega_V x r_CO. Course north, turning right: the centre astern swings to the west.
+    centre = make(plume_heading=math.pi)
+    move(centre, (8.0, 0.0), acceleration=(0.0, 8.0 * 0.01), time_step=0.0)
+    # What it has along the axis besides, it spends on moving out: swung round, it takes up the orbit's width. Rounding.
+    assert centre.velocity_east == pytest.approx(-0.01 * centre.distance, abs=1e-9)
+    assert centre.velocity_north < 8.0
+
+
+def test_an_apparent_wind_too_faint_leaves_the_axis_where_it_was():
+    centre = make()
+    move(centre, (6.0, 0.0), time_step=0.0)
+    before = centre.axis
+    for _ in range(100):
+        move(centre, (0.6, 0.6), wind=(0.0, 0.0))
+        assert not centre.plume_known
+    assert centre.axis == before
+    # 1 m/s is enough.
+    move(centre, (0.0, 1.01))
+    assert centre.plume_known
+
+
+def test_an_apparent_wind_that_passes_through_nothing_turns_the_axis_no_faster_than_it_can_be_followed():
+    centre = make()
+    move(centre, (6.0, 0.0), wind=(4.0, 0.0), time_step=0.0)
+    for _ in range(400):
+        before = centre.axis
+        # The wind freshens past the vessel, and the plume goes over to the other side.
+        move(centre, (6.0, 0.0), wind=(8.0, 0.1))
+        turned = abs(math.remainder(centre.axis - before, 2.0 * math.pi)) / TIME_STEP
+        # _AXIS_SPEED of the vehicle's speed, at the centre's distance; that itself changes by 1 % in a step.
+        assert turned * centre.distance <= 0.7 * SPEED * 1.02
+    # 35 s as fast as it may, 0.057 rad/s, down to the 1.1 rad from which it slows; e^(-0.05 165 s) of that.
+    assert math.remainder(centre.axis - math.atan2(0.1, 2.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-3)
+
+
+def test_it_goes_where_it_has_to_be_when_it_must_stay_further_off():
+    centre = make()
+    move(centre, (8.0, 0.0), time_step=0.0)
+    near = centre.distance
+    for _ in range(300):
+        move(centre, (8.0, 0.0), further=100.0)
+    # 150 s at 0.06/s: e^-9 of 100 m.
+    assert centre.distance == pytest.approx(near + 100.0, abs=0.05)
+    assert centre.in_place
+    move(centre, (8.0, 0.0))
+    assert not centre.in_place

@@ -1,0 +1,118 @@
+import math
+
+import numpy as np
+import pytest
+from gnc_cases import SPEED, examples, paper_oscillation
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad, solve_ivp
+
+from gnc.reference.orbit import f_x, f_y, half_widths, offset
+
+RATIOS = [0.0, 0.1, 0.5, 0.9]
+ratios = st.floats(0.0, 0.99)
+
+
+@pytest.mark.parametrize("nu", RATIOS)
+def test_the_series_are_the_integrals_of_equation_12(nu):
+    oscillation = paper_oscillation(nu)
+
+    def course(time):
+        return oscillation.eta * math.cos(oscillation.omega_0 * time)
+
+    for time in (-3.0, 0.4, 2.0, 7.7, 20.0):
+        along, _ = quad(lambda t: math.cos(course(t)), 0.0, time, epsabs=1e-12, limit=200)
+        across, _ = quad(lambda t: math.sin(course(t)), 0.0, time, epsabs=1e-12, limit=200)
+        # Tolerance of the quadrature; the series' 24 terms are exact to rounding.
+        assert f_x(oscillation, time) == pytest.approx(along, rel=0.0, abs=1e-11)
+        assert f_y(oscillation, time) == pytest.approx(across, rel=0.0, abs=1e-11)
+
+
+@pytest.mark.parametrize("nu", RATIOS)
+def test_the_orbit_is_equation_2_integrated_less_the_motion_of_the_centre(nu):
+    oscillation = paper_oscillation(nu)
+
+    def rates(time, state):
+        # Equation (2), phi_0 = 0 and omega_V = 0, the vessel going north.
+        return SPEED * math.cos(state[2]), SPEED * math.sin(state[2]), -oscillation.amplitude * math.sin(oscillation.omega_0 * time)
+
+    times = np.linspace(0.0, 3.0 * oscillation.period, 97)
+    solution = solve_ivp(
+        rates, (0.0, times[-1]), [0.0, 0.0, oscillation.eta], t_eval=times, method="DOP853", rtol=1e-11, atol=1e-11
+    )
+    along, across = offset(oscillation, times)
+    # Integration tolerance, 1e-11 of up to 800 m in each of a hundred steps.
+    np.testing.assert_allclose(along, solution.y[0] - nu * SPEED * times, rtol=0.0, atol=1e-6)
+    np.testing.assert_allclose(across, solution.y[1], rtol=0.0, atol=1e-6)
+
+
+@examples(100)
+@given(nu=ratios, time=st.floats(-50.0, 50.0))
+def test_the_orbit_is_a_figure_of_eight(nu, time):
+    oscillation = paper_oscillation(nu)
+    half = 0.5 * oscillation.period
+    along, across = offset(oscillation, np.array([time, time + half, -time, half - time]))
+    # paper-notes: period T across and T/2 along; odd in time, and mirrored fore and aft about the quarter period.
+    # Roundings of angles of 1e3 rad, when nu is near 1, times 100 m.
+    assert along[1] == pytest.approx(along[0], abs=1e-9)
+    assert across[1] == pytest.approx(-across[0], abs=1e-9)
+    assert (along[2], across[2]) == pytest.approx((-along[0], -across[0]), abs=1e-9)
+    assert (along[3], across[3]) == pytest.approx((-along[0], across[0]), abs=1e-9)
+
+
+@pytest.mark.parametrize("nu", RATIOS)
+def test_the_reference_passes_the_centre_twice_a_period(nu):
+    oscillation = paper_oscillation(nu)
+    # paper-notes: it flies a figure of eight through the CO. An odd number of samples keeps the passages between samples.
+    times = np.linspace(0.0, oscillation.period, 1001, endpoint=False) + 0.3 * oscillation.period / 1001
+    _, across = offset(oscillation, times)
+    assert np.count_nonzero(np.diff(np.sign(across), append=np.sign(across[0]))) == 2
+    # Rounding of 100 m.
+    assert offset(oscillation, [0.0, oscillation.crossing_interval]) == pytest.approx(np.zeros((2, 2)), abs=1e-12)
+
+
+@examples(100)
+@given(nu=ratios)
+def test_the_advance_in_a_quarter_period_is_that_of_the_vessel(nu):
+    oscillation = paper_oscillation(nu)
+    # paper-notes: exactly nu V_r T/4, by the Bessel integral. Rounding of sin(2 k pi/2), some 1e-15 times 50 m.
+    advance = SPEED * float(f_x(oscillation, 0.25 * oscillation.period))
+    assert advance == pytest.approx(0.25 * nu * SPEED * oscillation.period, rel=1e-13, abs=1e-12)
+
+
+@examples(30)
+@given(nu=ratios)
+def test_the_half_widths_are_the_largest_offsets_of_the_orbit(nu):
+    oscillation = paper_oscillation(nu)
+    times = np.linspace(0.0, oscillation.period, 40001)
+    along, across = offset(oscillation, times)
+    d_x, d_y = half_widths(oscillation)
+    # A sample lies within T/80,000 of the extremum, where the offset falls short by half its second derivative times that squared:
+    # V_r A (T/80,000)^2/2 = V_r A T pi/(80,000^2 omega_0), below 1e-6 m.
+    assert np.max(np.abs(along)) == pytest.approx(d_x, rel=0.0, abs=1e-6)
+    assert np.max(np.abs(across)) == pytest.approx(d_y, rel=0.0, abs=1e-6)
+    assert np.max(np.abs(along)) <= d_x + 1e-12
+    assert np.max(np.abs(across)) <= d_y + 1e-12
+
+
+def test_the_orbit_shrinks_as_the_vessel_speeds_up():
+    # Table of paper-notes.
+    widths = np.array([half_widths(paper_oscillation(nu)) for nu in np.linspace(0.0, 0.99, 34)])
+    assert np.all(np.diff(widths, axis=0) < 0.0)
+
+
+def test_the_orbit_scales_with_speed_over_frequency():
+    slow, fast = paper_oscillation(0.4), paper_oscillation(0.4, speed=2.0 * SPEED, heading_rate_max=1.5)
+    scale = 2.0 * slow.omega_0 / fast.omega_0
+    # (4) has no other length than V_r/omega_0. Rounding.
+    assert half_widths(fast) == pytest.approx(tuple(scale * width for width in half_widths(slow)), rel=1e-13)
+
+
+def test_offsets_keep_the_shape_of_time():
+    oscillation = paper_oscillation(0.5)
+    times = np.arange(6.0).reshape(2, 3)
+    along, across = offset(oscillation, times)
+    assert along.shape == across.shape == (2, 3)
+    # The same sums, one by one.
+    assert along[1, 2] == offset(oscillation, 5.0)[0]
+    assert across[1, 2] == offset(oscillation, 5.0)[1]

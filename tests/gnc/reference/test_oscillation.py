@@ -1,0 +1,133 @@
+import math
+
+import pytest
+from gnc_cases import HEADING_RATE_MAX, SPEED, examples, paper_oscillation
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gnc.errors import InfeasibleError
+from gnc.reference.bessel import eta_for_speed_ratio
+from gnc.reference.oscillation import GRAVITY, bank_for_heading_rate, design_oscillation, heading_rate_for_bank
+
+ROLL_RATE_MAX = math.radians(40.0)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.1, 0.5, 0.9])
+@pytest.mark.parametrize("vessel_heading_rate", [0.0, 0.02, -0.02])
+def test_the_reference_spends_what_equation_8_allows(nu, vessel_heading_rate):
+    oscillation = paper_oscillation(nu, vessel_heading_rate=vessel_heading_rate)
+    # Equation (8) with equality. Tolerances are roundings.
+    assert oscillation.omega_0 == pytest.approx(
+        (HEADING_RATE_MAX - 0.02 * (vessel_heading_rate != 0.0)) / oscillation.eta, rel=1e-14
+    )
+    assert oscillation.amplitude + abs(vessel_heading_rate) == pytest.approx(HEADING_RATE_MAX, rel=1e-14)
+    assert oscillation.limit == "heading rate"
+
+
+@examples(200)
+@given(
+    nu=st.floats(0.0, 0.9999),
+    reserve=st.floats(0.0, 0.9),
+    vessel_heading_rate=st.floats(-0.04, 0.04),
+    roll_rate_max=st.floats(0.01, 10.0),
+)
+def test_the_oscillation_is_the_fastest_within_heading_rate_and_roll_rate(nu, reserve, vessel_heading_rate, roll_rate_max):
+    oscillation = paper_oscillation(nu, reserve=reserve, vessel_heading_rate=vessel_heading_rate, roll_rate_max=roll_rate_max)
+    heading_rate_use = (oscillation.amplitude + abs(vessel_heading_rate)) / ((1.0 - reserve) * HEADING_RATE_MAX)
+    # paper-notes, care 5: the heading acceleration's amplitude is eta omega_0^2 = g/V times the roll rate.
+    roll_rate_use = oscillation.eta * oscillation.omega_0**2 / (GRAVITY / SPEED * roll_rate_max)
+    # Neither bound is exceeded and one of them is met, to rounding.
+    assert max(heading_rate_use, roll_rate_use) == pytest.approx(1.0, rel=1e-12)
+    assert (oscillation.limit == "heading rate") == (heading_rate_use >= roll_rate_use)
+
+
+def test_without_a_roll_rate_the_bound_of_equation_8_grows_without_limit():
+    # paper-notes, care 5: eta = 2 sqrt(1 - nu), so omega_0 = omega_max/(2 sqrt(1 - nu)), to a relative (1 - nu)/8.
+    assert paper_oscillation(1.0 - 1e-8).omega_0 == pytest.approx(HEADING_RATE_MAX / 2e-4, rel=1e-7)
+
+
+def test_the_roll_rate_takes_over_for_fast_vessels():
+    # The bounds are equal where omega_max^2/eta = g/V times the roll rate: eta = 0.718, nu = 0.88.
+    assert paper_oscillation(0.86, roll_rate_max=ROLL_RATE_MAX).limit == "heading rate"
+    fast = paper_oscillation(0.9, roll_rate_max=ROLL_RATE_MAX)
+    assert fast.limit == "roll rate"
+    # Roundings of the square root.
+    assert fast.omega_0**2 * fast.eta == pytest.approx(GRAVITY * ROLL_RATE_MAX / SPEED, rel=1e-14)
+
+
+def test_the_oscillation_carries_its_speed_ratio_and_eta():
+    oscillation = paper_oscillation(0.37)
+    assert (oscillation.nu, oscillation.speed) == (0.37, SPEED)
+    assert oscillation.eta == eta_for_speed_ratio(0.37)
+
+
+def test_period_amplitude_and_crossing_interval_follow_from_eta_and_omega_0():
+    oscillation = paper_oscillation(0.5)
+    # Section III.C: A = eta omega_0, T = 2 pi/omega_0; two crossings a period (paper-notes). Tolerances are roundings.
+    assert oscillation.amplitude == pytest.approx(oscillation.eta * oscillation.omega_0, rel=1e-15)
+    assert oscillation.period * oscillation.omega_0 == pytest.approx(2.0 * math.pi, rel=1e-15)
+    assert oscillation.crossing_interval == pytest.approx(0.5 * oscillation.period, rel=1e-15)
+
+
+@pytest.mark.parametrize("nu", [1.0, 1.2, math.inf])
+def test_a_vessel_as_fast_as_the_uav_is_refused(nu):
+    with pytest.raises(
+        InfeasibleError, match=r"speed ratio nu is .*must be below 1.*never crosses.*outruns.*fly faster"
+    ) as refusal:
+        paper_oscillation(nu)
+    assert f"nu is {nu:g}" in str(refusal.value)
+
+
+@pytest.mark.parametrize("nu", [-0.1, math.nan, -math.inf])
+def test_a_speed_ratio_that_is_no_ratio_is_refused(nu):
+    with pytest.raises(InfeasibleError, match=r"speed ratio nu is .*must lie within 0 and 1") as refusal:
+        paper_oscillation(nu)
+    assert f"nu is {nu:g}" in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("vessel_heading_rate", "reserve", "limit"),
+    [(0.503, 0.0, "0.503"), (-0.6, 0.0, "0.503"), (0.3, 0.5, "0.2515"), (math.nan, 0.0, "0.503"), (-math.inf, 0.0, "0.503")],
+)
+def test_a_vessel_that_turns_as_fast_as_the_uav_can_is_refused(vessel_heading_rate, reserve, limit):
+    # The limit is (1 - reserve) omega_max, from equation (8).
+    with pytest.raises(InfeasibleError, match=r"vessel heading rate is .*raise omega_max or lower the reserve") as refusal:
+        paper_oscillation(0.5, vessel_heading_rate=vessel_heading_rate, reserve=reserve)
+    message = str(refusal.value)
+    assert f"is {vessel_heading_rate:g} rad/s" in message
+    assert f"below {limit} rad/s" in message
+
+
+@pytest.mark.parametrize("reserve", [-0.1, 1.0, 1.5, math.nan, math.inf])
+def test_a_reserve_that_is_no_fraction_is_refused(reserve):
+    with pytest.raises(InfeasibleError, match=r"reserve is .* of omega_max; it must be at least 0 and below 1") as refusal:
+        paper_oscillation(0.5, reserve=reserve)
+    assert f"reserve is {reserve:g}" in str(refusal.value)
+
+
+@pytest.mark.parametrize("value", [0.0, -3.0, math.nan])
+@pytest.mark.parametrize("name", ["speed", "heading_rate_max", "roll_rate_max"])
+def test_rates_and_speeds_that_are_not_above_zero_are_refused(name, value):
+    with pytest.raises(InfeasibleError, match=f"{name} is .*must be above 0") as refusal:
+        paper_oscillation(0.5, **{name: value})
+    assert f"{name} is {value:g}" in str(refusal.value)
+
+
+def test_a_coordinated_turn_balances_gravity():
+    # tan(bank) = V omega/g in a coordinated turn; at 45 degrees omega = g/V. Tolerances are roundings.
+    assert heading_rate_for_bank(math.radians(45.0), 20.0) == pytest.approx(9.80665 / 20.0, rel=1e-15)
+    rate = heading_rate_for_bank(math.radians(30.0), 15.0)
+    assert math.atan(15.0 * rate / 9.80665) == pytest.approx(math.radians(30.0), rel=1e-14)
+
+
+def test_the_design_takes_its_inputs_by_name():
+    # House style 5: keyword-only, so that a speed is not taken for a rate.
+    with pytest.raises(TypeError):
+        design_oscillation(0.5, SPEED, HEADING_RATE_MAX)
+
+
+@pytest.mark.parametrize("bank_deg", [0.0, 20.0, 45.0, 60.0])
+def test_bank_and_heading_rate_of_a_coordinated_turn_are_each_others_inverse(bank_deg):
+    bank = math.radians(bank_deg)
+    # tan and atan, each to a rounding.
+    assert bank_for_heading_rate(heading_rate_for_bank(bank, 19.42), 19.42) == pytest.approx(bank, abs=1e-15)

@@ -1,0 +1,168 @@
+import math
+
+import numpy as np
+import pytest
+from gnc_cases import examples, paper_oscillation
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gnc.errors import InfeasibleError
+from gnc.reference.orbit import half_widths, offset
+from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact, reach
+
+ratios = st.floats(0.0, 0.98)
+headings = st.floats(-math.pi, math.pi)
+elevations = st.floats(-1.2, 1.2)
+radii = st.floats(20.0, 1000.0)
+
+# The search for the worst point of the orbit stops within 1e-5 s of it: 2e-4 m of path, and the square of that in distance.
+SEARCH = 1e-6
+
+
+def closest_approach(oscillation, axis, distance):
+    """Return the smallest three-dimensional distance [m] between a dense orbit about the CO and the plume's origin."""
+    along, across = offset(oscillation, np.linspace(0.0, oscillation.period, 20001))
+    ahead, right, above = centre_of_oscillation(distance, axis)
+    return float(np.min(np.sqrt((ahead + along) ** 2 + (right + across) ** 2 + above**2)))
+
+
+@examples(100)
+@given(nu=ratios, heading=headings, elevation=elevations, radius=radii)
+def test_the_exact_placement_touches_the_keep_out_sphere_and_no_more(nu, heading, elevation, radius):
+    oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
+    closest = closest_approach(oscillation, axis, distance_exact(oscillation, axis, radius))
+    assert closest >= radius - SEARCH
+    # Samples are at most 19.42 m/s * 30 s/20,000 = 0.029 m apart, so one is within 0.015 m of the closest point. Off it, distance
+    # grows by (1/r_min + 1/39 m)/2 of the square of that, 39 m being the tightest turn, V_r/omega_max: at r_min = 20 m, 8e-6 m.
+    assert closest <= radius + 1e-5
+
+
+@examples(60)
+@given(nu=ratios, heading=headings, elevation=elevations, radius=radii, closer=st.floats(0.01, 1.0))
+def test_no_closer_placement_keeps_the_orbit_outside(nu, heading, elevation, radius, closer):
+    oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
+    distance = distance_exact(oscillation, axis, radius) - closer
+    # Towards the worst point goes a share of 0.01 m: the cosine between axis and line of sight there, no less than 0.14 in 12,000
+    # random cases of these ranges. The samples' 1e-5 m, see before, is nothing to that.
+    assert closest_approach(oscillation, axis, distance) < radius - 5e-4
+
+
+@examples(200)
+@given(nu=ratios, heading=st.floats(0.5 * math.pi, math.pi), elevation=elevations, radius=radii)
+def test_the_exact_placement_is_never_farther_than_the_papers(nu, heading, elevation, radius):
+    oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
+    # paper-notes, care 4, which says so from abeam to astern.
+    assert distance_exact(oscillation, axis, radius) <= distance_by_paper(oscillation, axis, radius) + SEARCH
+
+
+@examples(60)
+@given(nu=ratios, heading=headings, elevation=elevations, radius=radii)
+def test_the_papers_placement_keeps_the_orbit_outside(nu, heading, elevation, radius):
+    oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
+    # paper-notes, care 3: equation (10) keeps the three-dimensional distance. Rounding of 1 km.
+    assert closest_approach(oscillation, axis, distance_by_paper(oscillation, axis, radius)) >= radius - 1e-9
+
+
+@examples(50)
+@given(nu=ratios, radius=radii, side=st.sampled_from([-1.0, 1.0]))
+def test_the_papers_placement_is_exact_for_a_plume_abeam(nu, radius, side):
+    oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=side * 0.5 * math.pi)
+    # paper-notes, care 4: abeam, equation (11) is exactly tight.
+    assert distance_exact(oscillation, axis, radius) == pytest.approx(
+        distance_by_paper(oscillation, axis, radius), rel=0.0, abs=SEARCH
+    )
+
+
+@pytest.mark.parametrize("elevation", [0.2, 0.6, 1.0])
+@pytest.mark.parametrize("nu", [0.1, 0.5, 0.9])
+def test_an_elevated_plume_abeam_is_placed_by_the_end_of_the_lobe(nu, elevation):
+    oscillation = paper_oscillation(nu)
+    _, d_y = half_widths(oscillation)
+    # |r_CO u + o| = r_min at the end of the lobe nearest the vessel, o = -d_y towards it, solved by hand.
+    expected = d_y * math.cos(elevation) + math.sqrt(200.0**2 - (d_y * math.sin(elevation)) ** 2)
+    axis = PlumeAxis(heading=0.5 * math.pi, elevation=elevation)
+    assert distance_exact(oscillation, axis, 200.0) == pytest.approx(expected, rel=0.0, abs=SEARCH)
+
+
+@examples(50)
+@given(nu=ratios, heading=headings, elevation=elevations, radius=radii)
+@pytest.mark.parametrize("rule", [distance_exact, distance_by_paper])
+def test_mirrored_plumes_are_measured_at_the_same_distance(rule, nu, heading, elevation, radius):
+    oscillation = paper_oscillation(nu)
+    distance = rule(oscillation, PlumeAxis(heading=heading, elevation=elevation), radius)
+    # The figure of eight is symmetric port and starboard, fore and aft; up and down are the same to a sphere.
+    for mirrored in (
+        PlumeAxis(heading=-heading, elevation=elevation),
+        PlumeAxis(heading=math.pi - heading, elevation=elevation),
+        PlumeAxis(heading=heading, elevation=-elevation),
+        PlumeAxis(heading=heading + 2.0 * math.pi, elevation=elevation),
+    ):
+        assert rule(oscillation, mirrored, radius) == pytest.approx(distance, rel=0.0, abs=SEARCH)
+
+
+def test_a_wider_keep_out_area_puts_the_centre_farther_away():
+    oscillation, axis = paper_oscillation(0.3), PlumeAxis(heading=2.4, elevation=0.2)
+    distances = [distance_exact(oscillation, axis, radius) for radius in (50.0, 100.0, 200.0, 400.0)]
+    # By no less than the radius grows, for |d r_CO/d r_min| = r_min/sqrt(...) >= 1.
+    assert np.all(np.diff(distances) >= np.array([50.0, 100.0, 200.0]) - SEARCH)
+
+
+def test_the_reach_goes_from_the_half_width_along_to_that_across():
+    oscillation = paper_oscillation(0.5)
+    d_x, d_y = half_widths(oscillation)
+    # Equation (11); halfway at sin(chi_P) = 1/2. Tolerances are roundings.
+    assert reach(oscillation, PlumeAxis(heading=math.pi)) == pytest.approx(d_x, rel=1e-13)
+    assert reach(oscillation, PlumeAxis(heading=-0.5 * math.pi)) == pytest.approx(d_y, rel=1e-13)
+    assert reach(oscillation, PlumeAxis(heading=math.radians(150.0))) == pytest.approx(0.5 * (d_x + d_y), rel=1e-13)
+    assert reach(oscillation, PlumeAxis(heading=math.radians(-30.0))) == pytest.approx(0.5 * (d_x + d_y), rel=1e-13)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 0.4, -0.4])
+def test_the_papers_placement_adds_the_reach_seen_along_the_plume(elevation):
+    oscillation, axis = paper_oscillation(0.5), PlumeAxis(heading=2.0, elevation=elevation)
+    # Equation (10). Rounding.
+    expected = 200.0 + reach(oscillation, axis) * math.cos(elevation)
+    assert distance_by_paper(oscillation, axis, 200.0) == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("heading_deg", "elevation_deg", "expected"),
+    [
+        # Equation (9): ahead, to starboard, astern, and up at the sine of 30 degrees.
+        (0.0, 0.0, (100.0, 0.0, 0.0)),
+        (90.0, 0.0, (0.0, 100.0, 0.0)),
+        (180.0, 0.0, (-100.0, 0.0, 0.0)),
+        (180.0, 30.0, (-100.0 * math.sqrt(0.75), 0.0, 50.0)),
+        (-90.0, 30.0, (0.0, -100.0 * math.sqrt(0.75), 50.0)),
+    ],
+)
+def test_the_centre_lies_on_the_plumes_axis(heading_deg, elevation_deg, expected):
+    axis = PlumeAxis(heading=math.radians(heading_deg), elevation=math.radians(elevation_deg))
+    # Rounding of 100 m.
+    assert centre_of_oscillation(100.0, axis) == pytest.approx(expected, abs=1e-13)
+
+
+@examples(50)
+@given(heading=headings, elevation=elevations, distance=radii)
+def test_the_centre_is_at_its_distance(heading, elevation, distance):
+    centre = centre_of_oscillation(distance, PlumeAxis(heading=heading, elevation=elevation))
+    # Below equation (9): r_CO is the three-dimensional distance. Rounding.
+    assert math.hypot(*centre) == pytest.approx(distance, rel=1e-14)
+
+
+@pytest.mark.parametrize("radius", [-1.0, math.nan, math.inf])
+@pytest.mark.parametrize("rule", [distance_exact, distance_by_paper])
+def test_a_keep_out_radius_that_is_none_is_refused(rule, radius):
+    with pytest.raises(InfeasibleError, match=r"keep-out radius is .* m; it must be finite and at least 0") as refusal:
+        rule(paper_oscillation(0.5), PlumeAxis(heading=math.pi), radius)
+    assert f"is {radius:g} m" in str(refusal.value)
+
+
+@pytest.mark.parametrize("elevation", [0.5 * math.pi, -0.5 * math.pi, 2.0, math.nan])
+@pytest.mark.parametrize("rule", [distance_exact, distance_by_paper])
+def test_a_vertical_plume_is_refused(rule, elevation):
+    with pytest.raises(
+        InfeasibleError, match=r"plume elevation is .*within -pi/2 and pi/2: a vertical plume cannot be crossed"
+    ) as refusal:
+        rule(paper_oscillation(0.5), PlumeAxis(heading=math.pi, elevation=elevation), 200.0)
+    assert f"is {elevation:g} rad" in str(refusal.value)

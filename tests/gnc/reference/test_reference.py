@@ -1,0 +1,176 @@
+import math
+
+import numpy as np
+import pytest
+from gnc_cases import SPEED, paper_oscillation
+from scipy.integrate import solve_ivp
+
+from gnc.reference.orbit import offset
+from gnc.reference.oscillating import CirclingReference, ReferencePoint, ReferenceStart, start_reference
+from gnc.unicycle import unicycle_move
+
+TIME_STEP = 0.05
+CENTRE = (-214.0, 35.0)
+COURSE = 0.7
+
+
+def make(nu, *, phase=0.0, time_step=TIME_STEP):
+    oscillation = paper_oscillation(nu, roll_rate_max=math.radians(40.0))
+    start = start_reference(oscillation, phase=phase, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE)
+    return oscillation, ReferencePoint(oscillation, start, phase=phase, time_step=time_step)
+
+
+def closed_form(oscillation, time, phase):
+    """Return north and east [m] of the reference: the CO goes with the vessel, and the orbit turns with its course."""
+    along, right = offset(oscillation, time + phase / oscillation.omega_0)
+    along = along + oscillation.nu * SPEED * time
+    return (
+        CENTRE[0] + along * math.cos(COURSE) - right * math.sin(COURSE),
+        CENTRE[1] + along * math.sin(COURSE) + right * math.cos(COURSE),
+    )
+
+
+@pytest.mark.parametrize("phase", [0.0, 2.0])
+@pytest.mark.parametrize("nu", [0.0, 0.1, 0.5, 0.95])
+def test_the_stepped_reference_does_not_drift_off_the_closed_form_in_1000_seconds(nu, phase):
+    oscillation, reference = make(nu, phase=phase)
+    positions = [(reference.north, reference.east)]
+    for _ in range(20_000):
+        reference.step()
+        positions.append((reference.north, reference.east))
+    expected = np.stack(closed_form(oscillation, TIME_STEP * np.arange(20_001), phase), axis=-1)
+    # Simpson's rule is good to 1e-9 m a step (class docstring), and its errors cancel over a period rather than add up over the
+    # 20,000 steps: at nu = 0.95, with 142 steps a period, they reach 3e-8 m.
+    np.testing.assert_allclose(positions, expected, rtol=0.0, atol=1e-7)
+
+
+@pytest.mark.parametrize("vessel_heading_rate", [0.0, 0.02, -0.01])
+@pytest.mark.parametrize("phase", [0.0, 1.0])
+def test_the_stepped_reference_is_equation_2_integrated_also_while_the_vessel_turns(vessel_heading_rate, phase):
+    oscillation, reference = make(0.5, phase=phase)
+
+    def rates(time, state):
+        heading_rate = -oscillation.amplitude * math.sin(oscillation.omega_0 * time + phase) + vessel_heading_rate
+        return SPEED * math.cos(state[2]), SPEED * math.sin(state[2]), heading_rate
+
+    start = [reference.north, reference.east, reference.course]
+    solution = solve_ivp(rates, (0.0, 60.0), start, method="DOP853", rtol=1e-11, atol=1e-11)
+    for _ in range(1200):
+        reference.step(vessel_heading_rate)
+    # Integration tolerance 1e-11 of up to 1 km in each of some hundred steps.
+    assert (reference.north, reference.east, reference.course) == pytest.approx(solution.y[:, -1], rel=0.0, abs=1e-6)
+    assert reference.heading_rate == pytest.approx(rates(60.0, solution.y[:, -1])[2], rel=0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.5, 0.5 * math.pi, -2.0])
+def test_the_reference_starts_on_the_course_of_equation_7(phase):
+    oscillation, reference = make(0.5, phase=phase)
+    # Rounding.
+    assert reference.course == pytest.approx(COURSE + oscillation.eta * math.cos(phase), abs=1e-15)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.5, -2.0])
+def test_the_course_is_that_of_equation_3_about_the_vessels(phase):
+    oscillation, reference = make(0.3, phase=phase)
+    for step in range(1, 2001):
+        reference.step()
+        # Equation (3) with the start of (7). Rounding of angles of 30 rad; time comes from the step count, so it does not grow.
+        expected = COURSE + oscillation.eta * math.cos(oscillation.omega_0 * step * TIME_STEP + phase)
+        assert reference.course == pytest.approx(expected, abs=1e-13)
+
+
+def test_the_heading_rate_is_the_rate_of_the_course():
+    time_step = 1e-3
+    _, reference = make(0.5, phase=0.4, time_step=time_step)
+    for _ in range(200):
+        before = reference.course
+        reference.step(0.02)
+        middle = reference.heading_rate
+        reference.step(0.02)
+        # Central difference: A omega_0^2 h^2/6 = 9e-9 rad/s, and rounding of 1e-16/1e-3.
+        assert middle == pytest.approx((reference.course - before) / (2.0 * time_step), rel=0.0, abs=2e-8)
+
+
+def test_the_reference_is_a_unicycle_of_constant_speed():
+    _, reference = make(0.5, time_step=1e-3)
+    for _ in range(200):
+        north, east = reference.north, reference.east
+        reference.step()
+        # Equation (4): the speed is V_r throughout. The chord is shorter than the arc by (omega h)^2/24 of it, 1e-8.
+        assert math.hypot(reference.north - north, reference.east - east) == pytest.approx(SPEED * 1e-3, rel=2e-8)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.5, 0.9])
+@pytest.mark.parametrize("phase", [0.7, 0.5 * math.pi, -2.5])
+def test_the_phase_moves_the_reference_along_the_same_orbit(nu, phase):
+    # A time step that divides the time by which the phase runs ahead.
+    lead = phase / paper_oscillation(nu, roll_rate_max=math.radians(40.0)).omega_0
+    time_step = abs(lead) / 100.0
+    oscillation, ahead = make(nu, phase=phase, time_step=time_step)
+    _, behind = make(nu, phase=0.0, time_step=time_step)
+    early, late = (ahead, behind) if phase > 0.0 else (behind, ahead)
+    for _ in range(100):
+        late.step()
+    way = nu * SPEED * abs(lead)
+    # The one has arrived where the other started, the CO having moved on meanwhile. Simpson's error, 1e-7 m as above.
+    assert late.north - way * math.cos(COURSE) == pytest.approx(early.north, rel=0.0, abs=1e-6)
+    assert late.east - way * math.sin(COURSE) == pytest.approx(early.east, rel=0.0, abs=1e-6)
+    assert late.course == pytest.approx(early.course, rel=0.0, abs=1e-12)
+    assert late.heading_rate == pytest.approx(early.heading_rate, rel=0.0, abs=1e-12)
+    assert oscillation.omega_0 * time_step * 100 == pytest.approx(abs(phase), rel=1e-12)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.7, 0.5 * math.pi, math.pi])
+def test_the_orbit_is_centred_on_the_centre_of_oscillation_whatever_the_phase(phase):
+    nu = 0.5
+    oscillation = paper_oscillation(nu)
+    time_step = oscillation.period / 400
+    oscillation, reference = make(nu, phase=phase, time_step=time_step)
+    offsets = []
+    for step in range(400):
+        way = nu * SPEED * step * time_step
+        offsets.append((reference.north - CENTRE[0] - way * math.cos(COURSE), reference.east - CENTRE[1] - way * math.sin(COURSE)))
+        reference.step()
+    # paper-notes, care 2. The mean over a period vanishes by symmetry; Simpson's error as above.
+    assert np.mean(offsets, axis=0) == pytest.approx([0.0, 0.0], abs=1e-6)
+
+
+def test_the_reference_starts_on_the_centre_with_phase_zero_only():
+    # Section III.B has it start on the CO; paper-notes, care 2, says why that holds for phi_0 = 0 only.
+    oscillation = paper_oscillation(0.5)
+    on = start_reference(oscillation, phase=0.0, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE)
+    off = start_reference(oscillation, phase=0.5 * math.pi, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE)
+    assert (on.north, on.east) == pytest.approx(CENTRE, abs=1e-12)
+    # A quarter period on it is d_y = 68.395 m to the vessel's right (table of paper-notes, rounded to 1 cm).
+    right = -(off.north - CENTRE[0]) * math.sin(COURSE) + (off.east - CENTRE[1]) * math.cos(COURSE)
+    along = (off.north - CENTRE[0]) * math.cos(COURSE) + (off.east - CENTRE[1]) * math.sin(COURSE)
+    assert right == pytest.approx(68.40, abs=0.005)
+    assert along == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("heading_rate", [0.15, -0.4])
+def test_a_circling_reference_is_a_unicycle_that_turns_steadily(heading_rate):
+    start = ReferenceStart(north=12.0, east=-7.0, course=COURSE)
+    reference = CirclingReference(start, speed=SPEED, heading_rate=heading_rate, time_step=TIME_STEP)
+    state = (start.north, start.east, start.course)
+    assert (reference.north, reference.east, reference.course) == state
+    for _ in range(8000):
+        reference.step()
+        state = unicycle_move(*state, SPEED, heading_rate, TIME_STEP)
+        assert (reference.heading_rate, reference.speed) == (heading_rate, SPEED)
+    # Equation (13) integrated step by step, against the closed form: 8,000 roundings of a radius up to 130 m.
+    assert (reference.north, reference.east) == pytest.approx(state[:2], rel=0.0, abs=1e-8)
+    assert reference.course == pytest.approx(state[2], rel=0.0, abs=1e-9)
+
+
+def test_a_circling_reference_comes_round():
+    # One turn of 2 pi/omega_r = 41.9 s: 838 steps of 0.05 s and a bit; at 1,000 steps a turn it is back where it was.
+    start = ReferenceStart(north=12.0, east=-7.0, course=COURSE)
+    reference = CirclingReference(start, speed=SPEED, heading_rate=0.15, time_step=2.0 * math.pi / 0.15 / 1000)
+    farthest = 0.0
+    for _ in range(1000):
+        reference.step()
+        farthest = max(farthest, math.hypot(reference.north - start.north, reference.east - start.east))
+    assert (reference.north, reference.east) == pytest.approx((start.north, start.east), rel=0.0, abs=1e-9)
+    # The circle's diameter, 2 V_r/omega_r; a turn of 1,000 steps has a sample at its far side.
+    assert farthest == pytest.approx(2.0 * SPEED / 0.15, rel=1e-9)

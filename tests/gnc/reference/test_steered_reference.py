@@ -1,0 +1,175 @@
+import math
+
+import numpy as np
+import pytest
+from gnc_cases import HEADING_RATE_MAX, SPEED, examples
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from scipy.special import j0
+
+from gnc.reference.bessel import eta_for_speed_ratio
+from gnc.reference.orbit import offset
+from gnc.reference.oscillating import ReferencePoint, start_reference
+from gnc.reference.oscillation import design_oscillation
+from gnc.reference.steered import SteeredReference, eta_for_mean_speed, unit_offset
+
+TIME_STEP = 0.05
+ROLL_RATE_MAX = math.radians(40.0)
+
+
+def steered(*, nu=0.5, mean_course=0.7, phase=0.0):
+    return SteeredReference(
+        north=-214.0,
+        east=35.0,
+        mean_course=mean_course,
+        speed_ratio=nu,
+        phase=phase,
+        speed=SPEED,
+        heading_rate=HEADING_RATE_MAX,
+        roll_rate_max=ROLL_RATE_MAX,
+        time_step=TIME_STEP,
+    )
+
+
+def oscillation_of(reference):
+    """Return the oscillation that the steered reference flies: that of the mean speed which its own eta gives."""
+    return design_oscillation(
+        nu=float(j0(reference.eta)), speed=SPEED, heading_rate_max=HEADING_RATE_MAX, roll_rate_max=ROLL_RATE_MAX
+    )
+
+
+steering = st.lists(st.tuples(st.floats(-math.pi, math.pi), st.floats(-0.3, 1.1), st.integers(1, 200)), min_size=1, max_size=8)
+
+
+@pytest.mark.parametrize("nu", [0.05, 0.5, 0.9])
+def test_with_constant_parameters_it_is_the_reference_of_the_paper(nu):
+    reference = steered(nu=nu)
+    oscillation = oscillation_of(reference)
+    start = start_reference(oscillation, phase=0.0, centre_north=-214.0, centre_east=35.0, vessel_course=0.7)
+    paper = ReferencePoint(oscillation, start, phase=0.0, time_step=TIME_STEP)
+    for _ in range(4000):
+        reference.step()
+        paper.step()
+        # The same Simpson's rule; phase and frequency differ by rounding, which 4,000 steps of up to 25 rad/s per unit of eta grow.
+        assert (reference.north, reference.east) == pytest.approx((paper.north, paper.east), rel=0.0, abs=1e-6)
+    assert reference.course == pytest.approx(paper.course, rel=0.0, abs=1e-9)
+    assert reference.heading_rate == pytest.approx(paper.heading_rate, rel=0.0, abs=1e-9)
+
+
+@given(steering=steering, nu=st.floats(0.0, 0.97), phase=st.floats(-math.pi, math.pi))
+@examples(40)
+def test_no_steering_makes_it_turn_faster_than_it_may(steering, nu, phase):
+    reference = steered(nu=nu, phase=phase)
+    for mean_course, ratio, steps in steering:
+        reference.steer(mean_course, ratio)
+        for _ in range(steps):
+            before = reference.course
+            reference.step()
+            # Rounding: the heading rate as said, and what the course did.
+            assert abs(reference.heading_rate) <= HEADING_RATE_MAX * (1.0 + 1e-12)
+            assert abs(reference.course - before) <= HEADING_RATE_MAX * TIME_STEP * (1.0 + 1e-9)
+
+
+@given(steering=steering, nu=st.floats(0.0, 0.97))
+@examples(20)
+def test_it_is_a_unicycle_of_constant_speed_whatever_is_steered(steering, nu):
+    reference = steered(nu=nu)
+    for mean_course, ratio, steps in steering:
+        reference.steer(mean_course, ratio)
+        for _ in range(steps):
+            north, east, course = reference.north, reference.east, reference.course
+            reference.step()
+            turn = reference.course - course
+            # The chord of an arc that turns evenly, and the course on its middle; how the rate changes within a step, 1.5 rad/s^2
+            # at most, moves the end by V dt^3 1.5/12 = 0.3 mm.
+            chord = SPEED * TIME_STEP * math.sin(0.5 * turn) / (0.5 * turn) if turn else SPEED * TIME_STEP
+            expected = (chord * math.cos(course + 0.5 * turn), chord * math.sin(course + 0.5 * turn))
+            assert (reference.north - north, reference.east - east) == pytest.approx(expected, rel=0.0, abs=4e-4)
+
+
+@given(steering=steering, nu=st.floats(0.0, 0.97))
+@examples(10)
+def test_mirrored_steering_gives_a_mirrored_path(steering, nu):
+    # Mirrored in the north-south line: courses change sign, and so does the amplitude, which is half a period of phase.
+    one, other = steered(nu=nu, mean_course=0.4, phase=0.0), steered(nu=nu, mean_course=-0.4, phase=math.pi)
+    for mean_course, ratio, steps in steering:
+        one.steer(mean_course, ratio)
+        other.steer(-mean_course, ratio)
+        # Opposite to where it goes, either way round is as long.
+        assume(abs(math.remainder(mean_course - one.mean_course, 2.0 * math.pi)) < math.pi - 1e-6)
+        for _ in range(steps):
+            one.step()
+            other.step()
+        # 1,600 steps of rounding; north is the same, east mirrored about the start at 35 m.
+        assert (other.north, 70.0 - other.east) == pytest.approx((one.north, one.east), rel=0.0, abs=1e-7)
+        assert other.centre()[0] == pytest.approx(one.centre()[0], rel=0.0, abs=1e-7)
+
+
+@pytest.mark.parametrize("phase", [0.0, 1.0, -2.2])
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.9])
+def test_its_centre_is_the_mean_of_its_orbit(nu, phase):
+    reference = steered(nu=nu, phase=phase)
+    centre = np.array(reference.centre())
+    mean_speed = float(j0(reference.eta)) * SPEED
+    drift = mean_speed * np.array([math.cos(0.7), math.sin(0.7)])
+    # Ten periods, to within half a step: 0.025 s of some 150 s, up to 105 m from the centre, move the mean by up to 2 cm.
+    steps = round(10 * 2.0 * math.pi / reference.omega_0 / TIME_STEP)
+    places = []
+    for step in range(steps):
+        places.append(np.array([reference.north, reference.east]) - step * TIME_STEP * drift)
+        reference.step()
+    assert np.mean(places, axis=0) == pytest.approx(centre, rel=0.0, abs=0.05)
+    # Nor does it wander from there: the centre moves with the mean velocity. Table of Bessel functions: 3e-6 of 100 m.
+    end = np.array(reference.centre()) - steps * TIME_STEP * drift
+    assert end == pytest.approx(centre, rel=0.0, abs=0.01)
+
+
+@pytest.mark.parametrize("phase", [0.3, 1.5, 2.9, -1.1])
+@pytest.mark.parametrize("eta", [0.1, 1.0, 1.5211, 2.4])
+def test_the_offset_is_the_series_of_equation_12(eta, phase):
+    oscillation = design_oscillation(nu=float(j0(eta)), speed=SPEED, heading_rate_max=HEADING_RATE_MAX)
+    along, right = offset(oscillation, phase / oscillation.omega_0)
+    unit = SPEED / oscillation.omega_0
+    found = unit_offset(eta, phase)
+    # What _ORDERS leaves out is below 1e-4 of the width, of order 1 in these units; the table is linear over 0.005 rad, 3e-6.
+    assert found == pytest.approx((float(along) / unit, float(right) / unit), rel=0.0, abs=2e-5)
+
+
+def test_the_table_of_eta_is_equation_6():
+    ratios = np.concatenate([np.linspace(0.0, 1.0, 501), 1.0 - np.logspace(-12, -3, 50)])
+    # 1e-5 by its docstring.
+    assert [eta_for_mean_speed(r) for r in ratios] == pytest.approx([eta_for_speed_ratio(r) for r in ratios], rel=0.0, abs=1e-5)
+
+
+def test_mean_speeds_beyond_the_table_are_those_of_its_ends():
+    assert eta_for_mean_speed(1.2) == 0.0
+    # Backing away: J_0 falls to -0.2 beyond its first zero; the end of the table is a step of 0.005 rad away at most, whose J_0 is
+    # 0.4 times that.
+    assert j0(eta_for_mean_speed(-0.2)) == pytest.approx(-0.2, abs=0.002)
+    assert eta_for_mean_speed(-5.0) == pytest.approx(eta_for_mean_speed(-0.2), abs=0.005)
+
+
+def test_it_knows_its_mean_speed():
+    for nu in (0.0, 0.2, 0.5, 0.97):
+        # The series ends at the sixth power: (eta/2)^14/(7!)^2 = 5e-7 at eta = 2.405; the table of eta is good to 1e-5.
+        assert steered(nu=nu).speed_ratio == pytest.approx(nu, abs=1e-5)
+
+
+def test_it_comes_to_the_mean_course_and_speed_that_are_asked_for():
+    reference = steered(nu=0.5, mean_course=0.0)
+    reference.steer(2.0, 0.2)
+    for _ in range(1200):
+        reference.step()
+    # 60 s: rate 0.4/s and a gate of 0.2 to 1 make at least 1/0.08 s = 12 s the slowest time constant: e^-5 of 2 rad and more.
+    assert reference.mean_course == pytest.approx(2.0, abs=0.02)
+    assert reference.speed_ratio == pytest.approx(0.2, abs=0.01)
+
+
+def test_it_turns_the_shorter_way():
+    reference = steered(mean_course=3.0)
+    reference.steer(-3.0, 0.5)
+    for _ in range(1200):
+        reference.step()
+        assert reference.mean_course > 2.9
+    # As above.
+    assert math.remainder(reference.mean_course + 3.0, 2.0 * math.pi) == pytest.approx(0.0, abs=0.01)

@@ -1,0 +1,226 @@
+"""Changed aircraft: each change is what changing JSBSim's own model makes of the linear one; what too little margin leads to."""
+
+import dataclasses
+import math
+import re
+import shutil
+
+import numpy as np
+import pytest
+
+from aircraft.dynamics.linearise import linearise
+from aircraft.dynamics.trim import trim
+from aircraft.simulation.fdm import TIME_STEP, Fdm
+from aircraft.spec import MODELS, X8
+from innerloop.analysis import robustness
+from innerloop.analysis.margins import Loops, Margin
+from innerloop.analysis.robustness import CASES, NOMINAL, Check, check_design, gravity_and_turning, operating_points
+from innerloop.designs import designer
+from innerloop.designs.designer import DesignError, design_autopilot
+from innerloop.law.control_law import ControlLaw
+from innerloop.law.linear_controller import linear_controller
+from innerloop.synthesis.quasi_static import quasi_static
+from innerloop.synthesis.weights import DELAY
+
+BANKS = {"level": 0.0, "right turn": 0.6}
+
+
+def x8_with(tmp_path, *changes):
+    """A JSBSim root whose X8 has numbers multiplied: (pattern of the element, factor)."""
+    root = shutil.copytree(MODELS, tmp_path / "models")
+    file = root / "aircraft" / "x8" / "x8.xml"
+    text = file.read_text(encoding="utf-8")
+    for tag, factor in changes:
+        pattern = rf"(<{tag}[^>]*>)\s*([-+.\deE]+)\s*(</{tag}>)"
+        text, count = re.subn(pattern, lambda m, factor=factor: f"{m[1]}{float(m[2]) * factor!r}{m[3]}", text)
+        assert count == 1, tag
+    file.write_text(text, encoding="utf-8")
+    return root
+
+
+@pytest.fixture(scope="module")
+def trims():
+    return {name: trim(Fdm(X8), airspeed=20.0, altitude=100.0, bank=bank) for name, bank in BANKS.items()}
+
+
+@pytest.fixture(scope="module")
+def models(trims):
+    return {name: linearise(Fdm(X8), t) for name, t in trims.items()}
+
+
+def changed(case, model, found):
+    change, delay = CASES[case]
+    assert delay == DELAY
+    return change(model, found)
+
+
+def assert_same(found, expected, rtol, atol):
+    for name in "ABCD":
+        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=rtol, atol=atol, err_msg=name)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("name", BANKS)
+def test_a_fifth_of_mass_changes_the_linear_aircraft_as_a_fifth_of_mass_in_jsbsim(tmp_path, trims, models, name, sign):
+    factor = 1.0 + sign * 0.2
+    heavier = linearise(Fdm(X8, x8_with(tmp_path, ("emptywt", factor))), trims[name])
+    found = changed(f"mass {100.0 * (factor - 1.0):+.0f} %", models[name], trims[name])
+    # What bank does to the heading rate is left alone: the heavier aircraft that flies carries its weight, and turns by g/V.
+    row = found.output_labels.index("heading_rate")
+    attitude = [found.state_labels.index(angle) for angle in ("roll", "pitch")]
+    np.testing.assert_array_equal(found.C[row, attitude], models[name].C[row, attitude])
+    heavier.C[row, attitude] = found.C[row, attitude]
+    # Held in the same state, with the same inertia: only forces' accelerations differ. Gravity in JSBSim is 9.78 m/s^2, and the
+    # earth turns: 0.3 % and 3e-3 m/s^2 of what gravity does, of which a fifth is misplaced.
+    assert_same(found, heavier, rtol=1e-3, atol=6e-3)
+    # And a fifth is seen: lift's slope falls by it.
+    row = models[name].state_labels.index("alpha")
+    assert found.A[row, row] / models[name].A[row, row] == pytest.approx(1.0 / factor, rel=0.02)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(("name", "gyroscopic"), [("level", 1e-4), ("right turn", 0.06)])
+def test_a_fifth_of_inertia_changes_the_linear_aircraft_as_a_fifth_of_inertia_in_jsbsim(
+    tmp_path, trims, models, name, gyroscopic, sign
+):
+    factor = 1.0 + sign * 0.2
+    larger = [(f"i{axes}", factor) for axes in ("xx", "yy", "zz", "xz")]
+    stiff = linearise(Fdm(X8, x8_with(tmp_path, *larger)), trims[name])
+    found = changed(f"inertia {100.0 * (factor - 1.0):+.0f} %", models[name], trims[name])
+    # The same moments over other inertia; rounding of differences over 0.002 rad/s. Turning, its own gyroscopic moments grow with
+    # its inertia: the change divides them as well, a fifth of rates near 0.3 rad/s, where the air's terms are up to 20 1/s.
+    assert_same(found, stiff, rtol=1e-4, atol=gyroscopic)
+
+
+@pytest.mark.parametrize("factor", [1.2, 0.8])
+def test_a_fifth_of_effectiveness_is_a_fifth_of_what_every_control_does_in_the_end(models, factor):
+    model = models["level"]
+    found = changed(f"control effectiveness {100.0 * (factor - 1.0):+.0f} %", model, None)
+    before, after = quasi_static(model), quasi_static(found)
+    np.testing.assert_allclose(after.B, factor * before.B, rtol=1e-12)
+    extras = [model.output_labels.index(name) for name in ("heading_rate", "climb_rate")]
+    np.testing.assert_allclose(after.D[extras], factor * before.D[extras], rtol=1e-12, atol=1e-15)
+    # Servos and engine move as they did, and the body is the same but for the propeller, which follows airspeed too.
+    driven = [i for i, name in enumerate(model.state_labels) if i >= 9]
+    np.testing.assert_array_equal(found.A[driven], model.A[driven])
+    np.testing.assert_array_equal(found.B[driven], model.B[driven])
+    np.testing.assert_array_equal(found.A[:9, :9], model.A[:9, :9])
+
+
+def test_gravity_and_turning_are_those_of_a_body_without_forces(trims):
+    # Without force a body falls: in level flight the path bends down at g/V, V_dot by pitch is -g, alpha_dot by q
+    # is 1, and sideslip follows -r and g roll/V (Stevens and Lewis, linear equations of motion with all aerodynamics left out).
+    states = ["airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude"]
+    level = dataclasses.replace(trims["level"], alpha=0.05, beta=0.0, roll=0.0, pitch=0.05, rates_body=(0.0, 0.0, 0.0))
+    found = gravity_and_turning(level, states)
+    g, v = 9.80665, 20.0
+    expected = np.zeros((3, 9))
+    expected[0, states.index("pitch")] = -g
+    expected[0, states.index("alpha")] = g  # gravity along the path: -g sin(pitch - alpha)
+    expected[1, states.index("airspeed")] = -g / v**2  # alpha_dot = q + g cos(path)/V
+    expected[1, states.index("q")] = 1.0
+    expected[2, states.index("p")] = math.sin(0.05)
+    expected[2, states.index("r")] = -math.cos(0.05)
+    expected[2, states.index("roll")] = g * math.cos(0.05) / v
+    np.testing.assert_allclose(found, expected, atol=1e-6)  # central differences over 1e-5
+
+
+def test_there_is_a_case_for_each_change_both_ways_and_one_for_one_more_step_of_delay():
+    assert [name for name, (_, delay) in CASES.items() if delay != DELAY] == ["one more step of delay"]
+    assert CASES["one more step of delay"][1] - DELAY == pytest.approx(TIME_STEP, abs=1e-15)
+    for what in ("control effectiveness", "mass", "inertia"):
+        assert {f"{what} +20 %", f"{what} -20 %"} < set(CASES)
+    assert len(CASES) == 8
+
+
+@pytest.mark.parametrize("name", ["x8", "aerosonde"])
+def test_every_change_is_checked_at_every_point_and_leaves_four_decibels_and_thirty_degrees(designs, name):
+    checks = designs(name).design.checks
+    # 25 points of the grid and 40 between, each eight times.
+    assert len(checks) == 65 * 8
+    for check in checks:
+        if check.case != NOMINAL:
+            # A fifth of gain is 1.6 to 1.9 dB, so of 6 dB 4 must be left; a step of delay at 5 rad/s is 2.4 degrees of 45.
+            assert check.stable
+            assert check.worst_gain.gain_db >= 4.0
+            assert check.worst_phase.phase_deg >= 30.0
+
+
+def test_points_between_lie_half_way_between_neighbours_along_airspeed_and_along_bank(x8_schedule):
+    points = operating_points(x8_schedule)
+    between = [p.trim for p in points if p.between]
+    v, bank = x8_schedule.airspeeds, x8_schedule.gain_banks
+    assert len(points) - len(between) == len(v) * len(bank)
+    assert (len(between), len({(round(t.airspeed, 9), round(t.roll, 3)) for t in between})) == (40, 40)
+    assert any(t.airspeed == pytest.approx(0.5 * (v[0] + v[1])) and t.roll == pytest.approx(bank[4]) for t in between)
+    assert any(t.airspeed == v[3] and t.roll == pytest.approx(0.5 * (bank[2] + bank[3]), abs=1e-3) for t in between)
+
+
+@pytest.mark.parametrize("along", ["airspeed", "bank"])
+def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_linearised_there(x8_schedule, along):
+    fdm, law = Fdm(X8), ControlLaw(x8_schedule)
+    points = [p for p in operating_points(x8_schedule) if p.between]
+    chosen = [p for p in points if (p.trim.airspeed in x8_schedule.airspeeds) == (along == "bank")][::5]
+    assert len(chosen) == 4
+    for point in chosen:
+        bank = 0.0 if point.trim.yaw_rate == 0.0 else point.trim.roll
+        there = trim(fdm, airspeed=point.trim.airspeed, altitude=100.0, bank=bank)
+        # Half a step of the grid is 1.25 m/s or 11 degrees; the bend of alpha over either, second order, is 7 % of it.
+        assert point.trim.alpha == pytest.approx(there.alpha, abs=0.006)
+        linearised = Loops(linearise(fdm, there), linear_controller(law, there)).margins(together=False)
+        interpolated = Loops(point.model, linear_controller(law, point.trim)).margins(together=False)
+        for found, expected in zip(interpolated, linearised, strict=True):
+            # A few per cent of loop gain: 0.4 dB is 5 %, of 27 dB 3 %; of phase 1.5 degrees is 0.026 rad. What is required leaves
+            # far more.
+            assert found.phase_deg == pytest.approx(expected.phase_deg, abs=1.5), found.loop
+            assert found.gain_db == pytest.approx(expected.gain_db, abs=0.4, rel=0.03), found.loop
+
+
+def test_a_check_knows_what_it_lacks():
+    def margin(loop, gain, phase):
+        return Margin(loop=loop, gain_db=gain, phase_deg=phase, crossover=1.0, disk_gain_db=gain, disk_phase_deg=phase)
+
+    loops = (margin("elevator", 7.0, 44.0), margin("aileron", 5.0, 60.0), margin("throttle", math.inf, 90.0))
+    nominal = Check(case=NOMINAL, airspeed=20.0, bank=0.1, between=False, stable=True, margins=loops)
+    assert not nominal.met
+    assert nominal.short_loops == ("elevator", "aileron")
+    assert (nominal.worst_gain.loop, nominal.worst_phase.loop) == ("aileron", "elevator")
+    assert nominal.shortfall == pytest.approx(5.0 / 6.0)
+    assert "5.0 dB (aileron) and 44.0 deg (elevator) at 20.0 m/s and 6 deg of bank" in nominal.describe()
+    # Of a changed aircraft 4 dB and 30 degrees are asked for.
+    assert dataclasses.replace(nominal, case="mass +20 %").met
+    unstable = dataclasses.replace(nominal, case="mass +20 %", stable=False)
+    assert unstable.short_loops == ("elevator", "aileron", "throttle")
+    assert unstable.shortfall < 0.0
+    assert "unstable" in unstable.describe()
+
+
+def test_a_design_with_too_little_margin_is_refused_with_what_it_lacks_and_not_flown(monkeypatch):
+    # A second of delay: the fastest loop that leaves 45 degrees crosses over near 0.8 rad/s at best. Ten attempts at 4/5 the speed
+    # end at 0.13 of 4.8 rad/s; three end at half of it.
+    monkeypatch.setattr(robustness, "CASES", {NOMINAL: (CASES[NOMINAL][0], 1.0)})
+    monkeypatch.setattr(designer, "_ATTEMPTS", 3)
+    with pytest.raises(DesignError, match="'x8': no design has 6 dB and 45 deg at every operating point") as caught:
+        design_autopilot(X8)
+    assert "It is not flown" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeypatch, x8_design):
+    asked = []
+
+    def short_once(schedule):
+        checks = check_design(schedule, changed=False)
+        if not asked:
+            lacking = [dataclasses.replace(m, gain_db=1.0) if m.loop == "aileron" else m for m in checks[0].margins]
+            checks[0] = dataclasses.replace(checks[0], margins=tuple(lacking))
+        asked.append(schedule)
+        return checks
+
+    monkeypatch.setattr(designer, "check_design", short_once)
+    found = design_autopilot(X8)
+    assert len(asked) == 2
+    assert found.speeds.lateral == pytest.approx(0.8 * x8_design.speeds.lateral)
+    assert found.speeds.longitudinal == x8_design.speeds.longitudinal
+    assert found.speeds.airspeed == x8_design.speeds.airspeed
+    assert found.schedule.weights.model_frequency == found.speeds.lateral

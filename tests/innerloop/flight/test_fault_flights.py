@@ -1,0 +1,105 @@
+"""The X8 under its autopilot when a part of it fails."""
+
+import math
+
+import numpy as np
+import pytest
+import x8_published as x8
+
+from aircraft.errors import AircraftError
+from aircraft.spec import X8
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.synthesis.weights import STANDARD_GRAVITY
+
+TIME_STEP = 1.0 / 120.0
+FOOT = 0.3048
+MIDDLE = 2
+READ = (
+    "fcs/left-elevon-pos-rad", "fcs/right-elevon-pos-rad", "fcs/left-elevon-mixer", "fcs/right-elevon-mixer",
+    "fcs/throttle-cmd-norm", "autopilot/throttle-command", "propulsion/engine/thrust-lbs", "position/h-sl-ft", "velocities/vt-fps",
+    "autopilot/heading-rate-rad_sec",
+)  # fmt: skip
+LEFT, RIGHT, LEFT_MIXED, RIGHT_MIXED, THROTTLE, THROTTLE_WANTED, THRUST, ALTITUDE, AIRSPEED, HEADING_RATE = range(len(READ))
+AT = 3.0
+
+
+def fly(aircraft, start, duration, fault="", commands=()):
+    """Release, turn at 0.3 rad/s after 1 s, fail after 3 s, then command (command, value); return what was read, (steps, 10)."""
+    aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
+    nodes = [aircraft.fdm.node(name) for name in READ]
+    log = np.empty((round(duration / TIME_STEP), len(nodes)))
+    for i, row in enumerate(log):
+        if i == round(1.0 / TIME_STEP):
+            aircraft.command_heading_rate(0.3)
+        if i == round(AT / TIME_STEP):
+            if fault:
+                aircraft.fail(fault)
+            for command, value in commands:
+                getattr(aircraft, f"command_{command}")(value)
+        row[:] = [node.get_double_value() for node in nodes]
+        aircraft.run()
+    return log
+
+
+@pytest.fixture
+def failable(x8_root):
+    return AutopilotedAircraft(X8, x8_root, failable=True)
+
+
+def test_an_aircraft_that_can_fail_flies_as_one_that_cannot_until_it_does(x8_schedule, x8_aircraft, failable):
+    start = x8_schedule.level(MIDDLE)
+    np.testing.assert_array_equal(fly(failable, start, 6.0), fly(x8_aircraft, start, 6.0))
+
+
+@pytest.mark.parametrize(("fault", "position", "mixed"), [("left_elevon", LEFT, LEFT_MIXED), ("right_elevon", RIGHT, RIGHT_MIXED)])
+def test_an_elevon_that_sticks_goes_to_trim_and_stays_there_while_its_command_moves(x8_schedule, failable, fault, position, mixed):
+    log = fly(failable, x8_schedule.level(MIDDLE), 8.0, fault)
+    trim, failed = log[0, position], round(AT / TIME_STEP)
+    assert abs(log[failed, position] - trim) > 0.01  # in the turn it was elsewhere
+    # Behind the servo's lag of 25 ms it is there within half a second, to exp(-20).
+    np.testing.assert_allclose(log[failed + 60 :, position], trim, atol=1e-9)
+    assert np.ptp(log[failed + 60 :, mixed]) > 0.1  # of a command from -1 to 1
+
+
+def test_a_throttle_that_sticks_stays_at_trim_and_the_turn_costs_airspeed_alone(x8_schedule, failable):
+    log = fly(failable, x8_schedule.level(MIDDLE), 25.0, "throttle")
+    failed = round(AT / TIME_STEP) + 1
+    np.testing.assert_array_equal(log[failed:, THROTTLE], log[0, THROTTLE])
+    assert np.ptp(log[failed:, THROTTLE_WANTED]) > 0.01  # the autopilot asks for more
+    # A turn has more drag: slower than the trim, by 0.14 m/s when measured; altitude and heading rate are the elevons' work.
+    assert 0.05 < (log[0, AIRSPEED] - log[-1, AIRSPEED]) * FOOT < 0.5
+    assert log[-1, ALTITUDE] * FOOT == pytest.approx(log[0, ALTITUDE] * FOOT, abs=0.1)
+    assert log[-1, HEADING_RATE] == pytest.approx(0.3, abs=1e-3)
+
+
+def test_without_its_engine_it_glides_and_turns_at_the_commanded_airspeed_if_told_to_sink(x8_schedule, failable):
+    start = x8_schedule.level(MIDDLE)
+    log = fly(failable, start, 25.0, "engine", [("altitude", -1000.0)])
+    failed = round(AT / TIME_STEP)
+    assert log[0, THRUST] > 0.5
+    assert np.all(log[failed + 60 :, THRUST] <= 0.0)  # the propeller stops within half a second
+    # An altitude error beyond its limit is not integrated, so the integral of the airspeed error is left to find the glide.
+    assert log[-1, AIRSPEED] * FOOT == pytest.approx(start.airspeed, abs=0.2)
+    assert log[-1, HEADING_RATE] == pytest.approx(0.3, abs=5e-3)
+    # The published polynomials in level balance, at 20 m/s under 90 m of standard atmosphere.
+    pressure, weight = 0.5 * 1.2147 * 20.0**2 * x8.WING_AREA, x8.MASS * STANDARD_GRAVITY
+    lift = weight / math.cos(math.atan(20.0 * 0.3 / STANDARD_GRAVITY)) / pressure
+    alpha, elevator = np.linalg.solve([[x8.CL_A, x8.CL_DE], [x8.CM_A, x8.CM_DE]], [lift - x8.CL_0, -x8.CM_0])
+    drag = x8.drag_coefficient(x8.Air(airspeed=20.0, alpha=alpha, elevator=elevator)) * pressure
+    sink = (log[-480, ALTITUDE] - log[-1, ALTITUDE]) * FOOT / (479 * TIME_STEP)
+    assert sink == pytest.approx(drag * 20.0 / weight, rel=0.03)  # the turn's rates and what is left of settling are left out
+
+
+def test_the_next_flight_of_an_aircraft_that_failed_is_whole(x8_schedule, x8_root, failable):
+    start = x8_schedule.level(MIDDLE)
+    for fault in ("engine", "left_elevon"):
+        fly(failable, start, 4.0, fault)
+    # Servos and propeller come to rest from elsewhere, to a millionth (tests/innerloop/flight/test_flight.py).
+    np.testing.assert_allclose(fly(failable, start, 4.0), fly(AutopilotedAircraft(X8, x8_root), start, 4.0), atol=1e-5)
+
+
+def test_what_cannot_fail_says_so(x8_schedule, x8_aircraft, failable):
+    with pytest.raises(AircraftError, match="has no 'rudder' to fail; it has engine, left_elevon, right_elevon, throttle"):
+        failable.fail("rudder")
+    with pytest.raises(AircraftError, match="'engine' cannot fail; make it with failable=True"):
+        x8_aircraft.fail("engine")

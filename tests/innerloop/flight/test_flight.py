@@ -1,0 +1,85 @@
+"""Releasing an aircraft under its autopilot."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from innerloop_flights import CHANNELS, after, fly
+
+from aircraft.dynamics.trim import trim
+from aircraft.errors import AircraftError
+from aircraft.simulation.fdm import Fdm
+from aircraft.simulation.local_frame import LocalFrame
+from aircraft.spec import MODELS, X8
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+
+MIDDLE = 2
+
+
+@pytest.mark.parametrize("index", [1, 2, 3])
+def test_a_released_aircraft_stays_in_its_equilibrium(x8_schedule, x8_aircraft, index):
+    found = x8_schedule.level(index)
+    flight = fly(x8_aircraft, found, 20.0)
+    # Integrators start at zero and the equilibrium's controls are in the tables: what moves is what the kink of the tables at wings
+    # level makes of 0.3 mrad of bank. Centimetres, cm/s and milliradians.
+    assert np.abs(flight["altitude"] - found.altitude).max() < 0.02
+    assert np.abs(flight["airspeed"] - found.airspeed).max() < 0.02
+    assert np.abs(flight["heading_rate"]).max() < 2e-3
+
+
+@pytest.mark.parametrize("yaw", [0.0, 2.0, -1.0])
+def test_a_released_aircraft_starts_where_it_was_put(x8_schedule, x8_aircraft, yaw):
+    state = x8_schedule.level(MIDDLE).state(latitude=0.01, longitude=0.02, yaw=yaw)
+    x8_aircraft.release(state, airspeed=20.0, altitude=100.0)
+    fdm = x8_aircraft.fdm
+    north, east = LocalFrame(0.01, 0.02, 100.0).to_local(fdm.read("position/lat-geod-rad"), fdm.read("position/long-gc-rad"))
+    assert math.hypot(north, east) < 0.1  # of plumes and tracks of hundreds of metres
+    assert math.remainder(fdm.read("attitude/psi-rad") - yaw, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("before", [[(0.0, "heading_rate", 0.5)], [(0.0, "altitude", 150.0), (0.0, "airspeed", 25.0)]])
+def test_a_second_flight_knows_nothing_of_the_first(x8_schedule, x8_root, before):
+    found, commands = x8_schedule.level(MIDDLE), [(1.0, "heading_rate", 0.2)]
+    fresh = fly(AutopilotedAircraft(X8, x8_root), found, 5.0, commands)
+    used = AutopilotedAircraft(X8, x8_root)
+    fly(used, found, 5.0, before)
+    again = fly(used, found, 5.0, commands)
+    for name in CHANNELS:
+        # Servos and propeller come to rest from elsewhere, to a millionth.
+        np.testing.assert_allclose(again[name], fresh[name], atol=1e-5, err_msg=name)
+
+
+def test_two_fresh_aircraft_fly_the_same_flight(x8_schedule, x8_root):
+    commands = [(1.0, "heading_rate", 0.3), (2.0, "altitude", 101.0)]
+    first, second = (fly(AutopilotedAircraft(X8, x8_root), x8_schedule.level(MIDDLE), 5.0, commands) for _ in range(2))
+    for name in CHANNELS:
+        np.testing.assert_array_equal(first[name], second[name], err_msg=name)  # nothing in it is random
+
+
+@pytest.mark.parametrize("altitude", [10.0, 1000.0, 2000.0])
+def test_the_autopilot_designed_at_100_m_flies_at_other_altitudes(x8_aircraft, altitude):
+    found = trim(Fdm(X8), airspeed=20.0, altitude=altitude)
+    flight = fly(x8_aircraft, found, 30.0, [(1.0, "heading_rate", 0.25), (15.0, "heading_rate", 0.0)])
+    # Integral action takes up the different equilibrium: at 2000 m, with a fifth less density, 0.2 m at first.
+    assert np.abs(flight["altitude"] - altitude).max() < 0.5
+    assert np.abs(flight["airspeed"] - 20.0).max() < 0.2
+    assert np.abs(after(flight, 28.0, "altitude") - altitude).max() < 0.01
+
+
+def test_a_root_without_autopilot_is_refused_by_name_of_what_is_missing():
+    with pytest.raises(AircraftError, match="autopilot/airspeed-command-mps") as caught:
+        AutopilotedAircraft(X8, MODELS)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_aircraft_released_off_its_equilibrium_is_brought_there(x8_schedule, x8_aircraft):
+    found = x8_schedule.level(MIDDLE)
+    upset = replace(found.state(), roll=0.5, pitch=0.15, rates_body=(0.3, -0.2, 0.1))
+    x8_aircraft.release(upset, airspeed=20.0, altitude=100.0)
+    x8_aircraft.fdm.step(15 * 120)
+    read = x8_aircraft.fdm.read
+    # Fifteen seconds, seven time constants of the slowest pole.
+    assert read("attitude/phi-rad") == pytest.approx(found.roll, abs=2e-3)
+    assert read("velocities/vt-fps") * 0.3048 == pytest.approx(20.0, abs=0.02)
+    assert read("position/h-sl-meters") == pytest.approx(100.0, abs=0.05)

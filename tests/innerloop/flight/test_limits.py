@@ -1,0 +1,134 @@
+"""Limits and saturation: commands outside the envelope, commands that cannot be met, and what is left of them afterwards."""
+
+import math
+
+import numpy as np
+import pytest
+from innerloop_flights import after, fly
+
+from aircraft.spec import X8
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+
+MIDDLE = 2
+BANK_MAX = X8.envelope.bank_max  # 50 degrees
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_huge_heading_rate_command_stays_within_the_envelopes_bank(x8_schedule, x8_aircraft, sign):
+    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 20.0, [(1.0, "heading_rate", sign * 5.0)])
+    # The command is clipped: the limit as written in the file, nine digits. It is reached, else nothing was tried.
+    assert np.abs(flight["bank_command"]).max() <= BANK_MAX * (1.0 + 1e-8)
+    assert np.abs(flight["bank_command"]).max() == pytest.approx(BANK_MAX, rel=1e-6)
+    # The bank overshoots its command by 1.5 degrees in the first second; three is a small part of what is left to stall.
+    assert np.abs(flight["bank"]).max() < BANK_MAX + math.radians(3.0)
+    # Steady: within 0.2 degrees, what the turn-compensation tables leave for feedback without integral on bank.
+    assert np.abs(after(flight, 5.0, "bank")) == pytest.approx(BANK_MAX, abs=math.radians(0.2))
+    assert np.abs(flight["altitude"] - 100.0).max() < 1.0
+    assert np.abs(flight["airspeed"] - 20.0).max() < 0.5
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_half_a_minute_of_saturated_bank_leaves_no_lasting_offset(x8_schedule, x8_aircraft, sign):
+    commands = [(1.0, "heading_rate", sign * 5.0), (31.0, "heading_rate", 0.0)]
+    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 52.0, commands)
+    # Wound up by 30 s of 4 rad/s of error it would turn on for long. It rolls out at once, past level by less than 5 degrees ...
+    rolled_out = after(flight, 32.0, "bank")
+    assert np.abs(rolled_out).max() < math.radians(5.0)
+    # ... and after ten time constants of its heading integral (near 1.3 s) is as straight as before: 1e-3 rad/s is 0.06 degrees a
+    # second, 1e-3 rad of bank is 0.06 degrees.
+    assert np.abs(after(flight, 44.0, "heading_rate")).max() < 1e-3
+    assert np.abs(after(flight, 44.0, "bank") - flight["bank"][0]).max() < 1e-3
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_turn_at_forty_five_degrees_of_bank_holds_altitude_and_airspeed(x8_schedule, x8_aircraft, sign):
+    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 21.0, [(1.0, "heading_rate", sign * 0.45)])
+    # 20 m/s times 0.45 rad/s over g is tan(43 degrees); sideslip makes it 44 and 45.
+    assert np.degrees(np.abs(after(flight, 6.0, "bank"))) == pytest.approx(44.5, abs=1.0)
+    assert np.abs(flight["altitude"] - 100.0).max() < 1.0
+    assert np.abs(flight["airspeed"] - 20.0).max() < 0.2
+    # Stable: nothing moves any more.
+    assert np.ptp(after(flight, 16.0, "bank")) < 1e-3
+    assert after(flight, 16.0, "heading_rate") == pytest.approx(sign * 0.45, abs=1e-3)
+
+
+@pytest.mark.parametrize(("commanded", "held"), [(100.0, X8.envelope.airspeed_max), (1.0, X8.envelope.airspeed_min)])
+def test_an_airspeed_command_outside_the_envelope_is_held_at_its_limit(x8_schedule, x8_aircraft, commanded, held):
+    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 35.0, [(1.0, "airspeed", commanded)])
+    # After 30 s there is nothing left of the change; the limit itself is in the file with nine digits.
+    assert after(flight, 30.0, "airspeed") == pytest.approx(held, abs=0.01)
+    # On the way it passes the limit by 0.6 m/s at most; 1 m/s is how far the design airspeeds reach past the envelope.
+    assert flight["airspeed"].min() > X8.envelope.airspeed_min - 1.0
+    assert flight["airspeed"].max() < X8.envelope.airspeed_max + 1.0
+    assert np.abs(flight["altitude"] - 100.0).max() < 2.0
+
+
+def test_a_wide_open_throttle_winds_nothing_up(x8_schedule, x8_aircraft):
+    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 35.0, [(1.0, "airspeed", 25.0)])
+    assert np.count_nonzero(flight["throttle"] == 1.0) > 60  # saturated for half a second at least, or nothing was tried
+    # Wound up, it would go on past 25 m/s. Within 0.3 m/s five seconds after full throttle ends, and in 15 s within 0.02.
+    ended = np.nonzero(flight["throttle"] == 1.0)[0][-1] / 120.0
+    assert flight["airspeed"].max() < 25.3
+    assert np.abs(after(flight, ended + 5.0, "airspeed") - 25.0).max() < 0.3
+    assert np.abs(after(flight, ended + 15.0, "airspeed") - 25.0).max() < 0.02
+
+
+@pytest.mark.parametrize("size", [200.0, -200.0])
+def test_an_altitude_that_cannot_be_reached_in_time_is_approached_within_the_envelope(x8_schedule, x8_aircraft, size):
+    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 21.0, [(1.0, "altitude", 100.0 + size)])
+    # It climbs steadily (near 2.3 m/s, what an altitude error of 1 m asks for), with wings level and airspeed held: 0.5 m/s. The
+    # model is linear in angle of attack to 0.2 rad.
+    climbed = (after(flight, 20.9, "altitude")[0] - 100.0) * math.copysign(1.0, size)
+    assert 20.0 < climbed < 100.0
+    assert np.abs(flight["airspeed"] - 20.0).max() < 0.5
+    assert np.abs(flight["bank"]).max() < math.radians(2.0)
+    assert np.abs(flight["alpha"]).max() < 0.2
+    steady = after(flight, 8.0, "climb_rate")
+    assert np.ptp(steady) < 0.1
+
+
+@pytest.mark.parametrize("size", [200.0, -200.0])
+def test_an_altitude_that_could_not_be_reached_in_time_winds_nothing_up(x8_schedule, x8_aircraft, size):
+    commands = [(1.0, "altitude", 100.0 + size), (21.0, "altitude", 100.0)]
+    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 60.0, commands)
+    error = (flight["altitude"] - 100.0) * math.copysign(1.0, size)
+    # Sent back after 20 s it turns round within a second and less than 3 m further on ...
+    assert np.argmax(error) / 120.0 < 22.0
+    assert error.max() < error[21 * 120] + 3.0
+    # ... comes back no slower than it went (46 m at 2.3 m/s: 20 s, and 3 s to turn round), passes the old altitude by less than
+    # 0.5 m and stays within 0.1 m from 8 s later.
+    assert error.min() > -0.5
+    assert np.abs(error[round(44.0 * 120) :]).max() < 0.5
+    assert np.abs(error[round(52.0 * 120) :]).max() < 0.1
+    # Nothing lasting: airspeed and throttle as before, to a hundredth.
+    assert after(flight, 58.0, "airspeed") == pytest.approx(20.0, abs=0.01)
+    assert after(flight, 58.0, "throttle") == pytest.approx(flight["throttle"][0], abs=0.01)
+
+
+def test_an_altitude_step_is_not_overshot_by_more_for_being_larger(x8_schedule, x8_root):
+    overshoots = {}
+    for size in (2.0, 10.0, 30.0):
+        flight = fly(AutopilotedAircraft(X8, x8_root), x8_schedule.level(MIDDLE), 40.0, [(1.0, "altitude", 100.0 + size)])
+        overshoots[size] = flight["altitude"].max() - 100.0 - size
+    # The last metre is flown the same way whatever came before it.
+    assert max(overshoots.values()) < 0.3
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_controls_stay_within_their_range_whatever_is_commanded(x8_schedule, x8_aircraft, sign):
+    commands = [
+        *((1.0 + t, "heading_rate", sign * 5.0 * (-1.0) ** t) for t in range(8)),
+        *((1.5 + 2 * t, "airspeed", 20.0 + 30.0 * (-1.0) ** t) for t in range(4)),
+        *((1.2 + 2 * t, "altitude", 100.0 + 50.0 * (-1.0) ** t) for t in range(4)),
+        *((10.0, name, value) for name, value in (("heading_rate", 0.0), ("airspeed", 20.0), ("altitude", 100.0))),
+    ]
+    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 40.0, commands)
+    for name in ("elevator", "aileron", "throttle"):
+        limits = X8.input(name)
+        assert flight[name].min() >= limits.lower
+        assert flight[name].max() <= limits.upper
+    assert all(np.isfinite(channel).all() for channel in flight.values())
+    # And it recovers: half a minute after all that it flies straight and level as before.
+    assert after(flight, 38.0, "altitude") == pytest.approx(100.0, abs=0.1)
+    assert after(flight, 38.0, "airspeed") == pytest.approx(20.0, abs=0.05)
+    assert np.abs(after(flight, 38.0, "heading_rate")).max() < 1e-3

@@ -1,0 +1,88 @@
+"""The autopilot as a file, and the JSBSim root that flies it."""
+
+import math
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from innerloop_flights import TIME_STEP, fly
+
+from aircraft.simulation.fdm import Fdm
+from aircraft.spec import MODELS, X8
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.jsbsim.root import write_root
+from innerloop.jsbsim.system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND, system_name, system_xml
+
+
+def test_the_system_is_xml_with_numbers_in_every_table(x8_schedule):
+    root = ET.fromstring(system_xml(x8_schedule).encode())
+    assert root.tag == "system"
+    assert root.get("name") == "x8_autopilot"
+    numbers = [word for table in root.iter("tableData") for word in table.text.split()]
+    numbers += [value.text for value in root.iter("v")]
+    assert len(numbers) > 500  # nine tables over nine banks and five airspeeds alone
+    assert all(math.isfinite(float(word)) for word in numbers)
+
+
+def test_the_system_says_nan_or_infinity_nowhere(x8_schedule):
+    assert re.search(r"\b(nan|inf|infinity)\b", system_xml(x8_schedule), re.IGNORECASE) is None
+
+
+def test_every_property_that_the_system_reads_exists(x8_schedule, x8_aircraft):
+    root = ET.fromstring(system_xml(x8_schedule).encode())
+    names = {e.text.strip().lstrip("-") for tag in ("p", "input", "independentVar", "output", "trigger") for e in root.iter(tag)}
+    assert len(names) > 20
+    for name in names:
+        assert math.isfinite(x8_aircraft.fdm.read(name)), name
+
+
+def test_the_written_root_has_the_aircraft_its_engine_files_and_the_system(x8_root):
+    files = {str(p.relative_to(x8_root)) for p in x8_root.rglob("*.xml")}
+    assert files == {"aircraft/x8/x8.xml", "engine/x8_motor.xml", "engine/x8_propeller.xml", "systems/x8_autopilot.xml"}
+
+
+def test_the_written_model_differs_from_the_original_by_the_system_alone(x8_root):
+    def parts(path):
+        root = ET.parse(path / "aircraft" / "x8" / "x8.xml").getroot()
+        return [ET.tostring(element).strip() for element in root if element.tag != "system"], root.findall("system")
+
+    original, none = parts(MODELS)
+    written, systems = parts(x8_root)
+    assert none == []
+    assert [s.get("file") for s in systems] == [system_name(X8)]
+    assert written == original
+
+
+def test_writing_twice_into_one_directory_leaves_one_system(x8_schedule, tmp_path):
+    write_root(x8_schedule, tmp_path)
+    write_root(x8_schedule, tmp_path)
+    assert len(ET.parse(tmp_path / "aircraft" / "x8" / "x8.xml").getroot().findall("system")) == 1
+    AutopilotedAircraft(X8, tmp_path)
+
+
+def test_commands_start_in_the_middle_of_the_design(x8_root):
+    fdm = Fdm(X8, x8_root)
+    # The middle one of the five design airspeeds, the design altitude, straight on.
+    assert fdm.read(AIRSPEED_COMMAND) == 20.0
+    assert fdm.read(ALTITUDE_COMMAND) == 100.0
+    assert fdm.read(HEADING_RATE_COMMAND) == 0.0
+
+
+@pytest.mark.parametrize("name", [AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND])
+def test_commands_are_properties_that_take_writes(x8_aircraft, name):
+    x8_aircraft.fdm.write(name, 0.123)
+    x8_aircraft.fdm.step()
+    assert x8_aircraft.fdm.read(name) == 0.123
+
+
+def test_the_measured_heading_rate_is_the_rate_of_the_flown_course(x8_schedule, x8_aircraft):
+    flight = fly(x8_aircraft, x8_schedule.level(2), 12.0, [(1.0, "heading_rate", 0.3), (6.0, "heading_rate", -0.2)])
+    course = np.unwrap(np.arctan2(flight["east_speed"], flight["north_speed"]))
+    differentiated = (course[2:] - course[:-2]) / (2.0 * TIME_STEP)
+    # Calm air: the air-relative course is the ground's. The autopilot measures forces a step or two before the motion they make, at
+    # up to 2 rad/s^2 of course acceleration; the earth's rotation adds 1e-4.
+    assert np.abs(differentiated - flight["heading_rate"][1:-1]).max() < 2.0 * 1.5 * TIME_STEP
+    # Where it turns steadily the two agree to a thousandth of the rate.
+    steady = slice(round(5.0 / TIME_STEP), round(5.9 / TIME_STEP))
+    assert np.abs(differentiated - flight["heading_rate"][1:-1])[steady].max() < 3e-4

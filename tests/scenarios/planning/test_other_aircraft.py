@@ -1,0 +1,146 @@
+"""Runs for aircraft other than the X8, as far as no flight of theirs is needed (tests/regression flies them)."""
+
+import json
+import math
+
+import pandas as pd
+import pytest
+import typer
+
+from aircraft.errors import AircraftError
+from aircraft.fleet.find import find_spec
+from aircraft.spec import AEROSONDE
+from innerloop.designs.cache import cache_directory
+from innerloop.designs.designer import DesignError
+from reports.build import build_reports
+from scenarios.errors import InputError
+from scenarios.run import command
+from scenarios.schema.load import load_scenario
+from scenarios.studies.registry import run_study
+from tests.run_tables import rows_of
+
+SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]"]
+
+# Two crossings, right after settling, are too few for means over them.
+LOOSE = ["criteria.crossing_interval_error=0.1", "criteria.tracking_error_rms_m=5.0"]
+
+
+def run(path, *overrides, name="sweep_nu"):
+    return run_study(load_scenario(name, [*SHORT, *overrides]), name, path)
+
+
+def exit_status(path, *overrides):
+    with pytest.raises(typer.Exit) as ended:
+        command("sweep_nu", out=path, jobs=1, overrides=[*SHORT, *overrides])
+    return ended.value.exit_code
+
+
+@pytest.fixture
+def refuse(monkeypatch):
+    """Return a function that lets every design fail with an error."""
+
+    def refuse(error):
+        def designed(*_):
+            raise error
+
+        monkeypatch.setattr("scenarios.vehicles.six_dof.designed", designed)
+
+    return refuse
+
+
+@pytest.mark.parametrize("name", ["737", "787-8", "c172x"])
+def test_an_aircraft_is_named_as_its_model_is_whatever_toml_makes_of_it(name):
+    # 737 is an integer in TOML, and 787-8 is not TOML at all.
+    scenario = load_scenario("sweep_nu", [f"aircraft={name}"])
+    assert scenario.aircraft == name
+    assert find_spec(scenario.aircraft).model == name
+
+
+def test_a_number_that_is_no_aircraft_is_refused_like_a_word(tmp_path):
+    with pytest.raises(InputError, match="aircraft: unknown aircraft '707'"):
+        run(tmp_path / "run", "aircraft=707")
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        DesignError("aircraft 'x8': no design has 6 dB. It is not flown"),
+        AircraftError("aircraft 'x8' does not trim: not converged"),
+    ],
+)
+def test_a_design_that_is_refused_is_rows_with_its_reason_and_exit_status_1(refuse, error, tmp_path, capsys):
+    refuse(error)
+    out = tmp_path / "run"
+    assert exit_status(out, "sweep.nu=[0.3, 0.5]") == 1
+    printed = capsys.readouterr()
+    assert printed.out.count(f"trim_failed: {error}") == 2
+    assert "Traceback" not in printed.err
+    summary = pd.read_csv(out / "summary.csv")
+    assert list(summary["flight_id"]) == ["nu_0.30", "nu_0.50"]
+    assert set(summary["outcome"]) == {"trim_failed"}
+    assert set(summary["message"]) == {str(error)}
+    assert not summary["criteria_met"].any()
+    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+    assert (manifest["state"], manifest["outcomes"]["trim_failed"], manifest["flights_met_criteria"]) == ("complete", 2, 0)
+    # The reports are built all the same, and say why nothing was flown.
+    html = (out / "report.html").read_text(encoding="utf-8")
+    assert "Nothing was flown" in html
+    assert "trim failed" in html
+    assert (out / "report.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_flights_that_were_refused_are_done_and_are_not_tried_again(refuse, tmp_path):
+    refuse(AircraftError("it does not trim"))
+    run(tmp_path / "run")
+    told = []
+    again = run_study(
+        load_scenario("sweep_nu", SHORT), "x", tmp_path / "run", resume=True, progress=lambda *report: told.append(report)
+    )
+    assert again.summary.done == 1
+    assert [row["outcome"] for row in rows_of(tmp_path / "run")] == ["trim_failed"]
+    # One that is done from the beginning is not flown.
+    assert [report for report in told if report[0] == "flying"] == [("flying", 1, 1)]
+
+
+def test_the_kinematic_vehicle_flies_as_the_aircraft_that_is_named_would(tmp_path):
+    out = tmp_path / "run"
+    assert run(out, "fidelity=kinematic", "aircraft=aerosonde", *LOOSE).all_met
+    flown = pd.read_parquet(out / "flights" / "nu_0.50.parquet")
+    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+    assert manifest["config"]["guidance"]["airspeed_mps"] == AEROSONDE.envelope.airspeed
+    assert flown["airspeed_mps"].iloc[-1] == pytest.approx(25.0, abs=1.3)  # its own airspeed, trimmed by up to 1.29 m/s
+    # omega_max of 45 degrees at 25 m/s.
+    assert flown["heading_rate_command_rad_s"].abs().max() <= 9.80665 * math.tan(math.radians(45.0)) / 25.0
+    # No autopilot takes part, and none lags: half a step of 20 Hz is all there is to preview.
+    assert manifest["guidance_lag_s"] == 0.025
+    assert not (out / "innerloop.json").exists()
+
+
+def test_the_kinematic_vehicle_alone_needs_no_design(refuse, tmp_path):
+    refuse(AssertionError("designed for nothing"))
+    assert run(tmp_path / "run", "fidelity=kinematic", *LOOSE).all_met
+
+
+def test_aircraft_that_differ_from_flight_to_flight_are_refused(tmp_path):
+    variants = 'comparison={ nu = [0.5], variants = [{ name = "other", set = { aircraft = "aerosonde" } }] }'
+    scenario = load_scenario("sweep_nu", ["sweep.nu=[0.5]", variants])
+    with pytest.raises(InputError, match="flights differ in aircraft"):
+        run_study(scenario, "x", tmp_path / "run")
+
+
+def test_the_range_of_airspeeds_is_named_where_it_is_left(tmp_path):
+    with pytest.raises(InputError, match=r"airspeed_mps is 31; Aerosonde flies 21\.0 to 30\.0 m/s: choose an airspeed in between"):
+        run(tmp_path / "run", "aircraft=aerosonde", "guidance.airspeed_mps=31")
+    assert not (tmp_path / "run").exists()
+
+
+def test_no_test_touches_the_users_own_designs(session_cache):
+    assert cache_directory().is_relative_to(session_cache)
+
+
+def test_the_reports_of_a_refused_aircraft_name_it(refuse, tmp_path):
+    refuse(DesignError("no design has the margins"))
+    run(tmp_path / "run", "aircraft=T37")
+    html, _ = build_reports(tmp_path / "run")
+    assert "T37" in html.read_text(encoding="utf-8")

@@ -1,0 +1,115 @@
+"""Monte Carlo from its file to its run directory, kinematic and short."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from scenarios.engine.executors import Hiring
+from scenarios.errors import InputError
+from scenarios.schema.load import load_study
+from scenarios.schema.monte_carlo_config import MonteCarloScenario
+from scenarios.studies.registry import run_study
+
+SHORT = [
+    "fidelity=kinematic",
+    "turbulence.level=none",
+    "turbulence.gusts=0",
+    "turbulence.gust_speed_mps=0",
+    "flight.duration_max_s=6.0",
+    "histories=5",
+    # All of them within the range, so that every flight is at its point; vessels at 2 m/s and more make an apparent wind.
+    "speed_ratio=[0.0, 5.0]",
+    "wind.speed_mps=0.5",
+]
+
+
+def run(out, *overrides, jobs=2, resume=False, progress=lambda *_: None):
+    scenario = load_study("monte_carlo", [*SHORT, *overrides])
+    assert isinstance(scenario, MonteCarloScenario)
+    return run_study(scenario, "monte_carlo", out, hire=Hiring(jobs=jobs), resume=resume, progress=progress)
+
+
+def tables(out):
+    return [pd.read_csv(out / name).drop(columns="wall_time_s", errors="ignore") for name in ("summary.csv", "draws.csv")]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    out = tmp_path_factory.mktemp("monte_carlo") / "run"
+    assert run(out, "flights=40").summary.done == 40
+    return out
+
+
+def test_what_is_drawn_follows_the_declared_distributions_at_the_points_of_a_sobol_sequence(whole):
+    summary, draws = tables(whole)
+    assert list(draws["flight_id"]) == list(summary["flight_id"])
+    # A Sobol sequence has one of 32 points in each 32nd of a range, so also in each quarter as many.
+    aspect = draws["start.aspect_deg"].to_numpy()[:32]
+    assert np.histogram(aspect, bins=32, range=(-180.0, 180.0))[0].tolist() == [1] * 32
+    assert summary["wind_from_deg"].equals(draws["wind.from_deg"])
+    assert summary["start_aspect_deg"].to_numpy() == pytest.approx(draws["start.aspect_deg"].to_numpy(), abs=1e-9)
+    assert summary["start_distance_m"].to_numpy() == pytest.approx(draws["start.range_m"].to_numpy(), rel=1e-12)
+
+
+def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_of_flights(whole, tmp_path):
+    run(tmp_path / "one", "flights=40", jobs=1)
+    for one, other in zip(tables(whole), tables(tmp_path / "one"), strict=True):
+        pd.testing.assert_frame_equal(one, other, check_exact=True)
+    run(tmp_path / "fewer", "flights=16")
+    for one, other in zip(tables(whole), tables(tmp_path / "fewer"), strict=True):
+        pd.testing.assert_frame_equal(one[:16], other, check_exact=True)
+
+
+def test_statistics_are_written_and_bound_the_probability_of_an_entry(whole):
+    statistics = json.loads((whole / "statistics.json").read_text(encoding="utf-8"))
+    measured = statistics["violation"]["measured"]
+    assert (measured["events"], measured["flights"]) == (0, 40)
+    # Clopper and Pearson's one-sided bound of 0 of n: 1 - (1 - confidence)^(1/n).
+    assert measured["upper"] == pytest.approx(1.0 - 0.05 ** (1.0 / 40.0), rel=1e-9)
+
+
+@pytest.fixture
+def frequent_looks(monkeypatch):
+    """Look after 8, 16, 32 flights and so on: 256 would take too long here."""
+    monkeypatch.setattr("scenarios.statistics.stopping.FIRST_LOOK", 8)
+
+
+def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_enough(frequent_looks, tmp_path):
+    # 0 of n at the confidence of look k: 1 - (0.05/(k (k + 1)))^(1/n) is 0.37, 0.26, 0.15 at 8, 16, 32.
+    result = run(tmp_path / "run", "flights=100", "statistics.violation_upper=0.2")
+    assert result.summary.done == 32
+    assert result.all_met
+    assert result.summary.lines[-1] == "stopped after 32 of 100 flights: what was asked for is as tight as that"
+    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
+    assert manifest["flights_planned"] == 32
+    assert json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))["look_number"] == 3
+    # Once it has stopped there is nothing to go on with.
+    flown = []
+    again = run(tmp_path / "run", "flights=100", "statistics.violation_upper=0.2", resume=True, progress=lambda *p: flown.append(p))
+    assert again.summary.done == 32
+    assert [p for p in flown if p[0] == "flying"] == [("flying", 32, 100)]
+
+
+def test_a_study_that_never_knows_enough_flies_all_that_was_planned(frequent_looks, tmp_path):
+    result = run(tmp_path / "run", "flights=20", "statistics.violation_upper=0.001")
+    assert result.summary.done == 20
+    assert "stopped" not in result.summary.lines[-1]
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("sampling=halton", ["sampling", "'halton'", "sobol"]),
+        ("statistics.confidence=1.5", ["statistics.confidence", "1.5", "less than 1"]),
+        ("search.population=10", ["unknown key 'search'", "scenarios/schema/monte_carlo_config.py"]),
+        ("flights=0", ["flights", "greater than or equal to 1"]),
+    ],
+)
+def test_bad_values_are_refused_in_one_line(override, words):
+    with pytest.raises(InputError) as refused:
+        load_study("monte_carlo", [override])
+    for word in words:
+        assert word in str(refused.value)
+    assert "\n" not in str(refused.value)

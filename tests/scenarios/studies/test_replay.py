@@ -1,0 +1,111 @@
+"""One flight of a run, flown again from its run directory."""
+
+import json
+import shutil
+
+import pandas as pd
+import pytest
+
+from reports.registry import content
+from reports.run.run_data import read_run
+from scenarios.engine.executors import Hiring
+from scenarios.engine.runner import fly_study
+from scenarios.errors import InputError
+from scenarios.schema.load import is_flight, load_study
+from scenarios.studies.registry import run_study
+from scenarios.studies.replay import Replay
+from tests.scenarios.short_trial import short_trial
+
+SEA = short_trial(flights=3, duration=10.0, histories=3, spread=180.0)
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """A list of two trials, and a sweep with a comparison."""
+    folder = tmp_path_factory.mktemp("runs")
+    for name in ("one", "two"):
+        (folder / f"{name}.toml").write_text(SEA, encoding="utf-8")
+    trials = json.dumps([str(folder / "one.toml"), str(folder / "two.toml")])
+    (folder / "list.toml").write_text(f'study = "sea_trial"\ntitle = "two"\ntrials = {trials}\n', encoding="utf-8")
+    run_study(load_study(str(folder / "list.toml")), "list", folder / "sea")
+    sweep = ["fidelity=kinematic", "sweep.nu=[0.5]", "comparison.nu=[0.5]", "flight.crossings=3"]
+    run_study(load_study("sweep_nu", sweep), "sweep_nu", folder / "sweep")
+    # Neither is needed any more.
+    (folder / "two.toml").unlink()
+    return folder
+
+
+def replay(name, out):
+    return fly_study(Replay(str(name)), out, hire=Hiring(), resume=False, progress=lambda *_: None)
+
+
+@pytest.mark.parametrize(
+    ("run", "flight_id", "table"),
+    [
+        ("sea", "one_00000", "summary.csv"),
+        ("sea", "two_00002", "summary.csv"),
+        ("sweep", "nu_0.50", "summary.csv"),
+        ("sweep", "nu_0.50_no_preview", "comparison.csv"),
+    ],
+)
+def test_a_flight_is_flown_again_identically_with_every_step_of_the_guidance(runs, tmp_path, run, flight_id, table):
+    result = replay(runs / run / "flights" / flight_id, tmp_path / "again")
+    assert result.all_met
+    assert result.summary.lines[-1].startswith("identical to the flight in")
+    rows = pd.read_csv(runs / run / table).drop(columns="wall_time_s")
+    again = pd.read_csv(tmp_path / "again" / "summary.csv").drop(columns="wall_time_s")
+    one = rows[rows["flight_id"] == flight_id].reset_index(drop=True)
+    pd.testing.assert_frame_equal(one, again, check_exact=True, check_dtype=False)
+    samples = pd.read_parquet(runs / run / "flights" / f"{flight_id}.parquet")
+    steps = pd.read_parquet(tmp_path / "again" / "flights" / f"{flight_id}.parquet")
+    # 20 Hz of the guidance, of which the run kept 10.
+    pd.testing.assert_frame_equal(steps[::2].reset_index(drop=True), samples, check_exact=True)
+    assert steps["time_s"].diff()[1:].to_numpy() == pytest.approx(0.05, abs=1e-9)
+
+
+@pytest.mark.parametrize(("run", "flight_id"), [("sea", "two_00001.parquet"), ("sweep", "nu_0.50_no_preview")])
+def test_a_report_of_one_flight_is_about_that_flight(runs, tmp_path, run, flight_id):
+    replay(runs / run / "flights" / flight_id, tmp_path / "again")
+    report = content(read_run(tmp_path / "again"))
+    assert report.title.endswith(f"{flight_id.removesuffix('.parquet')}, flown again")
+    assert "Nothing was flown" not in report.verdict.headline
+    assert "1 of 1 flights" in report.verdict.detail
+    assert not [failure for failure in report.verdict.failures if "not flown yet" in failure]
+
+
+def test_a_flight_that_goes_another_way_is_told_with_what_has_changed(runs, tmp_path):
+    copy = shutil.copytree(runs / "sea", tmp_path / "copy")
+    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    # As if it had been flown from another distance by another version.
+    manifest["trials"]["one"]["start"]["distance_m"] = [500.0, 520.0]
+    manifest["fingerprint"]["numpy"] = "1.0"
+    (copy / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    result = replay(copy / "flights" / "one_00000", tmp_path / "again")
+    assert not result.all_met
+    assert "differs from the flight in" in result.summary.lines[-1]
+    assert "start_distance_m" in result.summary.lines[-1]
+    assert result.summary.lines[-1].endswith("it was flown with another numpy")
+
+
+def test_a_flight_that_was_flown_again_is_not_flown_again_from_there(runs, tmp_path):
+    replay(runs / "sea" / "flights" / "two_00001", tmp_path / "again")
+    with pytest.raises(InputError, match="flown again already; give it as RUN_DIR/flights/ID of its first run"):
+        Replay(str(tmp_path / "again" / "flights" / "two_00001"))
+
+
+def test_only_what_lies_in_a_run_is_a_flight(runs, tmp_path):
+    assert is_flight(str(runs / "sea" / "flights" / "one_00000"))
+    assert not is_flight("sweep_nu")
+    assert not is_flight(str(tmp_path / "flights" / "one_00000"))
+
+
+def test_what_cannot_be_flown_again_is_refused_in_one_line(runs, tmp_path):
+    with pytest.raises(InputError, match=r"has no flight 'three_00000'; its summary\.csv lists them"):
+        Replay(str(runs / "sea" / "flights" / "three_00000"))
+    copy = shutil.copytree(runs / "sea", tmp_path / "copy")
+    (copy / "journal.sqlite").unlink()
+    with pytest.raises(InputError, match=r"has no journal\.sqlite"):
+        Replay(str(copy / "flights" / "one_00000"))
+    (copy / "manifest.json").write_text("{", encoding="utf-8")
+    with pytest.raises(InputError, match=r"manifest\.json cannot be read"):
+        Replay(str(copy / "flights" / "one_00000"))

@@ -1,0 +1,66 @@
+"""The aircraft behind the closed loop: where it is put, and what its sensors read."""
+
+import math
+
+import pytest
+
+from aircraft.atmosphere.weather import Weather
+from aircraft.spec import X8
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from scenarios.vehicles.jsbsim import JsbsimVehicle
+
+MIDDLE = 2
+WIND = (4.0, -9.0)
+
+
+@pytest.fixture
+def place(x8_schedule, x8_root):
+    """A function from a weather to the X8 at (10, -20) m with an air-relative course of 0.7 rad."""
+
+    def make(weather, **how):
+        return JsbsimVehicle(
+            AutopilotedAircraft(X8, x8_root, **how),
+            x8_schedule.level(MIDDLE),
+            X8.envelope,
+            north=10.0,
+            east=-20.0,
+            altitude=60.0,
+            course=0.7,
+            time_step=0.05,
+            weather=weather,
+        )
+
+    return make
+
+
+def test_it_starts_with_its_course_against_the_air_and_the_wind_on_top(place, x8_schedule):
+    airspeed = x8_schedule.level(MIDDLE).airspeed
+    north, east, velocity_north, velocity_east, _ = place(Weather(wind_north=WIND[0], wind_east=WIND[1])).motion()
+    assert (north, east) == pytest.approx((10.0, -20.0), abs=0.1)  # of plumes and tracks of hundreds of metres
+    ground = (airspeed * math.cos(0.7) + WIND[0], airspeed * math.sin(0.7) + WIND[1])
+    assert (velocity_north, velocity_east) == pytest.approx(ground, abs=1e-5)  # 1e-6 ft/s of north wind, and a globe's roundings
+
+
+def test_its_sensors_read_airspeed_heading_and_roll_against_the_air(place, x8_schedule):
+    start = x8_schedule.level(MIDDLE)
+    airspeed, heading, roll = place(Weather(wind_north=WIND[0], wind_east=WIND[1])).air_data()
+    assert airspeed == pytest.approx(start.airspeed, abs=1e-6)  # not the 22 m/s over the ground
+    assert heading == pytest.approx(0.7 - start.course_offset(), abs=1e-6)
+    assert roll == pytest.approx(start.roll, abs=1e-6)
+
+
+def test_it_climbs_and_sinks_to_a_commanded_altitude(place):
+    vehicle = place(None)
+    vehicle.command_altitude(65.0)
+    for _ in range(400):
+        vehicle.advance(0.0, 20.0)
+    assert vehicle.sample()[0] == pytest.approx(65.0, abs=0.1)  # 20 s, of a loop that settles within 10 (its design's record)
+
+
+def test_its_parts_fail_by_name(place):
+    vehicle = place(None, failable=True)
+    vehicle.fail("engine")
+    for _ in range(100):
+        vehicle.advance(0.0, 20.0)
+    # Without thrust, on to keep its altitude, it pays with airspeed: drag of some 4 N on 3.4 kg for 5 s takes 5 m/s at first.
+    assert vehicle.air_data()[0] < 17.0
