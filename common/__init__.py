@@ -1,1 +1,1 @@
-"""What every room uses: whole files, command lines, provenance."""
+"""What every room uses: registries of parts, whole files, command lines, provenance."""

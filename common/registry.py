@@ -1,0 +1,159 @@
+"""Extension points: named parts of one kind, from the project's own folder, from installed packages, or from a Python file."""
+
+import functools
+import hashlib
+import importlib
+import importlib.metadata
+import importlib.util
+import pkgutil
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+from common.spelling import did_you_mean
+
+Part = TypeVar("Part")
+
+ENTRY_POINTS = "plume_flight_study"
+"""Packages announce parts in groups of this name and the registry's: ``plume_flight_study.steering_law``."""
+
+
+class PluginError(ValueError):
+    """A part that is unknown, or does not load, or is not what it should be. The message is one line."""
+
+
+class Registry(Generic[Part]):
+    """The parts of one kind.
+
+    A part is known by its name where a module of ``folder`` registers it, or an installed package has an entry point of that name
+    in the group ``plume_flight_study.KIND``. It may also be named by its file, as in ``mylaw.py:MyLaw``.
+
+    Parameters
+    ----------
+    kind : of the parts, as in "steering_law"
+    folder : package whose modules register the project's own parts when they are imported
+    methods : that every part has to have: those of its Protocol
+    """
+
+    def __init__(self, kind: str, *, folder: str, methods: Sequence[str] = ()) -> None:
+        self.kind = kind
+        self._folder, self._methods = folder, tuple(methods)
+        self._parts: dict[str, Part] = {}
+        self._complete = False
+
+    @property
+    def words(self) -> str:
+        """Return the kind in words."""
+        return self.kind.replace("_", " ")
+
+    def register(self, name: str) -> Callable[[Part], Part]:
+        """Return a decorator that makes a part known by ``name``."""
+
+        def added(part: Part) -> Part:
+            self._parts[name] = part
+            return part
+
+        return added
+
+    def names(self) -> list[str]:
+        """Return every known name, in alphabetical order."""
+        return sorted({*self._known(), *self._entry_points()})
+
+    def get(self, name: str) -> Part:
+        """Return the part of this name, or that of a file, ``FILE.py:NAME``.
+
+        Raises
+        ------
+        PluginError : there is none, or it does not load, or it lacks a method
+        """
+        if is_file_part(name):
+            return self._checked(name, part_in_file(name))
+        if name in (known := self._known()):
+            return known[name]
+        if (found := self._entry_points().get(name)) is not None:
+            try:
+                return self._checked(name, found.load())
+            except PluginError:
+                raise
+            except Exception as error:
+                raise PluginError(f"{self.words} '{name}' of package {found.value}: {type(error).__name__}: {error}") from error
+        names = self.names()
+        raise PluginError(
+            f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} known are {', '.join(names)}, or FILE.py:NAME"
+        )
+
+    def _known(self) -> dict[str, Part]:
+        if not self._complete:
+            self._complete = True
+            package = importlib.import_module(self._folder)
+            for module in pkgutil.iter_modules(package.__path__):
+                importlib.import_module(f"{self._folder}.{module.name}")
+        return self._parts
+
+    def _entry_points(self) -> dict[str, importlib.metadata.EntryPoint]:
+        return {point.name: point for point in importlib.metadata.entry_points(group=f"{ENTRY_POINTS}.{self.kind}")}
+
+    def _checked(self, name: str, part: Any) -> Part:
+        for method in self._methods:
+            if not callable(getattr(part, method, None)):
+                raise PluginError(f"{self.words} '{name}' has no method {method}(); see the Protocol in {self._folder}")
+        found: Part = part
+        return found
+
+
+def is_file_part(name: str) -> bool:
+    """Return whether a part is named by its file, ``FILE.py:NAME``."""
+    return ".py:" in name
+
+
+def file_of(name: str) -> Path:
+    """Return the file of a part that is named by it."""
+    return Path(name.rpartition(":")[0])
+
+
+def file_hash(name: str) -> str:
+    """Return a hash of the file of a part that is named by it.
+
+    Raises
+    ------
+    PluginError : the file cannot be read
+    """
+    try:
+        return hashlib.sha256(file_of(name).read_bytes()).hexdigest()[:16]
+    except OSError as error:
+        raise PluginError(
+            f"{file_of(name)}: cannot be read: {error.strerror}; check the path, relative to the scenario file"
+        ) from None
+
+
+def part_in_file(name: str) -> Any:
+    """Return what a Python file calls NAME, by ``FILE.py:NAME``.
+
+    Raises
+    ------
+    PluginError : the file cannot be read or does not load, or has nothing of that name
+    """
+    path, _, attribute = name.rpartition(":")
+    module = _module_in(Path(path), file_hash(name))
+    if not hasattr(module, attribute):
+        raise PluginError(f"{path} has no '{attribute}'{did_you_mean(attribute, vars(module))}")
+    return getattr(module, attribute)
+
+
+@functools.lru_cache(maxsize=64)
+def _module_in(path: Path, digest: str) -> Any:
+    """Return the module in a file, loaded once as long as its hash stays the same."""
+    name = f"plume_flight_study_{path.stem}_{digest}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise PluginError(f"{path}: not a Python file")
+    module = importlib.util.module_from_spec(spec)
+    # Dataclasses look their module up.
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[name]
+        raise PluginError(f"{path} does not load: {type(error).__name__}: {error}") from error
+    return module
