@@ -189,40 +189,11 @@ def numbered(engine: int) -> str:
     return f"[{engine}]" if engine else ""
 
 
-def _servo(name: str) -> DrivenState:
+def servo_position(name: str) -> DrivenState:
+    """Return the deflection of the control surface ``name`` [rad], which a servo moves."""
     return DrivenState(name=f"{name}_position", position=f"fcs/{name}-pos-rad", input=name)
 
 
-_PROPELLER = DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM)
-
-_ELEVONS = tuple(
-    Actuator(
-        name=f"{side}_elevon",
-        commands=(f"fcs/{side}-elevon-cmd-rad",),
-        feedback=Feedback(told=f"fcs/{side}-elevon-mixer", position=f"fcs/{side}-elevon-pos-rad", travel=0.5236),
-    )
-    for side in ("left", "right")
-)
-
-X8 = AircraftSpec(
-    name="x8",
-    title="Skywalker X8",
-    root=MODELS,
-    model="x8",
-    inputs=(surface("elevator"), surface("aileron"), throttle(1)),
-    own_actuators=(*_ELEVONS, Actuator(name="throttle", commands=throttle(1).commands)),
-    driven_states=(_servo("elevator"), _servo("aileron"), _PROPELLER),
-    envelope=Envelope(airspeed_min=15.0, airspeed_max=25.0, airspeed=19.42, bank=math.radians(45.0)),
-    source="Gryte et al., ICUAS 2018; inertia and propulsion as explained in the model file",
-)
-
-AEROSONDE = AircraftSpec(
-    name="aerosonde",
-    title="Aerosonde",
-    root=MODELS,
-    model="aerosonde",
-    inputs=(surface("elevator"), surface("aileron"), throttle(1), surface("rudder")),
-    driven_states=(_servo("elevator"), _servo("aileron"), _PROPELLER, _servo("rudder")),
-    envelope=Envelope(airspeed_min=21.0, airspeed_max=30.0, airspeed=25.0, bank=math.radians(45.0)),
-    source="Beard and McLain, Small Unmanned Aircraft, supplement; servos and rotor inertia as explained in the model files",
-)
+def propeller_speed() -> DrivenState:
+    """Return the speed of an only engine's propeller [rad/s]."""
+    return DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM)

@@ -16,3 +16,6 @@ RAD_S_PER_RPM = math.pi / 30.0
 
 KG_PER_SLUG = 14.593902937206364
 """Slug: lbf s^2/ft [kg/slug]."""
+
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of free fall, by definition (CGPM 1901) [m/s^2]."""

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import X8
 from benchmarks.engine import report_engine
 from benchmarks.sea_guidance import report_sea_guidance
 from innerloop.designs.designer import design_autopilot

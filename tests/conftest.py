@@ -94,7 +94,7 @@ def x8_root(x8_schedule: Schedule, tmp_path_factory: pytest.TempPathFactory) -> 
 @pytest.fixture
 def x8_aircraft(x8_root: Path) -> AutopilotedAircraft:
     """An X8 under its autopilot, as fresh from the factory."""
-    from aircraft.spec import X8
+    from aircraft.fleet.x8 import X8
     from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
     return AutopilotedAircraft(X8, x8_root)
@@ -103,7 +103,7 @@ def x8_aircraft(x8_root: Path) -> AutopilotedAircraft:
 @pytest.fixture
 def x8_fdm() -> Fdm:
     """A bare X8."""
+    from aircraft.fleet.x8 import X8
     from aircraft.simulation.fdm import Fdm
-    from aircraft.spec import X8
 
     return Fdm(X8)

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec, ControlInput

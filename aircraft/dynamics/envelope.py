@@ -2,7 +2,8 @@
 
 import math
 
-from aircraft.dynamics.trim import Trim, TrimOutcome, search_trim, trim
+from aircraft.dynamics.equilibrium import Trim, TrimOutcome
+from aircraft.dynamics.trim import search_trim, trim
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import RigidBodyState, body_velocity

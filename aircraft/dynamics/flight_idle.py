@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec
 

@@ -18,7 +18,7 @@ import control
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import body_velocity, course_rate, euler_rates, level

@@ -3,8 +3,10 @@
 import difflib
 
 from aircraft.errors import AircraftError
+from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.stock import stock_names, stock_spec
-from aircraft.spec import AEROSONDE, X8, AircraftSpec
+from aircraft.fleet.x8 import X8
+from aircraft.spec import AircraftSpec
 
 OWN: dict[str, AircraftSpec] = {aircraft.name: aircraft for aircraft in (X8, AEROSONDE)}
 """Aircraft of this project, from published data."""

@@ -5,13 +5,28 @@ import os
 import re
 import tempfile
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import jsbsim
 
 from aircraft.errors import AircraftError, ReadOnlyPropertyError, UnknownPropertyError
 from aircraft.simulation.model_copy import copy_model
+from aircraft.simulation.properties import (
+    ACCELERATION,
+    ANGULAR_ACCELERATION,
+    CRANK,
+    INITIAL_STATE,
+    INTEGRATORS,
+    NORTH_WIND_MIN,
+    RESET_ONLY,
+    RUN_UP_STEPS,
+    START_ENGINES,
+    STOP_CRANKING,
+    WIND,
+    before_hold,
+    component_names,
+    initial_conditions,
+)
 from aircraft.simulation.state import RigidBodyState, with_wind
 from aircraft.spec import AircraftSpec
 from aircraft.units import METRES_PER_FOOT
@@ -19,43 +34,7 @@ from aircraft.units import METRES_PER_FOOT
 TIME_STEP = 1.0 / 120.0
 """Integration step of JSBSim and of the autopilot inside it [s]."""
 
-EARTH_RATE = 7.292115e-5
-"""Rotation rate of the earth, as in JSBSim's default planet [rad/s]."""
-
 _PROPERTY_NAME = re.compile(r"[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*")
-
-INTEGRATORS = tuple(
-    f"simulation/integrator/{kind}/{motion}" for kind in ("rate", "position") for motion in ("rotational", "translational")
-)
-"""Properties that choose how the rigid body is integrated; 0 in all four holds it still."""
-
-INITIAL_STATE = (
-    "ic/lat-geod-rad", "ic/long-gc-rad", "ic/h-sl-ft", "ic/phi-rad", "ic/theta-rad", "ic/psi-true-rad", "ic/u-fps", "ic/v-fps",
-    "ic/w-fps", "ic/p-rad_sec", "ic/q-rad_sec", "ic/r-rad_sec",
-)  # fmt: skip
-"""JSBSim's initial conditions, in the order in which it must be told: each may change others."""
-
-_ACCELERATION = "accelerations/{}dot-ft_sec2"
-_ANGULAR_ACCELERATION = "accelerations/{}dot-rad_sec2"
-
-WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
-"""Properties of the steady wind: the velocity of the air."""
-
-NORTH_WIND_MIN = 1e-6
-"""Least wind northward [ft/s]: JSBSim does not turn its turbulence into the wind where there is none."""
-
-RESET_ONLY = 2
-"""Resets every model of JSBSim to how it was loaded, without running it."""
-
-START_ENGINES = (("propulsion/set-running", -1.0),)
-"""Property that starts every engine at once, where JSBSim can."""
-
-CRANK = (("propulsion/magneto_cmd", 3.0), ("propulsion/starter_cmd", 1.0))
-STOP_CRANKING = (("propulsion/starter_cmd", 0.0),)
-"""Properties that start an engine as a pilot does: both magnetos, and the starter."""
-
-RUN_UP_STEPS = 1200
-"""Time steps for cranking, and again for running up before an aircraft is placed."""
 
 _SETTLE_STRIDE = 4
 
@@ -88,7 +67,7 @@ class Fdm:
         self._properties = self._exec.get_property_manager()
         self._initial = [self.writable_node(name) for name in INITIAL_STATE]
         self._accelerations = [
-            self.node(name) for name in (*_components(_ACCELERATION, "uvw"), *_components(_ANGULAR_ACCELERATION, "pqr"))
+            self.node(name) for name in (*component_names(ACCELERATION, "uvw"), *component_names(ANGULAR_ACCELERATION, "pqr"))
         ]
         self._engines_run = False
         self.cranked = False
@@ -282,7 +261,7 @@ class Fdm:
 
     def acceleration_body(self) -> tuple[float, float, float]:
         """Return the rates of the body velocity components [m/s^2], as they stand after the last step."""
-        return self._vector(_ACCELERATION, "uvw", METRES_PER_FOOT)
+        return self._vector(ACCELERATION, "uvw", METRES_PER_FOOT)
 
     def rates_body(self) -> tuple[float, float, float]:
         """Return roll, pitch and yaw rate [rad/s]."""
@@ -290,45 +269,11 @@ class Fdm:
 
     def angular_acceleration(self) -> tuple[float, float, float]:
         """Return the rates of p, q and r [rad/s^2], as they stand after the last step."""
-        return self._vector(_ANGULAR_ACCELERATION, "pqr", 1.0)
+        return self._vector(ANGULAR_ACCELERATION, "pqr", 1.0)
 
     def _vector(self, pattern: str, components: str, scale: float) -> tuple[float, float, float]:
-        x, y, z = (self.read(name) * scale for name in _components(pattern, components))
+        x, y, z = (self.read(name) * scale for name in component_names(pattern, components))
         return x, y, z
-
-
-def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
-    """Return the properties, and their values in JSBSim's units, that set an initial state.
-
-    The order matters to the last digit: JSBSim works each one into those before it.
-    """
-    u, v, w = (speed / METRES_PER_FOOT for speed in state.velocity_body)
-    values = (
-        state.latitude,
-        state.longitude,
-        state.altitude / METRES_PER_FOOT,
-        state.roll,
-        state.pitch,
-        state.yaw,
-        u,
-        v,
-        w,
-        *state.rates_body,
-    )
-    return list(zip(INITIAL_STATE, values, strict=True))
-
-
-def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
-    """Return where to place a body that is to be in ``state`` after it was held for ``duration`` [s].
-
-    A body that is held stands still among the stars while the earth turns under it, so it is placed as far east as it will drift
-    west.
-    """
-    return replace(state, longitude=state.longitude + EARTH_RATE * duration)
-
-
-def _components(pattern: str, components: str) -> list[str]:
-    return [pattern.format(component) for component in components]
 
 
 @contextlib.contextmanager

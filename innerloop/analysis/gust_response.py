@@ -12,7 +12,7 @@ import control
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.state import body_velocity, level
 from innerloop.analysis.margins import closed_loop
 from innerloop.law.control_law import ControlLaw

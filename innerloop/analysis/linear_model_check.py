@@ -6,7 +6,7 @@ import control
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.fdm import Fdm
 from aircraft.units import METRES_PER_FOOT
 

@@ -7,9 +7,10 @@ import control
 
 from aircraft.dynamics.control_effectiveness import straightened
 from aircraft.dynamics.envelope import find_envelope, first_trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.flight_idle import flight_idle, idling_at
 from aircraft.dynamics.linearise import linearise
-from aircraft.dynamics.trim import Trim, trim
+from aircraft.dynamics.trim import trim
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec, Envelope

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import aircraft_names, find_spec
 from common.interrupt import ignore_interrupt
-from innerloop.analysis.robustness import NOMINAL
+from innerloop.analysis.perturbations import NOMINAL
 from innerloop.designs.cache import designed
 
 

@@ -7,19 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from aircraft.dynamics.trim import Trim, TrimOutcome, search_trim
+from aircraft.dynamics.equilibrium import Trim, TrimOutcome
+from aircraft.dynamics.trim import search_trim
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import Envelope
+from aircraft.units import STANDARD_GRAVITY
 from innerloop.analysis.linear_model_check import verify_model
 from innerloop.analysis.margins import BREAK_NAMES, Loops, Margin
-from innerloop.analysis.robustness import NOMINAL, REQUIRED, Check
+from innerloop.analysis.perturbations import NOMINAL
+from innerloop.analysis.robustness import REQUIRED, Check
 from innerloop.designs.designer import Design
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import Response, flown_step, measure_lag, model_step, predicted_step
 from innerloop.law.control_law import ControlLaw
 from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.schedule import LEVEL_GAINS, Schedule
-from innerloop.synthesis.weights import STANDARD_GRAVITY
 
 _STEP_DURATION = 36.0
 """Of the flown steps, over one over the frequency of the heading-rate answer [-]."""

@@ -11,7 +11,7 @@ from aircraft.simulation.faults import Faults, failable_root
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import RigidBodyState
 from aircraft.spec import AircraftSpec
-from innerloop.jsbsim.system import (
+from innerloop.jsbsim.properties import (
     AIRSPEED_COMMAND,
     ALTITUDE_COMMAND,
     CONTROL_COMMAND,

@@ -9,7 +9,7 @@ from collections import deque
 
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import Feedback
-from innerloop.jsbsim.system import told_property
+from innerloop.jsbsim.properties import commanded_property
 
 _MOMENT = 0.4
 """How long a surface may be on its way [s]: the X8's goes from stop to stop in 0.30 s and trails by its lag of 25 ms."""
@@ -37,7 +37,7 @@ class ServoWatch:
             feedback = actuator.feedback
             if feedback is None:
                 control_input = fdm.spec.input(actuator.name)
-                feedback = Feedback(told=told_property(control_input), position=control_input.commands[0], travel=1.0)
+                feedback = Feedback(told=commanded_property(control_input), position=control_input.commands[0], travel=1.0)
             told, position = (fdm.node(name).get_double_value for name in (feedback.told, feedback.position))
             lately: deque[float] = deque(maxlen=1 + round(_MOMENT / time_step))
             self._surfaces.append((told, position, feedback.travel, lately))

@@ -7,17 +7,17 @@ import control
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.trim import Trim, trim
+from aircraft.dynamics.equilibrium import Trim
+from aircraft.dynamics.trim import trim
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.spec import AircraftSpec
-from aircraft.units import METRES_PER_FOOT
+from aircraft.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from innerloop.analysis.margins import closed_loop
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.jsbsim.system import HEADING_RATE
+from innerloop.jsbsim.properties import HEADING_RATE
 from innerloop.law.control_law import COMMANDS, ControlLaw
 from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.schedule import LEVEL_GAINS, Schedule
-from innerloop.synthesis.weights import STANDARD_GRAVITY
 
 Array = npt.NDArray[np.float64]
 

@@ -7,12 +7,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import TIME_STEP
+from aircraft.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.jsbsim.system import HEADING_RATE
-from innerloop.synthesis.weights import STANDARD_GRAVITY
+from innerloop.jsbsim.properties import HEADING_RATE
 
 Array = npt.NDArray[np.float64]
 

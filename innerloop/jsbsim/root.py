@@ -4,7 +4,8 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from aircraft.simulation.model_copy import copy_model
-from innerloop.jsbsim.system import system_name, system_xml
+from innerloop.jsbsim.properties import system_name
+from innerloop.jsbsim.system import system_xml
 from innerloop.synthesis.schedule import Schedule
 
 

@@ -6,23 +6,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.errors import AircraftError, UnknownPropertyError
-from aircraft.simulation.fdm import (
+from aircraft.simulation.fdm import TIME_STEP, Fdm
+from aircraft.simulation.properties import (
     CRANK,
     INTEGRATORS,
     RUN_UP_STEPS,
     START_ENGINES,
     STOP_CRANKING,
-    TIME_STEP,
-    Fdm,
     before_hold,
     initial_conditions,
 )
 from aircraft.spec import Envelope
-from innerloop.jsbsim.system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, BANK_COMMAND, HEADING_RATE, HEADING_RATE_COMMAND, RESET
+from aircraft.units import STANDARD_GRAVITY
+from innerloop.jsbsim.properties import AIRSPEED_COMMAND, ALTITUDE_COMMAND, BANK_COMMAND, HEADING_RATE, HEADING_RATE_COMMAND, RESET
 from innerloop.synthesis.schedule import Schedule
-from innerloop.synthesis.weights import STANDARD_GRAVITY
 
 OUTPUT_RATE = 20.0
 """Rows of the script's output file a second [Hz]."""

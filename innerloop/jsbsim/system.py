@@ -10,8 +10,21 @@ import math
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
 
-from aircraft.spec import AircraftSpec, ControlInput
-from aircraft.units import METRES_PER_FOOT
+from aircraft.spec import ControlInput
+from aircraft.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from innerloop.jsbsim.properties import (
+    AIRSPEED_COMMAND,
+    ALTITUDE_COMMAND,
+    BANK_COMMAND,
+    CONTROL_COMMAND,
+    ELEVATOR_HELD,
+    HEADING_RATE,
+    HEADING_RATE_COMMAND,
+    HELD_ELEVATOR,
+    RESET,
+    commanded_property,
+    system_name,
+)
 from innerloop.jsbsim.xml import (
     clipped,
     function,
@@ -29,21 +42,6 @@ from innerloop.jsbsim.xml import (
 from innerloop.law.control_law import bank_slopes
 from innerloop.synthesis.gains import LATERAL, LONGITUDINAL, Gains
 from innerloop.synthesis.schedule import Schedule
-from innerloop.synthesis.weights import STANDARD_GRAVITY
-
-AIRSPEED_COMMAND = "autopilot/airspeed-command-mps"
-ALTITUDE_COMMAND = "autopilot/altitude-command-m"
-HEADING_RATE_COMMAND = "autopilot/heading-rate-command-rad_sec"
-HEADING_RATE = "autopilot/heading-rate-rad_sec"
-BANK_COMMAND = "autopilot/bank-command-rad"
-CONTROL_COMMAND = "autopilot/{}-command"
-"""Pattern of the properties that hold what a control is commanded [-], by its name in the linear model."""
-
-RESET = "autopilot/reset"
-"""Negative to hold every integrator at 0, otherwise 0."""
-
-ELEVATOR_HELD, HELD_ELEVATOR = "autopilot/elevator-held", "autopilot/held-elevator"
-"""1 to hold the elevator instead of flying with it, otherwise 0; and where to hold it [-]."""
 
 _AIRSPEED = "autopilot/airspeed-mps"
 _SIDESLIP = "aero/beta-rad"
@@ -54,11 +52,6 @@ _MODEL_ACCELERATION = "autopilot/model-acceleration"
 _MODEL_JERK = "autopilot/model-jerk"
 _BANK_RATE = "autopilot/bank-rate-per-acceleration"
 _ROLL = "attitude/phi-rad"
-
-
-def system_name(spec: AircraftSpec) -> str:
-    """Return the name of the aircraft's autopilot system."""
-    return f"{spec.name}_autopilot"
 
 
 def system_xml(schedule: Schedule) -> str:
@@ -97,11 +90,6 @@ def _by_bank(schedule: Schedule, quantity: str, bank: str = _ROLL) -> str:
     return table_2d(bank, _SCHEDULE, schedule.banks, schedule.airspeeds, schedule.over_bank(quantity))
 
 
-def told_property(control_input: ControlInput) -> str:
-    """Return the property that holds what the autopilot tells JSBSim for a control input [-]."""
-    return f"autopilot/{control_input.name}-told" if control_input.shape else CONTROL_COMMAND.format(control_input.name)
-
-
 def _commanded(control_input: ControlInput, wanted: str) -> list[str]:
     """Return components that keep a control within its range and hand it to JSBSim."""
     name = CONTROL_COMMAND.format(control_input.name)
@@ -111,7 +99,7 @@ def _commanded(control_input: ControlInput, wanted: str) -> list[str]:
     effects, commands = zip(*control_input.shape, strict=True)
     return [
         function(name, value),
-        function(told_property(control_input), table_1d(name, effects, commands), control_input.commands),
+        function(commanded_property(control_input), table_1d(name, effects, commands), control_input.commands),
     ]
 
 
@@ -142,7 +130,7 @@ def _measurements(schedule: Schedule) -> list[str]:
         function(_SCHEDULE, clipped(read(AIRSPEED_COMMAND), envelope.airspeed_min, envelope.airspeed_max)),
         function("autopilot/speed-ahead-fps", ahead(*velocity)),
         function("autopilot/speed-right-fps", right(*velocity[1:])),
-        # Rate of the horizontal air-relative course, from accelerometers and attitude (aircraft.state.course_rate).
+        # Rate of the horizontal air-relative course, from accelerometers and attitude (aircraft.simulation.state.course_rate).
         function(HEADING_RATE, operation("quotient", moment, inertia)),
     ]
 

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import RegularGridInterpolator
 
+from aircraft.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import LATERAL, LONGITUDINAL, Gains
 from innerloop.synthesis.schedule import Schedule
-from innerloop.synthesis.weights import STANDARD_GRAVITY
 
 COMMANDS = ("airspeed_command", "altitude_command", "heading_rate_command")
 """Commands [m/s, m, rad/s]."""

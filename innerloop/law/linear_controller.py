@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import control
 import numpy as np
 
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from innerloop.law.control_law import COMMANDS, STATES, ControlLaw, measurements
 
 _STEP = 1e-4

@@ -16,9 +16,10 @@ import control
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
+from aircraft.units import STANDARD_GRAVITY
 from innerloop.synthesis.quasi_static import pick, quasi_static
-from innerloop.synthesis.weights import STANDARD_GRAVITY, ControlWeights, DesignWeights
+from innerloop.synthesis.weights import ControlWeights, DesignWeights
 
 LONGITUDINAL = ("airspeed", "climb_rate", "q", "pitch", "altitude")
 """Measured longitudinal states. Climb rate stands for angle of attack, which small aircraft do not measure."""

@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.dynamics.envelope import TABLE_REACH
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.spec import AircraftSpec, Envelope
+from aircraft.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import Gains
-from innerloop.synthesis.weights import STANDARD_GRAVITY, DesignWeights
+from innerloop.synthesis.weights import DesignWeights
 
 TRIM_BANKS = (-1.0, -0.82, -0.64, -0.4, 0.0, 0.4, 0.64, 0.82, 1.0)
 """Banks of the equilibria, over the largest of the tables [-]."""

@@ -12,10 +12,8 @@ from dataclasses import dataclass
 import control
 
 from aircraft.simulation.fdm import TIME_STEP
+from aircraft.units import STANDARD_GRAVITY
 from innerloop.synthesis.quasi_static import quasi_static, state_lag
-
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of free fall [m/s^2]."""
 
 DELAY = 1.5 * TIME_STEP
 """One step of computing and half a step of hold between measurement and servo [s]."""

@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 from aircraft.atmosphere.weather import Weather
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.local_frame import LocalFrame
 from aircraft.spec import Envelope
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft

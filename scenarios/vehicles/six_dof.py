@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from aircraft.dynamics.trim import Trim
+from aircraft.dynamics.equilibrium import Trim
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftSpec, Envelope

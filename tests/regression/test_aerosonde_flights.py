@@ -5,7 +5,7 @@ import math
 import pytest
 from study_runs import assert_flown_as_the_issue_asks, fly_study
 
-from aircraft.spec import AEROSONDE
+from aircraft.fleet.aerosonde import AEROSONDE
 from innerloop.designs.cache import designed
 
 NUS = (0.3, 0.5, 0.7)

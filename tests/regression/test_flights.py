@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from aircraft.spec import X8
+from aircraft.fleet.x8 import X8
 from innerloop.designs.cache import designed
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import level_trim

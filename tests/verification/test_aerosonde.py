@@ -13,8 +13,9 @@ import pytest
 from x8_published import equatorial_gravity, standard_density
 
 from aircraft.dynamics.trim import trim
+from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import AEROSONDE, MODELS
+from aircraft.spec import MODELS
 
 AIRSPEED, ALTITUDE = 25.0, 100.0  # m/s, m: where the authors start their simulations
 WORLD = bm.World(standard_density, equatorial_gravity(ALTITUDE))

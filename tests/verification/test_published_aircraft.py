@@ -10,8 +10,8 @@ import pytest
 from scipy.optimize import brentq
 
 from aircraft.dynamics.trim import trim
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
-from aircraft.spec import X8
 
 ALPHA, ELEVON = 0.0308, 0.0370  # rad
 ROUNDING = 5e-5  # rad, half their last digit

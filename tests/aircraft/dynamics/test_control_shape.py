@@ -8,8 +8,9 @@ import pytest
 from aircraft.dynamics.control_effectiveness import AXES, straightened
 from aircraft.dynamics.envelope import first_trim
 from aircraft.fleet.find import find_spec
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
-from aircraft.spec import X8, ControlInput
+from aircraft.spec import ControlInput
 
 ALTITUDE = 100.0
 KINKED = ControlInput(

@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 
 from aircraft.dynamics.envelope import bank_by_class, find_envelope, first_trim
-from aircraft.dynamics.trim import TrimOutcome, search_trim
+from aircraft.dynamics.equilibrium import TrimOutcome
+from aircraft.dynamics.trim import search_trim
 from aircraft.errors import AircraftError
+from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import find_spec
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import RigidBodyState, body_velocity
-from aircraft.spec import AEROSONDE, BANK_RESERVE, X8
+from aircraft.spec import BANK_RESERVE
 from aircraft.units import NEWTONS_PER_POUND
 
 ALTITUDE = 100.0

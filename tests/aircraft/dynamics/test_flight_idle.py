@@ -4,8 +4,8 @@ import pytest
 
 from aircraft.dynamics.flight_idle import flight_idle, idling_at
 from aircraft.dynamics.trim import trim
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
-from aircraft.spec import X8
 
 
 @pytest.fixture(scope="module")

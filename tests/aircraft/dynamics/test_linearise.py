@@ -11,8 +11,9 @@ import x8_published as x8
 from aircraft.dynamics.linearise import BODY_STATES, EXTRA_OUTPUTS, linearise
 from aircraft.dynamics.trim import trim
 from aircraft.errors import AircraftError
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import X8, DrivenState
+from aircraft.spec import DrivenState
 
 DRIVEN = ("elevator_position", "aileron_position", "propeller_speed")
 BANKS = {"level": 0.0, "right turn": 0.6, "left turn": -0.6}

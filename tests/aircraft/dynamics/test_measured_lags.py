@@ -8,8 +8,8 @@ import x8_published as x8
 from aircraft.dynamics.linearise import linearise
 from aircraft.dynamics.trim import trim
 from aircraft.fleet.find import find_spec
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import X8
 from innerloop.synthesis.quasi_static import state_lag
 
 

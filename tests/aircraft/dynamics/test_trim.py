@@ -8,11 +8,12 @@ import x8_published as x8
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aircraft.dynamics.trim import pitch_for_climb, trim
+from aircraft.dynamics.trim import trim
+from aircraft.dynamics.trim_search import pitch_for_climb
 from aircraft.errors import TrimError
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import body_velocity, level
-from aircraft.spec import X8
 
 CONDITIONS = {
     "slow": {"airspeed": 14.0, "altitude": 100.0},

@@ -4,12 +4,13 @@ import math
 
 import pytest
 
-from aircraft.dynamics.trim import TrimOutcome, search_trim, trim
+from aircraft.dynamics.equilibrium import TrimOutcome
+from aircraft.dynamics.trim import search_trim, trim
 from aircraft.errors import TrimError
 from aircraft.fleet.find import find_spec
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import body_velocity, level
-from aircraft.spec import X8
 from aircraft.units import METRES_PER_FOOT, NEWTONS_PER_POUND
 
 JET = {"airspeed": 80.0, "altitude": 1000.0}

@@ -9,9 +9,9 @@ from x8_published import equatorial_gravity, standard_density
 
 from aircraft.dynamics.linearise import linearise
 from aircraft.dynamics.trim import trim
+from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.simulation.state import RigidBodyState, body_velocity
-from aircraft.spec import AEROSONDE
 
 N_PER_LBF = 4.4482216152605
 NM_PER_LBF_FT = 1.3558179483314

@@ -7,9 +7,10 @@ import jsbsim
 import pytest
 
 from aircraft.errors import AircraftError
+from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import aircraft_names, find_spec
 from aircraft.fleet.stock import stock_names
-from aircraft.spec import AEROSONDE, X8
+from aircraft.fleet.x8 import X8
 
 STOCK = Path(jsbsim.get_default_root_dir()) / "aircraft"
 

@@ -4,11 +4,12 @@ import pytest
 
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.faults import ENGINE, Faults, failable_root, fault_names
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.model_copy import copy_model
 from aircraft.simulation.state import RigidBodyState
-from aircraft.spec import X8, Actuator, AircraftSpec
+from aircraft.spec import Actuator, AircraftSpec
 
 
 @pytest.fixture

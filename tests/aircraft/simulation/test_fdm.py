@@ -9,10 +9,11 @@ from dataclasses import replace
 import pytest
 
 from aircraft.errors import AircraftError, ReadOnlyPropertyError, UnknownPropertyError
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.simulation.local_frame import LocalFrame
 from aircraft.simulation.state import RigidBodyState, body_velocity
-from aircraft.spec import MODELS, X8
+from aircraft.spec import MODELS
 
 SOMEWHERE = RigidBodyState(
     latitude=0.2,
@@ -93,7 +94,7 @@ def test_loading_and_flying_prints_nothing(capfd):
 
 def test_nothing_is_left_in_a_buffer_to_be_printed_when_the_program_ends():
     # C++ flushes its own buffer at exit, which capfd would not see.
-    program = "from aircraft.fdm import Fdm; from aircraft.spec import X8; Fdm(X8); print('mine')"
+    program = "from aircraft.simulation.fdm import Fdm; from aircraft.fleet.x8 import X8; Fdm(X8); print('mine')"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=MODELS.parents[1])
     assert (done.stdout, done.stderr) == ("mine\n", "")
 

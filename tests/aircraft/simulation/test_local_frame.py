@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aircraft.dynamics.trim import trim
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.simulation.local_frame import LocalFrame
-from aircraft.spec import X8
 
 METRES_PER_FOOT = 0.3048
 metres = st.floats(-50e3, 50e3)

@@ -10,11 +10,13 @@ import pytest
 
 from aircraft.dynamics.linearise import linearise
 from aircraft.dynamics.trim import trim
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import MODELS, X8
+from aircraft.spec import MODELS
 from innerloop.analysis import robustness
 from innerloop.analysis.margins import Loops, Margin
-from innerloop.analysis.robustness import CASES, NOMINAL, Check, check_design, gravity_and_turning, operating_points
+from innerloop.analysis.perturbations import CASES, NOMINAL, gravity_and_turning
+from innerloop.analysis.robustness import Check, check_design, operating_points
 from innerloop.designs import designer
 from innerloop.designs.designer import DesignError, design_autopilot
 from innerloop.law.control_law import ControlLaw

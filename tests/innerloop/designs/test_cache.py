@@ -14,7 +14,9 @@ import pytest
 import aircraft
 import innerloop
 from aircraft.errors import AircraftError
-from aircraft.spec import AEROSONDE, MODELS, X8
+from aircraft.fleet.aerosonde import AEROSONDE
+from aircraft.fleet.x8 import X8
+from aircraft.spec import MODELS
 from innerloop.designs import cache
 from innerloop.designs.cache import design_key, designed
 from innerloop.designs.designer import DesignError

@@ -7,9 +7,9 @@ import pytest
 import x8_published as x8
 
 from aircraft.errors import AircraftError
-from aircraft.spec import X8
+from aircraft.fleet.x8 import X8
+from aircraft.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.synthesis.weights import STANDARD_GRAVITY
 
 TIME_STEP = 1.0 / 120.0
 FOOT = 0.3048

@@ -9,9 +9,10 @@ from innerloop_flights import CHANNELS, after, fly
 
 from aircraft.dynamics.trim import trim
 from aircraft.errors import AircraftError
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.local_frame import LocalFrame
-from aircraft.spec import MODELS, X8
+from aircraft.spec import MODELS
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 MIDDLE = 2

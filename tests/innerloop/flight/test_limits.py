@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from innerloop_flights import after, fly
 
-from aircraft.spec import X8
+from aircraft.fleet.x8 import X8
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 MIDDLE = 2

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import X8
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import CHANNELS, Response, flown_step, level_trim, measure_lag, predicted_step
 

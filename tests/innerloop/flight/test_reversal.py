@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from aircraft.spec import X8
+from aircraft.fleet.x8 import X8
 from innerloop.flight.step_responses import measure_lag
 from innerloop.flight.turn_reversal import Reversal, displacement, measure_reversal
 

@@ -5,7 +5,7 @@ import pytest
 
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
-from aircraft.spec import X8
+from aircraft.fleet.x8 import X8
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.servo_monitor import ServoWatch
 

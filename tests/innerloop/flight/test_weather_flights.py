@@ -8,11 +8,11 @@ import pytest
 from aircraft.atmosphere.gusts import Gust
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
-from aircraft.simulation.fdm import EARTH_RATE
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.local_frame import LocalFrame
-from aircraft.spec import X8
+from aircraft.simulation.properties import EARTH_RATE
+from aircraft.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.synthesis.weights import STANDARD_GRAVITY
 
 TIME_STEP = 1.0 / 120.0
 FOOT = 0.3048

@@ -11,11 +11,11 @@ import pandas as pd
 import pytest
 
 from aircraft.errors import AircraftError, UnknownPropertyError
-from aircraft.simulation.fdm import INTEGRATORS, START_ENGINES
+from aircraft.simulation.properties import INTEGRATORS, START_ENGINES
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.jsbsim.properties import ALTITUDE_COMMAND, HEADING_RATE_COMMAND
 from innerloop.jsbsim.root import write_root
 from innerloop.jsbsim.script import Command, columns, demonstration, write_script
-from innerloop.jsbsim.system import ALTITUDE_COMMAND, HEADING_RATE_COMMAND
 
 MIDDLE = 2
 STEPS_PER_SECOND = 120

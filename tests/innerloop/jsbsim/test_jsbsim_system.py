@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from innerloop_flights import TIME_STEP, fly
 
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
-from aircraft.spec import MODELS, X8
+from aircraft.spec import MODELS
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.jsbsim.properties import AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND, system_name
 from innerloop.jsbsim.root import write_root
-from innerloop.jsbsim.system import AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND, system_name, system_xml
+from innerloop.jsbsim.system import system_xml
 
 
 def test_the_system_is_xml_with_numbers_in_every_table(x8_schedule):

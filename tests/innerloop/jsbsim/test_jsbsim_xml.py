@@ -6,9 +6,10 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import RigidBodyState
-from aircraft.spec import MODELS, X8
+from aircraft.spec import MODELS
 from innerloop.jsbsim.xml import (
     clipped,
     function,

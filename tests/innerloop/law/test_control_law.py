@@ -11,8 +11,8 @@ import pytest
 
 from aircraft.simulation.state import RigidBodyState, body_velocity
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.jsbsim.properties import HEADING_RATE, RESET
 from innerloop.jsbsim.root import write_root
-from innerloop.jsbsim.system import HEADING_RATE, RESET
 from innerloop.law.control_law import STATES, ControlLaw, gain_vector, measurements
 from innerloop.law.linear_controller import evaluate_at, operating_point
 from innerloop.synthesis.gains import LATERAL

@@ -12,12 +12,12 @@ import control
 import numpy as np
 import pytest
 
-from aircraft.dynamics.trim import pitch_for_climb
+from aircraft.dynamics.trim_search import pitch_for_climb
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.state import body_velocity
-from aircraft.spec import X8
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.jsbsim.properties import HEADING_RATE, RESET
 from innerloop.jsbsim.root import write_root
-from innerloop.jsbsim.system import HEADING_RATE, RESET
 from innerloop.law.control_law import COMMANDS, ControlLaw, bank_slopes, measurements
 from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.gains import LATERAL, LONGITUDINAL

@@ -9,13 +9,14 @@ import pytest
 from aircraft.dynamics.envelope import TABLE_REACH
 from aircraft.dynamics.trim import trim
 from aircraft.errors import TrimError
+from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
-from aircraft.spec import X8
+from aircraft.units import STANDARD_GRAVITY
 from innerloop.designs.designer import Grid, linear_grid, schedule_at
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import flown_step
 from innerloop.jsbsim.root import write_root
-from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL, STANDARD_GRAVITY, TRIM_BANKS
+from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL, TRIM_BANKS
 
 
 def even_and_odd(table):

@@ -7,10 +7,11 @@ import control
 import numpy as np
 import pytest
 
+from aircraft.units import STANDARD_GRAVITY
 from innerloop.synthesis import weights
 from innerloop.synthesis.gains import design_gains
 from innerloop.synthesis.schedule import LEVEL_GAINS
-from innerloop.synthesis.weights import STANDARD_GRAVITY, Speeds, control_weights, design_weights, reachable_speeds
+from innerloop.synthesis.weights import Speeds, control_weights, design_weights, reachable_speeds
 
 STATES = ["airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude", "elevator_effect", "throttle_effect"]
 INPUTS = ["elevator", "aileron", "throttle", "rudder"]

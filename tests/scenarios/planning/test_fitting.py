@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from pydantic import BaseModel
 
-from aircraft.spec import AEROSONDE, X8, Envelope
+from aircraft.fleet.aerosonde import AEROSONDE
+from aircraft.fleet.x8 import X8
+from aircraft.spec import Envelope
 from scenarios.errors import InputError
 from scenarios.flights import flight_requests, guidance_lag, place_vehicle
 from scenarios.planning.planner import plan_flight

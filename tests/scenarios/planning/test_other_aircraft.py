@@ -8,8 +8,8 @@ import pytest
 import typer
 
 from aircraft.errors import AircraftError
+from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import find_spec
-from aircraft.spec import AEROSONDE
 from innerloop.designs.cache import cache_directory
 from innerloop.designs.designer import DesignError
 from reports.build import build_reports

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from aircraft.atmosphere.weather import Weather
-from aircraft.spec import X8
+from aircraft.fleet.x8 import X8
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.vehicles.jsbsim import JsbsimVehicle
 

@@ -1,0 +1,133 @@
+"""What the margins are checked against: an aircraft that is not quite the one modelled, and a longer delay."""
+
+import math
+from collections.abc import Callable
+
+import control
+import numpy as np
+import numpy.typing as npt
+
+from aircraft.dynamics.equilibrium import Trim
+from aircraft.dynamics.linearise import BODY_STATES
+from aircraft.simulation.fdm import TIME_STEP
+from aircraft.units import STANDARD_GRAVITY
+from innerloop.synthesis.weights import DELAY
+
+NOMINAL = "as modelled"
+
+Change = Callable[[control.StateSpace, Trim], control.StateSpace]
+
+
+def _unchanged(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+    del trim
+    return model
+
+
+def _effectiveness(factor: float) -> Change:
+    """Return a change of what every control does to the aircraft."""
+
+    def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+        del trim
+        b = model.B.copy()
+        rows = [i for i, name in enumerate(model.state_labels) if name in BODY_STATES]
+        driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES]
+        a, c, d = model.A.copy(), model.C.copy(), model.D * factor
+        b[rows] *= factor
+        a[np.ix_(rows, driven)] *= factor
+        extras = [i for i, name in enumerate(model.output_labels) if name not in model.state_labels]
+        c[np.ix_(extras, driven)] *= factor
+        return with_matrices(model, a, b, c, d)
+
+    return change
+
+
+def _inertia(factor: float) -> Change:
+    """Return a change of all moments of inertia: angular accelerations by forces of the air and the engine divide by it."""
+
+    def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+        del trim
+        a, b = model.A.copy(), model.B.copy()
+        rows = [model.state_labels.index(name) for name in "pqr"]
+        a[rows] /= factor
+        b[rows] /= factor
+        return with_matrices(model, a, b, model.C, model.D)
+
+    return change
+
+
+def _mass(factor: float) -> Change:
+    """Return a change of mass: accelerations by air and engine divide by it, those by gravity and turning do not."""
+
+    def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+        a, b, c, d = (m.copy() for m in matrices(model))
+        rows = [model.state_labels.index(name) for name in ("airspeed", "alpha", "beta")]
+        kinematic = gravity_and_turning(trim, list(model.state_labels))
+        a[rows] = kinematic + (a[rows] - kinematic) / factor
+        b[rows] /= factor
+        # Rate of the course: side force over mass and speed, but for what attitude gives: an aircraft in equilibrium carries its
+        # weight whatever that is, so bank turns it by g/V as before.
+        row = model.output_labels.index("heading_rate")
+        columns = [i for i, name in enumerate(model.state_labels) if name not in ("roll", "pitch")]
+        c[row, columns] /= factor
+        d[row] /= factor
+        return with_matrices(model, a, b, c, d)
+
+    return change
+
+
+def gravity_and_turning(trim: Trim, states: list[str]) -> npt.NDArray[np.float64]:
+    """Return how airspeed, angle of attack and sideslip change without any force of air or engine, shape (3, states).
+
+    Differences of the rigid body's own equations: gravity along the body's axes, and the axes' turning.
+    """
+    names = ("airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch")
+    point = np.array([trim.airspeed, trim.alpha, trim.beta, *trim.rates_body, trim.roll, trim.pitch])
+
+    def rates(x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        v, alpha, beta, p, q, r, roll, pitch = x
+        along, side, down = math.cos(alpha) * math.cos(beta), math.sin(beta), math.sin(alpha) * math.cos(beta)
+        u, w = v * along, v * down
+        g = STANDARD_GRAVITY
+        gravity = (-g * math.sin(pitch), g * math.sin(roll) * math.cos(pitch), g * math.cos(roll) * math.cos(pitch))
+        u_dot = gravity[0] - (q * w - r * v * side)
+        side_dot = gravity[1] - (r * u - p * w)
+        w_dot = gravity[2] - (p * v * side - q * u)
+        v_dot = along * u_dot + side * side_dot + down * w_dot
+        alpha_dot = (u * w_dot - w * u_dot) / (u * u + w * w)
+        return np.array([v_dot, alpha_dot, (side_dot - v_dot * side) / (v * math.cos(beta))])
+
+    result = np.zeros((3, len(states)))
+    for i, name in enumerate(names):
+        step = np.zeros(len(names))
+        step[i] = 1e-5
+        result[:, states.index(name)] = (rates(point + step) - rates(point - step)) / 2e-5
+    return result
+
+
+def matrices(model: control.StateSpace) -> tuple[npt.NDArray[np.float64], ...]:
+    """Return A, B, C and D."""
+    return model.A, model.B, model.C, model.D
+
+
+def with_matrices(
+    model: control.StateSpace,
+    a: npt.NDArray[np.float64],
+    b: npt.NDArray[np.float64],
+    c: npt.NDArray[np.float64],
+    d: npt.NDArray[np.float64],
+) -> control.StateSpace:
+    """Return a model with other matrices and the same names."""
+    return control.ss(a, b, c, d, states=model.state_labels, inputs=model.input_labels, outputs=model.output_labels)
+
+
+CASES: dict[str, tuple[Change, float]] = {
+    NOMINAL: (_unchanged, DELAY),
+    "control effectiveness +20 %": (_effectiveness(1.2), DELAY),
+    "control effectiveness -20 %": (_effectiveness(0.8), DELAY),
+    "mass +20 %": (_mass(1.2), DELAY),
+    "mass -20 %": (_mass(0.8), DELAY),
+    "inertia +20 %": (_inertia(1.2), DELAY),
+    "inertia -20 %": (_inertia(0.8), DELAY),
+    "one more step of delay": (_unchanged, DELAY + TIME_STEP),
+}
+"""What is changed: the linear aircraft, and the delay between measurement and servo [s]."""

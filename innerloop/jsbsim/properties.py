@@ -1,0 +1,27 @@
+"""JSBSim properties of the autopilot, and its name there."""
+
+from aircraft.spec import AircraftSpec, ControlInput
+
+AIRSPEED_COMMAND = "autopilot/airspeed-command-mps"
+ALTITUDE_COMMAND = "autopilot/altitude-command-m"
+HEADING_RATE_COMMAND = "autopilot/heading-rate-command-rad_sec"
+HEADING_RATE = "autopilot/heading-rate-rad_sec"
+BANK_COMMAND = "autopilot/bank-command-rad"
+CONTROL_COMMAND = "autopilot/{}-command"
+"""Pattern of the properties that hold what a control is commanded [-], by its name in the linear model."""
+
+RESET = "autopilot/reset"
+"""Negative to hold every integrator at 0, otherwise 0."""
+
+ELEVATOR_HELD, HELD_ELEVATOR = "autopilot/elevator-held", "autopilot/held-elevator"
+"""1 to hold the elevator instead of flying with it, otherwise 0; and where to hold it [-]."""
+
+
+def system_name(spec: AircraftSpec) -> str:
+    """Return the name of the aircraft's autopilot system."""
+    return f"{spec.name}_autopilot"
+
+
+def commanded_property(control_input: ControlInput) -> str:
+    """Return the property that holds what the autopilot tells JSBSim for a control input [-]."""
+    return f"autopilot/{control_input.name}-told" if control_input.shape else CONTROL_COMMAND.format(control_input.name)
