@@ -1,33 +1,40 @@
-"""Find an aircraft by name: those that this project brings, and those that JSBSim itself brings."""
-
-import difflib
+"""Find an aircraft by name: registered ones first, then those that come with JSBSim."""
 
 from aircraft.errors import AircraftError
-from aircraft.fleet.aerosonde import AEROSONDE
+from aircraft.fleet.registry import AIRCRAFT
 from aircraft.fleet.stock import stock_names, stock_spec
-from aircraft.fleet.x8 import X8
 from aircraft.spec import AircraftSpec
-
-OWN: dict[str, AircraftSpec] = {aircraft.name: aircraft for aircraft in (X8, AEROSONDE)}
-"""Aircraft of this project, from published data."""
+from common.registry import PluginError, is_file_part
+from common.spelling import did_you_mean
 
 
 def aircraft_names() -> list[str]:
-    """Return the name of every aircraft there is, this project's own first. Not all of them can be flown."""
-    return [*OWN, *(name for name in stock_names() if name not in OWN)]
+    """Return the name of every known aircraft, registered ones first. Not all of them can be flown."""
+    registered = AIRCRAFT.names()
+    return [*registered, *(name for name in stock_names() if name not in registered)]
 
 
 def find_spec(name: str) -> AircraftSpec:
-    """Return the aircraft called ``name``.
+    """Return the aircraft called ``name``, or that of a file, ``FILE.py:NAME``.
 
     Raises
     ------
-    AircraftError : there is none, or it is none that an autopilot could fly, with the reason
+    AircraftError : the name is unknown, the aircraft does not load, or an autopilot cannot fly it, with the reason
     """
-    if name in OWN:
-        return OWN[name]
+    if is_file_part(name) or name in AIRCRAFT.names():
+        return _registered(name)
     if name in stock_names():
         return stock_spec(name)
-    close = difflib.get_close_matches(name.lower(), [known.lower() for known in aircraft_names()], n=1)
-    guess = next((f"; did you mean '{known}'" for known in aircraft_names() if known.lower() in close), "")
-    raise AircraftError(f"unknown aircraft '{name}'{guess}; `python -m innerloop.design --list` names those there are")
+    guess = did_you_mean(name, aircraft_names()) or ";"
+    listed = "`python -m innerloop.design --list` lists the known ones, or give a file as FILE.py:NAME"
+    raise AircraftError(f"unknown aircraft '{name}'{guess} {listed}")
+
+
+def _registered(name: str) -> AircraftSpec:
+    try:
+        spec = AIRCRAFT.get(name)
+    except PluginError as error:
+        raise AircraftError(str(error)) from error
+    if not isinstance(spec, AircraftSpec):
+        raise AircraftError(f"aircraft '{name}' is of type {type(spec).__name__}; it must be an AircraftSpec of aircraft/spec.py")
+    return spec

@@ -2,6 +2,7 @@
 
 import math
 
+from aircraft.fleet.registry import AIRCRAFT
 from aircraft.spec import MODELS, Actuator, AircraftSpec, Envelope, Feedback, propeller_speed, servo_position, surface, throttle
 
 _ELEVONS = tuple(
@@ -24,3 +25,4 @@ X8 = AircraftSpec(
     envelope=Envelope(airspeed_min=15.0, airspeed_max=25.0, airspeed=19.42, bank=math.radians(45.0)),
     source="Gryte et al., ICUAS 2018; inertia and propulsion as explained in the model file",
 )
+AIRCRAFT.register(X8.name)(X8)

@@ -25,7 +25,7 @@ def reason(name):
 def test_the_projects_own_aircraft_are_found_first():
     assert find_spec("x8") is X8
     assert find_spec("aerosonde") is AEROSONDE
-    assert aircraft_names()[:2] == ["x8", "aerosonde"]
+    assert aircraft_names()[:2] == ["aerosonde", "x8"]
     assert len(set(aircraft_names())) == len(aircraft_names())
 
 
@@ -88,7 +88,9 @@ def test_what_is_no_aeroplane_with_engines_is_refused_for_what_it_is(name, why):
 
 def test_an_unknown_name_is_refused_with_its_nearest_neighbour_and_where_names_are_listed():
     assert "unknown aircraft 'c172'; did you mean 'c172" in reason("c172")
-    assert "unknown aircraft 'aerosond'; did you mean 'aerosonde'" in reason("aerosond")
+    assert "unknown aircraft 'aerosond'; did you mean 'aerosonde'?" in reason("aerosond")
+    assert "unknown aircraft 'Cessna'" in reason("Cessna")
+    assert "did you mean 'x8'?" in reason("X8")
     assert "python -m innerloop.design --list" in reason("zeppelin NT")
     assert "did you mean" not in reason("zzz")
 

@@ -118,7 +118,7 @@ def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(
     assert len(remembered()) == 1
 
 
-@pytest.mark.parametrize(("package", "file"), [("aircraft", "trim.py"), ("innerloop", "weights.py")])
+@pytest.mark.parametrize(("package", "file"), [("aircraft", "dynamics/trim.py"), ("innerloop", "synthesis/weights.py")])
 def test_any_changed_source_file_is_another_key(monkeypatch, tmp_path, package, file):
     before = design_key(X8, 100.0)
     source = {"aircraft": aircraft, "innerloop": innerloop}[package]
