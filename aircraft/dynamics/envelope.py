@@ -1,4 +1,5 @@
-"""Where an aircraft can fly the study: the airspeeds between stall and what its engines give, with banked turns to spare."""
+"""Where an aircraft can fly the study: the airspeeds between stall and what its engines give, with banked turns to
+spare."""
 
 import math
 
@@ -11,33 +12,57 @@ from aircraft.spec import BANK_RESERVE, AircraftSpec, Envelope
 from aircraft.units import KG_PER_SLUG, METRES_PER_FOOT, NEWTONS_PER_POUND
 
 BANK_LIMITS = ((150.0, 45.0), (5_670.0, 30.0), (math.inf, 25.0))
-"""Largest mass [kg] of a class and the bank it turns with [deg]: aircraft too small to carry people, light aeroplanes (up to
-12,500 lb, where CS-23 drew the line), and larger ones, which bank as airliners do."""
+"""Largest mass [kg] of a class and the bank it turns with [deg]: aircraft too small to carry people, light aeroplanes
+(up to 12,500 lb, where CS-23 drew the line), and larger ones, which bank as airliners do."""
 
 TABLE_REACH = 1.1
-"""The autopilot's tables reach this far past its bank limit, so that an aircraft that overshoots is still in them [-]."""
+"""The autopilot's tables reach this far past its bank limit, so that an aircraft that overshoots is still in them
+[-]."""
 
 _STALL_RESERVE = 1.3
+"""Least airspeed over stall in the same turn [-]: CS-23's reference landing speed, 1.3 times the stall speed."""
+
 _AIRSPEED_RATIO = 1.6
-_STEPS = 4
+"""Largest airspeed over the least [-]: dynamic pressure then varies by 2.6, which tables at five airspeeds follow."""
+
+_AIRSPEED_RATIO_MIN = 1.12
+"""Narrowest range of airspeeds, largest over least [-]: the guidance varies the airspeed within it."""
+
+_AIRSPEED_STEPS = 4
+"""Steps from the least to the largest airspeed, of equal ratio, at which trims are tried."""
+
 _MACH_MAX = 0.6
+"""Largest Mach number [-]: above it compressibility matters, which a schedule over airspeed alone ignores."""
+
 _SPEED_OF_SOUND = 340.3
-_SPAN_MIN = 1.12
-_BANKS_LESS = (1.0, 0.75, 0.5)
-_THROTTLE = (0.03, 0.95)
-_SURFACE = 0.9
+_DENSITY = 1.225
+"""Speed of sound [m/s] and density [kg/m^3] of the ISO standard atmosphere at sea level."""
+
+_BANK_FRACTIONS = (1.0, 0.75, 0.5)
+"""Fractions of the bank of the aircraft's class that are tried, one after the other [-]."""
+
+_THROTTLE_RANGE = (0.03, 0.95)
+"""Throttles of an equilibrium that leave a reserve for control [-]; less reserve is needed to slow down than to
+climb."""
+
+_SURFACE_FRACTION = 0.9
+"""Fraction of a surface's travel that an equilibrium may take [-], for the same reason."""
+
 _LIFT_STEP = math.radians(1.0)
 _ALPHA_MAX = 0.4
-_GUESSES = (0.5, 0.35, 0.7, 0.25)
-"""Lift coefficients at which a first equilibrium is sought [-]."""
+"""Step and end of the angles of attack at which the largest lift is sought [rad]; wings without slots
+stall below 0.4 rad, 23 deg."""
+
+_START_LIFT_COEFFICIENTS = (0.5, 0.35, 0.7, 0.25)
+"""Lift coefficients at which a first equilibrium is sought, one after the other [-]: those of cruising aircraft."""
 
 
 def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
     """Return the envelope that the aircraft's spec states, or one found by trimming the aircraft.
 
-    The range found begins 1.3 times above stall in the steepest turn of the autopilot's tables, and ends where level flight or that
-    turn takes more than 95 % of the throttle or 90 % of a surface, at 1.6 times its beginning or at Mach 0.6. Where that leaves no
-    range, the bank is cut to three quarters and to a half.
+    The range found begins 1.3 times above stall in the steepest turn of the autopilot's tables, and ends where level
+    flight or that turn takes more than 95 % of the throttle or 90 % of a surface, at 1.6 times its beginning or at
+    Mach 0.6. Where that leaves no range, the bank is cut to three quarters and to a half.
 
     Parameters
     ----------
@@ -54,8 +79,8 @@ def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
     stall, notes = _stall_airspeed(fdm, level)
     bank = bank_by_class(fdm.read("inertia/mass-slugs") * KG_PER_SLUG)
     why = ""
-    for share in _BANKS_LESS:
-        flown, ended = _airspeeds(fdm, level, stall, share * bank)
+    for fraction in _BANK_FRACTIONS:
+        flown, ended = _airspeeds(fdm, level, stall, fraction * bank)
         if flown:
             if why:
                 notes = (*notes, f"bank cut from {math.degrees(bank):g} deg: {why}")
@@ -65,7 +90,7 @@ def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
                 airspeed_min=flown[0],
                 airspeed_max=flown[-1],
                 airspeed=0.5 * (flown[0] + flown[-1]),
-                bank=share * bank,
+                bank=fraction * bank,
                 stall=stall,
                 notes=notes,
             )
@@ -79,14 +104,15 @@ def bank_by_class(mass: float) -> float:
 
 
 def first_trim(fdm: Fdm, altitude: float) -> Trim:
-    """Return level flight at some airspeed: where its envelope's is, or where its lift coefficient is an ordinary one."""
+    """Return level flight at some airspeed: where its envelope's is, or where its lift coefficient is an ordinary
+    one."""
     if fdm.spec.envelope is not None:
         return trim(fdm, airspeed=fdm.spec.envelope.airspeed, altitude=altitude)
     weight = fdm.read("inertia/weight-lbs") * NEWTONS_PER_POUND
     area = fdm.read("metrics/Sw-sqft") * METRES_PER_FOOT**2
     found: list[Trim] = []
-    for lift_coefficient in _GUESSES:
-        airspeed = math.sqrt(2.0 * weight / (1.225 * area * lift_coefficient))
+    for lift_coefficient in _START_LIFT_COEFFICIENTS:
+        airspeed = math.sqrt(2.0 * weight / (_DENSITY * area * lift_coefficient))
         found.append(search_trim(fdm, airspeed=airspeed, altitude=altitude))
         if found[-1].outcome is TrimOutcome.CONVERGED:
             return found[-1]
@@ -101,7 +127,8 @@ def _why(t: Trim) -> str:
 
 
 def _stall_airspeed(fdm: Fdm, level: Trim) -> tuple[float, tuple[str, ...]]:
-    """Return the airspeed at which the largest lift carries the weight [m/s]: found by turning the held aircraft up to it."""
+    """Return the airspeed at which the largest lift carries the weight [m/s]: found by turning the held aircraft up to
+    it."""
     weight = fdm.read("inertia/weight-lbs")
     lift = fdm.node("forces/fwz-aero-lbs")
     largest, alpha = 0.0, level.alpha
@@ -123,14 +150,15 @@ def _stall_airspeed(fdm: Fdm, level: Trim) -> tuple[float, tuple[str, ...]]:
 
 
 def _airspeeds(fdm: Fdm, level: Trim, stall: float, bank: float) -> tuple[list[float], str]:
-    """Return the airspeeds, ascending, at which level flight and the steepest turns trim with reserve; and what ended the range."""
+    """Return the airspeeds, ascending, at which level flight and the steepest turns trim with reserve; and what ended
+    the range."""
     steepest = TABLE_REACH * (bank + BANK_RESERVE)
     slowest = _STALL_RESERVE * stall / math.sqrt(math.cos(steepest))
     fastest = min(_AIRSPEED_RATIO * slowest, _MACH_MAX * _SPEED_OF_SOUND)
     flown: list[float] = []
     why = ""
-    for i in range(_STEPS + 1):
-        airspeed = slowest * (fastest / slowest) ** (i / _STEPS)
+    for i in range(_AIRSPEED_STEPS + 1):
+        airspeed = slowest * (fastest / slowest) ** (i / _AIRSPEED_STEPS)
         near = level
         for turn in (0.0, steepest, -steepest):
             found = search_trim(fdm, airspeed=airspeed, altitude=level.altitude, bank=turn, start=near)
@@ -144,7 +172,7 @@ def _airspeeds(fdm: Fdm, level: Trim, stall: float, bank: float) -> tuple[list[f
             continue
         if flown:
             break
-    if not flown or flown[-1] / flown[0] < _SPAN_MIN:
+    if not flown or flown[-1] / flown[0] < _AIRSPEED_RATIO_MIN:
         return [], why or "stall and its largest Mach number leave no range of airspeeds"
     return flown, why
 
@@ -156,7 +184,7 @@ def _lacks(t: Trim, spec: AircraftSpec) -> str:
     where = f"{t.airspeed:.0f} m/s and {math.degrees(t.roll):.0f} deg of bank"
     for name, value in t.inputs.items():
         travel = spec.input(name)
-        low, high = _THROTTLE if name == "throttle" else (_SURFACE * travel.lower, _SURFACE * travel.upper)
+        low, high = _THROTTLE_RANGE if name == "throttle" else (_SURFACE_FRACTION * travel.lower, _SURFACE_FRACTION * travel.upper)
         if not low <= value <= high:
             return f"{where} take {value:.2f} of {name}; {low:g} to {high:g} leaves a reserve"
     return ""

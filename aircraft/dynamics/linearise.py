@@ -1,14 +1,15 @@
 """Linear model about an equilibrium, by central differences on JSBSim itself, servos and propeller included.
 
 JSBSim's own linearisation bypasses servo lags and leaves the simulation unusable, so the rigid body is held still
-(``Fdm.frozen``), one quantity at a time is moved both ways, and the accelerations are read once all else has settled. A servo or
-propeller cannot be set directly; it is moved by holding its input off trim, and its own pole is read from how it returns. What an
-input does at once, before servo or propeller has moved (a motor's torque on the airframe), is told apart by reading after one
-step as well.
+(``Fdm.frozen``), one quantity at a time is moved both ways, and the accelerations are read once all else has settled.
+A servo or propeller cannot be set directly; it is moved by holding its input off trim, and its own pole is read from
+how it returns. What an input does at once, before servo or propeller has moved (a motor's torque on the airframe), is
+told apart by reading after one step as well.
 
-Where the spec names no property that follows an input (of a stock aircraft nobody knows which), the input's way to the airframe is
-measured: what the accelerations leave to their end after a step of it has an area and a first moment in time, and those are the
-coefficients of a lag of first or second order (a piston engine's manifold pressure, then its speed).
+Where the spec names no property that follows an input (of a stock aircraft nobody knows which), the input's way to the
+airframe is measured: what the accelerations leave to their end after a step of it has an area and a first moment in
+time, and those are the coefficients of a lag of first or second order (a piston engine's manifold pressure, then its
+speed).
 """
 
 import math
@@ -30,22 +31,27 @@ EXTRA_OUTPUTS = ("heading_rate", "climb_rate")
 """Outputs beside the states: rate of the air-relative course [rad/s] and climb rate [m/s]."""
 
 _AIRSPEED_STEP = 0.0025
-"""Of the airspeed itself [-]."""
-
 _ALTITUDE_STEP = 5.0
 _STEP = 0.002
 _INPUT_STEP = 0.01
+"""Steps of the differences: airspeed over itself [-], altitude [m], angles and body rates [rad, rad/s], inputs [-].
+They are large against what is left of settling, ``_SETTLED``, and small against the curvature of a model's tables."""
+
 _LAG_STEP = {"throttle": 0.05}
-"""Input steps from which lags are measured: a turbine spools at a steady rate, so a small step would see no lag at all [-]."""
+"""Input steps from which lags are measured: a turbine spools at a steady rate, so a small step would see no lag at all
+[-]."""
 
 _SETTLED = 3e-8
-"""Change of acceleration a step below which engines count as settled: behind one as slow as a second, 4e-6 from the end, where the
-differences are 5e-3 and more."""
+"""Change of acceleration a step below which engines count as settled: behind one as slow as a second, 4e-6 from the
+end, where the differences are 5e-3 and more."""
 
 _LAG_STEPS_MAX = 2400
 _LAG_SETTLED = 0.002
+"""A lag is measured for at most this many time steps, 20 s, and until this fraction of the input's effect is left
+[-]."""
+
 _SECOND_ORDER = 0.05
-"""Product of two time constants over the square of their sum below which the smaller of them is none [-]."""
+"""Product of two time constants over the square of their sum below which the lag counts as of first order [-]."""
 
 _NO_LAG = 0.6
 """A time constant below this many steps is the half step of holding an input, not a lag [-]."""
@@ -62,9 +68,9 @@ def linearise(fdm: Fdm, trim: Trim) -> control.StateSpace:
     Returns
     -------
     control.StateSpace
-        States: ``BODY_STATES`` followed by the aircraft's driven states, then ``INPUT_effect`` for each measured lag, followed by
-        ``INPUT_effect_rate`` where it is of second order. Inputs: the aircraft's control inputs [-]. Outputs: every state followed
-        by ``EXTRA_OUTPUTS``. All are deviations from trim, in SI and radians.
+        States: ``BODY_STATES`` followed by the aircraft's driven states, then ``INPUT_effect`` for each measured lag,
+        followed by ``INPUT_effect_rate`` where it is of second order. Inputs: the aircraft's control inputs [-].
+        Outputs: every state followed by ``EXTRA_OUTPUTS``. All are deviations from trim, in SI and radians.
 
     Raises
     ------
@@ -75,7 +81,8 @@ def linearise(fdm: Fdm, trim: Trim) -> control.StateSpace:
 
 
 class _Differences:
-    """Everything is read settled, so moving a body state also moves a propeller that follows it; that part is taken out."""
+    """Everything is read settled, so moving a body state also moves a propeller that follows it; that part is taken
+    out."""
 
     def __init__(self, fdm: Fdm, trim: Trim) -> None:
         self._fdm = fdm
@@ -146,7 +153,8 @@ class _Differences:
     def _measured_lag(self, j: int) -> tuple[float, float]:
         """Return sum and product of the time constants between input j and the accelerations [s, s^2].
 
-        After a step through two lags, what is left of it has the area T1 + T2 and the first moment T1^2 + T1 T2 + T2^2.
+        After a step through two lags, what is left of it has the area T1 + T2 and the first moment T1^2 + T1 T2 +
+        T2^2.
         """
         name, step = self._spec.inputs[j].name, _LAG_STEP.get(self._spec.inputs[j].name, _INPUT_STEP)
         inputs = self._inputs.copy()
@@ -177,7 +185,8 @@ class _Differences:
         return (high - low) / (2.0 * step)
 
     def _read(self, body: int | None, control_input: int | None, step: float) -> npt.NDArray[np.float64]:
-        """Rates of the body states, extra outputs and driven states, with one quantity moved and everything settled."""
+        """Rates of the body states, extra outputs and driven states, with one quantity moved and everything
+        settled."""
         point, inputs = self._body.copy(), self._inputs.copy()
         if body is not None:
             point[body] += step
@@ -227,7 +236,8 @@ class _Differences:
         return np.array([*rates, course_rate(velocity, acceleration, roll, pitch), climb_rate])
 
     def _pole(self, i: int, j: int) -> float:
-        """Continuous pole of driven state i from its way back to rest, after the first step (which averages old and new input)."""
+        """Continuous pole of driven state i from its way back to rest, after the first step (which averages old and
+        new input)."""
         self._hold(self._body, self._inputs)
         rest = self._driven()[i]
         self._read(None, j, _INPUT_STEP)

@@ -1,4 +1,5 @@
-"""The search for an equilibrium: accelerations as a function of its unknowns, and the solvers that drive them to zero."""
+"""The search for an equilibrium: accelerations as a function of its unknowns, and the solvers that drive them to
+zero."""
 
 import math
 
@@ -14,9 +15,11 @@ TOLERANCE = 1e-5
 """Largest acceleration that counts as zero [m/s^2, rad/s^2]: a millionth of g."""
 
 _SETTLED = 2e-9
-"""Change of acceleration a step below which engines count as settled: behind one as slow as ten seconds, 2e-6 from the end."""
+"""Change of acceleration a step below which engines count as settled: behind one as slow as ten seconds, 2e-6 from the
+end."""
 
 _SETTLE_STEPS = 2400
+"""Largest number of time steps in which engines may settle: 20 s."""
 
 _GOOD = 0.05
 """Where a search ends, over what counts as zero: the settling that is left must not tip the balance [-]."""
@@ -25,25 +28,47 @@ _NEAR_LIMIT = 0.05
 """A bounded search stops short of its limits by some of the unknowns' scale [-]."""
 
 _ALPHA_MAX = 0.5
-
 _BETA_MAX = 0.3
-
 _BANK_MAX = 1.2
+"""Limits of the unknown angles [rad], wider than any flight: angle of attack beyond stall, 29 deg; sideslip, 17 deg;
+the bank that balances a propeller's torque in straight flight, 69 deg."""
+
+_TURN_RATE_RATIO_MAX = 3.0
+"""Limit of the unknown yaw rate, over that of a coordinated turn [-]."""
+
+_GUESSED_GRAVITY = 9.81
+"""Gravity in the guess of a turn's yaw rate, from which the search begins [m/s^2]; the true one varies by 0.5 %."""
 
 _SCALE = 0.1
 """Size of the unknowns [rad, -]; the yaw rate's is the turn's own."""
+
+_CONVERGENCE = 1e-10
+"""Relative change of the unknowns at which a solver ends [-]: so small that ``_GOOD`` nearly always ends it before."""
+
+_COST_CONVERGENCE = 1e-12
+"""Change of cost and of gradient at which the least squares end: below the square of ``TOLERANCE``, 1e-10."""
+
+_EVALUATIONS_MAX = 80
+"""Largest number of evaluations of Powell's method, which takes a dozen where there is an equilibrium."""
+
+_ITERATIONS_MAX = 12
+"""Largest number of iterations of the bounded least squares, each with a Jacobian of its own."""
 
 _DIFFERENCE = 1e-3
 """Step of differences [rad, -]: large against what is left of an engine's settling."""
 
 _START_ALPHA = 0.05
+"""Angle of attack from which the search begins [rad]: 3 deg, as in cruise."""
+
 
 _START_THROTTLES = (0.75, 0.5, 0.95)
-"""Starts of the search. From too little throttle at high speed it can end where JSBSim's propeller barely turns."""
+"""Throttles from which the search begins, one after the other [-]. From too little throttle at high speed it can end
+where JSBSim's propeller barely turns."""
 
 
 class _FoundError(Exception):
-    """Ends a search at its first good point: MINPACK would go on to the last digit, which an engine that settles does not have."""
+    """Ends a search at its first good point: MINPACK would go on to the last digit, which an engine that settles does
+    not have."""
 
     def __init__(self, unknowns: npt.NDArray[np.float64]) -> None:
         super().__init__()
@@ -51,7 +76,8 @@ class _FoundError(Exception):
 
 
 class TrimProblem:
-    """Unknowns: angle of attack, sideslip, bank or yaw rate, every control input. A rudder adds zero sideslip as a condition."""
+    """Unknowns: angle of attack, sideslip, bank or yaw rate, every control input. A rudder adds zero sideslip as a
+    condition."""
 
     def __init__(self, fdm: Fdm, *, airspeed: float, altitude: float, bank: float, climb_angle: float) -> None:
         self._fdm = fdm
@@ -61,9 +87,9 @@ class TrimProblem:
         self._climb_angle = climb_angle
         self._straight = bank == 0.0
         self._rudder = len(fdm.spec.inputs) > 3
-        self._turn = 0.0 if self._straight else 9.81 * math.tan(bank) / airspeed
+        self._turn = 0.0 if self._straight else _GUESSED_GRAVITY * math.tan(bank) / airspeed
         inputs = fdm.spec.inputs
-        turn_max = _BANK_MAX if self._straight else 3.0 * abs(self._turn)
+        turn_max = _BANK_MAX if self._straight else _TURN_RATE_RATIO_MAX * abs(self._turn)
         self._lower = np.array([-_ALPHA_MAX, -_BETA_MAX, -turn_max] + [i.lower for i in inputs])
         self._upper = np.array([_ALPHA_MAX, _BETA_MAX, turn_max] + [i.upper for i in inputs])
         self._scale = np.array([_SCALE, _SCALE, _SCALE if self._straight else abs(self._turn)] + [_SCALE] * len(inputs))
@@ -96,13 +122,22 @@ class TrimProblem:
             self._run_up(guess)
         step = (_DIFFERENCE / _SCALE) ** 2
         try:
-            solution, *_ = fsolve(scaled, np.ones(len(guess)), full_output=True, xtol=1e-10, epsfcn=step, factor=1.0, maxfev=80)
+            solution, *_ = fsolve(
+                scaled,
+                np.ones(len(guess)),
+                full_output=True,
+                xtol=_CONVERGENCE,
+                epsfcn=step,
+                factor=1.0,
+                maxfev=_EVALUATIONS_MAX,
+            )
         except _FoundError as found:
             return self._result(found.unknowns)
         return self._result(guess + self._scale * (np.asarray(solution) - 1.0))
 
     def _run_up(self, guess: npt.NDArray[np.float64]) -> None:
-        """Settle at full throttle first: an earlier guess may have left a governed propeller wind-milling at its fine stop."""
+        """Settle at full throttle first: an earlier guess may have left a governed propeller wind-milling at its fine
+        stop."""
         full = [self._upper[3 + k] if i.name == "throttle" else guess[3 + k] for k, i in enumerate(self._fdm.spec.inputs)]
         self.residual(np.array([*guess[:3], *full]))
 
@@ -115,10 +150,10 @@ class TrimProblem:
                 bounds=(self._lower, self._upper),
                 x_scale=self._scale,
                 jac=self._jacobian,
-                xtol=1e-10,
-                ftol=1e-12,
-                gtol=1e-12,
-                max_nfev=12,
+                xtol=_CONVERGENCE,
+                ftol=_COST_CONVERGENCE,
+                gtol=_COST_CONVERGENCE,
+                max_nfev=_ITERATIONS_MAX,
             )
             result = self._result(solution.x)
             if result.outcome is TrimOutcome.CONVERGED:

@@ -1,8 +1,9 @@
-"""What the design asks for: how fast an aircraft's loops can be, from its own linear model, and the weights that make them so.
+"""What the design asks for: how fast an aircraft's loops can be, from its own linear model, and the weights that make
+them so.
 
-Bryson's rule makes each weight one over the square of an acceptable deviation. What is acceptable follows from a frequency: the
-fastest that an aircraft's control authority, its servos and its lift can follow. So one set of numbers, none of them with a length
-or a time in it, designs a 3 kg flying wing and an airliner.
+Bryson's rule makes each weight one over the square of an acceptable deviation. What is acceptable follows from a
+frequency: the fastest that an aircraft's control authority, its servos and its lift can follow. So one set of numbers,
+none of them with a length or a time in it, designs a 3 kg flying wing and an airliner.
 """
 
 import math
@@ -18,28 +19,71 @@ from innerloop.synthesis.quasi_static import quasi_static, state_lag
 DELAY = 1.5 * TIME_STEP
 """One step of computing and half a step of hold between measurement and servo [s]."""
 
+_LAG_PHASE = 0.18
+"""Phase that a loop may lose to its servo and the computing delay at its frequency [rad]: 10 degrees."""
+
+_AUTHORITY_FRACTION = 0.5
+"""Fraction of the control authority that a step of a command may take [-]: the other half is left to gusts and
+feedback."""
+
+_BANK_STEP_FRACTION = 0.5
+"""The step of bank that takes this authority, over the bank limit [-]: from straight flight half-way into the steepest
+turn."""
+
+_PITCH_STEP = 0.15
+"""The step of pitch that takes this authority [rad]: half the acceptable deviation."""
+
+_MODEL_DAMPING = 0.9
+"""Damping of the heading-rate response [-]: it overshoots by 0.15 %, exp(-pi 0.9 / sqrt(1 - 0.9^2))."""
+
+_PEAK_RATE = 0.42
+"""Largest rate of a second-order response to a unit step, over its frequency [-]: 0.39 with a damping of 0.9, and
+0.42 with one of 0.8, so there is a little to spare."""
+
+_LIFT_FRACTION = 0.75
+"""Fastest altitude loop, over the rate -Z_alpha at which lift turns the flight path towards the nose [-]."""
+
+_ENGINE_FRACTION = 0.3
+"""Fastest airspeed loop, over one over the lag of engine and delay [-]: there the engine
+takes 0.3 rad, 17 degrees, of phase."""
+
+_AIRSPEED_TO_ALTITUDE = 0.27
+"""Fastest airspeed loop, over the altitude loop [-]: elevator and throttle both move both, so the
+frequencies are kept apart by a factor near 4."""
+
+# The deviations of Bryson's rule, in an aircraft's own units: one over a loop's bandwidth for time, V for climbing, g
+# for changes of airspeed, g/V for turning. They are the weights of the X8's first design, divided by its units, and
+# serve every aircraft: the margins and step responses of each design are computed, and a design without the required
+# margins is slowed down or refused.
 _PITCH = 0.3
 _ROLL = 0.1
 _SIDESLIP = 0.05
-"""Acceptable deviations of angles [rad]; only their ratios to what follows matter."""
+"""Acceptable angles [rad]."""
 
-_LAG_SHARE = 0.18
-"""A loop's frequency times the lag in it: 0.18 rad, 10 degrees of phase, go to servo and delay."""
+_PITCH_RATE = 0.5
+_ROLL_RATE = 3.3
+"""Acceptable rates of pitch and roll, over their acceptable angle a unit of time [-]. Roll rate is hardly
+penalised."""
 
-_AUTHORITY_SHARE = 0.5
-_STEP_OF_BANK = 0.5
-_STEP_OF_PITCH = 0.15
-"""Half the authority turns half the bank limit, or 0.15 rad of pitch, at the design's frequency."""
+_CLIMB_TIME = 0.5
+_SLOWDOWN_TIME = 2.0
+"""Time in which the acceptable pitch makes the acceptable deviation of altitude, by climbing, and of airspeed, by
+gravity [units of time]."""
 
-_PEAK_RATE = 0.42
-"""Largest rate of a second-order answer with damping 0.9 to a unit step, over its frequency [-]."""
+_AIRSPEED_HELD = 2.4
+_ALTITUDE_HELD = 12.0
+_HEADING_RATE_HELD = 14.0
+_SIDESLIP_HELD = 6.0
+"""How long an acceptable deviation may last, which gives the acceptable integral of it [units of time]. For the
+heading rate, the deviation is the rate at which the acceptable roll turns."""
 
-_LIFT_SHARE = 0.75
-"""Altitude can be no faster than lift follows angle of attack: share of -Z_alpha [-]."""
+_ERROR_MAX = 2.0
+"""Number of acceptable deviations beyond which an error of altitude or airspeed is clipped [-]: it then asks for a
+steady climb or acceleration."""
 
-_ENGINE_SHARE = 0.3
-_THROTTLE_SHARE = 0.27
-"""Airspeed's frequency over one over the engine's lag, and over that of altitude."""
+_ANTI_WINDUP = 0.33
+"""How fast an integrator follows its saturated control, over the longitudinal bandwidth [-]: within three units of
+time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,7 +120,8 @@ class DesignWeights:
     airspeed_integral, altitude_integral : of their time integrals [m, m s]
     roll, roll_rate, sideslip : lateral deviations [rad, rad/s, rad]
     heading_integral, sideslip_integral : of the time integrals of heading-rate error and sideslip [rad, rad s]
-    model_frequency, model_damping : the second-order response to a heading-rate command that the lateral loop follows [rad/s, -]
+    model_frequency, model_damping : the second-order response to a heading-rate command that the lateral loop follows
+        [rad/s, -]
     altitude_error_max : altitude error that still makes the elevator work harder [m]
     airspeed_error_max : airspeed error that still makes the throttle work harder [m/s]
     anti_windup_rate : how fast an integrator follows its saturated command [1/s]
@@ -111,14 +156,15 @@ class ControlWeights:
 
 
 def reachable_speeds(models: Sequence[control.StateSpace], bank: float) -> Speeds:
-    """Return the speeds that an aircraft's level linear models can follow at every one of them, in turns up to ``bank`` [rad]."""
+    """Return the speeds that an aircraft's level linear models can follow at every one of them, in turns up to
+    ``bank`` [rad]."""
     each = [_reachable(model, bank) for model in models]
     longitudinal = min(speeds.longitudinal for speeds in each)
     engine = min(speeds.airspeed for speeds in each)
     return Speeds(
         lateral=min(speeds.lateral for speeds in each),
         longitudinal=longitudinal,
-        airspeed=min(engine, _THROTTLE_SHARE * longitudinal),
+        airspeed=min(engine, _AIRSPEED_TO_ALTITUDE * longitudinal),
     )
 
 
@@ -131,51 +177,52 @@ def _reachable(model: control.StateSpace, bank: float) -> Speeds:
     def b(row: str, column: str) -> float:
         return abs(float(plant.B[plant.state_labels.index(row), plant.input_labels.index(column)]))
 
-    roll_step = _STEP_OF_BANK * bank
+    roll_step = _BANK_STEP_FRACTION * bank
     lateral = min(
-        _LAG_SHARE / (state_lag(model, "aileron") + DELAY),
-        math.sqrt(_AUTHORITY_SHARE * b("p", "aileron") / roll_step),
-        _AUTHORITY_SHARE * b("p", "aileron") / (abs(a("p", "p")) * _PEAK_RATE * roll_step),
+        _LAG_PHASE / (state_lag(model, "aileron") + DELAY),
+        math.sqrt(_AUTHORITY_FRACTION * b("p", "aileron") / roll_step),
+        _AUTHORITY_FRACTION * b("p", "aileron") / (abs(a("p", "p")) * _PEAK_RATE * roll_step),
     )
     longitudinal = min(
-        _LAG_SHARE / (state_lag(model, "elevator") + DELAY),
-        math.sqrt(_AUTHORITY_SHARE * b("q", "elevator") / _STEP_OF_PITCH),
-        _LIFT_SHARE * abs(a("alpha", "alpha")),
+        _LAG_PHASE / (state_lag(model, "elevator") + DELAY),
+        math.sqrt(_AUTHORITY_FRACTION * b("q", "elevator") / _PITCH_STEP),
+        _LIFT_FRACTION * abs(a("alpha", "alpha")),
     )
-    return Speeds(lateral=lateral, longitudinal=longitudinal, airspeed=_ENGINE_SHARE / (state_lag(model, "throttle") + DELAY))
+    return Speeds(lateral=lateral, longitudinal=longitudinal, airspeed=_ENGINE_FRACTION / (state_lag(model, "throttle") + DELAY))
 
 
 def design_weights(speeds: Speeds, airspeed: float) -> DesignWeights:
     """Return the weights for loops of these speeds at about ``airspeed`` [m/s].
 
-    Altitude follows pitch, and airspeed follows gravity along it; so with a time unit of one over the frequency, deviations of
-    altitude go with V, of airspeed with g, and integrals with the unit itself.
+    Altitude follows pitch, and airspeed follows gravity along it; so with a time unit of one over the frequency,
+    deviations of altitude go with V, of airspeed with g, and integrals with the unit itself.
     """
     unit, turn = 1.0 / speeds.longitudinal, 1.0 / speeds.lateral
-    altitude = 0.5 * airspeed * _PITCH * unit
-    speed = 2.0 * STANDARD_GRAVITY * _PITCH * unit
+    altitude = _CLIMB_TIME * airspeed * _PITCH * unit
+    speed = _SLOWDOWN_TIME * STANDARD_GRAVITY * _PITCH * unit
     return DesignWeights(
         airspeed=speed,
         pitch=_PITCH,
-        pitch_rate=0.5 * _PITCH * speeds.longitudinal,
+        pitch_rate=_PITCH_RATE * _PITCH * speeds.longitudinal,
         altitude=altitude,
-        airspeed_integral=2.4 * speed / speeds.airspeed,
-        altitude_integral=12.0 * altitude * unit,
+        airspeed_integral=_AIRSPEED_HELD * speed / speeds.airspeed,
+        altitude_integral=_ALTITUDE_HELD * altitude * unit,
         roll=_ROLL,
-        roll_rate=3.3 * _ROLL * speeds.lateral,
+        roll_rate=_ROLL_RATE * _ROLL * speeds.lateral,
         sideslip=_SIDESLIP,
-        heading_integral=14.0 * STANDARD_GRAVITY / airspeed * _ROLL * turn,
-        sideslip_integral=6.0 * _SIDESLIP * turn,
+        heading_integral=_HEADING_RATE_HELD * STANDARD_GRAVITY / airspeed * _ROLL * turn,
+        sideslip_integral=_SIDESLIP_HELD * _SIDESLIP * turn,
         model_frequency=speeds.lateral,
-        model_damping=0.9,
-        altitude_error_max=2.0 * altitude,
-        airspeed_error_max=2.0 * speed,
-        anti_windup_rate=0.33 * speeds.longitudinal,
+        model_damping=_MODEL_DAMPING,
+        altitude_error_max=_ERROR_MAX * altitude,
+        airspeed_error_max=_ERROR_MAX * speed,
+        anti_windup_rate=_ANTI_WINDUP * speeds.longitudinal,
     )
 
 
 def control_weights(model: control.StateSpace, speeds: Speeds, weights: DesignWeights) -> ControlWeights:
-    """Return what the controls may do at one airspeed: what moves their axis at its frequency, against its own damping."""
+    """Return what the controls may do at one airspeed: what moves their axis at its frequency, against its own
+    damping."""
     plant = quasi_static(model)
 
     def authority(row: str, column: str) -> float:
