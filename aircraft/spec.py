@@ -21,7 +21,8 @@ class ControlInput:
     name : the input's name in linear models, e.g. ``elevator``
     commands : JSBSim properties that take the command, one for each engine or surface that shares it [-]
     lower, upper : range of the command [-]
-    shape : points (effect, command) of a surface that is flown by its effect, ascending; then the range is that of the effect
+    shape : points (effect, command) of a surface that is flown by its effect, ascending; then the range is that of the
+        effect
     """
 
     name: str
@@ -61,7 +62,8 @@ class Actuator:
     Attributes
     ----------
     name : what the user calls it, e.g. ``left_elevon``
-    commands : JSBSim properties that tell it where to go: those of a control input, or one that an ``<actuator>`` reads
+    commands : JSBSim properties that tell it where to go: those of a control input, or one that an ``<actuator>``
+        reads
     feedback : what it reports, if it is none of a control input's own
     """
 

@@ -1,4 +1,5 @@
-"""Command line: ``python -m innerloop.design AIRCRAFT`` designs an autopilot, prints, reports and writes it out for JSBSim."""
+"""Command line: ``python -m innerloop.design AIRCRAFT`` designs an autopilot, prints, reports and writes it out for
+JSBSim."""
 
 import json
 import os
@@ -25,7 +26,8 @@ def command(
         bool, typer.Option("--list", help="Say of every aircraft whether it can be flown, or why not, and exit.")
     ] = False,
 ) -> None:
-    """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a JSBSim root that flies it."""
+    """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a JSBSim root that
+    flies it."""
     from aircraft.errors import AircraftError
     from reports.errors import ReportError
 

@@ -21,7 +21,8 @@ _DIRECTION = ("X-velocity-ft_sec", "Y-velocity-ft_sec", "Z-velocity-ft_sec")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gust:
-    """A gust that rises as 1 - cosine, holds, and falls as it rose: the discrete gust of MIL-F-8785C, which has the rise alone.
+    """A gust that rises as 1 - cosine, holds, and falls as it rose: the discrete gust of MIL-F-8785C, which has the
+    rise alone.
 
     Attributes
     ----------
@@ -61,7 +62,8 @@ def in_order(gusts: Sequence[Gust], time_step: float) -> list[Gust]:
 
     Raises
     ------
-    AircraftError : two of them blow at once, or within a ``time_step`` [s]: JSBSim has one cosine gust, which must be over first
+    AircraftError : two of them blow at once, or within a ``time_step`` [s]: JSBSim has one cosine gust, which must be
+        over first
     """
     ordered = sorted(gusts, key=lambda gust: gust.start)
     for first, second in itertools.pairwise(ordered):
@@ -89,7 +91,8 @@ def gusty_run(fdm: Fdm, gusts: Sequence[Gust]) -> Callable[[], object]:
 
 
 def end_gust(fdm: Fdm) -> None:
-    """End the gust that blows, if one does, by advancing the aircraft a step: JSBSim gives the next one its direction otherwise."""
+    """End the gust that blows, if one does, by advancing the aircraft a step: JSBSim gives the next one its direction
+    otherwise."""
     for name, duration in zip(_PROFILE[:3], (_AT_ONCE, 0.0, 0.0), strict=True):
         fdm.write(f"atmosphere/cosine-gust/{name}", duration)
     fdm.step()

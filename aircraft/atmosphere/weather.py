@@ -52,7 +52,8 @@ class Weather:
 def begin_turbulence(fdm: Fdm, weather: Weather) -> None:
     """Let the turbulence of ``weather`` rise from smooth air, if it has any; the same seed gives the same turbulence.
 
-    It takes a few times ``scale_lengths()[0]`` over the airspeed to be as strong as it will be: some 30 s for 220 m at 20 m/s.
+    It takes a few times ``scale_lengths()[0]`` over the airspeed to be as strong as it will be: some 30 s for 220 m at
+    20 m/s.
     """
     if weather.turbulence is None:
         return

@@ -1,8 +1,8 @@
 """Straightening controls: what a surface does, over what it is told.
 
-Many aircraft travel further one way than the other, and some surfaces stop before their command does; about such a kink no linear
-model holds. So the moment of each surface is measured over its command, and the aircraft is then flown by a command that is
-proportional to that moment.
+Many aircraft travel further one way than the other, and some surfaces stop before their command does; about such a
+kink no linear model holds. So the moment of each surface is measured over its command, and the aircraft is then flown
+by a command that is proportional to that moment.
 """
 
 from dataclasses import replace
@@ -29,7 +29,8 @@ _FLAT = 0.05
 def straightened(fdm: Fdm, level: Trim) -> AircraftSpec:
     """Return the aircraft's spec with its surfaces straightened, measured in the level flight of ``level``.
 
-    The new commands run from 0 at the old 0, and over 2 from stop to stop. Surfaces that were straightened before are left.
+    The new commands run from 0 at the old 0, and over 2 from stop to stop. Surfaces that were straightened before are
+    left.
 
     Raises
     ------

@@ -1,7 +1,8 @@
 """The throttle at which an aircraft is braked most.
 
-A propeller on an electric motor brakes most while it still turns: without voltage JSBSim's motor holds it still, and a propeller
-that stands has half the drag of one that windmills. An autopilot that wants to slow down must not go below that throttle.
+A propeller on an electric motor brakes most while it still turns: without voltage JSBSim's motor holds it still, and a
+propeller that stands has half the drag of one that windmills. An autopilot that wants to slow down must not go below
+that throttle.
 """
 
 from dataclasses import replace

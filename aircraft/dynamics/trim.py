@@ -1,9 +1,10 @@
 """Equilibrium flight, straight or turning, level or climbing.
 
-JSBSim's own trim fails for small electric aircraft (its engine loop steps the propeller at 0.5 s), so equilibrium is sought
-here on the accelerations themselves: the rigid body is held still, servos and engines settle, and a solver drives the six
-accelerations to zero. Powell's hybrid method (MINPACK) finds the equilibrium within a dozen evaluations where there is one; where
-it does not, a bounded least-squares search says how near the aircraft comes, and which of its limits hold it.
+JSBSim's own trim fails for small electric aircraft (its engine loop steps the propeller at 0.5 s), so equilibrium is
+sought here on the accelerations themselves: the rigid body is held still, servos and engines settle, and a solver
+drives the six accelerations to zero. Powell's hybrid method (MINPACK) finds the equilibrium within a dozen evaluations
+where there is one; where it does not, a bounded least-squares search says how near the aircraft comes, and which of
+its limits hold it.
 """
 
 import math
@@ -44,15 +45,16 @@ def trim(
 def search_trim(
     fdm: Fdm, *, airspeed: float, altitude: float, bank: float = 0.0, climb_angle: float = 0.0, start: Trim | None = None
 ) -> Trim:
-    """Search the equilibrium at ``airspeed`` [m/s] and ``altitude`` [m]; what is found says in its outcome whether it is one.
+    """Search the equilibrium at ``airspeed`` [m/s] and ``altitude`` [m]; what is found says in its outcome whether it
+    is one.
 
     Parameters
     ----------
     fdm : the aircraft; its state is changed
     airspeed : true airspeed [m/s], positive
     altitude : [m]
-    bank : 0 for straight flight (the small bank that balances the propeller's torque is then part of the solution), otherwise the
-        bank angle of a steady turn [rad], whose yaw rate is part of the solution
+    bank : 0 for straight flight (the small bank that balances the propeller's torque is then part of the solution),
+        otherwise the bank angle of a steady turn [rad], whose yaw rate is part of the solution
     climb_angle : [rad]
     start : an equilibrium nearby to start from, if there is one
 

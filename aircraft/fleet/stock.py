@@ -1,7 +1,8 @@
 """Aircraft that JSBSim brings itself: read from their model files, flown as they are.
 
-Nothing is known of them but what their files say, so all that is found here is what they are made of: engines, controls, and
-whether they are aeroplanes at all. Where they fly is found by trimming them (``aircraft.dynamics.envelope``).
+Nothing is known of them but what their files say, so all that is found here is what they are made of: engines,
+controls, and whether they are aeroplanes at all. Where they fly is found by trimming them
+(``aircraft.dynamics.envelope``).
 """
 
 import xml.etree.ElementTree as ET

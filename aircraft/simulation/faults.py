@@ -1,9 +1,10 @@
 """Faults in flight: an actuator that goes to its trim position and sticks there, and the loss of the engines.
 
-An aircraft that is to fail is flown from a copy of its JSBSim root in which a switch stands behind each actuator's command, after
-all that writes it: behind the autopilot for the command of a control input, before the ``<actuator>`` that reads it for any other.
-Without a fault the switch hands the command on as it is, so the copy flies exactly as the original does. JSBSim's own
-``malfunction/fail_stuck`` would stop an actuator wherever it happens to be, and few models of other people have an ``<actuator>``.
+An aircraft that is to fail is flown from a copy of its JSBSim root in which a switch stands behind each actuator's
+command, after all that writes it: behind the autopilot for the command of a control input, before the ``<actuator>``
+that reads it for any other. Without a fault the switch hands the command on as it is, so the copy flies exactly as the
+original does. JSBSim's own ``malfunction/fail_stuck`` would stop an actuator wherever it happens to be, and few models
+of other people have an ``<actuator>``.
 """
 
 import shutil
@@ -19,7 +20,8 @@ ENGINE = "engine"
 
 _FAILED, _HELD = "fault/{}/failed", "fault/{}/held"
 _SHUT_DOWN = (("propulsion/magneto_cmd", 0.0), ("propulsion/cutoff_cmd", 1.0))
-"""Properties that stop engines for good, where there are such engines: one that is only told not to run wind-mills back to life."""
+"""Properties that stop engines for good, where there are such engines: one that is only told not to run wind-mills
+back to life."""
 
 
 def fault_names(spec: AircraftSpec) -> tuple[str, ...]:
@@ -98,7 +100,8 @@ class Faults:
         """Names of what has failed."""
 
     def note_trim(self) -> None:
-        """Remember every actuator's command as its trim position: to be called when the aircraft is released from trim."""
+        """Remember every actuator's command as its trim position: to be called when the aircraft is released from
+        trim."""
         for actuator in self._fdm.spec.actuators:
             self._fdm.write(_HELD.format(actuator.name), self._fdm.read(actuator.commands[0]))
 
@@ -119,7 +122,8 @@ class Faults:
                 self._fdm.write(property_name, value)
 
     def mend(self) -> None:
-        """Undo every fault, before the aircraft is placed for another flight; engines are started by its being placed."""
+        """Undo every fault, before the aircraft is placed for another flight; engines are started by its being
+        placed."""
         for name in self.failed:
             self._fdm.write(_FAILED.format(name), 0.0)
         self.failed.clear()

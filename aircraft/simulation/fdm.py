@@ -45,8 +45,8 @@ class Fdm:
     Parameters
     ----------
     spec : the aircraft
-    root : JSBSim root to load it from as it stands, e.g. one with an autopilot written into it; without one, a copy of the
-        aircraft's own model is loaded that has no autopilot, no output, and no play in its servos
+    root : JSBSim root to load it from as it stands, e.g. one with an autopilot written into it; without one, a copy of
+        the aircraft's own model is loaded that has no autopilot, no output, and no play in its servos
     time_step : integration step [s]
 
     Raises
@@ -124,7 +124,8 @@ class Fdm:
         self.writable_node(name).set_double_value(value)
 
     def place(self, state: RigidBodyState, wind: tuple[float, float] | None = None) -> None:
-        """Put the aircraft into ``state``, configured as its spec says. Engines go on as they were; the first time they start.
+        """Put the aircraft into ``state``, configured as its spec says. Engines go on as they were; the first time
+        they start.
 
         Parameters
         ----------
@@ -136,12 +137,14 @@ class Fdm:
             self._initialise(state, wind)
 
     def renew(self) -> None:
-        """Make every model of JSBSim as it was loaded, to be placed next: filters of turbulence, gusts and engines forget."""
+        """Make every model of JSBSim as it was loaded, to be placed next: filters of turbulence, gusts and engines
+        forget."""
         self._exec.reset_to_initial_conditions(RESET_ONLY)
         self._engines_run = False
 
     def revive(self) -> None:
-        """Let engines that have stopped start again when the aircraft is placed next: too little throttle can stall them."""
+        """Let engines that have stopped start again when the aircraft is placed next: too little throttle can stall
+        them."""
         self._engines_run = self._engines_run and self._running()
 
     def _initialise(self, state: RigidBodyState, wind: tuple[float, float] | None) -> None:
@@ -165,9 +168,11 @@ class Fdm:
                 self.write(name, value)
 
     def _start_engines(self) -> bool:
-        """Start every engine, at once or as a pilot does, and run them up, the body held; return whether that took any time.
+        """Start every engine, at once or as a pilot does, and run them up, the body held; return whether that took any
+        time.
 
-        A governed propeller that comes from idle can stay at its fine stop, wind-milling; from full throttle it governs.
+        A governed propeller that comes from idle can stay at its fine stop, wind-milling; from full throttle it
+        governs.
         """
         self._engines_run = True
         for name, value in START_ENGINES:
@@ -223,7 +228,8 @@ class Fdm:
                 self.write(name, value)
 
     def hold(self, state: RigidBodyState, steps: int, wind: tuple[float, float] | None = None) -> None:
-        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else at rest.
+        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else
+        at rest.
 
         Parameters
         ----------

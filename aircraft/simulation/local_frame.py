@@ -12,9 +12,9 @@ FLATTENING = 1.0 / 298.257223563
 class LocalFrame:
     """North and east metres about an origin, at a fixed altitude.
 
-    A degree of latitude and of longitude count as they do at the origin. On the equator, the default, north-east metres then
-    agree with the integral of ground velocity to 1e-5 of the distance within 50 km, and local north stays true north; at latitude
-    L the two drift apart by about tan(L) times distance squared over the earth's radius.
+    A degree of latitude and of longitude count as they do at the origin. On the equator, the default, north-east
+    metres then agree with the integral of ground velocity to 1e-5 of the distance within 50 km, and local north stays
+    true north; at latitude L the two drift apart by about tan(L) times distance squared over the earth's radius.
 
     Parameters
     ----------

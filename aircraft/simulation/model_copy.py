@@ -17,8 +17,9 @@ _PLAY = ("hysteresis_width", "deadband_width")
 def copy_model(root: Path, model: str, directory: Path, *, play: bool = True) -> Path:
     """Copy a model with all it refers to into a JSBSim root of its own, and return the copy's model file.
 
-    Outputs and inputs (files, sockets) are left out. So is every autopilot: ``<autopilot>`` elements and systems that are called
-    one. Their properties stay, at rest: flight controls that add an autopilot's command to the pilot's then add 0.
+    Outputs and inputs (files, sockets) are left out. So is every autopilot: ``<autopilot>`` elements and systems that
+    are called one. Their properties stay, at rest: flight controls that add an autopilot's command to the pilot's then
+    add 0.
 
     Parameters
     ----------
@@ -69,7 +70,8 @@ def _take_out(config: ET.Element, root: Path, source: Path) -> list[str]:
 
 
 def _of_another_program(config: ET.Element, root: Path, source: Path) -> list[str]:
-    """Return the properties that the model reads from FlightGear's tree, such as ``/sim/model/pushback``: JSBSim alone has none."""
+    """Return the properties that the model reads from FlightGear's tree, such as ``/sim/model/pushback``: JSBSim alone
+    has none."""
     parts = [config, *(_content(element, root, source) for element in config.iter() if element.get("file"))]
     words = (word.lstrip("-") for part in parts for element in part.iter() for word in (element.text or "").split())
     return list(dict.fromkeys(word for word in words if re.fullmatch(r"/[A-Za-z_][\w.\-/\[\]]*", word)))
@@ -117,7 +119,8 @@ def _properties_at_rest(names: list[str]) -> ET.Element:
 
 
 def _copy_referenced(config: ET.Element, root: Path, source: Path, directory: Path) -> None:
-    """Copy the engines, thrusters and systems that stand in the root's common folders; files of the model's own are there."""
+    """Copy the engines, thrusters and systems that stand in the root's common folders; files of the model's own are
+    there."""
     for element in config.iter():
         if element.tag not in _FOLDERS or not (found := _find(element, root, source)) or found.is_relative_to(source):
             continue

@@ -67,8 +67,8 @@ def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
 def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
     """Return where to place a body that is to be in ``state`` after it was held for ``duration`` [s].
 
-    A body that is held stands still among the stars while the earth turns under it, so it is placed as far east as it will drift
-    west.
+    A body that is held stands still among the stars while the earth turns under it, so it is placed as far east as it
+    will drift west.
     """
     return replace(state, longitude=state.longitude + EARTH_RATE * duration)
 

@@ -85,8 +85,9 @@ def course_rate(
 
     Notes
     -----
-    This is the rate of the horizontal direction of motion itself. psi + beta is often used in its place; at 45 degrees of bank
-    and an angle of attack of 0.08 rad the two differ by 0.06 rad, and so do their rates while the bank changes.
+    This is the rate of the horizontal direction of motion itself. psi + beta is often used in its place; at 45 degrees
+    of bank and an angle of attack of 0.08 rad the two differ by 0.06 rad, and so do their rates while the bank
+    changes.
     """
     v_ahead, v_right, _ = level(velocity_body, roll, pitch)
     a_ahead, a_right, _ = level(acceleration_body, roll, pitch)
@@ -101,7 +102,8 @@ def euler_rates(rates_body: tuple[float, float, float], roll: float, pitch: floa
 
 
 def turn_rates(yaw_rate: float, roll: float, pitch: float) -> tuple[float, float, float]:
-    """Return the body rates p, q, r [rad/s] of a steady turn at ``yaw_rate`` [rad/s] with constant roll and pitch [rad]."""
+    """Return the body rates p, q, r [rad/s] of a steady turn at ``yaw_rate`` [rad/s] with constant roll and pitch
+    [rad]."""
     return (
         -yaw_rate * math.sin(pitch),
         yaw_rate * math.cos(pitch) * math.sin(roll),

@@ -1,8 +1,10 @@
-"""Low-altitude turbulence of MIL-F-8785C as filters that shape white noise: what the linear closed loop is shaken with.
+"""Low-altitude turbulence of MIL-F-8785C as filters that shape white noise: what the linear closed loop is shaken
+with.
 
 Intensities and scale lengths are those of ``aircraft.atmosphere.turbulence``; the filters are the factors of its
-Dryden spectra, section 3.7.1.2, with the rotations as JSBSim has them (Yeager, NASA CR-1998-206937): p is on its own, q and r are
-the slopes along the path of w and v, seen by a wing of some span. JSBSim's ``atmosphere/turb-type`` 4 is this, in Tustin's steps.
+Dryden spectra, section 3.7.1.2, with the rotations as JSBSim has them (Yeager, NASA CR-1998-206937): p is on its own,
+q and r are the slopes along the path of w and v, seen by a wing of some span. JSBSim's ``atmosphere/turb-type`` 4 is
+this, in Tustin's steps.
 """
 
 import math
@@ -48,7 +50,8 @@ def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatist
 def dryden_filters(turbulence: GustStatistics, *, airspeed: float, span: float) -> control.StateSpace:
     """Return the filters from four white noises of intensity 1 (of u, v, w and p) to ``GUSTS``.
 
-    The standard deviation of each output is that of the gust, so that the covariance is the Lyapunov equation's solution.
+    The standard deviation of each output is that of the gust, so that the covariance is the Lyapunov equation's
+    solution.
 
     Parameters
     ----------

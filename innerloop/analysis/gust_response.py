@@ -1,9 +1,9 @@
 """The linear aircraft in moving air, alone and under its autopilot.
 
-Air that moves acts through what the body's velocity against it makes: forces and moments of the air, and what the propeller
-sees. The linear model was made in still air, where that velocity is the body's own, so its columns hold more: how velocity
-components turn with the body (-omega x v), how they add up to climb, and how angles follow rates. Those are known in closed form
-and taken out, and what is left, times minus the air's velocity, is what a gust does.
+Air that moves acts through what the body's velocity against it makes: forces and moments of the air, and what the
+propeller sees. The linear model was made in still air, where that velocity is the body's own, so its columns hold
+more: how velocity components turn with the body (-omega x v), how they add up to climb, and how angles follow rates.
+Those are known in closed form and taken out, and what is left, times minus the air's velocity, is what a gust does.
 """
 
 import math
@@ -20,11 +20,12 @@ from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.schedule import LEVEL_GAINS, Schedule
 
 GUSTS = ("gust_along", "gust_right", "gust_down", "gust_p", "gust_q", "gust_r")
-"""Velocity of the air along the trimmed course, to its right and down [m/s], and its rotation about the same axes [rad/s]."""
+"""Velocity of the air along the trimmed course, to its right and down [m/s], and its rotation about the same axes
+[rad/s]."""
 
 MOTION = ("speed", "course_rate")
-"""Motion against the mean air: horizontal speed [m/s] and rate of the course [rad/s]; ``airspeed``, ``alpha``, ``beta`` and
-``heading_rate`` are against the gusty air, as the autopilot measures them."""
+"""Motion against the mean air: horizontal speed [m/s] and rate of the course [rad/s]; ``airspeed``, ``alpha``,
+``beta`` and ``heading_rate`` are against the gusty air, as the autopilot measures them."""
 
 _AIR = ("airspeed", "alpha", "beta", "p", "q", "r")
 _RATES = ("p", "q", "r")
@@ -54,14 +55,15 @@ def aircraft_in_gusts(model: control.StateSpace, trim: Trim, level_model: contro
     Returns
     -------
     control.StateSpace
-        States as those of ``model``; the body's velocity is that against the mean air. Inputs: those of ``model``, then ``GUSTS``.
-        Outputs: those of ``model``, of which ``airspeed``, ``alpha``, ``beta`` and ``heading_rate`` are against the gusty air,
-        then ``MOTION``.
+        States as those of ``model``; the body's velocity is that against the mean air. Inputs: those of ``model``,
+        then ``GUSTS``. Outputs: those of ``model``, of which ``airspeed``, ``alpha``, ``beta`` and ``heading_rate``
+        are against the gusty air, then ``MOTION``.
 
     Notes
     -----
-    In a turn the rates' columns of moments hold the body's gyroscopic moments, which take its inertia to tell apart. Moments by
-    rates are taken from level flight instead, where there are none; they hardly depend on the angle of attack.
+    In a turn the rates' columns of moments hold the body's gyroscopic moments, which take its inertia to tell apart.
+    Moments by rates are taken from level flight instead, where there are none; they hardly depend on the angle of
+    attack.
     """
     states, outputs = list(model.state_labels), list(model.output_labels)
     air = [states.index(name) for name in _AIR]
@@ -84,7 +86,8 @@ def aircraft_in_gusts(model: control.StateSpace, trim: Trim, level_model: contro
     reads[rate] = model.C[rate, air] @ against
     speed = np.zeros(len(states))
     speed[states.index("airspeed")] = 1.0
-    # The same acceleration turns a faster motion less: against the mean air the aircraft is faster by the gust along its course.
+    # The same acceleration turns a faster motion less: against the mean air the aircraft is faster by the gust along
+    # its course.
     course_rate = reads[rate] - np.eye(len(GUSTS))[0] * trim.yaw_rate / trim.airspeed
     return control.ss(
         model.A,
@@ -99,7 +102,8 @@ def aircraft_in_gusts(model: control.StateSpace, trim: Trim, level_model: contro
 
 
 def velocity_by_polar(airspeed: float, alpha: float, beta: float) -> Array:
-    """Return the rates of the body velocity [m/s] by airspeed [m/s], angle of attack and sideslip [rad], shape (3, 3)."""
+    """Return the rates of the body velocity [m/s] by airspeed [m/s], angle of attack and sideslip [rad], shape (3,
+    3)."""
     (ca, sa), (cb, sb) = ((math.cos(x), math.sin(x)) for x in (alpha, beta))
     return np.array([
         [ca * cb, -airspeed * sa * cb, -airspeed * ca * sb],

@@ -29,7 +29,8 @@ _DURATION = 6.0
 _HALF = 1.0
 _SIZE = 0.01
 _FINE = 8
-"""JSBSim's first-order stepping is part of the aircraft that flies, not of the linear model: this many smaller steps a step [-]."""
+"""JSBSim's first-order stepping is part of the aircraft that flies, not of the linear model: this many smaller steps a
+step [-]."""
 
 Array = npt.NDArray[np.float64]
 

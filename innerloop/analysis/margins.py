@@ -1,8 +1,8 @@
 """Loop margins of the autopilot on the full linear aircraft: classical at each loop break, and disk margins.
 
-Everything comes from two frequency responses, of the aircraft (with its servos, its engine and the computing delay, as the exact
-exponential) and of the autopilot. With every loop closed, the sensitivity at a break is S = 1/(1 + L), where L is the loop
-opened there and closed elsewhere; so L = 1/S - 1 follows for all breaks from one inverse.
+Everything comes from two frequency responses, of the aircraft (with its servos, its engine and the computing delay, as
+the exact exponential) and of the autopilot. With every loop closed, the sensitivity at a break is S = 1/(1 + L), where
+L is the loop opened there and closed elsewhere; so L = 1/S - 1 follows for all breaks from one inverse.
 """
 
 import math
@@ -27,7 +27,8 @@ ALL_CONTROLS = "all controls"
 """What the row of margins is called that stands for changes in every control at once."""
 
 _MU_STRIDE = 4
-"""The structured singular value takes a hundred times as long as a gain, and every fourth frequency shows its peak [-]."""
+"""The structured singular value takes a hundred times as long as a gain, and every fourth frequency shows its peak
+[-]."""
 
 FREQUENCIES = np.logspace(-3.0, 2.4, 300)
 """Where loops are evaluated [rad/s]: from below any integral action to beyond any servo."""
@@ -92,7 +93,8 @@ class Loops:
         self._at_measurements = 1.0 - np.einsum("fik,fki->fi", plant @ self._sensitivity, law)
 
     def opened(self, name: str) -> Complex:
-        """Return the loop opened at a control or a measurement, closed elsewhere, over frequency, for negative feedback."""
+        """Return the loop opened at a control or a measurement, closed elsewhere, over frequency, for negative
+        feedback."""
         if name in self.controls:
             i = self.controls.index(name)
             sensitivity = self._sensitivity[:, i, i]
@@ -136,7 +138,8 @@ class Loops:
         return np.asarray(np.linalg.eigvals(a + b @ np.linalg.solve(np.eye(len(d)) - d, c)))
 
     def _disk_at_all_controls(self) -> tuple[float, float]:
-        """Return disk margins for simultaneous, independent changes in all controls, by the structured singular value."""
+        """Return disk margins for simultaneous, independent changes in all controls, by the structured singular
+        value."""
         n = len(self.controls)
         one, complex_block = np.ones(n, dtype=int), np.full(n, 2)
         balanced = self._sensitivity[::_MU_STRIDE] - 0.5 * np.eye(n)

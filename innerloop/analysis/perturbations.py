@@ -42,7 +42,8 @@ def _effectiveness(factor: float) -> Change:
 
 
 def _inertia(factor: float) -> Change:
-    """Return a change of all moments of inertia: angular accelerations by forces of the air and the engine divide by it."""
+    """Return a change of all moments of inertia: angular accelerations by forces of the air and the engine divide by
+    it."""
 
     def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
         del trim
@@ -64,8 +65,8 @@ def _mass(factor: float) -> Change:
         kinematic = gravity_and_turning(trim, list(model.state_labels))
         a[rows] = kinematic + (a[rows] - kinematic) / factor
         b[rows] /= factor
-        # Rate of the course: side force over mass and speed, but for what attitude gives: an aircraft in equilibrium carries its
-        # weight whatever that is, so bank turns it by g/V as before.
+        # Rate of the course: side force over mass and speed, but for what attitude gives: an aircraft in equilibrium
+        # carries its weight whatever that is, so bank turns it by g/V as before.
         row = model.output_labels.index("heading_rate")
         columns = [i for i, name in enumerate(model.state_labels) if name not in ("roll", "pitch")]
         c[row, columns] /= factor

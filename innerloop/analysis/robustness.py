@@ -1,4 +1,5 @@
-"""Margins at every operating point of a design, between them, and with an aircraft that is not quite the one modelled."""
+"""Margins at every operating point of a design, between them, and with an aircraft that is not quite the one
+modelled."""
 
 import math
 from collections.abc import Iterator
@@ -100,9 +101,11 @@ class Check:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OperatingPoint:
-    """Where margins are computed: an equilibrium, the aircraft about it, and whether it lies between those of the grid.
+    """Where margins are computed: an equilibrium, the aircraft about it, and whether it lies between those of the
+    grid.
 
-    ``bank`` is that of the grid [rad]: straight flight has 0, also where it takes a little bank against the propeller's torque.
+    ``bank`` is that of the grid [rad]: straight flight has 0, also where it takes a little bank against the
+    propeller's torque.
     """
 
     trim: Trim
@@ -114,8 +117,9 @@ class OperatingPoint:
 def operating_points(schedule: Schedule) -> list[OperatingPoint]:
     """Return the points of the grid, and those in the middle between them along airspeed and along bank.
 
-    Between, the linear model is interpolated, and so is the equilibrium: both are smooth there. Where two neighbours' measured lags
-    are of different order there is nothing to interpolate, and the point is checked with either aircraft.
+    Between, the linear model is interpolated, and so is the equilibrium: both are smooth there. Where two neighbours'
+    measured lags are of different order there is nothing to interpolate, and the point is checked with either
+    aircraft.
     """
     columns = [TRIM_BANKS.index(share) for share in GAIN_BANKS]
     at = {

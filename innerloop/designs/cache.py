@@ -46,10 +46,11 @@ class _Refused:
 
 
 def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
-    """Return the design of an aircraft at ``altitude`` [m] and its record: a former one if nothing it depends on has changed.
+    """Return the design of an aircraft at ``altitude`` [m] and its record: a former one if nothing it depends on has
+    changed.
 
-    It depends on the aircraft's spec and files, the altitude, the source of ``aircraft`` and ``innerloop``, and on the versions of
-    Python, JSBSim and the numerical packages. That an aircraft has no design is remembered as well.
+    It depends on the aircraft's spec and files, the altitude, the source of ``aircraft`` and ``innerloop``, and on the
+    versions of Python, JSBSim and the numerical packages. That an aircraft has no design is remembered as well.
 
     Raises
     ------
@@ -67,7 +68,8 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
 
 
 def _at(root: Path, found: Designed) -> Designed:
-    """Return a design whose model is looked for in ``root``: the same files may have stood elsewhere when it was made."""
+    """Return a design whose model is looked for in ``root``: the same files may have stood elsewhere when it was
+    made."""
     schedule = found.design.schedule
     schedule = replace(schedule, spec=replace(schedule.spec, root=root))
     return replace(found, design=replace(found.design, schedule=schedule))
@@ -137,7 +139,8 @@ def _remember(key: str, found: Designed | _Refused) -> None:
 
 
 class _Pickler(pickle.Pickler):
-    """Writes linear systems as their matrices: python-control's own objects hold functions, which cannot be written."""
+    """Writes linear systems as their matrices: python-control's own objects hold functions, which cannot be
+    written."""
 
     def reducer_override(self, obj: object) -> tuple[Callable[..., object], tuple[object, ...]]:
         if isinstance(obj, control.StateSpace):

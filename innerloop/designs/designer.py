@@ -1,4 +1,5 @@
-"""From an aircraft to its autopilot: trim, linearise, weigh, design, check; slower where margins are too small, or refused."""
+"""From an aircraft to its autopilot: trim, linearise, weigh, design, check; slower where margins are too small, or
+refused."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

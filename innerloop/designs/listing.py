@@ -50,7 +50,8 @@ def discover(altitude: float, jobs: int) -> Iterator[Discovered]:
             except BrokenProcessPool:
                 yield _alone(name, altitude)
     finally:
-        # Interrupted, the list leaves what is being designed: an aircraft that does not trim can take a minute to say so.
+        # Interrupted, the list leaves what is being designed: an aircraft that does not trim can take a minute to say
+        # so.
         pool.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():
             process.terminate()

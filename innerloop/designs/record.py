@@ -71,7 +71,8 @@ def design_record(design: Design, root: Path) -> Record:
 
 
 def step_sizes(schedule: Schedule) -> dict[str, float]:
-    """Return the steps that are predicted and flown [rad/s, m/s, m]: half the study's turn, and half of what still works harder."""
+    """Return the steps that are predicted and flown [rad/s, m/s, m]: half the study's turn, and half of what still
+    works harder."""
     turn = STANDARD_GRAVITY * math.tan(schedule.envelope.bank) / schedule.level(schedule.middle).airspeed
     room = 0.25 * (schedule.envelope.airspeed_max - schedule.envelope.airspeed_min)
     sizes = {
@@ -95,7 +96,8 @@ def _envelope_record(envelope: Envelope) -> Record:
 
 
 def _trim_record(t: Trim, bank: float) -> Record:
-    """Return an equilibrium; ``bank`` is the grid's [rad], 0 in straight flight whatever roll balances the propeller's torque."""
+    """Return an equilibrium; ``bank`` is the grid's [rad], 0 in straight flight whatever roll balances the propeller's
+    torque."""
     return {
         "airspeed_mps": t.airspeed,
         "bank_rad": bank,

@@ -29,7 +29,8 @@ class AutopilotedAircraft:
     ----------
     spec : the aircraft
     root : JSBSim root with the autopilot
-    failable : whether parts of it can fail in flight; it is then flown from a copy of ``root`` that has been prepared for that
+    failable : whether parts of it can fail in flight; it is then flown from a copy of ``root`` that has been prepared
+        for that
 
     Attributes
     ----------
@@ -58,8 +59,8 @@ class AutopilotedAircraft:
         ----------
         state : the equilibrium's state, against the air
         airspeed, altitude : commands [m/s, m]
-        weather : the air it flies in; none for still air. The wind blows from the start; turbulence begins with the release, and
-            the times of gusts count from it.
+        weather : the air it flies in; none for still air. The wind blows from the start; turbulence begins with the
+            release, and the times of gusts count from it.
         """
         if self._weathered or (self._faults and self._faults.failed):
             end_weather(self.fdm)
@@ -82,7 +83,8 @@ class AutopilotedAircraft:
             self.run = gusty_run(self.fdm, weather.gusts)
 
     def hold_elevator(self) -> None:
-        """Hold the elevator where it was at the release from now on; pitch is then left to the aircraft's own stability.
+        """Hold the elevator where it was at the release from now on; pitch is then left to the aircraft's own
+        stability.
 
         What is left of the controls after one has failed then has one task instead of two that contradict each other.
         """

@@ -106,10 +106,11 @@ def flown_step(aircraft: AutopilotedAircraft, start: Trim, command: str, size: f
 
 
 def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> float:
-    """Return how long the flown heading rate lags its command [s]: the phase of a sinusoid, fitted over two periods after two.
+    """Return how long the flown heading rate lags its command [s]: the phase of a sinusoid, fitted over two periods
+    after two.
 
-    Half the heading rate of a turn at ``bank`` [rad] is the sinusoid's amplitude, and its frequency is that heading rate itself,
-    near which those of the guidance lie.
+    Half the heading rate of a turn at ``bank`` [rad] is the sinusoid's amplitude, and its frequency is that heading
+    rate itself, near which those of the guidance lie.
     """
     frequency = STANDARD_GRAVITY * math.tan(bank) / start.airspeed
     amplitude = 0.5 * frequency

@@ -1,4 +1,5 @@
-"""How an aircraft's heading rate follows a reversal of its turn: the largest change of command that the guidance can give."""
+"""How an aircraft's heading rate follows a reversal of its turn: the largest change of command that the guidance can
+give."""
 
 import math
 from dataclasses import dataclass
@@ -35,11 +36,13 @@ class Reversal:
 
 
 def measure_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> Reversal:
-    """Return the dead time and lag of a reversal from a settled turn at ``bank`` [rad] to the left to one to the right.
+    """Return the dead time and lag of a reversal from a settled turn at ``bank`` [rad] to the left to one to the
+    right.
 
-    What counts is where the aircraft gets, which goes with the integral of the course that it falls behind by. Dead time and lag
-    are equal, and the shortest for which the model is nowhere ahead of the aircraft over a quarter of a turn, but for 1 % of what
-    it falls behind in all. The lag of slow commands, ``measure_lag``, is shorter: the aircraft rolls through twice the bank.
+    What counts is where the aircraft gets, which goes with the integral of the course that it falls behind by. Dead
+    time and lag are equal, and the shortest for which the model is nowhere ahead of the aircraft over a quarter of a
+    turn, but for 1 % of what it falls behind in all. The lag of slow commands, ``measure_lag``, is shorter: the
+    aircraft rolls through twice the bank.
 
     Parameters
     ----------
@@ -79,7 +82,8 @@ def measure_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: float) ->
 
 
 def displacement(time: Array, reversal: Reversal) -> Array:
-    """Return the integral of the course fallen behind by [s2], per change of the commanded heading rate, ``time`` [s] after it."""
+    """Return the integral of the course fallen behind by [s2], per change of the commanded heading rate, ``time`` [s]
+    after it."""
     after = np.maximum(time - reversal.delay, 0.0)
     lag = reversal.lag
     late = np.minimum(time, reversal.delay)

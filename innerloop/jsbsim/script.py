@@ -74,15 +74,16 @@ def demonstration(
     altitude_step: float | None = None,
     airspeed_step: float | None = None,
 ) -> tuple[Command, ...]:
-    """Return commands that show what the autopilot does: turn right, climb, change speed, come back from both, turn left.
+    """Return commands that show what the autopilot does: turn right, climb, change speed, come back from both, turn
+    left.
 
     Parameters
     ----------
     envelope, start : where the aircraft may fly, and the level equilibrium it starts from
     heading_rate : of both turns [rad/s], positive; by default a quarter of what the largest commanded bank gives
     altitude_step : [m]; by default what the aircraft flies in half a second
-    airspeed_step : [m/s]; by default a tenth of the airspeed or half the room that the envelope leaves, whichever is less, towards
-        the side with more room
+    airspeed_step : [m/s]; by default a tenth of the airspeed or half the room that the envelope leaves, whichever is
+        less, towards the side with more room
 
     Raises
     ------
@@ -114,10 +115,11 @@ def demonstration(
 
 
 def write_script(schedule: Schedule, root: Path, *, commands: Sequence[Command] | None = None) -> Path:
-    """Write a JSBSim script, and the initialisation file it starts from, into a root of ``innerloop.jsbsim.root.write_root``.
+    """Write a JSBSim script, and the initialisation file it starts from, into a root of
+    ``innerloop.jsbsim.root.write_root``.
 
-    The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock, from level flight at the middle
-    design airspeed.
+    The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock, from level flight at
+    the middle design airspeed.
 
     Parameters
     ----------
@@ -183,7 +185,8 @@ def _preparations(fdm: Fdm) -> tuple[int, list[str]]:
 
 
 def columns(fdm: Fdm) -> list[str]:
-    """Return the properties that the script's output file has as columns, after ``Time``: motion, commands, controls, engines.
+    """Return the properties that the script's output file has as columns, after ``Time``: motion, commands, controls,
+    engines.
 
     Parameters
     ----------
@@ -215,7 +218,8 @@ def _check(fdm: Fdm, commands: Sequence[Command]) -> None:
 
 
 def _before(start: Trim, held: float) -> str:
-    """Return the properties that are set before JSBSim runs its initial state, for a body that is then ``held`` [s]."""
+    """Return the properties that are set before JSBSim runs its initial state, for a body that is then ``held``
+    [s]."""
     values = (
         *initial_conditions(before_hold(start.state(), held)),
         (AIRSPEED_COMMAND, start.airspeed),
@@ -229,7 +233,8 @@ def _before(start: Trim, held: float) -> str:
 def _event(note: str, step: int, values: Sequence[tuple[str, float]]) -> str:
     """Return an event that sets values when ``step`` time steps from release are complete, before the next one.
 
-    JSBSim advances its clock before it looks at events, and adds up rounding in it: the half step is far from both neighbours.
+    JSBSim advances its clock before it looks at events, and adds up rounding in it: the half step is far from both
+    neighbours.
     """
     lines = "\n".join(f'      <set name="{name}" value="{float(value)!r}"/>' for name, value in values)
     comment = note.replace("--", "- -")  # a comment in XML may not have two dashes

@@ -1,9 +1,10 @@
 """The autopilot written out as a JSBSim ``<system>``.
 
-The commands are the properties ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND`` [m] and ``HEADING_RATE_COMMAND`` [rad/s].
+The commands are the properties ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND`` [m] and ``HEADING_RATE_COMMAND``
+[rad/s].
 
-A component costs JSBSim more than a table does, and some forty of them were a third of its time step. So a value has one of its own
-only if it is read from outside, remembered, looked up in a table, or dear to compute twice.
+A component costs JSBSim more than a table does, and some forty of them were a third of its time step. So a value has
+one of its own only if it is read from outside, remembered, looked up in a table, or dear to compute twice.
 """
 
 import math
@@ -124,13 +125,15 @@ def _measurements(schedule: Schedule) -> list[str]:
         operation("max", total(times(speed_ahead, speed_ahead), times(speed_right, speed_right)), number(1.0)),
     )
     return [
-        # At least 1 m/s: JSBSim runs the system once before it has a speed, and an integrator never forgets a division by zero.
+        # At least 1 m/s: JSBSim runs the system once before it has a speed, and an integrator never forgets a division
+        # by zero.
         function(_AIRSPEED, operation("max", times(read("velocities/vt-fps"), foot), number(1.0))),
         function(_CLIMB_RATE, times(read("velocities/h-dot-fps"), foot)),
         function(_SCHEDULE, clipped(read(AIRSPEED_COMMAND), envelope.airspeed_min, envelope.airspeed_max)),
         function("autopilot/speed-ahead-fps", ahead(*velocity)),
         function("autopilot/speed-right-fps", right(*velocity[1:])),
-        # Rate of the horizontal air-relative course, from accelerometers and attitude (aircraft.simulation.state.course_rate).
+        # Rate of the horizontal air-relative course, from accelerometers and attitude
+        # (aircraft.simulation.state.course_rate).
         function(HEADING_RATE, operation("quotient", moment, inertia)),
     ]
 
@@ -191,7 +194,8 @@ def _longitudinal(schedule: Schedule) -> list[str]:
 def _integrated(error: str, limit: float) -> str:
     """Return the part of an error that is integrated: all of it, or none where the error is beyond its limit.
 
-    A larger error asks for a steady climb or acceleration; integrated on the way there, it would overshoot by as much again.
+    A larger error asks for a steady climb or acceleration; integrated on the way there, it would overshoot by as much
+    again.
     """
     return times(read(error), within(read(error), limit))
 

@@ -71,7 +71,8 @@ def function(name: str, expression: str, outputs: Sequence[str] = ()) -> str:
 
 
 def integrator(name: str, source: str, reset: str) -> str:
-    """Return a component that integrates property ``source`` by the trapezoidal rule, held at 0 while ``reset`` is negative.
+    """Return a component that integrates property ``source`` by the trapezoidal rule, held at 0 while ``reset`` is
+    negative.
 
     JSBSim's own ``<integrator>`` can be held but not reset, so this is a ``<pid>`` with nothing but its integral.
     """

@@ -1,4 +1,5 @@
-"""The flown control law in Python, term by term as ``innerloop.jsbsim.system`` writes it for JSBSim: to be linearised anywhere.
+"""The flown control law in Python, term by term as ``innerloop.jsbsim.system`` writes it for JSBSim: to be linearised
+anywhere.
 
 Limits and saturations are left out: they belong to the flown autopilot, not to its linear model.
 """
@@ -63,7 +64,8 @@ class ControlLaw:
         return float(self._bank_for_turn([[turn, airspeed]])[0])
 
     def bank_slope(self, bank: float, measured_airspeed: float, airspeed: float) -> float:
-        """Return the bank rate per rate of heading rate [s] about a bank: cos^2(bank) times V/g, and what slipping adds to it."""
+        """Return the bank rate per rate of heading rate [s] about a bank: cos^2(bank) times V/g, and what slipping
+        adds to it."""
         slope = float(np.interp(airspeed, self._airspeeds, self._slopes))
         return math.cos(bank) ** 2 * slope * measured_airspeed / STANDARD_GRAVITY
 
@@ -151,6 +153,7 @@ class _Named:
 
 
 def bank_slopes(schedule: Schedule) -> list[float]:
-    """Return tan(bank) over dimensionless turn V omega/g near level flight, by airspeed: 1 where turns are coordinated."""
+    """Return tan(bank) over dimensionless turn V omega/g near level flight, by airspeed: 1 where turns are
+    coordinated."""
     low, high = schedule.bank_for_turn(np.array([-0.2, 0.2]))
     return [(math.tan(b) - math.tan(a)) / 0.4 for a, b in zip(low, high, strict=True)]

@@ -9,14 +9,15 @@ from aircraft.dynamics.equilibrium import Trim
 from innerloop.law.control_law import COMMANDS, STATES, ControlLaw, measurements
 
 _STEP = 1e-4
-"""Step of differences [SI]: the law is made of products and of straight pieces of tables, so only rounding limits it from below."""
+"""Step of differences [SI]: the law is made of products and of straight pieces of tables, so only rounding limits it
+from below."""
 
 
 def linear_controller(law: ControlLaw, trim: Trim) -> control.StateSpace:
     """Return the autopilot, linear about an equilibrium of the aircraft.
 
-    Inputs are ``COMMANDS`` and the measurements, outputs are the control inputs, all as deviations from trim. States are
-    ``STATES``. At an edge between two pieces of a table the slope is the mean of both.
+    Inputs are ``COMMANDS`` and the measurements, outputs are the control inputs, all as deviations from trim. States
+    are ``STATES``. At an edge between two pieces of a table the slope is the mean of both.
     """
     point = operating_point(law, trim)
     measured_names = measurements(law.schedule)
