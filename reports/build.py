@@ -3,7 +3,7 @@
 import sys
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -41,6 +41,13 @@ def build_reports(directory: Path) -> list[Path]:
             raise ReportError(f"'{directory / name}' cannot be written: {error.strerror}; check permissions and space") from None
         paths.append(directory / name)
     return paths
+
+
+def print_design(record: dict[str, Any]) -> None:
+    """Print the summary of an autopilot's design, given its record (``innerloop.json``)."""
+    from reports.design.console import print_summary
+
+    print_summary(record)
 
 
 def command(

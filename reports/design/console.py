@@ -1,0 +1,59 @@
+"""A design's summary on the console: equilibria, poles, margins, step responses and the verdict."""
+
+import sys
+
+from rich.console import Console
+from rich.table import Table as ConsoleTable
+from rich.text import Text
+
+from reports.design.data import Record, at_middle, complete, excess_overshoot
+from reports.design.tables import extreme_trims, pole_table, robustness_table, step_table, trim_table, worst_margin_table
+from reports.design.verdict import design_verdict
+from reports.document.blocks import Table
+
+_WIDTH = 140
+"""Characters of a line where the output is not a terminal, which would give its own width."""
+
+
+def print_summary(record: Record) -> None:
+    """Print what a design's record says, in brief."""
+    design = complete(record)
+    tables = [
+        ("Equilibria", trim_table(extreme_trims(design))),
+        ("Poles of the grid", pole_table(design)),
+        (f"Poles at {design['design_airspeed_mps']:g} m/s in level flight [1/s]", _poles(at_middle(design, design["poles"])[0])),
+        ("Margins, the worst of the grid; servos, engine and computing delay included", worst_margin_table(design)),
+        *([("Margins of perturbed aircraft, the worst of loops and grid", robustness_table(design))] * bool(design["robustness"])),
+        ("Step responses", step_table(design)),
+    ]
+    console = Console(width=None if sys.stdout.isatty() else _WIDTH)
+    console.print(f"[bold]{record['title']}[/bold], designed at {record['altitude_m']:g} m. {record['source']}")
+    for title, table in tables:
+        console.print()
+        console.print(_console_table(title, table))
+    console.print(f"\nThe heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated flight.")
+    excess = excess_overshoot(design)
+    if excess is not None:
+        console.print(f"A heading-rate step overshoots its reference model by {100.0 * excess:.1f} %.")
+    verdict = design_verdict(design)
+    for line in (verdict.headline, *verdict.failures):
+        console.print(line, markup=False, highlight=False)
+
+
+def _poles(poles: Record) -> Table:
+    names = {"open_loop": "aircraft", "closed_loop": "under the autopilot"}
+    rows = [[name, "  ".join(_pole(*p) for p in poles[kind] if p[1] >= 0.0)] for kind, name in names.items()]
+    return Table(head=["", ""], rows=rows, widths=[1.0, 4.0], left_columns=2)
+
+
+def _pole(real: float, imaginary: float) -> str:
+    return f"{real:.2f}±{imaginary:.2f}j" if imaginary else f"{real:.3g}"
+
+
+def _console_table(title: str, table: Table) -> ConsoleTable:
+    printed = ConsoleTable(title=Text(title), title_justify="left", box=None, pad_edge=False)
+    for i, name in enumerate(table.head):
+        printed.add_column(Text(name), justify="left" if i < table.left_columns else "right")
+    for row in table.rows:
+        printed.add_row(*(Text(cell) for cell in row))
+    return printed
