@@ -1,4 +1,4 @@
-"""What the study must know of a JSBSim aircraft beyond its model files."""
+"""What the project has to know about a JSBSim aircraft beyond its model files: the contract of an aircraft."""
 
 import bisect
 import math
@@ -9,7 +9,7 @@ from aircraft.errors import AircraftError
 from aircraft.units import RAD_S_PER_RPM
 
 MODELS = Path(__file__).parent / "models"
-"""The JSBSim root of the aircraft that this project brings."""
+"""The JSBSim root of the project's own aircraft."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,50 +21,51 @@ class ControlInput:
     name : the input's name in linear models, e.g. ``elevator``
     commands : JSBSim properties that take the command, one for each engine or surface that shares it [-]
     lower, upper : range of the command [-]
-    shape : points (effect, command) of a surface that is flown by its effect, ascending; then the range is that of the
-        effect
+    effectiveness : points (effect, command) of a surface that is commanded by its effect, ascending; the range is then
+        that of the effect
     """
 
     name: str
     commands: tuple[str, ...]
     lower: float
     upper: float
-    shape: tuple[tuple[float, float], ...] = ()
+    effectiveness: tuple[tuple[float, float], ...] = ()
 
     def command(self, value: float) -> float:
-        """Return what JSBSim is told for a value of this input, which is its effect where it has a shape [-]."""
-        if not self.shape:
+        """Return the command to JSBSim for a value of this input, which is an effect where its effectiveness is known
+        [-]."""
+        if not self.effectiveness:
             return value
-        i = min(max(bisect.bisect(self.shape, (value,)), 1), len(self.shape) - 1)
-        (x0, y0), (x1, y1) = self.shape[i - 1], self.shape[i]
+        i = min(max(bisect.bisect(self.effectiveness, (value,)), 1), len(self.effectiveness) - 1)
+        (x0, y0), (x1, y1) = self.effectiveness[i - 1], self.effectiveness[i]
         return y0 + (y1 - y0) * (value - x0) / (x1 - x0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Feedback:
-    """What a servo reports.
+    """Properties in which a servo reports its command and its position.
 
     Attributes
     ----------
-    told, position : JSBSim properties of what it is told [-] and of where it is
-    travel : position of a servo that has been told 1
+    commanded, position : JSBSim properties of its command [-] and of its position
+    travel : position at a command of 1
     """
 
-    told: str
+    commanded: str
     position: str
     travel: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Actuator:
-    """What moves one surface or every engine's throttle, and can stick (``aircraft.simulation.faults``).
+    """A device that moves one surface or every engine's throttle, and can stick (``aircraft.simulation.faults``).
 
     Attributes
     ----------
-    name : what the user calls it, e.g. ``left_elevon``
-    commands : JSBSim properties that tell it where to go: those of a control input, or one that an ``<actuator>``
+    name : as the user types it, e.g. ``left_elevon``
+    commands : JSBSim properties that command it: those of a control input, or one that an ``<actuator>``
         reads
-    feedback : what it reports, if it is none of a control input's own
+    feedback : what it reports, if its command is not one of a control input's own
     """
 
     name: str
@@ -91,7 +92,7 @@ class DrivenState:
 
 
 BANK_RESERVE = math.radians(5.0)
-"""What the autopilot may bank beyond the bank that the guidance plans with [rad]."""
+"""Bank that the autopilot may use beyond the bank that the guidance plans with [rad]."""
 
 DESIGN_AIRSPEEDS = 5
 """Number of airspeeds at which an autopilot is designed."""
@@ -99,15 +100,15 @@ DESIGN_AIRSPEEDS = 5
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Envelope:
-    """Where the autopilot may fly the aircraft.
+    """Airspeeds and banks at which the autopilot may fly the aircraft.
 
     Attributes
     ----------
     airspeed_min, airspeed_max : range of commanded true airspeed [m/s]
-    airspeed : at which the aircraft flies the study unless told otherwise [m/s]
-    bank : of the coordinated turn that the guidance may ask for [rad]
-    stall : stall airspeed in level flight; not a number where it is not known [m/s]
-    notes : what set the limits
+    airspeed : default airspeed of a study [m/s]
+    bank : of the steepest coordinated turn that the guidance may demand [rad]
+    stall : stall airspeed in level flight; NaN if unknown [m/s]
+    notes : reasons for the limits
     """
 
     airspeed_min: float
@@ -131,22 +132,22 @@ class Envelope:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AircraftSpec:
-    """An aircraft for this study.
+    """An aircraft: what a file in ``aircraft/fleet``, an entry point or a Python file of the user has to provide.
 
     Attributes
     ----------
-    name : what the user types, e.g. ``x8``
-    title : what reports print
+    name : as the user types it, e.g. ``x8``
+    title : as reports print it
     root : JSBSim root directory that holds ``aircraft/`` and ``engine/``
     model : JSBSim model name
     inputs : control inputs; ``elevator``, ``aileron`` and ``throttle`` at least
-    own_actuators : where they are not one for each control input: a flying wing's elevons
-    driven_states : servo and propeller states that have a property of their own; lags that have none are measured
-    envelope : where its maker or its model's author says that it flies; none where that is to be found by trimming it
-    configuration : JSBSim properties and the values they have in every flight, such as a retracted gear
+    own_actuators : only if they are not one for each control input, such as a flying wing's elevons
+    driven_states : servo and propeller states that have a property of their own; other lags are measured
+    envelope : as published by its maker or its model's author; None if it is to be found by trimming
+    configuration : JSBSim properties and their values in every flight, such as a retracted gear
     engine_flags : JSBSim properties that are 1 while an engine runs
-    settle_time : in which servos and engines stand still behind a held aircraft [s]
-    source : where the model's numbers come from
+    settle_time : in which servos and engines come to rest while the aircraft is held [s]
+    source : of the model's numbers
     """
 
     name: str
@@ -164,11 +165,11 @@ class AircraftSpec:
 
     @property
     def actuators(self) -> tuple[Actuator, ...]:
-        """Return what can stick: its own actuators, or one for each control input."""
+        """Return the actuators: its own ones, or one for each control input."""
         return self.own_actuators or tuple(Actuator(name=i.name, commands=i.commands) for i in self.inputs)
 
     def input(self, name: str) -> ControlInput:
-        """Return the control input called ``name``; raises AircraftError where there is none."""
+        """Return the control input called ``name``; raises AircraftError if there is no such input."""
         for control_input in self.inputs:
             if control_input.name == name:
                 return control_input
@@ -187,7 +188,7 @@ def throttle(engines: int) -> ControlInput:
 
 
 def numbered(engine: int) -> str:
-    """Return what JSBSim adds to an engine's properties: nothing for the first."""
+    """Return the suffix of an engine's properties in JSBSim: empty for the first engine."""
     return f"[{engine}]" if engine else ""
 
 

@@ -20,7 +20,7 @@ from benchmarks.sea_guidance import report_sea_guidance
 from innerloop.designs.designer import design_autopilot
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import level_trim, measure_lag
-from innerloop.flight.turn_reversal import measure_reversal
+from innerloop.flight.turn_reversal import measure_turn_reversal
 from innerloop.jsbsim.root import write_root
 from scenarios.flights import guidance_lag, place_vehicle
 from scenarios.metrics.figures import flight_figures
@@ -72,7 +72,7 @@ def _loops(folder: Path) -> tuple[dict[str, Timed], dict[str, Timed]]:
         spec=X8,
         start=level,
         lag=measure_lag(autopiloted, level, bank),
-        reversal=measure_reversal(autopiloted, level, bank),
+        reversal=measure_turn_reversal(autopiloted, level, bank),
         envelope=schedule.envelope,
     )
     # No flight ends before its time: no number of crossings is enough.

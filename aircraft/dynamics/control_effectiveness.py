@@ -1,8 +1,8 @@
-"""Straightening controls: what a surface does, over what it is told.
+"""Linearising control effectiveness: the moment of each control surface over its command.
 
-Many aircraft travel further one way than the other, and some surfaces stop before their command does; about such a
-kink no linear model holds. So the moment of each surface is measured over its command, and the aircraft is then flown
-by a command that is proportional to that moment.
+Many aircraft's surfaces travel further one way than the other, and some stop before their command does; about such a
+kink no linear model holds. So the moment of each surface is measured over its command, and the autopilot then commands
+the effect, which is proportional to the moment.
 """
 
 from dataclasses import replace
@@ -16,44 +16,46 @@ from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec, ControlInput
 
 AXES = {"elevator": 1, "aileron": 0, "rudder": 2}
-"""Axis of the angular acceleration that a surface is there for: p, q, r."""
+"""Axis of the angular acceleration that a surface controls: p, q, r."""
 
 _COMMANDS = np.linspace(-1.0, 1.0, 17)
-_STRAIGHT = 0.05
-"""A surface whose moment keeps this near to a straight line, over its span, is left as it is [-]."""
+"""Commands at which the moment is measured [-]."""
 
-_FLAT = 0.05
+_NONLINEARITY_MAX = 0.05
+"""Largest deviation of a moment from a straight line, over its span, for which the surface is left as it is [-]."""
+
+_STOP_SLOPE = 0.05
 """Slope below which a surface counts as having reached its stop, over its mean slope [-]."""
 
 
-def straightened(fdm: Fdm, level: Trim) -> AircraftSpec:
-    """Return the aircraft's spec with its surfaces straightened, measured in the level flight of ``level``.
+def with_linearised_controls(fdm: Fdm, level: Trim) -> AircraftSpec:
+    """Return the aircraft's spec with surfaces commanded by their effect, measured in the level flight of ``level``.
 
-    The new commands run from 0 at the old 0, and over 2 from stop to stop. Surfaces that were straightened before are
-    left.
+    The effect is 0 at the command 0, and spans 2 from stop to stop. Surfaces that have an effectiveness are left as
+    they are.
 
     Raises
     ------
-    AircraftError : a surface does nothing
+    AircraftError : a surface has no effect
     """
-    inputs = tuple(_straighten(fdm, level, i) if i.name in AXES and not i.shape else i for i in fdm.spec.inputs)
+    inputs = tuple(_linearised(fdm, level, i) if i.name in AXES and not i.effectiveness else i for i in fdm.spec.inputs)
     return replace(fdm.spec, inputs=inputs)
 
 
-def _straighten(fdm: Fdm, level: Trim, control_input: ControlInput) -> ControlInput:
+def _linearised(fdm: Fdm, level: Trim, control_input: ControlInput) -> ControlInput:
     moment = _moments(fdm, level, control_input.name)
     span = float(np.ptp(moment))
     if not span > 0.0:
-        raise AircraftError(f"aircraft '{fdm.spec.name}' cannot be flown: its {control_input.name} does nothing")
-    straight = moment[0] + (moment[-1] - moment[0]) * 0.5 * (_COMMANDS + 1.0)
-    if float(np.max(np.abs(moment - straight))) < _STRAIGHT * span:
+        raise AircraftError(f"aircraft '{fdm.spec.name}' cannot be flown: its {control_input.name} has no effect")
+    line = moment[0] + (moment[-1] - moment[0]) * 0.5 * (_COMMANDS + 1.0)
+    if float(np.max(np.abs(moment - line))) < _NONLINEARITY_MAX * span:
         return control_input
     low, high = _travel(moment)
     if _COMMANDS.size // 2 in (low, high):
         raise AircraftError(f"aircraft '{fdm.spec.name}' cannot be flown: its {control_input.name} moves it one way only")
     effect = 2.0 * (moment - moment[_COMMANDS.size // 2]) / (moment[high] - moment[low])
-    shape = tuple((float(e), float(c)) for e, c in zip(effect[low : high + 1], _COMMANDS[low : high + 1], strict=True))
-    return replace(control_input, lower=shape[0][0], upper=shape[-1][0], shape=shape)
+    points = tuple((float(e), float(c)) for e, c in zip(effect[low : high + 1], _COMMANDS[low : high + 1], strict=True))
+    return replace(control_input, lower=points[0][0], upper=points[-1][0], effectiveness=points)
 
 
 def _moments(fdm: Fdm, level: Trim, name: str) -> npt.NDArray[np.float64]:
@@ -69,10 +71,10 @@ def _moments(fdm: Fdm, level: Trim, name: str) -> npt.NDArray[np.float64]:
 
 
 def _travel(moment: npt.NDArray[np.float64]) -> tuple[int, int]:
-    """Return the first and the last command between which the moment grows or falls all the way, about the middle."""
+    """Return the indices of the first and the last command of the range about 0 in which the moment is monotonic."""
     slopes = np.diff(moment)
     mean = float(np.mean(slopes))
-    moving = slopes / mean > _FLAT
+    moving = slopes / mean > _STOP_SLOPE
     middle = moment.size // 2
     low = high = middle
     while low > 0 and moving[low - 1]:

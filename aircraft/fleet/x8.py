@@ -9,7 +9,7 @@ _ELEVONS = tuple(
     Actuator(
         name=f"{side}_elevon",
         commands=(f"fcs/{side}-elevon-cmd-rad",),
-        feedback=Feedback(told=f"fcs/{side}-elevon-mixer", position=f"fcs/{side}-elevon-pos-rad", travel=0.5236),
+        feedback=Feedback(commanded=f"fcs/{side}-elevon-mixer", position=f"fcs/{side}-elevon-pos-rad", travel=0.5236),
     )
     for side in ("left", "right")
 )

@@ -121,7 +121,7 @@ class Faults:
             for property_name, value in self._engine_properties:
                 self._fdm.write(property_name, value)
 
-    def mend(self) -> None:
+    def clear(self) -> None:
         """Undo every fault, before the aircraft is placed for another flight; engines are started by its being
         placed."""
         for name in self.failed:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import control
 
-from aircraft.dynamics.control_effectiveness import straightened
+from aircraft.dynamics.control_effectiveness import with_linearised_controls
 from aircraft.dynamics.envelope import find_envelope, first_trim
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.flight_idle import flight_idle, idling_at
@@ -18,7 +18,7 @@ from aircraft.spec import AircraftSpec, Envelope
 from innerloop.analysis.robustness import REQUIRED, Check, check_design
 from innerloop.synthesis.gains import design_gains
 from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL, LEVEL_GAINS, TRIM_BANKS, Schedule, table_banks
-from innerloop.synthesis.weights import Speeds, control_weights, design_weights, reachable_speeds
+from innerloop.synthesis.weights import LoopBandwidths, control_weights, design_weights, reachable_bandwidths
 
 _SLOWER = 0.8
 _ATTEMPTS = 10
@@ -37,12 +37,12 @@ class Design:
     Attributes
     ----------
     schedule : the autopilot's tables
-    speeds : how fast its loops were made
+    bandwidths : how fast its loops were made
     checks : margins at every grid point, between, and with the aircraft changed
     """
 
     schedule: Schedule
-    speeds: Speeds
+    bandwidths: LoopBandwidths
     checks: tuple[Check, ...]
 
 
@@ -74,15 +74,15 @@ def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
     DesignError : no design has the margins
     """
     grid = linear_grid(spec, altitude)
-    speeds = reachable_speeds([row[LEVEL_GAINS] for row in grid.models], grid.envelope.bank)
+    bandwidths = reachable_bandwidths([row[LEVEL_GAINS] for row in grid.models], grid.envelope.bank)
     short: list[Check] = []
     for _ in range(_ATTEMPTS):
-        schedule = schedule_at(grid, speeds)
+        schedule = schedule_at(grid, bandwidths)
         checks = check_design(schedule)
         short = [check for check in checks if not check.met]
         if not short:
-            return Design(schedule=schedule, speeds=speeds, checks=tuple(checks))
-        speeds = _slower(speeds, short)
+            return Design(schedule=schedule, bandwidths=bandwidths, checks=tuple(checks))
+        bandwidths = _slowed(bandwidths, short)
     worst = min(short, key=lambda check: check.shortfall)
     raise DesignError(
         f"aircraft '{spec.name}': no design has {REQUIRED.gain_db:g} dB and {REQUIRED.phase_deg:g} deg at every operating point;"
@@ -93,7 +93,7 @@ def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
 def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
     """Trim and linearise an aircraft over its airspeeds and banks at ``altitude`` [m]."""
     fdm = Fdm(spec)
-    spec = straightened(fdm, first_trim(fdm, altitude))
+    spec = with_linearised_controls(fdm, first_trim(fdm, altitude))
     fdm = Fdm(spec)
     envelope = find_envelope(fdm, altitude)
     banks = table_banks(envelope, TRIM_BANKS)
@@ -111,13 +111,13 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
     return Grid(spec=spec, envelope=envelope, altitude=altitude, trims=tuple(trims), models=tuple(models))
 
 
-def schedule_at(grid: Grid, speeds: Speeds) -> Schedule:
-    """Return the autopilot whose loops have these speeds."""
+def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
+    """Return the autopilot whose loops have these bandwidths."""
     airspeeds = tuple(row[LEVEL].airspeed for row in grid.trims)
-    weights = design_weights(speeds, airspeeds[len(airspeeds) // 2])
+    weights = design_weights(bandwidths, airspeeds[len(airspeeds) // 2])
     gains = []
     for row, models in zip(grid.trims, grid.models, strict=True):
-        controls = control_weights(models[LEVEL_GAINS], speeds, weights)
+        controls = control_weights(models[LEVEL_GAINS], bandwidths, weights)
         at = [row[TRIM_BANKS.index(share)] for share in GAIN_BANKS]
         gains.append(tuple(design_gains(model, t, weights, controls) for model, t in zip(models, at, strict=True)))
     return Schedule(
@@ -132,13 +132,13 @@ def schedule_at(grid: Grid, speeds: Speeds) -> Schedule:
     )
 
 
-def _slower(speeds: Speeds, short: Sequence[Check]) -> Speeds:
-    """Return speeds lower in the axes whose loops have too little margin."""
+def _slowed(bandwidths: LoopBandwidths, short: Sequence[Check]) -> LoopBandwidths:
+    """Return bandwidths lower in the axes whose loops have too little margin."""
     loops = {name for check in short for name in check.short_loops}
     lateral = any(name in _LATERAL_LOOPS for name in loops)
     airspeed = any(name in _AIRSPEED_LOOPS for name in loops)
     longitudinal = bool(loops - set(_LATERAL_LOOPS) - set(_AIRSPEED_LOOPS)) or not (lateral or airspeed)
-    return speeds.slower(
+    return bandwidths.scaled(
         lateral=_SLOWER if lateral else 1.0,
         longitudinal=_SLOWER if longitudinal else 1.0,
         airspeed=_SLOWER if airspeed or longitudinal else 1.0,

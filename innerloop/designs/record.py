@@ -54,7 +54,7 @@ def design_record(design: Design, root: Path) -> Record:
         "airspeeds_mps": list(schedule.airspeeds),
         "banks_deg": [math.degrees(bank) for bank in schedule.banks],
         "weights": asdict(schedule.weights),
-        "speeds_rad_s": asdict(design.speeds),
+        "bandwidths_rad_s": asdict(design.bandwidths),
         "model_frequency_rad_s": schedule.weights.model_frequency,
         "model_damping": schedule.weights.model_damping,
         "trims": [_trim_record(t, bank) for row in schedule.trims for t, bank in zip(row, schedule.banks, strict=True)]

@@ -65,7 +65,7 @@ class AutopilotedAircraft:
         if self._weathered or (self._faults and self._faults.failed):
             end_weather(self.fdm)
         if self._faults:
-            self._faults.mend()
+            self._faults.clear()
         self._weathered = weather is not None
         self.command_airspeed(airspeed)
         self.command_altitude(altitude)

@@ -1,8 +1,8 @@
-"""Whether the control surfaces go where they are told, from what their servos report.
+"""Whether the control surfaces follow their commands, from what their servos report.
 
-A servo on the way trails its command by its lag and its limited speed, from stop to stop when a turn is reversed; a
-stuck one stands still while its commands go elsewhere. What tells them apart without a model of the servo is time:
-wherever a sound one is, it has been told to go there, or past there, a moment ago.
+A sound servo trails its command by its lag and its limited speed, from stop to stop when a turn is reversed; a stuck
+one stays where it is while its commands change. What distinguishes them without a model of the servo is time: wherever
+a sound servo is, its command was there, or beyond, within the last few tenths of a second.
 """
 
 from collections import deque
@@ -11,21 +11,21 @@ from aircraft.simulation.fdm import Fdm
 from aircraft.spec import Feedback
 from innerloop.jsbsim.properties import commanded_property
 
-_MOMENT = 0.4
-"""How long a surface may be on its way [s]: the X8's goes from stop to stop in 0.30 s and trails by its lag of 25
-ms."""
+_TRAVEL_TIME = 0.4
+"""Longest time for which a sound surface may trail its command [s]: the X8's elevons take 0.30 s from stop to stop,
+and lag by 25 ms."""
 
 
-class ServoWatch:
-    """Watches every control surface of one aircraft in flight.
+class ServoMonitor:
+    """Monitors every control surface of one aircraft in flight.
 
-    The throttle is not watched: no surface moves with it. A control input without a servo model of its own is taken to
-    be where it was told to be, once that has passed what may have failed.
+    The throttle is not monitored, for no surface moves with it. A control input without a servo model is taken to be
+    at its command, as it is behind the switch of a fault.
 
     Parameters
     ----------
     fdm : of an aircraft with its autopilot
-    time_step : between looks [s]
+    time_step : between calls of ``error`` [s]
     """
 
     __slots__ = ("_surfaces",)
@@ -38,17 +38,17 @@ class ServoWatch:
             feedback = actuator.feedback
             if feedback is None:
                 control_input = fdm.spec.input(actuator.name)
-                feedback = Feedback(told=commanded_property(control_input), position=control_input.commands[0], travel=1.0)
-            told, position = (fdm.node(name).get_double_value for name in (feedback.told, feedback.position))
-            lately: deque[float] = deque(maxlen=1 + round(_MOMENT / time_step))
-            self._surfaces.append((told, position, feedback.travel, lately))
+                feedback = Feedback(commanded=commanded_property(control_input), position=control_input.commands[0], travel=1.0)
+            command, position = (fdm.node(name).get_double_value for name in (feedback.commanded, feedback.position))
+            recent: deque[float] = deque(maxlen=1 + round(_TRAVEL_TIME / time_step))
+            self._surfaces.append((command, position, feedback.travel, recent))
 
     def error(self) -> float:
-        """Return how far the worst surface is from all that it was told lately, over its travel [-]; call once per
-        time step."""
+        """Return the largest distance of a surface from its recent commands, over its travel [-]; call once per time
+        step."""
         worst = 0.0
-        for told, position, travel, lately in self._surfaces:
-            lately.append(told())
-            place = position() / travel
-            worst = max(worst, place - max(lately), min(lately) - place)
+        for command, position, travel, recent in self._surfaces:
+            recent.append(command())
+            at = position() / travel
+            worst = max(worst, at - max(recent), min(recent) - at)
         return worst

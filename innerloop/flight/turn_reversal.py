@@ -17,13 +17,13 @@ from innerloop.jsbsim.properties import HEADING_RATE
 
 Array = npt.NDArray[np.float64]
 
-_ROOM = 0.01
-"""By which the model may be ahead, per what the aircraft falls behind in all [-]."""
+_LEAD_FRACTION = 0.01
+"""Largest lead of the model, over the aircraft's final displacement [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reversal:
-    """A dead time and a first-order lag after it, which displace the aircraft as its heading rate does.
+class TurnReversalResponse:
+    """A dead time followed by a first-order lag, which displace the aircraft as its own heading-rate response does.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Reversal:
     lag: float
 
 
-def measure_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> Reversal:
+def measure_turn_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> TurnReversalResponse:
     """Return the dead time and lag of a reversal from a settled turn at ``bank`` [rad] to the left to one to the
     right.
 
@@ -46,7 +46,7 @@ def measure_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: float) ->
 
     Parameters
     ----------
-    aircraft : with its autopilot; whatever it flew before is over
+    aircraft : with its autopilot; its flight is ended
     start : straight and level equilibrium
     bank : [rad]
 
@@ -69,19 +69,21 @@ def measure_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: float) ->
     flown = np.cumsum(np.cumsum(behind)) * TIME_STEP**2
 
     def least_lead(half: float) -> float:
-        return float(np.min(displacement(time, Reversal(delay=half, lag=half)) - flown)) + _ROOM * float(flown[-1])
+        return float(np.min(displacement(time, TurnReversalResponse(delay=half, lag=half)) - flown)) + _LEAD_FRACTION * float(
+            flown[-1]
+        )
 
     shortest, longest = TIME_STEP, float(time[-1])
     if not least_lead(longest) >= 0.0:
         raise AircraftError(
-            f"{aircraft.fdm.spec.name} at {start.airspeed:g} m/s does not turn right within {longest:.1f} s of being told to in a"
+            f"{aircraft.fdm.spec.name} at {start.airspeed:g} m/s does not turn right within {longest:.1f} s of the command in a"
             f" left turn at {math.degrees(bank):.0f} deg of bank; lower the bank"
         )
     half = shortest if least_lead(shortest) >= 0.0 else float(brentq(least_lead, shortest, longest, xtol=1e-4))
-    return Reversal(delay=half, lag=half)
+    return TurnReversalResponse(delay=half, lag=half)
 
 
-def displacement(time: Array, reversal: Reversal) -> Array:
+def displacement(time: Array, reversal: TurnReversalResponse) -> Array:
     """Return the integral of the course fallen behind by [s2], per change of the commanded heading rate, ``time`` [s]
     after it."""
     after = np.maximum(time - reversal.delay, 0.0)

@@ -23,5 +23,9 @@ def system_name(spec: AircraftSpec) -> str:
 
 
 def commanded_property(control_input: ControlInput) -> str:
-    """Return the property that holds what the autopilot tells JSBSim for a control input [-]."""
-    return f"autopilot/{control_input.name}-told" if control_input.shape else CONTROL_COMMAND.format(control_input.name)
+    """Return the property of the command that the autopilot gives to JSBSim for a control input [-]."""
+    return (
+        f"autopilot/{control_input.name}-surface-command"
+        if control_input.effectiveness
+        else CONTROL_COMMAND.format(control_input.name)
+    )

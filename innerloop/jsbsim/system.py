@@ -4,7 +4,7 @@ The commands are the properties ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND``
 [rad/s].
 
 A component costs JSBSim more than a table does, and some forty of them were a third of its time step. So a value has
-one of its own only if it is read from outside, remembered, looked up in a table, or dear to compute twice.
+one of its own only if it is read from outside, a state, looked up in a table, or expensive to compute twice.
 """
 
 import math
@@ -91,13 +91,13 @@ def _by_bank(schedule: Schedule, quantity: str, bank: str = _ROLL) -> str:
     return table_2d(bank, _SCHEDULE, schedule.banks, schedule.airspeeds, schedule.over_bank(quantity))
 
 
-def _commanded(control_input: ControlInput, wanted: str) -> list[str]:
+def _commanded(control_input: ControlInput, demand: str) -> list[str]:
     """Return components that keep a control within its range and hand it to JSBSim."""
     name = CONTROL_COMMAND.format(control_input.name)
-    value = clipped(wanted, control_input.lower, control_input.upper)
-    if not control_input.shape:
+    value = clipped(demand, control_input.lower, control_input.upper)
+    if not control_input.effectiveness:
         return [function(name, value, control_input.commands)]
-    effects, commands = zip(*control_input.shape, strict=True)
+    effects, commands = zip(*control_input.effectiveness, strict=True)
     return [
         function(name, value),
         function(commanded_property(control_input), table_1d(name, effects, commands), control_input.commands),

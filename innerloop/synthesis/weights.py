@@ -87,7 +87,7 @@ time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Speeds:
+class LoopBandwidths:
     """How fast the loops are to be.
 
     Attributes
@@ -101,9 +101,9 @@ class Speeds:
     longitudinal: float
     airspeed: float
 
-    def slower(self, *, lateral: float = 1.0, longitudinal: float = 1.0, airspeed: float = 1.0) -> "Speeds":
-        """Return the speeds times factors."""
-        return Speeds(
+    def scaled(self, *, lateral: float = 1.0, longitudinal: float = 1.0, airspeed: float = 1.0) -> "LoopBandwidths":
+        """Return the bandwidths times factors."""
+        return LoopBandwidths(
             lateral=self.lateral * lateral,
             longitudinal=self.longitudinal * longitudinal,
             airspeed=self.airspeed * airspeed,
@@ -155,20 +155,20 @@ class ControlWeights:
     rudder: float
 
 
-def reachable_speeds(models: Sequence[control.StateSpace], bank: float) -> Speeds:
-    """Return the speeds that an aircraft's level linear models can follow at every one of them, in turns up to
+def reachable_bandwidths(models: Sequence[control.StateSpace], bank: float) -> LoopBandwidths:
+    """Return the bandwidths that an aircraft's level linear models can follow at every one of them, in turns up to
     ``bank`` [rad]."""
     each = [_reachable(model, bank) for model in models]
-    longitudinal = min(speeds.longitudinal for speeds in each)
-    engine = min(speeds.airspeed for speeds in each)
-    return Speeds(
-        lateral=min(speeds.lateral for speeds in each),
+    longitudinal = min(bandwidths.longitudinal for bandwidths in each)
+    engine = min(bandwidths.airspeed for bandwidths in each)
+    return LoopBandwidths(
+        lateral=min(bandwidths.lateral for bandwidths in each),
         longitudinal=longitudinal,
         airspeed=min(engine, _AIRSPEED_TO_ALTITUDE * longitudinal),
     )
 
 
-def _reachable(model: control.StateSpace, bank: float) -> Speeds:
+def _reachable(model: control.StateSpace, bank: float) -> LoopBandwidths:
     plant = quasi_static(model)
 
     def a(row: str, column: str) -> float:
@@ -188,39 +188,41 @@ def _reachable(model: control.StateSpace, bank: float) -> Speeds:
         math.sqrt(_AUTHORITY_FRACTION * b("q", "elevator") / _PITCH_STEP),
         _LIFT_FRACTION * abs(a("alpha", "alpha")),
     )
-    return Speeds(lateral=lateral, longitudinal=longitudinal, airspeed=_ENGINE_FRACTION / (state_lag(model, "throttle") + DELAY))
+    return LoopBandwidths(
+        lateral=lateral, longitudinal=longitudinal, airspeed=_ENGINE_FRACTION / (state_lag(model, "throttle") + DELAY)
+    )
 
 
-def design_weights(speeds: Speeds, airspeed: float) -> DesignWeights:
-    """Return the weights for loops of these speeds at about ``airspeed`` [m/s].
+def design_weights(bandwidths: LoopBandwidths, airspeed: float) -> DesignWeights:
+    """Return the weights for loops of these bandwidths at about ``airspeed`` [m/s].
 
     Altitude follows pitch, and airspeed follows gravity along it; so with a time unit of one over the frequency,
     deviations of altitude go with V, of airspeed with g, and integrals with the unit itself.
     """
-    unit, turn = 1.0 / speeds.longitudinal, 1.0 / speeds.lateral
+    unit, turn = 1.0 / bandwidths.longitudinal, 1.0 / bandwidths.lateral
     altitude = _CLIMB_TIME * airspeed * _PITCH * unit
     speed = _SLOWDOWN_TIME * STANDARD_GRAVITY * _PITCH * unit
     return DesignWeights(
         airspeed=speed,
         pitch=_PITCH,
-        pitch_rate=_PITCH_RATE * _PITCH * speeds.longitudinal,
+        pitch_rate=_PITCH_RATE * _PITCH * bandwidths.longitudinal,
         altitude=altitude,
-        airspeed_integral=_AIRSPEED_HELD * speed / speeds.airspeed,
+        airspeed_integral=_AIRSPEED_HELD * speed / bandwidths.airspeed,
         altitude_integral=_ALTITUDE_HELD * altitude * unit,
         roll=_ROLL,
-        roll_rate=_ROLL_RATE * _ROLL * speeds.lateral,
+        roll_rate=_ROLL_RATE * _ROLL * bandwidths.lateral,
         sideslip=_SIDESLIP,
         heading_integral=_HEADING_RATE_HELD * STANDARD_GRAVITY / airspeed * _ROLL * turn,
         sideslip_integral=_SIDESLIP_HELD * _SIDESLIP * turn,
-        model_frequency=speeds.lateral,
+        model_frequency=bandwidths.lateral,
         model_damping=_MODEL_DAMPING,
         altitude_error_max=_ERROR_MAX * altitude,
         airspeed_error_max=_ERROR_MAX * speed,
-        anti_windup_rate=_ANTI_WINDUP * speeds.longitudinal,
+        anti_windup_rate=_ANTI_WINDUP * bandwidths.longitudinal,
     )
 
 
-def control_weights(model: control.StateSpace, speeds: Speeds, weights: DesignWeights) -> ControlWeights:
+def control_weights(model: control.StateSpace, bandwidths: LoopBandwidths, weights: DesignWeights) -> ControlWeights:
     """Return what the controls may do at one airspeed: what moves their axis at its frequency, against its own
     damping."""
     plant = quasi_static(model)
@@ -235,10 +237,10 @@ def control_weights(model: control.StateSpace, speeds: Speeds, weights: DesignWe
     rudder = math.nan
     if "rudder" in plant.input_labels:
         stiffness = abs(float(plant.A[plant.state_labels.index("r"), plant.state_labels.index("beta")]))
-        rudder = weights.sideslip * min(effort("r", speeds.lateral), stiffness) / authority("r", "rudder")
+        rudder = weights.sideslip * min(effort("r", bandwidths.lateral), stiffness) / authority("r", "rudder")
     return ControlWeights(
-        elevator=weights.pitch * effort("q", speeds.longitudinal) / authority("q", "elevator"),
-        aileron=weights.roll * effort("p", speeds.lateral) / authority("p", "aileron"),
-        throttle=weights.airspeed * speeds.airspeed / authority("airspeed", "throttle"),
+        elevator=weights.pitch * effort("q", bandwidths.longitudinal) / authority("q", "elevator"),
+        aileron=weights.roll * effort("p", bandwidths.lateral) / authority("p", "aileron"),
+        throttle=weights.airspeed * bandwidths.airspeed / authority("airspeed", "throttle"),
         rudder=rudder,
     )

@@ -11,7 +11,7 @@ from gnc.reference.oscillation import Oscillation
 from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.tracker import GuidanceParameters, Law
-from innerloop.flight.turn_reversal import Reversal
+from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.planning.bounded_steering import plan_steering
 from scenarios.planning.limits import omega_max
 from scenarios.planning.reference import oscillation_at
@@ -79,7 +79,7 @@ class FlightPlan:
 
 
 def plan_flight(
-    scenario: Scenario, *, flight_id: str, nu: float, seed: int, lag: float, reversal: Reversal | None = None
+    scenario: Scenario, *, flight_id: str, nu: float, seed: int, lag: float, reversal: TurnReversalResponse | None = None
 ) -> FlightPlan:
     """Resolve one flight of a scenario.
 
@@ -101,7 +101,7 @@ def plan_flight(
         heading_rate = reference.heading_rate
         vessel = Vessel(speed=0.0, course=0.0, plume_heading=math.pi, plume_elevation=0.0, source_height=altitude)
     else:
-        turning = reversal or Reversal(delay=0.0, lag=max(0.0, lag - 0.5 * time_step))
+        turning = reversal or TurnReversalResponse(delay=0.0, lag=max(0.0, lag - 0.5 * time_step))
         mission, centre = _mission(scenario, nu, turning)
         vessel, heading_rate = mission.vessel, mission.oscillation.amplitude
         altitude = vessel.source_height + centre[2]
@@ -127,7 +127,7 @@ def plan_flight(
     )
 
 
-def _mission(scenario: Scenario, nu: float, turning: Reversal) -> tuple[Mission, tuple[float, float, float]]:
+def _mission(scenario: Scenario, nu: float, turning: TurnReversalResponse) -> tuple[Mission, tuple[float, float, float]]:
     """Return the mission, and its CO ahead of, right of and above the plume's origin [m]."""
     g = scenario.guidance
     axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
@@ -194,7 +194,7 @@ def _guidance(scenario: Scenario, reference_heading_rate: float, lag: float) -> 
     return parameters, steering.bound
 
 
-def _guard(scenario: Scenario, above: float, turning: Reversal) -> KeepoutGuard | None:
+def _guard(scenario: Scenario, above: float, turning: TurnReversalResponse) -> KeepoutGuard | None:
     """Return the guard of the disc that the keep-out sphere cuts out at ``above`` [m] over its centre, if any."""
     radius = scenario.keepout.radius_m + _GUARD_SHARE * scenario.guidance.tracking_allowance_m
     if not scenario.guidance.keepout_guard or radius <= abs(above):

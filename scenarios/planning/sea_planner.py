@@ -12,7 +12,7 @@ from gnc.estimation.vessel_filter import VesselFilter, VesselReport
 from gnc.reference.oscillation import Oscillation
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.sea_parameters import SeaParameters
-from innerloop.flight.turn_reversal import Reversal
+from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin, SpreadTable, keepout_margin, vessel_filter
 from scenarios.planning.limits import omega_max
 from scenarios.planning.reference import RATIO_STEPS, orbits, oscillation_at
@@ -174,7 +174,7 @@ def _check_start(
         )
 
 
-def _guard(scenario: SeaScenario, reversal: Reversal, margin: KeepoutMargin) -> KeepoutGuard | None:
+def _guard(scenario: SeaScenario, reversal: TurnReversalResponse, margin: KeepoutMargin) -> KeepoutGuard | None:
     """Return the guard of the disc that the keep-out sphere cuts out at the height of its centre."""
     g, f = scenario.guidance, scenario.following
     if not g.keepout_guard:

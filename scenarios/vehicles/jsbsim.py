@@ -8,7 +8,7 @@ from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.local_frame import LocalFrame
 from aircraft.spec import Envelope
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.servo_monitor import ServoWatch
+from innerloop.flight.servo_monitor import ServoMonitor
 from scenarios.vehicles.telemetry import Telemetry
 
 _BANK_LIMIT = 1.4
@@ -61,7 +61,7 @@ class JsbsimVehicle:
         self.command_altitude = aircraft.command_altitude
         self.fail = aircraft.fail
         self.hold_elevator = aircraft.hold_elevator
-        self.servo_error = ServoWatch(aircraft.fdm, time_step).error
+        self.servo_error = ServoMonitor(aircraft.fdm, time_step).error
         self._command_airspeed = aircraft.command_airspeed
         self._command_heading_rate = aircraft.command_heading_rate
         self._airspeed_limits = (_AIRSPEED_LIMITS[0] * envelope.airspeed_min, _AIRSPEED_LIMITS[1] * envelope.airspeed_max)

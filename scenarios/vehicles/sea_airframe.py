@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from innerloop.designs.cache import Designed
-from innerloop.flight.turn_reversal import Reversal
+from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.synthesis.schedule import Schedule
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.planning.limits import omega_max
@@ -40,7 +40,7 @@ class Airframe:
     airspeed_min: float
     airspeed_max: float
     turning_airspeed: float
-    reversal: Reversal
+    reversal: TurnReversalResponse
     crab_banks: tuple[float, ...]
     crab_offsets: tuple[float, ...]
     six_dof: SixDof | None
@@ -72,7 +72,7 @@ def airframe_of(scenario: SeaScenario, found: Designed | None, run: RunDirectory
     """Return what flights need of the aircraft; write its autopilot into the run directory."""
     half_step = 0.5 / scenario.guidance.rate_hz
     if found is None or scenario.fidelity == "kinematic":
-        reversal = Reversal(delay=0.0, lag=KINEMATIC_LAG)
+        reversal = TurnReversalResponse(delay=0.0, lag=KINEMATIC_LAG)
         return Airframe(
             lag=KINEMATIC_LAG + half_step,
             airspeed_bandwidth=KINEMATIC_BANDWIDTH,
@@ -90,7 +90,7 @@ def airframe_of(scenario: SeaScenario, found: Designed | None, run: RunDirectory
     six_dof = six_dof_of(found, airspeed=scenario.guidance.airspeed_mps, altitude=scenario.plume.source_height_m, run=run)
     return Airframe(
         lag=six_dof.lag + half_step,
-        airspeed_bandwidth=found.design.speeds.airspeed,
+        airspeed_bandwidth=found.design.bandwidths.airspeed,
         airspeed_min=schedule.envelope.airspeed_min,
         airspeed_max=schedule.envelope.airspeed_max,
         turning_airspeed=_turning_airspeed(schedule, omega_max(scenario.guidance)),

@@ -9,7 +9,7 @@ from aircraft.spec import AircraftSpec, Envelope
 from innerloop.designs.cache import Designed, designed
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import level_trim
-from innerloop.flight.turn_reversal import Reversal, measure_reversal
+from innerloop.flight.turn_reversal import TurnReversalResponse, measure_turn_reversal
 from innerloop.jsbsim.root import write_root
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
@@ -33,7 +33,7 @@ class SixDof:
     spec: AircraftSpec
     start: Trim
     lag: float
-    reversal: Reversal
+    reversal: TurnReversalResponse
     envelope: Envelope
 
 
@@ -70,6 +70,6 @@ def six_dof_of(found: Designed, *, airspeed: float, altitude: float, run: RunDir
         spec=schedule.spec,
         start=start,
         lag=float(found.record["heading_rate_lag_s"]),
-        reversal=measure_reversal(AutopilotedAircraft(schedule.spec, run.model), start, schedule.envelope.bank),
+        reversal=measure_turn_reversal(AutopilotedAircraft(schedule.spec, run.model), start, schedule.envelope.bank),
         envelope=schedule.envelope,
     )

@@ -37,7 +37,7 @@ class Vehicle(Protocol):
         """Let it climb or sink to an altitude [m] from now on."""
 
     def servo_error(self) -> float:
-        """Return how far the worst control surface is from all that it was told lately, over its travel [-]; once per step."""
+        """Return the largest distance of a control surface from its recent commands, over its travel [-]; once per step."""
 
     def hold_elevator(self) -> object:
         """Leave pitch to the vehicle's own stability from now on, so that turning has all the control that is left."""

@@ -10,7 +10,7 @@ from aircraft.fleet.x8 import X8
 from innerloop.designs.cache import designed
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import level_trim
-from innerloop.flight.turn_reversal import measure_reversal
+from innerloop.flight.turn_reversal import measure_turn_reversal
 from innerloop.jsbsim.root import write_root
 from scenarios.engine.task import Task
 from scenarios.flights import FlightWork, flight_requests
@@ -34,7 +34,7 @@ def model(design, tmp_path_factory):
 @pytest.fixture(scope="module")
 def six_dof(design, model):
     start, envelope = level_trim(X8, SPEED, 60.0), design.design.schedule.envelope
-    reversal = measure_reversal(AutopilotedAircraft(X8, model), start, envelope.bank)
+    reversal = measure_turn_reversal(AutopilotedAircraft(X8, model), start, envelope.bank)
     return SixDof(spec=X8, start=start, lag=design.record["heading_rate_lag_s"], reversal=reversal, envelope=envelope)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gnc.sea_parameters import Mode
-from innerloop.flight.turn_reversal import Reversal
+from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.engine.task import Task
 from scenarios.schema.sea_config import SeaScenario
 from scenarios.sea_flights import SeaWork, Trial
@@ -21,7 +21,7 @@ AIRFRAME = Airframe(
     airspeed_min=0.7 * SPEED,
     airspeed_max=1.3 * SPEED,
     turning_airspeed=1.3 * SPEED,
-    reversal=Reversal(delay=0.0, lag=KINEMATIC_LAG),
+    reversal=TurnReversalResponse(delay=0.0, lag=KINEMATIC_LAG),
     crab_banks=(-1.0, 1.0),
     crab_offsets=(0.0, 0.0),
     six_dof=None,

@@ -68,7 +68,7 @@ def test_a_lost_engine_of_any_kind_gives_no_thrust_until_it_is_mended(failable, 
         fdm.step(1200)
     assert all(fdm.read(engine) <= 0.0 for engine in thrust)
     assert all(fdm.read(running) == 0.0 for running in fdm.spec.engine_flags)  # nor does it come to life while it wind-mills
-    faults.mend()
+    faults.clear()
     fdm.renew()
     fdm.command({"throttle": 0.8})
     fdm.hold(

@@ -222,7 +222,7 @@ def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeyp
     monkeypatch.setattr(designer, "check_design", short_once)
     found = design_autopilot(X8)
     assert len(asked) == 2
-    assert found.speeds.lateral == pytest.approx(0.8 * x8_design.speeds.lateral)
-    assert found.speeds.longitudinal == x8_design.speeds.longitudinal
-    assert found.speeds.airspeed == x8_design.speeds.airspeed
-    assert found.schedule.weights.model_frequency == found.speeds.lateral
+    assert found.bandwidths.lateral == pytest.approx(0.8 * x8_design.bandwidths.lateral)
+    assert found.bandwidths.longitudinal == x8_design.bandwidths.longitudinal
+    assert found.bandwidths.airspeed == x8_design.bandwidths.airspeed
+    assert found.schedule.weights.model_frequency == found.bandwidths.lateral

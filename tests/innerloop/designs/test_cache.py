@@ -53,7 +53,7 @@ def test_a_design_is_made_once_and_found_again_whole(asked, designs):
     # What is found is what was made, to the last bit: tables, gains, models, checks and record.
     assert second.record == first.record
     assert repr(second.design.checks) == repr(first.design.checks)  # all controls at once have margins that are nan
-    assert second.design.speeds == first.design.speeds
+    assert second.design.bandwidths == first.design.bandwidths
     one, two = first.design.schedule, second.design.schedule
     assert (repr(one.spec), one.weights, one.trims) == (repr(two.spec), two.weights, two.trims)  # a stall of nan is not itself
     for mine, other in zip(sum(one.models, ()), sum(two.models, ()), strict=True):

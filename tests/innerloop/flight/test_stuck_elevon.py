@@ -7,7 +7,7 @@ from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
 from aircraft.fleet.x8 import X8
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.servo_monitor import ServoWatch
+from innerloop.flight.servo_monitor import ServoMonitor
 
 TIME_STEP = 0.05
 STEPS = range(6)
@@ -25,7 +25,7 @@ def failable(x8_root):
 def release(aircraft, x8_schedule, weather=None):
     start = x8_schedule.level(MIDDLE)
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude, weather=weather)
-    return ServoWatch(aircraft.fdm, TIME_STEP)
+    return ServoMonitor(aircraft.fdm, TIME_STEP)
 
 
 def watched(aircraft, watch, turn, duration):

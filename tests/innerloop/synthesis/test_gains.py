@@ -46,7 +46,7 @@ def servo_lqr(a, b, c, d, deviations, controls):
 def allowed(designed, i):
     """What the controls may do at an airspeed: Bryson's deviations of the level model."""
     schedule = designed.design.schedule
-    return control_weights(schedule.models[i][LEVEL_GAINS], designed.design.speeds, schedule.weights)
+    return control_weights(schedule.models[i][LEVEL_GAINS], designed.design.bandwidths, schedule.weights)
 
 
 @pytest.mark.parametrize(("name", "i", "j"), POINTS)

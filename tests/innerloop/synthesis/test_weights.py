@@ -11,7 +11,7 @@ from aircraft.units import STANDARD_GRAVITY
 from innerloop.synthesis import weights
 from innerloop.synthesis.gains import design_gains
 from innerloop.synthesis.schedule import LEVEL_GAINS
-from innerloop.synthesis.weights import Speeds, control_weights, design_weights, reachable_speeds
+from innerloop.synthesis.weights import LoopBandwidths, control_weights, design_weights, reachable_bandwidths
 
 STATES = ["airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude", "elevator_effect", "throttle_effect"]
 INPUTS = ["elevator", "aileron", "throttle", "rudder"]
@@ -20,7 +20,7 @@ DELAY = 0.0125  # s, of the autopilot's steps
 
 
 def simple(aileron=30.0, roll_damping=-4.0, elevator=-20.0, z_alpha=-3.0, rudder=5.0, yaw_stiffness=8.0):
-    """An aircraft with one number for each thing that the speeds depend on [1/s, 1/s^2]."""
+    """An aircraft with one number for each thing that the bandwidths depend on [1/s, 1/s^2]."""
     a, b = np.zeros((11, 11)), np.zeros((11, 4))
     entries = {
         ("alpha", "alpha"): z_alpha,
@@ -61,7 +61,7 @@ BANK = 0.6  # rad; half of it is the step that half the authority is to turn
     ],
 )
 def test_the_turn_is_as_fast_as_delay_authority_and_roll_damping_allow(changes, expected):
-    assert reachable_speeds([simple(**changes)], BANK).lateral == pytest.approx(expected, rel=1e-12)
+    assert reachable_bandwidths([simple(**changes)], BANK).lateral == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -76,43 +76,43 @@ def test_the_turn_is_as_fast_as_delay_authority_and_roll_damping_allow(changes, 
     ],
 )
 def test_altitude_is_as_fast_as_delay_authority_and_lift_allow(changes, expected):
-    assert reachable_speeds([simple(**changes)], BANK).longitudinal == pytest.approx(expected, rel=1e-12)
+    assert reachable_bandwidths([simple(**changes)], BANK).longitudinal == pytest.approx(expected, rel=1e-12)
 
 
 def test_airspeed_is_as_fast_as_the_engine_and_slower_than_altitude():
     # Lift allows 2.25 rad/s, of which 0.27; the engine 0.3 over its lag.
-    assert reachable_speeds([simple()], BANK).airspeed == pytest.approx(0.3 / (ENGINE_LAG + DELAY), rel=1e-12)
-    assert reachable_speeds([simple(z_alpha=-1.2)], BANK).airspeed == pytest.approx(0.27 * 0.9, rel=1e-12)
+    assert reachable_bandwidths([simple()], BANK).airspeed == pytest.approx(0.3 / (ENGINE_LAG + DELAY), rel=1e-12)
+    assert reachable_bandwidths([simple(z_alpha=-1.2)], BANK).airspeed == pytest.approx(0.27 * 0.9, rel=1e-12)
 
 
 def test_the_slowest_of_all_airspeeds_decides_each_axis_by_itself():
     slow_turn, slow_climb = simple(aileron=2.0, roll_damping=-0.1), simple(z_alpha=-1.2)
-    both = reachable_speeds([slow_turn, slow_climb], BANK)
-    assert both.lateral == reachable_speeds([slow_turn], BANK).lateral
-    assert both.longitudinal == reachable_speeds([slow_climb], BANK).longitudinal
+    both = reachable_bandwidths([slow_turn, slow_climb], BANK)
+    assert both.lateral == reachable_bandwidths([slow_turn], BANK).lateral
+    assert both.longitudinal == reachable_bandwidths([slow_climb], BANK).longitudinal
 
 
 def test_the_controls_may_do_what_moves_their_axis_at_its_frequency_against_its_damping():
-    speeds = Speeds(lateral=3.0, longitudinal=2.0, airspeed=0.5)
-    asked = design_weights(speeds, 20.0)
-    found = control_weights(simple(), speeds, asked)
+    bandwidths = LoopBandwidths(lateral=3.0, longitudinal=2.0, airspeed=0.5)
+    asked = design_weights(bandwidths, 20.0)
+    found = control_weights(simple(), bandwidths, asked)
     # w hypot(w, damping) times the acceptable angle, over authority: by hand, 0.3 rad of pitch and 0.1 rad of roll.
     assert found.elevator == pytest.approx(0.3 * 2.0 * math.hypot(2.0, 5.0) / 20.0, rel=1e-12)
     assert found.aileron == pytest.approx(0.1 * 3.0 * math.hypot(3.0, 4.0) / 30.0, rel=1e-12)
     assert found.throttle == pytest.approx(asked.airspeed * 0.5 / 6.0, rel=1e-12)
     # The rudder: 0.05 rad of sideslip, at w hypot(w, 1.5) or, if that is less, against the weathercock's own 8 1/s^2.
     assert found.rudder == pytest.approx(0.05 * 8.0 / 5.0, rel=1e-12)
-    stiff = control_weights(simple(yaw_stiffness=50.0), speeds, asked)
+    stiff = control_weights(simple(yaw_stiffness=50.0), bandwidths, asked)
     assert stiff.rudder == pytest.approx(0.05 * 3.0 * math.hypot(3.0, 1.5) / 5.0, rel=1e-12)
 
 
 def test_an_aircraft_without_a_rudder_has_no_weight_for_it(x8_design):
     schedule = x8_design.schedule
-    assert math.isnan(control_weights(schedule.models[2][LEVEL_GAINS], x8_design.speeds, schedule.weights).rudder)
+    assert math.isnan(control_weights(schedule.models[2][LEVEL_GAINS], x8_design.bandwidths, schedule.weights).rudder)
 
 
 def test_deviations_are_those_that_a_pitch_of_three_tenths_makes_in_a_unit_of_time():
-    found = design_weights(Speeds(lateral=4.0, longitudinal=2.0, airspeed=0.5), 20.0)
+    found = design_weights(LoopBandwidths(lateral=4.0, longitudinal=2.0, airspeed=0.5), 20.0)
     # Half a second of a climb at 0.3 rad and 20 m/s is 3 m, of which half; g times 0.3 rad in it is 1.47 m/s, twice.
     assert found.altitude == pytest.approx(0.5 * 20.0 * 0.3 * 0.5)
     assert found.airspeed == pytest.approx(2.0 * STANDARD_GRAVITY * 0.3 * 0.5)
@@ -121,9 +121,12 @@ def test_deviations_are_those_that_a_pitch_of_three_tenths_makes_in_a_unit_of_ti
 
 
 def test_with_half_the_speed_everything_takes_twice_as_long():
-    speeds = Speeds(lateral=4.0, longitudinal=2.0, airspeed=0.5)
-    quick, slow = design_weights(speeds, 20.0), design_weights(speeds.slower(lateral=0.5, longitudinal=0.5, airspeed=0.5), 20.0)
-    # At the same V and g: lengths V/w and speeds g/w double, their integrals quadruple, angles stay, and rates halve.
+    bandwidths = LoopBandwidths(lateral=4.0, longitudinal=2.0, airspeed=0.5)
+    quick, slow = (
+        design_weights(bandwidths, 20.0),
+        design_weights(bandwidths.scaled(lateral=0.5, longitudinal=0.5, airspeed=0.5), 20.0),
+    )
+    # At the same V and g: lengths V/w and airspeeds g/w double, their integrals quadruple, angles stay, and rates halve.
     exponents = {
         "airspeed": 1, "pitch": 0, "pitch_rate": -1, "altitude": 1, "airspeed_integral": 2, "altitude_integral": 2, "roll": 0,
         "roll_rate": -1, "sideslip": 0, "heading_integral": 1, "sideslip_integral": 1, "model_frequency": -1, "model_damping": 0,
@@ -168,16 +171,16 @@ def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, 
     bank, airspeed = schedule.envelope.bank, schedule.airspeeds[2]
 
     def designed(models, airspeed, level):
-        speeds = reachable_speeds(models, bank)
-        asked = design_weights(speeds, airspeed)
-        return speeds, design_gains(models[2], level, asked, control_weights(models[2], speeds, asked))
+        bandwidths = reachable_bandwidths(models, bank)
+        asked = design_weights(bandwidths, airspeed)
+        return bandwidths, design_gains(models[2], level, asked, control_weights(models[2], bandwidths, asked))
 
     level = schedule.level(2)
-    speeds, gains = designed(models, airspeed, level)
+    bandwidths, gains = designed(models, airspeed, level)
     monkeypatch.setattr(weights, "DELAY", 2.0 * DELAY)  # the autopilot's steps are the only time that is not the aircraft's own
     larger = dataclasses.replace(level, airspeed=2.0 * level.airspeed)
     slower, scaled = designed([similar(model) for model in models], 2.0 * airspeed, larger)
-    assert dataclasses.astuple(slower) == pytest.approx([0.5 * s for s in dataclasses.astuple(speeds)])
+    assert dataclasses.astuple(slower) == pytest.approx([0.5 * s for s in dataclasses.astuple(bandwidths)])
     # The same deflection for a deviation that is as large for the larger aircraft: gains are over the deviation's scale.
     units = np.array([SCALES[n] if n != "pitch" else 1.0 for n in ("airspeed", "climb_rate", "q", "pitch", "altitude")])
     np.testing.assert_allclose(scaled.longitudinal * units, gains.longitudinal, rtol=1e-5, atol=1e-9)

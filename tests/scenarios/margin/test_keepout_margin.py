@@ -175,7 +175,7 @@ def test_light_turbulence_spreads_flights_as_predicted_and_the_margin_holds_them
     # A reserve that leaves no command at its limit, which the linear model does not have.
     flight = plan_flight(with_values(scenario, {"guidance.reserve": 0.15}), flight_id="x", nu=0.5, seed=1, lag=0.4)
     hold = design_speed_hold(
-        bandwidth=x8_design.speeds.airspeed,
+        bandwidth=x8_design.bandwidths.airspeed,
         speed=flight.reference.speed,
         look_ahead=flight.guidance.look_ahead.radius,
         airspeed_min=X8.envelope.airspeed_min,

@@ -5,10 +5,13 @@ import pytest
 
 from aircraft.fleet.x8 import X8
 from innerloop.flight.step_responses import measure_lag
-from innerloop.flight.turn_reversal import Reversal, displacement, measure_reversal
+from innerloop.flight.turn_reversal import TurnReversalResponse, displacement, measure_turn_reversal
 
 
-@pytest.mark.parametrize("reversal", [Reversal(delay=0.2, lag=0.4), Reversal(delay=0.0, lag=0.3), Reversal(delay=0.5, lag=0.01)])
+@pytest.mark.parametrize(
+    "reversal",
+    [TurnReversalResponse(delay=0.2, lag=0.4), TurnReversalResponse(delay=0.0, lag=0.3), TurnReversalResponse(delay=0.5, lag=0.01)],
+)
 def test_the_displacement_is_the_course_fallen_behind_by_summed_up(reversal):
     # A heading rate that starts after the delay and follows with the lag, by small steps.
     piece = 1e-4
@@ -21,7 +24,7 @@ def test_the_displacement_is_the_course_fallen_behind_by_summed_up(reversal):
 
 def test_a_reversal_takes_the_x8_longer_than_a_slow_command(x8_schedule, x8_aircraft):
     level = x8_schedule.level(x8_schedule.middle)
-    reversal = measure_reversal(x8_aircraft, level, X8.envelope.bank)
+    reversal = measure_turn_reversal(x8_aircraft, level, X8.envelope.bank)
     # Measured 0.51 s in all, against 0.39 s: it rolls through 90 degrees.
     assert reversal.delay == reversal.lag
     assert reversal.delay + reversal.lag > 1.1 * measure_lag(x8_aircraft, level, X8.envelope.bank)
@@ -30,7 +33,7 @@ def test_a_reversal_takes_the_x8_longer_than_a_slow_command(x8_schedule, x8_airc
 def test_the_model_is_nowhere_ahead_of_the_aircraft_that_it_is_measured_on(x8_schedule, x8_aircraft):
     # Flown again here, read as course and not as heading rate.
     level = x8_schedule.level(x8_schedule.middle)
-    reversal = measure_reversal(x8_aircraft, level, X8.envelope.bank)
+    reversal = measure_turn_reversal(x8_aircraft, level, X8.envelope.bank)
     fdm = x8_aircraft.fdm
     rate = 9.80665 * math.tan(X8.envelope.bank) / level.airspeed
     x8_aircraft.release(level.state(), airspeed=level.airspeed, altitude=level.altitude)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from aircraft.dynamics.control_effectiveness import AXES, straightened
+from aircraft.dynamics.control_effectiveness import AXES, with_linearised_controls
 from aircraft.dynamics.envelope import first_trim
 from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
@@ -18,7 +18,7 @@ KINKED = ControlInput(
     commands=("fcs/elevator-cmd-norm",),
     lower=-1.5,
     upper=0.5,
-    shape=((-1.5, -1.0), (0.0, 0.0), (0.5, 1.0)),
+    effectiveness=((-1.5, -1.0), (0.0, 0.0), (0.5, 1.0)),
 )
 
 
@@ -27,14 +27,14 @@ def twin():
     """JSBSim's c310, whose elevator goes 14 degrees up and 4 down, in level flight, and its spec made straight."""
     fdm = Fdm(find_spec("c310"))
     level = first_trim(fdm, ALTITUDE)
-    return fdm, level, straightened(fdm, level)
+    return fdm, level, with_linearised_controls(fdm, level)
 
 
 def moments(spec, level, name, values):
     """Angular acceleration about the surface's axis over an input's values [rad/s^2]."""
     fdm = Fdm(spec)
     old = level.inputs[name]
-    start = float(np.interp(old, [c for _, c in spec.input(name).shape], [e for e, _ in spec.input(name).shape]))
+    start = float(np.interp(old, [c for _, c in spec.input(name).effectiveness], [e for e, _ in spec.input(name).effectiveness]))
     found = []
     with fdm.frozen():
         for value in values:
@@ -68,7 +68,7 @@ def test_the_twins_elevator_bends_as_jsbsim_has_it(twin):
 def test_a_bent_elevator_becomes_straight(twin):
     _, level, spec = twin
     elevator = spec.input("elevator")
-    assert elevator.shape
+    assert elevator.effectiveness
     values = np.linspace(elevator.lower, elevator.upper, 15)
     found = slopes(values, moments(spec, level, "elevator", values))
     # Seventeen measured points with straight lines between: a few per cent where the surface itself bends between two of them.
@@ -87,13 +87,13 @@ def test_the_new_command_runs_from_nought_at_the_old_and_over_two_from_stop_to_s
 def test_straight_surfaces_and_the_throttle_are_left_as_they_are():
     fdm = Fdm(X8)
     level = first_trim(fdm, ALTITUDE)
-    assert straightened(fdm, level) == X8
+    assert with_linearised_controls(fdm, level) == X8
 
 
 def test_the_effects_of_a_straightened_aircraft_need_no_more_straightening(twin):
     _, _, spec = twin
     fdm = Fdm(spec)
-    again = straightened(fdm, first_trim(fdm, ALTITUDE))
+    again = with_linearised_controls(fdm, first_trim(fdm, ALTITUDE))
     assert again.input("elevator") == spec.input("elevator")
 
 
@@ -106,4 +106,4 @@ def test_an_effect_is_told_as_the_command_that_has_it(effect, command):
 
 
 def test_without_a_shape_the_value_is_the_command():
-    assert replace(KINKED, shape=()).command(0.37) == 0.37
+    assert replace(KINKED, effectiveness=()).command(0.37) == 0.37
