@@ -1,1 +1,1 @@
-"""Wind, MIL-F-8785C turbulence, discrete gusts."""
+"""Wind, MIL-F-8785C turbulence and discrete gusts in JSBSim."""

@@ -85,7 +85,7 @@ def gusty_run(fdm: Fdm, gusts: Sequence[Gust]) -> Callable[[], object]:
 
     Returns
     -------
-    callable : JSBSim's own ``run`` where there is no gust, so that none costs nothing
+    callable : JSBSim's own ``run`` where there is no gust, so that no gusts cost no time
     """
     return _GustyRun(fdm, gusts).run if gusts else fdm.run
 
@@ -118,7 +118,8 @@ class _GustyRun:
         self._fdm_run()
 
     def _begin(self, gust: Gust) -> None:
-        """JSBSim makes a unit vector of the direction, so it is told the magnitude apart."""
+        """Set the gust's properties: JSBSim makes a unit vector of the direction, so the magnitude is set
+        separately."""
         magnitude = math.hypot(*gust.velocity_ned)
         direction = (component / magnitude for component in gust.velocity_ned)
         values = (gust.rise, gust.hold, gust.fall, magnitude / METRES_PER_FOOT, *direction)

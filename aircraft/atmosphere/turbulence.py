@@ -27,7 +27,7 @@ _ALTITUDE_MIN_FT, _ALTITUDE_MAX_FT = 10.0, 1000.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Turbulence:
-    """How rough the air is.
+    """Strength of the turbulence.
 
     Attributes
     ----------

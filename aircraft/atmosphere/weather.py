@@ -21,8 +21,8 @@ class Weather:
     Attributes
     ----------
     wind_north, wind_east : velocity of the air mass, so where the wind blows to [m/s]
-    turbulence : about the wind, from the release on; none for smooth air
-    gusts : discrete gusts, none at the same time as another
+    turbulence : about the wind, from the release on; None for smooth air
+    gusts : discrete gusts, one at a time
     seed : of the turbulence, 0 to 2^31 - 1, which is what JSBSim holds
 
     Raises
@@ -64,7 +64,7 @@ def begin_turbulence(fdm: Fdm, weather: Weather) -> None:
 
 
 def end_weather(fdm: Fdm) -> None:
-    """End turbulence and gusts and forget them; the aircraft is to be placed next.
+    """End turbulence and gusts and reset their models; the aircraft is to be placed next.
 
     Turbulence has to end before: JSBSim places an aircraft with a time step of 0, by which its turbulence divides.
     """

@@ -1,1 +1,1 @@
-"""Trim, linear models, envelope."""
+"""Trim, linear models, control effectiveness and envelope of an aircraft, computed with JSBSim."""

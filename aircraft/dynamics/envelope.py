@@ -1,5 +1,4 @@
-"""Where an aircraft can fly the study: the airspeeds between stall and what its engines give, with banked turns to
-spare."""
+"""The envelope of an aircraft: airspeeds between stall and the engines' limit, with a reserve for banked turns."""
 
 import math
 
@@ -16,8 +15,7 @@ BANK_LIMITS = ((150.0, 45.0), (5_670.0, 30.0), (math.inf, 25.0))
 (up to 12,500 lb, where CS-23 drew the line), and larger ones, which bank as airliners do."""
 
 TABLE_REACH = 1.1
-"""The autopilot's tables reach this far past its bank limit, so that an aircraft that overshoots is still in them
-[-]."""
+"""Largest bank of the autopilot's tables, over its bank limit [-]: an overshoot is then still inside the tables."""
 
 _STALL_RESERVE = 1.3
 """Least airspeed over stall in the same turn [-]: CS-23's reference landing speed, 1.3 times the stall speed."""
@@ -71,7 +69,7 @@ def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
 
     Raises
     ------
-    AircraftError : there is no such range, with what stands in the way
+    AircraftError : there is no such range, with the reason
     """
     if fdm.spec.envelope is not None:
         return fdm.spec.envelope
@@ -99,13 +97,12 @@ def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
 
 
 def bank_by_class(mass: float) -> float:
-    """Return the bank that aircraft of a mass [kg] turn with [rad]."""
+    """Return the bank of turns of aircraft of a mass [kg] [rad]."""
     return math.radians(next(bank for largest, bank in BANK_LIMITS if mass <= largest))
 
 
 def first_trim(fdm: Fdm, altitude: float) -> Trim:
-    """Return level flight at some airspeed: where its envelope's is, or where its lift coefficient is an ordinary
-    one."""
+    """Return level flight at the airspeed of the spec's envelope, or at one with an ordinary lift coefficient."""
     if fdm.spec.envelope is not None:
         return trim(fdm, airspeed=fdm.spec.envelope.airspeed, altitude=altitude)
     weight = fdm.read("inertia/weight-lbs") * NEWTONS_PER_POUND
@@ -127,8 +124,8 @@ def _why(t: Trim) -> str:
 
 
 def _stall_airspeed(fdm: Fdm, level: Trim) -> tuple[float, tuple[str, ...]]:
-    """Return the airspeed at which the largest lift carries the weight [m/s]: found by turning the held aircraft up to
-    it."""
+    """Return the airspeed at which the largest lift carries the weight [m/s], found by pitching the held aircraft up;
+    and notes."""
     weight = fdm.read("inertia/weight-lbs")
     lift = fdm.node("forces/fwz-aero-lbs")
     largest, alpha = 0.0, level.alpha
@@ -178,7 +175,7 @@ def _airspeeds(fdm: Fdm, level: Trim, stall: float, bank: float) -> tuple[list[f
 
 
 def _lacks(t: Trim, spec: AircraftSpec) -> str:
-    """Return what an equilibrium lacks for the study, or nothing."""
+    """Return the reserve that an equilibrium lacks, in words; empty if it lacks none."""
     if t.outcome is not TrimOutcome.CONVERGED:
         return f"trim is {_why(t)}"
     where = f"{t.airspeed:.0f} m/s and {math.degrees(t.roll):.0f} deg of bank"

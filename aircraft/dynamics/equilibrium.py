@@ -33,7 +33,7 @@ class Trim:
     driven : driven states by name [SI]
     outcome : whether it is an equilibrium
     residuals : remaining accelerations, forward, right, down, p, q, r [m/s^2, rad/s^2]
-    limits : control inputs and angles that stand at their limit, each in words
+    limits : control inputs and angles that are at their limit, each in words
     """
 
     airspeed: float
@@ -70,6 +70,6 @@ class Trim:
         )
 
     def course_offset(self) -> float:
-        """Return course minus yaw [rad]: where the aircraft goes against where it points."""
+        """Return course minus yaw [rad]."""
         ahead, right, _ = level(body_velocity(self.airspeed, self.alpha, self.beta), self.roll, self.pitch)
         return math.atan2(right, ahead)

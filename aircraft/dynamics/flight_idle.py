@@ -1,8 +1,7 @@
-"""The throttle at which an aircraft is braked most.
+"""Flight idle: the throttle at which an aircraft decelerates most.
 
 A propeller on an electric motor brakes most while it still turns: without voltage JSBSim's motor holds it still, and a
-propeller that stands has half the drag of one that windmills. An autopilot that wants to slow down must not go below
-that throttle.
+stopped propeller has half the drag of a windmilling one. To slow down, an autopilot must not go below that throttle.
 """
 
 from dataclasses import replace
@@ -14,12 +13,14 @@ from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec
 
 _STEP = 0.05
-"""Steps of throttle at which it is looked for [-]."""
+"""Steps of throttle in the search [-]."""
 
-_WORTH = 0.05
-"""Least gain in deceleration over closed throttle for which it is not closed, over that deceleration [-]."""
+_GAIN_MIN = 0.05
+"""Least gain in deceleration for which flight idle is above closed throttle, over the deceleration with closed
+throttle [-]."""
 
 _SETTLED = 1e-5
+"""Change of acceleration a step below which the propeller counts as settled [m/s^2]."""
 
 
 def flight_idle(fdm: Fdm, trim: Trim) -> float:
@@ -40,7 +41,7 @@ def flight_idle(fdm: Fdm, trim: Trim) -> float:
             fdm.settle(_SETTLED)
             decelerations.append(-fdm.acceleration_body()[0])
     most = int(np.argmax(decelerations))
-    return float(throttles[most]) if decelerations[most] > (1.0 + _WORTH) * decelerations[0] else throttle.lower
+    return float(throttles[most]) if decelerations[most] > (1.0 + _GAIN_MIN) * decelerations[0] else throttle.lower
 
 
 def idling_at(spec: AircraftSpec, idle: float) -> AircraftSpec:

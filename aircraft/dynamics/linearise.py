@@ -3,13 +3,12 @@
 JSBSim's own linearisation bypasses servo lags and leaves the simulation unusable, so the rigid body is held still
 (``Fdm.frozen``), one quantity at a time is moved both ways, and the accelerations are read once all else has settled.
 A servo or propeller cannot be set directly; it is moved by holding its input off trim, and its own pole is read from
-how it returns. What an input does at once, before servo or propeller has moved (a motor's torque on the airframe), is
-told apart by reading after one step as well.
+how it returns. The direct effect of an input, before servo or propeller has moved (a motor's torque on the airframe),
+is separated by reading after one step as well.
 
-Where the spec names no property that follows an input (of a stock aircraft nobody knows which), the input's way to the
-airframe is measured: what the accelerations leave to their end after a step of it has an area and a first moment in
-time, and those are the coefficients of a lag of first or second order (a piston engine's manifold pressure, then its
-speed).
+Where the spec names no property that follows an input (for stock aircraft it is unknown), the input's lag is measured:
+the difference of the accelerations from their final value after a step has an area and a first moment in time, and
+those are the coefficients of a lag of first or second order (a piston engine's manifold pressure, then its speed).
 """
 
 import math
@@ -81,8 +80,8 @@ def linearise(fdm: Fdm, trim: Trim) -> control.StateSpace:
 
 
 class _Differences:
-    """Everything is read settled, so moving a body state also moves a propeller that follows it; that part is taken
-    out."""
+    """Everything is read settled, so moving a body state also moves a propeller that follows it; that part is
+    subtracted."""
 
     def __init__(self, fdm: Fdm, trim: Trim) -> None:
         self._fdm = fdm
@@ -153,7 +152,7 @@ class _Differences:
     def _measured_lag(self, j: int) -> tuple[float, float]:
         """Return sum and product of the time constants between input j and the accelerations [s, s^2].
 
-        After a step through two lags, what is left of it has the area T1 + T2 and the first moment T1^2 + T1 T2 +
+        Behind two lags, the difference from the final value has the area T1 + T2 and the first moment T1^2 + T1 T2 +
         T2^2.
         """
         name, step = self._spec.inputs[j].name, _LAG_STEP.get(self._spec.inputs[j].name, _INPUT_STEP)
@@ -165,7 +164,7 @@ class _Differences:
         whole = self._accelerations() - end
         size = float(whole @ whole)
         if size == 0.0:
-            raise AircraftError(f"aircraft '{self._spec.name}': nothing moves with '{name}'; it cannot be controlled with it")
+            raise AircraftError(f"aircraft '{self._spec.name}': input '{name}' has no effect; it cannot control the aircraft")
         self._fdm.command({name: float(inputs[j])})
         area, moment = 0.5, 0.0
         for i in range(1, _LAG_STEPS_MAX):

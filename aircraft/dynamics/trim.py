@@ -3,8 +3,8 @@
 JSBSim's own trim fails for small electric aircraft (its engine loop steps the propeller at 0.5 s), so equilibrium is
 sought here on the accelerations themselves: the rigid body is held still, servos and engines settle, and a solver
 drives the six accelerations to zero. Powell's hybrid method (MINPACK) finds the equilibrium within a dozen evaluations
-where there is one; where it does not, a bounded least-squares search says how near the aircraft comes, and which of
-its limits hold it.
+where there is one; where it does not, a bounded least-squares search gives the point of least acceleration, and the
+limits that it is at.
 """
 
 import math
@@ -24,7 +24,7 @@ def trim(
 
     Raises
     ------
-    TrimError : there is none, with what keeps the aircraft from it
+    TrimError : the search does not converge, with its reason
     """
     found = search_trim(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle, start=start)
     if found.outcome is TrimOutcome.CONVERGED:
@@ -45,7 +45,7 @@ def trim(
 def search_trim(
     fdm: Fdm, *, airspeed: float, altitude: float, bank: float = 0.0, climb_angle: float = 0.0, start: Trim | None = None
 ) -> Trim:
-    """Search the equilibrium at ``airspeed`` [m/s] and ``altitude`` [m]; what is found says in its outcome whether it
+    """Search for an equilibrium at ``airspeed`` [m/s] and ``altitude`` [m]; the outcome of the result says whether it
     is one.
 
     Parameters
@@ -56,11 +56,11 @@ def search_trim(
     bank : 0 for straight flight (the small bank that balances the propeller's torque is then part of the solution),
         otherwise the bank angle of a steady turn [rad], whose yaw rate is part of the solution
     climb_angle : [rad]
-    start : an equilibrium nearby to start from, if there is one
+    start : a known equilibrium nearby, from which the search begins
 
     Raises
     ------
-    TrimError : a condition that is none, such as a negative airspeed
+    TrimError : an impossible condition, such as a negative airspeed
     """
     if not (math.isfinite(airspeed) and airspeed > 0.0):
         raise TrimError(f"trim of '{fdm.spec.name}': airspeed is {airspeed} m/s; it must be finite and above 0")
@@ -73,7 +73,7 @@ def search_trim(
     tried: list[Trim] = []
     with fdm.frozen():
         for i, guess in enumerate(problem.guesses(start)):
-            # Near a known equilibrium the engines are as that left them.
+            # Near a known equilibrium the engines are already as it needs them.
             found = problem.solve(guess, run_up=start is None or i > 0)
             if found.outcome is TrimOutcome.CONVERGED:
                 return found

@@ -22,10 +22,12 @@ _SETTLE_STEPS = 2400
 """Largest number of time steps in which engines may settle: 20 s."""
 
 _GOOD = 0.05
-"""Where a search ends, over what counts as zero: the settling that is left must not tip the balance [-]."""
+"""Acceleration at which a search ends, over ``TOLERANCE`` [-]: the remaining settling must not exceed the
+tolerance."""
 
 _NEAR_LIMIT = 0.05
-"""A bounded search stops short of its limits by some of the unknowns' scale [-]."""
+"""Distance from a limit within which an unknown counts as at it, over its scale [-]: a bounded search stops short of
+limits."""
 
 _ALPHA_MAX = 0.5
 _BETA_MAX = 0.3
@@ -67,8 +69,7 @@ where JSBSim's propeller barely turns."""
 
 
 class _FoundError(Exception):
-    """Ends a search at its first good point: MINPACK would go on to the last digit, which an engine that settles does
-    not have."""
+    """Ends a search at its first good point: MINPACK would seek digits that a settling engine does not have."""
 
     def __init__(self, unknowns: npt.NDArray[np.float64]) -> None:
         super().__init__()
@@ -95,7 +96,7 @@ class TrimProblem:
         self._scale = np.array([_SCALE, _SCALE, _SCALE if self._straight else abs(self._turn)] + [_SCALE] * len(inputs))
 
     def guesses(self, start: Trim | None) -> list[npt.NDArray[np.float64]]:
-        """Return where to start: near a known equilibrium, then from nothing."""
+        """Return the points from which to search: a known equilibrium nearby, then the default ones."""
         inputs = self._fdm.spec.inputs
         blank = [
             np.array([_START_ALPHA, 0.0, self._turn] + [throttle if i.name == "throttle" else 0.0 for i in inputs])
@@ -107,7 +108,8 @@ class TrimProblem:
         return [np.array([start.alpha, start.beta, third] + [start.inputs[i.name] for i in inputs]), *blank]
 
     def solve(self, guess: npt.NDArray[np.float64], *, run_up: bool) -> Trim:
-        """Return what Powell's method makes of a guess. It knows no limits; a solution beyond one is none."""
+        """Return the result of Powell's method from a guess. The method knows no limits; a solution beyond one is not
+        an equilibrium."""
 
         def scaled(z: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
             # MINPACK steps relative to an unknown, and sideslip is zero: so every unknown is near one.
@@ -213,7 +215,7 @@ class TrimProblem:
         )
 
     def _limits(self, unknowns: npt.NDArray[np.float64], settled: bool) -> tuple[str, ...]:
-        """Return the limits that the unknowns stand at or beyond, in words."""
+        """Return the limits that the unknowns are at or beyond, in words."""
         names = ["angle of attack", "sideslip", "bank" if self._straight else "yaw rate", *(i.name for i in self._fdm.spec.inputs)]
         near = _NEAR_LIMIT * self._scale
         at = [

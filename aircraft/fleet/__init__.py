@@ -1,1 +1,1 @@
-"""The aircraft: one file each, and those JSBSim brings."""
+"""The known aircraft: one file each, those of the user, and those that come with JSBSim."""

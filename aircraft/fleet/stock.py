@@ -1,7 +1,6 @@
-"""Aircraft that JSBSim brings itself: read from their model files, flown as they are.
+"""Aircraft that come with JSBSim: their specs are read from their model files.
 
-Nothing is known of them but what their files say, so all that is found here is what they are made of: engines,
-controls, and whether they are aeroplanes at all. Where they fly is found by trimming them
+The files give engines and controls, and whether the model is an aeroplane at all. The envelope is found by trimming
 (``aircraft.dynamics.envelope``).
 """
 
@@ -29,11 +28,11 @@ def stock_names() -> list[str]:
 
 
 def stock_spec(name: str) -> AircraftSpec:
-    """Return what is to be known of one of JSBSim's own aircraft.
+    """Return the spec of one of JSBSim's own aircraft.
 
     Raises
     ------
-    AircraftError : it is no aeroplane with engines and the usual controls, with the reason
+    AircraftError : it is not an aeroplane with engines and the usual controls, with the reason
     """
     folder = _root() / "aircraft" / name
     try:
@@ -87,7 +86,7 @@ def _kind(element: ET.Element, folder: Path) -> str:
 
 
 def _no_aeroplane(config: ET.Element, folder: Path, engines: list[str]) -> str:
-    """Return why this is nothing for an autopilot of an aeroplane, or nothing."""
+    """Return why an aeroplane's autopilot cannot fly this model, or an empty text."""
     thrusters = [_kind(thruster, folder) for thruster in config.iterfind("propulsion/engine/thruster")]
     text = _text(config, folder)
     odd = [kind for kind in engines if kind not in (*_RUNNING_ENGINES, *_ELECTRIC)]

@@ -1,1 +1,1 @@
-"""JSBSim, and nothing else touches it: load, place, step, fail."""
+"""Simulation of an aircraft in JSBSim: load, place, step, fail."""

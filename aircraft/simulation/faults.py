@@ -1,10 +1,10 @@
 """Faults in flight: an actuator that goes to its trim position and sticks there, and the loss of the engines.
 
-An aircraft that is to fail is flown from a copy of its JSBSim root in which a switch stands behind each actuator's
-command, after all that writes it: behind the autopilot for the command of a control input, before the ``<actuator>``
-that reads it for any other. Without a fault the switch hands the command on as it is, so the copy flies exactly as the
-original does. JSBSim's own ``malfunction/fail_stuck`` would stop an actuator wherever it happens to be, and few models
-of other people have an ``<actuator>``.
+An aircraft with faults flies from a copy of its JSBSim root in which a switch follows each actuator's command, after
+everything that writes it: behind the autopilot for the command of a control input, before the ``<actuator>`` that
+reads it for any other. Without a fault the switch passes the command on unchanged, so the copy flies exactly as the
+original does. JSBSim's own ``malfunction/fail_stuck`` would stop an actuator wherever it is at that time, and few of
+JSBSim's own models have an ``<actuator>``.
 """
 
 import shutil
@@ -16,16 +16,16 @@ from aircraft.simulation.fdm import Fdm
 from aircraft.spec import Actuator, AircraftSpec
 
 ENGINE = "engine"
-"""Name of the fault that takes all thrust: the throttle's command is nothing, and engines that run are shut down."""
+"""Name of the loss of all thrust: the throttle's command is 0, and running engines are shut down."""
 
 _FAILED, _HELD = "fault/{}/failed", "fault/{}/held"
 _SHUT_DOWN = (("propulsion/magneto_cmd", 0.0), ("propulsion/cutoff_cmd", 1.0))
-"""Properties that stop engines for good, where there are such engines: one that is only told not to run wind-mills
-back to life."""
+"""Properties that shut engines down, where a model has them: with only ``set-running`` at 0 a windmilling engine
+starts again."""
 
 
 def fault_names(spec: AircraftSpec) -> tuple[str, ...]:
-    """Return the names of all that can fail."""
+    """Return the names of all possible faults."""
     return (ENGINE, *(actuator.name for actuator in spec.actuators))
 
 
@@ -97,10 +97,10 @@ class Faults:
         self._fdm = fdm
         self._engine_properties = [(name, value) for name, value in _SHUT_DOWN if fdm.has(name)]
         self.failed: list[str] = []
-        """Names of what has failed."""
+        """Names of the faults that have occurred."""
 
     def note_trim(self) -> None:
-        """Remember every actuator's command as its trim position: to be called when the aircraft is released from
+        """Store every actuator's command as its trim position; to be called when the aircraft is released from
         trim."""
         for actuator in self._fdm.spec.actuators:
             self._fdm.write(_HELD.format(actuator.name), self._fdm.read(actuator.commands[0]))
@@ -122,8 +122,7 @@ class Faults:
                 self._fdm.write(property_name, value)
 
     def clear(self) -> None:
-        """Undo every fault, before the aircraft is placed for another flight; engines are started by its being
-        placed."""
+        """Undo every fault before the aircraft is placed for another flight; placing it starts its engines."""
         for name in self.failed:
             self._fdm.write(_FAILED.format(name), 0.0)
         self.failed.clear()

@@ -45,8 +45,8 @@ class Fdm:
     Parameters
     ----------
     spec : the aircraft
-    root : JSBSim root to load it from as it stands, e.g. one with an autopilot written into it; without one, a copy of
-        the aircraft's own model is loaded that has no autopilot, no output, and no play in its servos
+    root : JSBSim root to load it from unchanged, e.g. one with an autopilot written into it; by default a copy of the
+        aircraft's own model without autopilot, outputs and servo play
     time_step : integration step [s]
 
     Raises
@@ -105,7 +105,7 @@ class Fdm:
         return node
 
     def _find(self, name: str) -> jsbsim.FGPropertyNode | None:
-        # A name that is not one ends the whole process in JSBSim's property tree.
+        # An invalid name ends the whole process in JSBSim's property tree.
         return self._properties.get_node(name) if _PROPERTY_NAME.fullmatch(name) else None
 
     def writable_node(self, name: str) -> jsbsim.FGPropertyNode:
@@ -124,21 +124,21 @@ class Fdm:
         self.writable_node(name).set_double_value(value)
 
     def place(self, state: RigidBodyState, wind: tuple[float, float] | None = None) -> None:
-        """Put the aircraft into ``state``, configured as its spec says. Engines go on as they were; the first time
-        they start.
+        """Put the aircraft into ``state``, configured as its spec says. Engines keep running; the first time they are
+        started.
 
         Parameters
         ----------
         state : against the air
-        wind : velocity of the air, north and east [m/s]; none for still air
+        wind : velocity of the air, north and east [m/s]; None for still air
         """
         self._initialise(state, wind)
         if not self._engines_run and self._start_engines():
             self._initialise(state, wind)
 
     def renew(self) -> None:
-        """Make every model of JSBSim as it was loaded, to be placed next: filters of turbulence, gusts and engines
-        forget."""
+        """Reset every model of JSBSim, with the filters of turbulence, gusts and engines, to how it was loaded; place
+        it next."""
         self._exec.reset_to_initial_conditions(RESET_ONLY)
         self._engines_run = False
 
@@ -162,7 +162,7 @@ class Fdm:
         for name, value in self.spec.configuration:
             self.write(name, value)
         if wind:
-            # JSBSim sets the wind of its initial conditions when it runs them, which is none.
+            # Running its initial conditions, JSBSim sets their wind, which is 0.
             north, east = (speed / METRES_PER_FOOT for speed in wind)
             for name, value in zip(WIND, (north if abs(north) > NORTH_WIND_MIN else NORTH_WIND_MIN, east, 0.0), strict=True):
                 self.write(name, value)
@@ -171,7 +171,7 @@ class Fdm:
         """Start every engine, at once or as a pilot does, and run them up, the body held; return whether that took any
         time.
 
-        A governed propeller that comes from idle can stay at its fine stop, wind-milling; from full throttle it
+        A governed propeller that comes from idle can stay at its fine stop, windmilling; from full throttle it
         governs.
         """
         self._engines_run = True
@@ -234,8 +234,8 @@ class Fdm:
         Parameters
         ----------
         state : against the air
-        steps : long enough for servos and engines to stand still
-        wind : velocity of the air, north and east [m/s]; none for still air
+        steps : enough for servos and engines to come to rest
+        wind : velocity of the air, north and east [m/s]; None for still air
         """
         self.revive()
         self.place(before_hold(state, steps * self.time_step), wind)

@@ -1,4 +1,4 @@
-"""A copy of a JSBSim model that does only what it is told: its outputs, sockets and autopilots are left out."""
+"""A copy of a JSBSim model without its own outputs, sockets and autopilots."""
 
 import re
 import shutil
@@ -41,7 +41,7 @@ def copy_model(root: Path, model: str, directory: Path, *, play: bool = True) ->
     try:
         document = ET.parse(model_file)
     except ET.ParseError as error:
-        raise AircraftError(f"model file {source / model}.xml is not valid XML: {error}; mend it") from None
+        raise AircraftError(f"model file {source / model}.xml is not valid XML: {error}; correct it") from None
     config = document.getroot()
     at_rest = [*_take_out(config, root, source), *_of_another_program(config, root, source)]
     if at_rest:
@@ -71,7 +71,7 @@ def _take_out(config: ET.Element, root: Path, source: Path) -> list[str]:
 
 def _of_another_program(config: ET.Element, root: Path, source: Path) -> list[str]:
     """Return the properties that the model reads from FlightGear's tree, such as ``/sim/model/pushback``: JSBSim alone
-    has none."""
+    does not have them."""
     parts = [config, *(_content(element, root, source) for element in config.iter() if element.get("file"))]
     words = (word.lstrip("-") for part in parts for element in part.iter() for word in (element.text or "").split())
     return list(dict.fromkeys(word for word in words if re.fullmatch(r"/[A-Za-z_][\w.\-/\[\]]*", word)))
@@ -85,7 +85,7 @@ def _is_autopilot(element: ET.Element) -> bool:
 
 
 def _content(element: ET.Element, root: Path, source: Path) -> ET.Element:
-    """Return the element itself, or what the file it names holds."""
+    """Return the element itself, or the root of the file that it names."""
     found = _find(element, root, source)
     return ET.parse(found).getroot() if found else element
 

@@ -17,7 +17,7 @@ INITIAL_STATE = (
     "ic/lat-geod-rad", "ic/long-gc-rad", "ic/h-sl-ft", "ic/phi-rad", "ic/theta-rad", "ic/psi-true-rad", "ic/u-fps", "ic/v-fps",
     "ic/w-fps", "ic/p-rad_sec", "ic/q-rad_sec", "ic/r-rad_sec",
 )  # fmt: skip
-"""JSBSim's initial conditions, in the order in which it must be told: each may change others."""
+"""JSBSim's initial conditions, in the order in which they must be set: each may change others."""
 
 ACCELERATION = "accelerations/{}dot-ft_sec2"
 ANGULAR_ACCELERATION = "accelerations/{}dot-rad_sec2"
@@ -26,7 +26,7 @@ WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/win
 """Properties of the steady wind: the velocity of the air."""
 
 NORTH_WIND_MIN = 1e-6
-"""Least wind northward [ft/s]: JSBSim does not turn its turbulence into the wind where there is none."""
+"""Least wind northward [ft/s]: JSBSim does not turn its turbulence into the wind if the wind is 0."""
 
 RESET_ONLY = 2
 """Resets every model of JSBSim to how it was loaded, without running it."""
@@ -67,8 +67,8 @@ def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
 def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
     """Return where to place a body that is to be in ``state`` after it was held for ``duration`` [s].
 
-    A body that is held stands still among the stars while the earth turns under it, so it is placed as far east as it
-    will drift west.
+    A held body stays fixed in inertial space while the earth turns under it, so it is placed as far east as it will
+    drift west.
     """
     return replace(state, longitude=state.longitude + EARTH_RATE * duration)
 

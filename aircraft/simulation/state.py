@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RigidBodyState:
-    """Position, attitude and motion of an aircraft, against still air unless it says otherwise.
+    """Position, attitude and motion of an aircraft, relative to still air unless stated otherwise.
 
     Attributes
     ----------

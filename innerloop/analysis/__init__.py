@@ -1,1 +1,1 @@
-"""Margins, robustness, gust response of the linear loop."""
+"""Margins, robustness and gust response of the linear loop."""

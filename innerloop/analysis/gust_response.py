@@ -3,7 +3,7 @@
 Air that moves acts through what the body's velocity against it makes: forces and moments of the air, and what the
 propeller sees. The linear model was made in still air, where that velocity is the body's own, so its columns hold
 more: how velocity components turn with the body (-omega x v), how they add up to climb, and how angles follow rates.
-Those are known in closed form and taken out, and what is left, times minus the air's velocity, is what a gust does.
+Those are known in closed form and subtracted; the rest, times minus the air's velocity, is the effect of a gust.
 """
 
 import math
@@ -61,9 +61,9 @@ def aircraft_in_gusts(model: control.StateSpace, trim: Trim, level_model: contro
 
     Notes
     -----
-    In a turn the rates' columns of moments hold the body's gyroscopic moments, which take its inertia to tell apart.
-    Moments by rates are taken from level flight instead, where there are none; they hardly depend on the angle of
-    attack.
+    In a turn the rates' columns of moments hold the body's gyroscopic moments, which cannot be separated without its
+    inertia. Moments by rates are taken from level flight instead, where gyroscopic moments vanish; they hardly depend
+    on the angle of attack.
     """
     states, outputs = list(model.state_labels), list(model.output_labels)
     air = [states.index(name) for name in _AIR]
@@ -119,7 +119,7 @@ def _turning(trim: Trim, at: Array) -> Array:
 
 
 def _cross(vector: tuple[float, float, float]) -> Array:
-    """Return the matrix that makes the cross product of ``vector`` with what it is multiplied with."""
+    """Return the matrix of the cross product with ``vector``."""
     x, y, z = vector
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 

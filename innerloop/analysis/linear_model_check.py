@@ -23,14 +23,17 @@ OUTPUTS: dict[str, tuple[str, float]] = {
 """States that are compared: JSBSim property and SI value of its unit."""
 
 _SHOWN = {"elevator": ("alpha", "q", "pitch"), "aileron": ("p", "roll"), "rudder": ("beta", "r"), "throttle": ("airspeed",)}
-"""What a control is there to move; what else it moves, it moves little, and an error relative to that says little."""
+"""States that each control is meant to move: a relative error is of little use for a state that it hardly moves."""
 
 _DURATION = 6.0
 _HALF = 1.0
 _SIZE = 0.01
+"""Duration of a flight and of each half of its doublet [s], and the size of the doublet [-]."""
+
+
 _FINE = 8
-"""JSBSim's first-order stepping is part of the aircraft that flies, not of the linear model: this many smaller steps a
-step [-]."""
+"""Substeps of a time step [-]: JSBSim's first-order integration is not part of the linear model, so it is made
+fine."""
 
 Array = npt.NDArray[np.float64]
 
@@ -40,7 +43,7 @@ def verify_model(fdm: Fdm, model: control.StateSpace, level: Trim) -> list[dict[
 
     Parameters
     ----------
-    fdm : the aircraft, whose spec is flown again at a finer time step
+    fdm : the aircraft; another simulation of it flies at a finer time step
     model : its linear model about ``level``
     level : the equilibrium
     """

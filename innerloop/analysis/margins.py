@@ -21,19 +21,20 @@ SENSOR_BREAKS = ("airspeed", "altitude", "heading_rate", "beta")
 """Measurements at which the loop is opened, besides the controls."""
 
 BREAK_NAMES = {"beta": "sideslip"}
-"""What breaks are called where they are shown, if not as in the model."""
+"""Names of breaks in reports, where they differ from the model's."""
 
 ALL_CONTROLS = "all controls"
-"""What the row of margins is called that stands for changes in every control at once."""
+"""Name of the margins for simultaneous changes in every control."""
 
 _MU_STRIDE = 4
-"""The structured singular value takes a hundred times as long as a gain, and every fourth frequency shows its peak
-[-]."""
+"""Stride over the frequencies of the structured singular value, which takes a hundred times as long as a gain [-]."""
 
 FREQUENCIES = np.logspace(-3.0, 2.4, 300)
-"""Where loops are evaluated [rad/s]: from below any integral action to beyond any servo."""
+"""Frequencies at which loops are evaluated [rad/s]: from below any integral action to beyond any servo."""
 
 _WELL_CONDITIONED = 1e7
+"""Condition number of the eigenvectors up to which they give frequency responses to nine digits [-]."""
+
 
 Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -89,7 +90,7 @@ class Loops:
         plant = plant * np.exp(-1j * frequencies * delay)[:, None, None]
         law = -_response(autopilot, frequencies)[:, :, self._reads]
         self._sensitivity = np.linalg.inv(np.eye(len(self.controls)) + law @ plant)
-        # At the measurements S = 1 - P (1 + K P)^-1 K; only its diagonal is asked for.
+        # At the measurements S = 1 - P (1 + K P)^-1 K; only its diagonal is needed.
         self._at_measurements = 1.0 - np.einsum("fik,fki->fi", plant @ self._sensitivity, law)
 
     def opened(self, name: str) -> Complex:
@@ -108,7 +109,7 @@ class Loops:
         return (*self.controls, *(name for name in SENSOR_BREAKS if name in self.measurements))
 
     def margins(self, *, together: bool = True) -> list[Margin]:
-        """Return the margins at each of ``breaks`` and, if asked for, at all controls at once."""
+        """Return the margins at each of ``breaks`` and, if ``together``, at all controls at once."""
         margins = [loop_margin(BREAK_NAMES.get(name, name), self.opened(name), self.frequencies) for name in self.breaks]
         if not together:
             return margins
@@ -214,7 +215,7 @@ def _ordered(x: Array, y: Array) -> tuple[Array, Array]:
 def closed_loop(aircraft: control.StateSpace, autopilot: control.StateSpace, delay: float = DELAY) -> control.StateSpace:
     """Return the closed loop from the autopilot's commands to every output of the aircraft and to the controls.
 
-    What else the aircraft has for inputs, such as gusts, follows the commands.
+    The aircraft's other inputs, such as gusts, follow the commands.
     """
     controls: Sequence[str] = autopilot.output_labels
     others = [name for name in aircraft.input_labels if name not in controls]

@@ -1,4 +1,4 @@
-"""What the margins are checked against: an aircraft that is not quite the one modelled, and a longer delay."""
+"""Perturbations of the aircraft under which margins are checked: effectiveness, mass, inertia, and a longer delay."""
 
 import math
 from collections.abc import Callable
@@ -24,7 +24,7 @@ def _unchanged(model: control.StateSpace, trim: Trim) -> control.StateSpace:
 
 
 def _effectiveness(factor: float) -> Change:
-    """Return a change of what every control does to the aircraft."""
+    """Return a change of the effectiveness of every control."""
 
     def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
         del trim
@@ -131,4 +131,4 @@ CASES: dict[str, tuple[Change, float]] = {
     "inertia -20 %": (_inertia(0.8), DELAY),
     "one more step of delay": (_unchanged, DELAY + TIME_STEP),
 }
-"""What is changed: the linear aircraft, and the delay between measurement and servo [s]."""
+"""Each perturbation by name: the change of the linear aircraft, and the delay between measurement and servo [s]."""

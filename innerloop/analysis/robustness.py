@@ -1,5 +1,4 @@
-"""Margins at every operating point of a design, between them, and with an aircraft that is not quite the one
-modelled."""
+"""Margins at every operating point of a design, between them, and with a perturbed aircraft."""
 
 import math
 from collections.abc import Iterator
@@ -22,7 +21,7 @@ class Requirement:
     Attributes
     ----------
     gain_db, phase_deg : of the aircraft as modelled, each loop opened alone
-    perturbed_gain_db, perturbed_phase_deg : of the aircraft changed
+    perturbed_gain_db, perturbed_phase_deg : of the perturbed aircraft
     """
 
     gain_db: float = 6.0
@@ -32,19 +31,19 @@ class Requirement:
 
 
 REQUIRED = Requirement()
-"""Nominal: MIL-F-9490D's 6 dB and 45 deg. A fifth of effectiveness is 1.6 to 1.9 dB, so 4 dB of it must be left."""
+"""Nominal: MIL-F-9490D's 6 dB and 45 deg. A fifth of effectiveness is 1.6 to 1.9 dB, so 4 dB must remain."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Check:
-    """The margins of one operating point, with the aircraft as modelled or changed.
+    """The margins of one operating point, with the aircraft as modelled or perturbed.
 
     Attributes
     ----------
-    case : what was changed
+    case : the perturbation
     airspeed, bank : [m/s, rad]
     between : whether the point lies between those of the design's grid
-    stable : whether the closed loop is
+    stable : whether the closed loop is stable
     margins : of every loop
     """
 
@@ -71,7 +70,7 @@ class Check:
 
     @property
     def met(self) -> bool:
-        """Whether every margin is there."""
+        """Whether every margin is as required."""
         return self.stable and not self.short_loops
 
     @property
@@ -86,7 +85,7 @@ class Check:
 
     @property
     def shortfall(self) -> float:
-        """Return the smallest margin as a share of what is required; below 0 if unstable."""
+        """Return the smallest margin as a fraction of the required one; below 0 if unstable."""
         gain, phase = self.required
         return min(self.worst_gain.gain_db / gain, self.worst_phase.phase_deg / phase) if self.stable else -1.0
 
@@ -104,8 +103,7 @@ class OperatingPoint:
     """Where margins are computed: an equilibrium, the aircraft about it, and whether it lies between those of the
     grid.
 
-    ``bank`` is that of the grid [rad]: straight flight has 0, also where it takes a little bank against the
-    propeller's torque.
+    ``bank`` is that of the grid [rad]: straight flight has 0, even if a small bank balances the propeller's torque.
     """
 
     trim: Trim
@@ -170,7 +168,7 @@ def _between(first: control.StateSpace, second: control.StateSpace) -> list[cont
 
 
 def check_design(schedule: Schedule, *, changed: bool = True) -> list[Check]:
-    """Return the margins at every operating point, as modelled and, if asked for, with the aircraft changed."""
+    """Return the margins at every operating point, as modelled and, if ``changed``, with the perturbed aircraft."""
     law = ControlLaw(schedule)
     cases = CASES if changed else {NOMINAL: CASES[NOMINAL]}
     return [check for point in operating_points(schedule) for check in _checks(law, point, cases)]

@@ -1,1 +1,1 @@
-"""Designing, recording, caching and listing autopilots."""
+"""Autopilots are designed, recorded, cached and listed here."""

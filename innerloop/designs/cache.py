@@ -1,4 +1,4 @@
-"""Designs that were made before: found again by the hash of all they depend on, so that a stale one is never used."""
+"""A cache of designs, by the hash of everything they depend on, so that a stale one is never used."""
 
 import contextlib
 import hashlib
@@ -39,18 +39,18 @@ class Designed:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Refused:
-    """A design that was not to be had, and why."""
+    """A design that failed, and why."""
 
     message: str
     is_margins: bool
 
 
 def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
-    """Return the design of an aircraft at ``altitude`` [m] and its record: a former one if nothing it depends on has
+    """Return the design of an aircraft at ``altitude`` [m] and its record: from the cache if nothing it depends on has
     changed.
 
     It depends on the aircraft's spec and files, the altitude, the source of ``aircraft`` and ``innerloop``, and on the
-    versions of Python, JSBSim and the numerical packages. That an aircraft has no design is remembered as well.
+    versions of Python, JSBSim and the numerical packages. A failed design is cached as well.
 
     Raises
     ------
@@ -58,18 +58,17 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
     DesignError : no design has the margins
     """
     key = design_key(spec, altitude)
-    found = _remembered(key)
+    found = _cached(key)
     if found is None:
         found = _design(spec, altitude)
-        _remember(key, found)
+        _store(key, found)
     if isinstance(found, _Refused):
         raise (DesignError if found.is_margins else AircraftError)(found.message)
     return _at(spec.root, found)
 
 
 def _at(root: Path, found: Designed) -> Designed:
-    """Return a design whose model is looked for in ``root``: the same files may have stood elsewhere when it was
-    made."""
+    """Return a design whose model is in ``root``: the same files may have been elsewhere when it was made."""
     schedule = found.design.schedule
     schedule = replace(schedule, spec=replace(schedule.spec, root=root))
     return replace(found, design=replace(found.design, schedule=schedule))
@@ -110,16 +109,16 @@ def _design(spec: AircraftSpec, altitude: float) -> Designed | _Refused:
 
 
 def cache_directory() -> Path:
-    """Return where designs are remembered: ``plume-flight-study`` in the user's cache directory."""
+    """Return the cache of designs: ``plume-flight-study`` in the user's cache directory."""
     base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"
     return Path(base) / "plume-flight-study"
 
 
-def _remembered(key: str) -> Designed | _Refused | None:
-    """Return what is remembered under a key; nothing if there is nothing, or nothing that can be read."""
+def _cached(key: str) -> Designed | _Refused | None:
+    """Return the cached design of a key; None if it is absent or cannot be read."""
     try:
         content = (cache_directory() / f"{key}.design").read_bytes()
-        # A file that is damaged could still be read, as another autopilot.
+        # A damaged file might still unpickle, as another autopilot.
         if content[:_DIGEST] != hashlib.sha256(content[_DIGEST:]).digest():
             return None
         found = pickle.loads(content[_DIGEST:])
@@ -128,8 +127,8 @@ def _remembered(key: str) -> Designed | _Refused | None:
     return found if isinstance(found, Designed | _Refused) else None
 
 
-def _remember(key: str, found: Designed | _Refused) -> None:
-    """Keep a design; where that cannot be done, it is made again the next time."""
+def _store(key: str, found: Designed | _Refused) -> None:
+    """Cache a design; if it cannot be written, it is made again the next time."""
     buffer = io.BytesIO()
     _Pickler(buffer).dump(found)
     content = hashlib.sha256(buffer.getvalue()).digest() + buffer.getvalue()

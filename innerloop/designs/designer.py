@@ -1,5 +1,5 @@
-"""From an aircraft to its autopilot: trim, linearise, weigh, design, check; slower where margins are too small, or
-refused."""
+"""From an aircraft to its autopilot: trim, linearise, weigh, design, check; slowed down where margins are too small,
+or refused."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,12 @@ from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL, LEVEL_GAINS, TRIM_BA
 from innerloop.synthesis.weights import LoopBandwidths, control_weights, design_weights, reachable_bandwidths
 
 _SLOWER = 0.8
+"""Factor on the bandwidths of an axis with too little margin [-]."""
+
 _ATTEMPTS = 10
+"""Number of designs after which an aircraft is refused: the last is at 13 % of the first bandwidths."""
+
+
 _LATERAL_LOOPS = ("aileron", "rudder", "heading_rate", "sideslip")
 _AIRSPEED_LOOPS = ("throttle", "airspeed")
 
@@ -32,13 +37,13 @@ class DesignError(AircraftError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
-    """An autopilot and what was found out about its margins.
+    """An autopilot and its margins.
 
     Attributes
     ----------
     schedule : the autopilot's tables
-    bandwidths : how fast its loops were made
-    checks : margins at every grid point, between, and with the aircraft changed
+    bandwidths : of its loops
+    checks : margins at every grid point, between them, and with the perturbed aircraft
     """
 
     schedule: Schedule
@@ -48,11 +53,11 @@ class Design:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grid:
-    """An aircraft over airspeed and bank: what designs start from.
+    """Equilibria and linear models of an aircraft over airspeed and bank, from which designs start.
 
     Attributes
     ----------
-    spec, envelope, altitude : the aircraft, where it flies, and at which altitude [m]
+    spec, envelope, altitude : the aircraft, its envelope, and the altitude [m]
     trims, models : as in ``Schedule``
     """
 
@@ -86,7 +91,7 @@ def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
     worst = min(short, key=lambda check: check.shortfall)
     raise DesignError(
         f"aircraft '{spec.name}': no design has {REQUIRED.gain_db:g} dB and {REQUIRED.phase_deg:g} deg at every operating point;"
-        f" the slowest tried has {worst.describe()}. It is not flown"
+        f" the slowest tried has {worst.describe()}. It cannot be flown"
     )
 
 

@@ -21,8 +21,8 @@ class Discovered:
     Attributes
     ----------
     name, title : what the user types, and what the model calls itself
-    flies : whether there is an autopilot for it
-    text : where it flies and with which margins, or why it does not
+    flies : whether an autopilot could be designed
+    text : envelope and margins, or the reason why it cannot be flown
     """
 
     name: str

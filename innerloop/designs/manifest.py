@@ -1,4 +1,4 @@
-"""What a design says about itself."""
+"""The manifest of a design."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ def design_manifest(record: Record, *, wall_time: float) -> dict[str, Any]:
         "config": {
             "study": "design",
             "description": f"Designed at {record['altitude_m']:g} m of altitude for {airspeeds[0]:.4g} to {airspeeds[-1]:.4g} m/s:"
-            " equilibria, linear models, gains, margins, and what JSBSim flies.",
+            " equilibria, linear models, gains, margins, and step responses flown in JSBSim.",
             "aircraft": record["aircraft"],
             "altitude_m": record["altitude_m"],
         },

@@ -1,4 +1,4 @@
-"""Everything a reader of a report wants to know of an autopilot's design, as plain data."""
+"""The record of an autopilot's design for its report, as plain data."""
 
 import math
 from dataclasses import asdict, fields
@@ -24,11 +24,17 @@ from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.schedule import LEVEL_GAINS, Schedule
 
 _STEP_DURATION = 36.0
-"""Of the flown steps, over one over the frequency of the heading-rate answer [-]."""
+"""Duration of the flown steps, over one over the frequency of the heading-rate response [-]."""
 
 _SAMPLES = 360
+"""Number of samples of a recorded response."""
+
 _FREQUENCIES = np.logspace(-2.5, 2.2, 220)
+"""Frequencies of the recorded loop shapes [rad/s]."""
+
 _CLIMB_ANGLES_DEG = (-3.0, -1.5, 1.5, 3.0)
+"""Climbs and descents of the recorded equilibria [deg]."""
+
 
 Record = dict[str, Any]
 
@@ -38,8 +44,8 @@ def design_record(design: Design, root: Path) -> Record:
 
     Parameters
     ----------
-    design : what ``innerloop.designs.designer.design_autopilot`` returned
-    root : JSBSim root that ``write_root`` made of it
+    design : returned by ``innerloop.designs.designer.design_autopilot``
+    root : JSBSim root that ``write_root`` wrote for it
     """
     schedule = design.schedule
     aircraft = AutopilotedAircraft(schedule.spec, root)
@@ -71,8 +77,8 @@ def design_record(design: Design, root: Path) -> Record:
 
 
 def step_sizes(schedule: Schedule) -> dict[str, float]:
-    """Return the steps that are predicted and flown [rad/s, m/s, m]: half the study's turn, and half of what still
-    works harder."""
+    """Return the steps that are predicted and flown [rad/s, m/s, m]: half the study's turn, and half of the clipped
+    errors."""
     turn = STANDARD_GRAVITY * math.tan(schedule.envelope.bank) / schedule.level(schedule.middle).airspeed
     room = 0.25 * (schedule.envelope.airspeed_max - schedule.envelope.airspeed_min)
     sizes = {
@@ -96,8 +102,8 @@ def _envelope_record(envelope: Envelope) -> Record:
 
 
 def _trim_record(t: Trim, bank: float) -> Record:
-    """Return an equilibrium; ``bank`` is the grid's [rad], 0 in straight flight whatever roll balances the propeller's
-    torque."""
+    """Return an equilibrium; ``bank`` is the grid's [rad], 0 in straight flight, even if a small roll balances the
+    propeller's torque."""
     return {
         "airspeed_mps": t.airspeed,
         "bank_rad": bank,
@@ -217,7 +223,7 @@ def _response_record(kind: str, response: Response) -> Record:
 
 
 _UPSET = {"altitude": "m", "airspeed": "mps"}
-"""What a step should not move, and its unit."""
+"""Quantities that a step should not move, and their units."""
 
 _CHANNEL_NAMES = {"beta": "sideslip", "elevator_command": "elevator", "aileron_command": "aileron"}
-"""What channels are called where they are shown, if not as in the closed loop."""
+"""Names of channels in reports, where they differ from those in the closed loop."""

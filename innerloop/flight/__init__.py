@@ -1,1 +1,1 @@
-"""The aircraft with its autopilot, and flight tests of it."""
+"""The aircraft with its autopilot in JSBSim, and flight tests of both."""

@@ -29,13 +29,12 @@ class AutopilotedAircraft:
     ----------
     spec : the aircraft
     root : JSBSim root with the autopilot
-    failable : whether parts of it can fail in flight; it is then flown from a copy of ``root`` that has been prepared
-        for that
+    failable : whether parts can fail in flight; the aircraft then flies from a prepared copy of ``root``
 
     Attributes
     ----------
     fdm : the simulation
-    run : advances it by one time step, through the weather that it was released in
+    run : advances it by one time step, in the weather of its release
     command_airspeed, command_altitude, command_heading_rate : setters of the commands [m/s, m, rad/s]
     """
 
@@ -53,13 +52,13 @@ class AutopilotedAircraft:
         self.command_heading_rate: Callable[[float], object] = self.fdm.writable_node(HEADING_RATE_COMMAND).set_double_value
 
     def release(self, state: RigidBodyState, *, airspeed: float, altitude: float, weather: Weather | None = None) -> None:
-        """Start a flight from a straight and level equilibrium, commanded to stay in it, whatever was flown before.
+        """Start a new flight from a straight and level equilibrium, commanded to stay in it.
 
         Parameters
         ----------
         state : the equilibrium's state, against the air
         airspeed, altitude : commands [m/s, m]
-        weather : the air it flies in; none for still air. The wind blows from the start; turbulence begins with the
+        weather : of the flight; None for still air. The wind blows from the start; turbulence begins with the
             release, and the times of gusts count from it.
         """
         if self._weathered or (self._faults and self._faults.failed):
@@ -83,10 +82,9 @@ class AutopilotedAircraft:
             self.run = gusty_run(self.fdm, weather.gusts)
 
     def hold_elevator(self) -> None:
-        """Hold the elevator where it was at the release from now on; pitch is then left to the aircraft's own
-        stability.
+        """Hold the elevator at its position at the release; the aircraft's own stability then controls pitch.
 
-        What is left of the controls after one has failed then has one task instead of two that contradict each other.
+        The remaining controls after a failure then have one task instead of two conflicting ones.
         """
         self.fdm.write(ELEVATOR_HELD, 1.0)
 

@@ -1,4 +1,4 @@
-"""Step responses, predicted by the linear design and flown in JSBSim, and what is measured from them."""
+"""Step responses, predicted by the linear design and flown in JSBSim, and their measures."""
 
 import math
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ CHANNELS: dict[str, tuple[str, float]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Response:
-    """Answer to a step of one command.
+    """Response to a step of one command.
 
     Attributes
     ----------
@@ -52,13 +52,13 @@ class Response:
 
     def rise_time(self) -> float:
         """Return the time from 10 % to 90 % of the step [s]; nan if 90 % is never reached."""
-        share = self.channels[self.command] / self.size
-        if not (share >= 0.9).any():
+        fraction = self.channels[self.command] / self.size
+        if not (fraction >= 0.9).any():
             return math.nan
-        return float(self.time[np.argmax(share >= 0.9)] - self.time[np.argmax(share >= 0.1)])
+        return float(self.time[np.argmax(fraction >= 0.9)] - self.time[np.argmax(fraction >= 0.1)])
 
     def overshoot(self) -> float:
-        """Return how far the answer goes past the step, as a fraction of it."""
+        """Return how far the response goes past the step, as a fraction of it."""
         return max(0.0, float(np.max(self.channels[self.command] / self.size)) - 1.0)
 
     def largest(self, channel: str) -> float:
@@ -67,7 +67,7 @@ class Response:
 
 
 def predicted_step(schedule: Schedule, index: int, command: str, size: float, duration: float) -> Response:
-    """Return the linear design's answer to a step of ``size`` [SI] at design airspeed ``index``."""
+    """Return the linear design's response to a step of ``size`` [SI] at design airspeed ``index``."""
     autopilot = linear_controller(ControlLaw(schedule), schedule.level(index))
     loop = closed_loop(schedule.models[index][LEVEL_GAINS], autopilot)
     time = np.arange(0.0, duration, TIME_STEP)
@@ -82,7 +82,7 @@ def predicted_step(schedule: Schedule, index: int, command: str, size: float, du
 
 
 def model_step(schedule: Schedule, size: float, duration: float) -> Response:
-    """Return the answer to a step of heading rate [rad/s] that the aircraft is made to follow."""
+    """Return the response to a step of heading rate [rad/s] of the model that the aircraft follows."""
     frequency, damping = schedule.weights.model_frequency, schedule.weights.model_damping
     time = np.arange(0.0, duration, TIME_STEP)
     model = control.tf([frequency**2], [1.0, 2.0 * damping * frequency, frequency**2])
@@ -91,7 +91,7 @@ def model_step(schedule: Schedule, size: float, duration: float) -> Response:
 
 
 def flown_step(aircraft: AutopilotedAircraft, start: Trim, command: str, size: float, duration: float) -> Response:
-    """Return what JSBSim flies after a step of ``size`` [SI] from the equilibrium ``start``."""
+    """Return the response in JSBSim to a step of ``size`` [SI] from the equilibrium ``start``."""
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     if command == "airspeed":
         aircraft.command_airspeed(start.airspeed + size)
@@ -134,7 +134,7 @@ def level_trim(spec: AircraftSpec, airspeed: float, altitude: float, start: Trim
 
     Parameters
     ----------
-    spec, airspeed, altitude : what flies, and where
+    spec, airspeed, altitude : the aircraft and its flight condition
     start : an equilibrium nearby
     """
     return trim(Fdm(spec), airspeed=airspeed, altitude=altitude, start=start)

@@ -1,4 +1,4 @@
-"""How an aircraft's heading rate follows a reversal of its turn: the largest change of command that the guidance can
+"""The turn-reversal response: how the heading rate follows the largest change of command that the guidance can
 give."""
 
 import math
@@ -39,10 +39,10 @@ def measure_turn_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: floa
     """Return the dead time and lag of a reversal from a settled turn at ``bank`` [rad] to the left to one to the
     right.
 
-    What counts is where the aircraft gets, which goes with the integral of the course that it falls behind by. Dead
-    time and lag are equal, and the shortest for which the model is nowhere ahead of the aircraft over a quarter of a
-    turn, but for 1 % of what it falls behind in all. The lag of slow commands, ``measure_lag``, is shorter: the
-    aircraft rolls through twice the bank.
+    The measure is the displacement of the aircraft, the integral of its course error. Dead time and lag are equal, and
+    the shortest for which the model is nowhere ahead of the aircraft over a quarter of a turn, except for 1 % of the
+    final displacement. The lag of slow commands, ``measure_lag``, is shorter: the aircraft rolls through twice the
+    bank.
 
     Parameters
     ----------
@@ -84,8 +84,8 @@ def measure_turn_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: floa
 
 
 def displacement(time: Array, reversal: TurnReversalResponse) -> Array:
-    """Return the integral of the course fallen behind by [s2], per change of the commanded heading rate, ``time`` [s]
-    after it."""
+    """Return the integral of the course error [s2], per change of the commanded heading rate, ``time`` [s] after
+    it."""
     after = np.maximum(time - reversal.delay, 0.0)
     lag = reversal.lag
     late = np.minimum(time, reversal.delay)

@@ -1,1 +1,1 @@
-"""The autopilot as a JSBSim system, script and root."""
+"""The autopilot as a JSBSim system, root directory and script."""

@@ -8,7 +8,7 @@ HEADING_RATE_COMMAND = "autopilot/heading-rate-command-rad_sec"
 HEADING_RATE = "autopilot/heading-rate-rad_sec"
 BANK_COMMAND = "autopilot/bank-command-rad"
 CONTROL_COMMAND = "autopilot/{}-command"
-"""Pattern of the properties that hold what a control is commanded [-], by its name in the linear model."""
+"""Pattern of the properties that hold the command of a control [-], by its name in the linear model."""
 
 RESET = "autopilot/reset"
 """Negative to hold every integrator at 0, otherwise 0."""

@@ -13,8 +13,8 @@ def write_root(schedule: Schedule, directory: Path) -> Path:
     """Write a JSBSim root directory with a copy of the aircraft, its engine files and the autopilot; return the
     directory.
 
-    Any JSBSim started on this root flies the aircraft under the autopilot. What the model brought of its own outputs
-    and autopilot is left out (``aircraft.simulation.model_copy``); its servos keep their play.
+    Any JSBSim started on this root flies the aircraft under the autopilot. The model's own outputs and autopilot are
+    left out (``aircraft.simulation.model_copy``); its servos keep their play.
     """
     spec = schedule.spec
     model_file = copy_model(spec.root, spec.model, directory)

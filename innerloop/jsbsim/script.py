@@ -57,7 +57,7 @@ class Command:
     time : when it is given, from release on [s]
     name : JSBSim property that takes it, one of ``innerloop.jsbsim.system``
     value : [m/s, m or rad/s]
-    note : what it asks for, in words
+    note : the same in words
     """
 
     time: float
@@ -74,16 +74,15 @@ def demonstration(
     altitude_step: float | None = None,
     airspeed_step: float | None = None,
 ) -> tuple[Command, ...]:
-    """Return commands that show what the autopilot does: turn right, climb, change speed, come back from both, turn
-    left.
+    """Return commands that demonstrate the autopilot: turn right, climb, change speed, undo both, turn left.
 
     Parameters
     ----------
     envelope, start : where the aircraft may fly, and the level equilibrium it starts from
-    heading_rate : of both turns [rad/s], positive; by default a quarter of what the largest commanded bank gives
-    altitude_step : [m]; by default what the aircraft flies in half a second
-    airspeed_step : [m/s]; by default a tenth of the airspeed or half the room that the envelope leaves, whichever is
-        less, towards the side with more room
+    heading_rate : of both turns [rad/s], positive; by default a quarter of that of the largest commanded bank
+    altitude_step : [m]; by default the distance flown in half a second
+    airspeed_step : [m/s]; by default a tenth of the airspeed or half the distance to the farther end of the envelope,
+        whichever is less, towards that end
 
     Raises
     ------
@@ -125,7 +124,7 @@ def write_script(schedule: Schedule, root: Path, *, commands: Sequence[Command] 
     ----------
     schedule : the design
     root : JSBSim root with its autopilot
-    commands : what is flown; by default ``demonstration``
+    commands : by default ``demonstration``
 
     Returns
     -------
@@ -208,7 +207,7 @@ def columns(fdm: Fdm) -> list[str]:
 
 
 def _check(fdm: Fdm, commands: Sequence[Command]) -> None:
-    """Raise what ``write_script`` says; JSBSim itself would stop in mid-flight, or not say anything."""
+    """Raise the errors of ``write_script``: JSBSim itself would stop in mid-flight, or ignore the mistake."""
     for command in commands:
         if not (math.isfinite(command.time) and command.time >= 0.0):
             raise AircraftError(f"command {command.name} is given at {command.time} s; it must be at or after release, at 0 s")

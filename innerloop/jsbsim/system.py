@@ -1,7 +1,6 @@
 """The autopilot written out as a JSBSim ``<system>``.
 
-The commands are the properties ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND`` [m] and ``HEADING_RATE_COMMAND``
-[rad/s].
+The commands are ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND`` [m] and ``HEADING_RATE_COMMAND`` [rad/s].
 
 A component costs JSBSim more than a table does, and some forty of them were a third of its time step. So a value has
 one of its own only if it is read from outside, a state, looked up in a table, or expensive to compute twice.
@@ -81,18 +80,18 @@ def system_xml(schedule: Schedule) -> str:
 
 
 def _by_point(schedule: Schedule, gain: Callable[[Gains], float]) -> str:
-    """Return a gain over the bank that is flown and the commanded airspeed."""
+    """Return a gain over bank and commanded airspeed."""
     values = schedule.gain_over_bank([[float(gain(g)) for g in row] for row in schedule.gains])
     return table_2d(_ROLL, _SCHEDULE, schedule.gain_banks, schedule.airspeeds, values)
 
 
 def _by_bank(schedule: Schedule, quantity: str, bank: str = _ROLL) -> str:
-    """Turn compensation: a trim quantity over the bank that is flown, or another, and the commanded airspeed."""
+    """Turn compensation: a trim quantity over bank, by default the actual one, and commanded airspeed."""
     return table_2d(bank, _SCHEDULE, schedule.banks, schedule.airspeeds, schedule.over_bank(quantity))
 
 
 def _commanded(control_input: ControlInput, demand: str) -> list[str]:
-    """Return components that keep a control within its range and hand it to JSBSim."""
+    """Return components that keep a control within its range and pass it to JSBSim."""
     name = CONTROL_COMMAND.format(control_input.name)
     value = clipped(demand, control_input.lower, control_input.upper)
     if not control_input.effectiveness:
@@ -125,15 +124,14 @@ def _measurements(schedule: Schedule) -> list[str]:
         operation("max", total(times(speed_ahead, speed_ahead), times(speed_right, speed_right)), number(1.0)),
     )
     return [
-        # At least 1 m/s: JSBSim runs the system once before it has a speed, and an integrator never forgets a division
-        # by zero.
+        # At least 1 m/s: JSBSim runs the system once without a speed, and integrators keep what a division by zero
+        # gives.
         function(_AIRSPEED, operation("max", times(read("velocities/vt-fps"), foot), number(1.0))),
         function(_CLIMB_RATE, times(read("velocities/h-dot-fps"), foot)),
         function(_SCHEDULE, clipped(read(AIRSPEED_COMMAND), envelope.airspeed_min, envelope.airspeed_max)),
         function("autopilot/speed-ahead-fps", ahead(*velocity)),
         function("autopilot/speed-right-fps", right(*velocity[1:])),
-        # Rate of the horizontal air-relative course, from accelerometers and attitude
-        # (aircraft.simulation.state.course_rate).
+        # Rate of the horizontal air-relative course, from accelerometers and attitude (state.course_rate).
         function(HEADING_RATE, operation("quotient", moment, inertia)),
     ]
 
@@ -192,9 +190,9 @@ def _longitudinal(schedule: Schedule) -> list[str]:
 
 
 def _integrated(error: str, limit: float) -> str:
-    """Return the part of an error that is integrated: all of it, or none where the error is beyond its limit.
+    """Return the part of an error that is integrated: all of it, or 0 where the error is beyond its limit.
 
-    A larger error asks for a steady climb or acceleration; integrated on the way there, it would overshoot by as much
+    A larger error demands a steady climb or acceleration; integrated on the way there, it would overshoot by as much
     again.
     """
     return times(read(error), within(read(error), limit))
@@ -238,7 +236,7 @@ def _lateral(schedule: Schedule) -> list[str]:
 
 
 def _rudder_integral(schedule: Schedule) -> list[str]:
-    """Return components that take out what sideslip is left, held to what the rudder can give."""
+    """Return components that remove the remaining sideslip, within the limits of the rudder."""
     held = minus(read("autopilot/rudder-command"), read("autopilot/rudder-unlimited"))
     growth = total(
         times(_by_point(schedule, lambda g: g.sideslip_integral), read(_SIDESLIP)),
@@ -251,7 +249,7 @@ def _rudder_integral(schedule: Schedule) -> list[str]:
 
 
 def _heading_rate_model(schedule: Schedule) -> list[str]:
-    """Return the heading-rate response that the aircraft is made to follow."""
+    """Return the heading-rate model that the aircraft follows."""
     frequency, damping = schedule.weights.model_frequency, schedule.weights.model_damping
     turn_max = math.tan(schedule.envelope.bank_max) * STANDARD_GRAVITY
     limited = operation(
@@ -273,7 +271,7 @@ def _heading_rate_model(schedule: Schedule) -> list[str]:
 
 
 def _bank_command(schedule: Schedule) -> list[str]:
-    """Return the bank that the model's turn takes, and what heading rate is still amiss."""
+    """Return the bank of the model's turn, corrected by the integral of the heading-rate error."""
     bank_max = schedule.envelope.bank_max
     turns = schedule.turns()
     rate_to_bank_rate = times(

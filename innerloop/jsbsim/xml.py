@@ -1,4 +1,4 @@
-"""A few words of JSBSim's XML: expressions, tables and the components the autopilot needs."""
+"""JSBSim's XML as far as the autopilot needs it: expressions, tables and components."""
 
 from collections.abc import Sequence
 
@@ -74,7 +74,7 @@ def integrator(name: str, source: str, reset: str) -> str:
     """Return a component that integrates property ``source`` by the trapezoidal rule, held at 0 while ``reset`` is
     negative.
 
-    JSBSim's own ``<integrator>`` can be held but not reset, so this is a ``<pid>`` with nothing but its integral.
+    JSBSim's own ``<integrator>`` can be held but not reset, so this is a ``<pid>`` with its integral alone.
     """
     gains = '<kp>0</kp><ki type="trap">1</ki><kd>0</kd>'
     return f'<pid name="{name}"><input>{source}</input>{gains}<trigger>{reset}</trigger></pid>'

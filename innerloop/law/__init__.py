@@ -1,1 +1,1 @@
-"""The autopilot, nonlinear and linear."""
+"""The control law of the autopilot, nonlinear and linear."""

@@ -1,7 +1,6 @@
-"""The flown control law in Python, term by term as ``innerloop.jsbsim.system`` writes it for JSBSim: to be linearised
-anywhere.
+"""The control law in Python, term by term as ``innerloop.jsbsim.system`` writes it for JSBSim, to be linearised.
 
-Limits and saturations are left out: they belong to the flown autopilot, not to its linear model.
+Limits and saturations are left out: they are part of the autopilot in JSBSim, not of its linear model.
 """
 
 import math
@@ -19,7 +18,7 @@ COMMANDS = ("airspeed_command", "altitude_command", "heading_rate_command")
 """Commands [m/s, m, rad/s]."""
 
 STATES = ("elevator_integral", "throttle_integral", "bank_integral", "rudder_integral", "model_rate", "model_acceleration")
-"""What the autopilot remembers: integrals, and the reference model's heading rate and its rate [rad/s, rad/s^2]."""
+"""States of the autopilot: integrals, and the reference model's heading rate and its rate [rad/s, rad/s^2]."""
 
 Array = npt.NDArray[np.float64]
 
@@ -127,7 +126,7 @@ class ControlLaw:
 
 
 def gain_vector(gains: Gains) -> Array:
-    """Return every gain in one vector; ``_Named`` takes it apart."""
+    """Return every gain in one vector, which ``_Named`` splits again."""
     return np.concatenate(
         [
             gains.longitudinal.ravel(),
@@ -141,7 +140,7 @@ def gain_vector(gains: Gains) -> Array:
 
 
 class _Named:
-    """A gain vector taken apart."""
+    """The gains of a vector by name."""
 
     def __init__(self, vector: Array) -> None:
         self.longitudinal = vector[:10].reshape(2, 5)

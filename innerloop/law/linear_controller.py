@@ -70,5 +70,5 @@ def operating_point(law: ControlLaw, trim: Trim) -> dict[str, float]:
 
 
 def evaluate_at(law: ControlLaw, point: Mapping[str, float]) -> tuple[dict[str, float], dict[str, float]]:
-    """Return what ``ControlLaw.evaluate`` makes of a point that holds commands, measurements and states by name."""
+    """Return the result of ``ControlLaw.evaluate`` at a point of commands, measurements and states by name."""
     return law.evaluate(point, point, point)

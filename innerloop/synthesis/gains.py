@@ -4,9 +4,9 @@ Why a servo LQR: the plant is multivariable (elevator and throttle both move air
 both roll and yaw), every state it feeds back is one that an autopilot measures, integral action comes with the design,
 and weights that follow from the aircraft's own frequencies carry over to the next aircraft.
 
-Servo and engine states are left out of the feedback (nobody measures a hobby servo's position) and out of the Riccati
-equation, where they stand for their static gain; the margins are then computed with them and with the computing delay.
-At a bank, longitudinal and lateral motion couple; the gains of each are computed as if the other stood still, and the
+Servo and engine states are left out of the feedback (a hobby servo's position is not measured) and out of the Riccati
+equation, where their static gain replaces them; the margins are then computed with them and with the computing delay.
+At a bank, longitudinal and lateral motion couple; the gains of each are computed as if the other were at rest, and the
 margins with both.
 """
 
@@ -42,7 +42,7 @@ class Gains:
     longitudinal : shape (2, 5), from deviations of ``LONGITUDINAL`` to elevator and throttle [-]
     longitudinal_integral : shape (2, 2), from the integrals of airspeed and altitude error to elevator and throttle
         [-]
-    lateral : shape (2, 4), from deviations of ``LATERAL`` to aileron and rudder [-]; zero where there is no rudder
+    lateral : shape (2, 4), from deviations of ``LATERAL`` to aileron and rudder [-]; zero without a rudder
     heading_integral : from the integral of heading-rate error to bank command [rad/rad]
     sideslip_integral : from the integral of sideslip to rudder [1/(rad s)]
     roll_rate_feedforward, roll_acceleration_feedforward : shape (2,), aileron and rudder for the model's roll rate and
@@ -121,7 +121,7 @@ def _has_rudder(plant: control.StateSpace) -> bool:
 def _feedforward(plant: control.StateSpace, trim: Trim) -> tuple[Matrix, Matrix]:
     """Return aileron and rudder for a roll rate and for a roll acceleration.
 
-    The rudder takes out the yaw that rolling and aileron make, and turns the nose with the turn: r grows by g
+    The rudder cancels the yaw that rolling and aileron cause, and turns the nose with the turn: r grows by g
     cos(bank)/V times p.
     """
     axes, inputs = (("p", "r"), ("aileron", "rudder")) if _has_rudder(plant) else (("p",), ("aileron",))

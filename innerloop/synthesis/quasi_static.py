@@ -34,8 +34,8 @@ def quasi_static(model: control.StateSpace) -> control.StateSpace:
 
 
 def state_lag(model: control.StateSpace, control_input: str) -> float:
-    """Return how late a control input comes to act [s]: the area above the answer to a step of what follows it most
-    slowly."""
+    """Return how late a control input comes to act [s]: the area above the step response of the slowest state that
+    follows it."""
     driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES]
     if not driven:
         return 0.0

@@ -29,13 +29,13 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Schedule:
-    """Everything the flown autopilot is made of.
+    """The tables of an autopilot, and what they were made from.
 
     Attributes
     ----------
     spec : the aircraft
-    envelope : where it may fly
-    weights : what the design asked for
+    envelope : in which it may fly
+    weights : of the design
     altitude : at which it was designed [m]
     airspeeds : shape (n,) [m/s], ascending
     trims : equilibria by airspeed, then by bank in the order of ``TRIM_BANKS``
@@ -108,9 +108,9 @@ class Schedule:
         return np.linspace(-largest, largest, 29)
 
 
-def table_banks(envelope: Envelope, shares: Sequence[float]) -> tuple[float, ...]:
-    """Return shares of the tables' largest bank [rad]."""
-    return tuple(share * TABLE_REACH * envelope.bank_max for share in shares)
+def table_banks(envelope: Envelope, fractions: Sequence[float]) -> tuple[float, ...]:
+    """Return fractions of the tables' largest bank [rad]."""
+    return tuple(fraction * TABLE_REACH * envelope.bank_max for fraction in fractions)
 
 
 def _interpolate(x: Array, at: Array, angles: Array) -> Array:

@@ -1,5 +1,5 @@
-"""What the design asks for: how fast an aircraft's loops can be, from its own linear model, and the weights that make
-them so.
+"""Requirements of a design: the bandwidths that an aircraft's loops can have, by its linear model, and LQR weights for
+them.
 
 Bryson's rule makes each weight one over the square of an acceptable deviation. What is acceptable follows from a
 frequency: the fastest that an aircraft's control authority, its servos and its lift can follow. So one set of numbers,
@@ -88,11 +88,11 @@ time."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoopBandwidths:
-    """How fast the loops are to be.
+    """Bandwidths of the loops of a design.
 
     Attributes
     ----------
-    lateral : frequency of the heading-rate answer [rad/s]
+    lateral : frequency of the heading-rate response [rad/s]
     longitudinal : of pitch and altitude [rad/s]
     airspeed : of airspeed by throttle [rad/s]
     """
@@ -112,7 +112,7 @@ class LoopBandwidths:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DesignWeights:
-    """Acceptable deviations and the answer to a heading-rate command, at every airspeed of a design.
+    """Acceptable deviations and the response to a heading-rate command, at every airspeed of a design.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ class DesignWeights:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlWeights:
-    """Acceptable deviations of the controls at one airspeed [-]; the rudder's is not a number where there is none."""
+    """Acceptable deviations of the controls at one airspeed [-]; the rudder's is NaN without a rudder."""
 
     elevator: float
     aileron: float
@@ -223,7 +223,7 @@ def design_weights(bandwidths: LoopBandwidths, airspeed: float) -> DesignWeights
 
 
 def control_weights(model: control.StateSpace, bandwidths: LoopBandwidths, weights: DesignWeights) -> ControlWeights:
-    """Return what the controls may do at one airspeed: what moves their axis at its frequency, against its own
+    """Return the acceptable controls at one airspeed: those that move their axis at its frequency, against its own
     damping."""
     plant = quasi_static(model)
 

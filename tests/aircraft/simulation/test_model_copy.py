@@ -164,5 +164,5 @@ def test_a_model_that_is_missing_or_no_xml_is_refused_in_a_line(tmp_path):
         Fdm(spec)
     (tmp_path / "aircraft" / "T37").mkdir(parents=True)
     (tmp_path / "aircraft" / "T37" / "T37.xml").write_text("<fdm_config>", encoding="utf-8")
-    with pytest.raises(AircraftError, match=r"T37\.xml is not valid XML: .*; mend it"):
+    with pytest.raises(AircraftError, match=r"T37\.xml is not valid XML: .*; correct it"):
         Fdm(spec)

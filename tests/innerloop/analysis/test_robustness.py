@@ -204,7 +204,7 @@ def test_a_design_with_too_little_margin_is_refused_with_what_it_lacks_and_not_f
     monkeypatch.setattr(designer, "_ATTEMPTS", 3)
     with pytest.raises(DesignError, match="'x8': no design has 6 dB and 45 deg at every operating point") as caught:
         design_autopilot(X8)
-    assert "It is not flown" in str(caught.value)
+    assert "It cannot be flown" in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
