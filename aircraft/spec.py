@@ -32,8 +32,7 @@ class ControlInput:
     effectiveness: tuple[tuple[float, float], ...] = ()
 
     def command(self, value: float) -> float:
-        """Return the command to JSBSim for a value of this input, which is an effect where its effectiveness is known
-        [-]."""
+        """Return the command to JSBSim for a value of this input: an effect, if its effectiveness is known [-]."""
         if not self.effectiveness:
             return value
         i = min(max(bisect.bisect(self.effectiveness, (value,)), 1), len(self.effectiveness) - 1)

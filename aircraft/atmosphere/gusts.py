@@ -91,8 +91,7 @@ def gusty_run(fdm: Fdm, gusts: Sequence[Gust]) -> Callable[[], object]:
 
 
 def end_gust(fdm: Fdm) -> None:
-    """End the gust that blows, if one does, by advancing the aircraft a step: JSBSim gives the next one its direction
-    otherwise."""
+    """End a gust by advancing the aircraft a step: JSBSim would give its direction to the next one."""
     for name, duration in zip(_PROFILE[:3], (_AT_ONCE, 0.0, 0.0), strict=True):
         fdm.write(f"atmosphere/cosine-gust/{name}", duration)
     fdm.step()
@@ -118,8 +117,7 @@ class _GustyRun:
         self._fdm_run()
 
     def _begin(self, gust: Gust) -> None:
-        """Set the gust's properties: JSBSim makes a unit vector of the direction, so the magnitude is set
-        separately."""
+        """Set the gust's properties; JSBSim normalises the direction, so the magnitude is set separately."""
         magnitude = math.hypot(*gust.velocity_ned)
         direction = (component / magnitude for component in gust.velocity_ned)
         values = (gust.rise, gust.hold, gust.fall, magnitude / METRES_PER_FOOT, *direction)

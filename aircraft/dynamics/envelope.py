@@ -40,8 +40,7 @@ _BANK_FRACTIONS = (1.0, 0.75, 0.5)
 """Fractions of the bank of the aircraft's class that are tried, one after the other [-]."""
 
 _THROTTLE_RANGE = (0.03, 0.95)
-"""Throttles of an equilibrium that leave a reserve for control [-]; less reserve is needed to slow down than to
-climb."""
+"""Throttles of an equilibrium that leave a reserve for control [-]; to slow down takes less than to climb."""
 
 _SURFACE_FRACTION = 0.9
 """Fraction of a surface's travel that an equilibrium may take [-], for the same reason."""
@@ -124,8 +123,8 @@ def _why(t: Trim) -> str:
 
 
 def _stall_airspeed(fdm: Fdm, level: Trim) -> tuple[float, tuple[str, ...]]:
-    """Return the airspeed at which the largest lift carries the weight [m/s], found by pitching the held aircraft up;
-    and notes."""
+    """Return the airspeed at which the largest lift carries the weight [m/s], by pitching the held aircraft up; and
+    notes."""
     weight = fdm.read("inertia/weight-lbs")
     lift = fdm.node("forces/fwz-aero-lbs")
     largest, alpha = 0.0, level.alpha
@@ -147,8 +146,8 @@ def _stall_airspeed(fdm: Fdm, level: Trim) -> tuple[float, tuple[str, ...]]:
 
 
 def _airspeeds(fdm: Fdm, level: Trim, stall: float, bank: float) -> tuple[list[float], str]:
-    """Return the airspeeds, ascending, at which level flight and the steepest turns trim with reserve; and what ended
-    the range."""
+    """Return the airspeeds, ascending, at which level flight and steepest turns trim with reserve; and why they
+    end."""
     steepest = TABLE_REACH * (bank + BANK_RESERVE)
     slowest = _STALL_RESERVE * stall / math.sqrt(math.cos(steepest))
     fastest = min(_AIRSPEED_RATIO * slowest, _MACH_MAX * _SPEED_OF_SOUND)

@@ -16,8 +16,7 @@ _STEP = 0.05
 """Steps of throttle in the search [-]."""
 
 _GAIN_MIN = 0.05
-"""Least gain in deceleration for which flight idle is above closed throttle, over the deceleration with closed
-throttle [-]."""
+"""Least gain in deceleration, over that with closed throttle, for which flight idle is above it [-]."""
 
 _SETTLED = 1e-5
 """Change of acceleration a step below which the propeller counts as settled [m/s^2]."""

@@ -37,8 +37,7 @@ _INPUT_STEP = 0.01
 They are large against what is left of settling, ``_SETTLED``, and small against the curvature of a model's tables."""
 
 _LAG_STEP = {"throttle": 0.05}
-"""Input steps from which lags are measured: a turbine spools at a steady rate, so a small step would see no lag at all
-[-]."""
+"""Input steps for measuring lags: a turbine spools at a steady rate, so a small step would show no lag [-]."""
 
 _SETTLED = 3e-8
 """Change of acceleration a step below which engines count as settled: behind one as slow as a second, 4e-6 from the
@@ -46,8 +45,7 @@ end, where the differences are 5e-3 and more."""
 
 _LAG_STEPS_MAX = 2400
 _LAG_SETTLED = 0.002
-"""A lag is measured for at most this many time steps, 20 s, and until this fraction of the input's effect is left
-[-]."""
+"""A lag is measured for this many time steps at most, 20 s, or until this fraction of the effect is left [-]."""
 
 _SECOND_ORDER = 0.05
 """Product of two time constants over the square of their sum below which the lag counts as of first order [-]."""
@@ -80,8 +78,7 @@ def linearise(fdm: Fdm, trim: Trim) -> control.StateSpace:
 
 
 class _Differences:
-    """Everything is read settled, so moving a body state also moves a propeller that follows it; that part is
-    subtracted."""
+    """Everything is read settled, so a body state also moves a propeller that follows it; that part is subtracted."""
 
     def __init__(self, fdm: Fdm, trim: Trim) -> None:
         self._fdm = fdm
@@ -184,8 +181,7 @@ class _Differences:
         return (high - low) / (2.0 * step)
 
     def _read(self, body: int | None, control_input: int | None, step: float) -> npt.NDArray[np.float64]:
-        """Rates of the body states, extra outputs and driven states, with one quantity moved and everything
-        settled."""
+        """Return rates of body states, extra outputs and driven states, one quantity moved and all settled."""
         point, inputs = self._body.copy(), self._inputs.copy()
         if body is not None:
             point[body] += step
@@ -235,8 +231,7 @@ class _Differences:
         return np.array([*rates, course_rate(velocity, acceleration, roll, pitch), climb_rate])
 
     def _pole(self, i: int, j: int) -> float:
-        """Continuous pole of driven state i from its way back to rest, after the first step (which averages old and
-        new input)."""
+        """Return the pole of driven state i from its return to rest, after the first step, which averages inputs."""
         self._hold(self._body, self._inputs)
         rest = self._driven()[i]
         self._read(None, j, _INPUT_STEP)

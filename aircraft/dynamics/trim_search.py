@@ -1,5 +1,4 @@
-"""The search for an equilibrium: accelerations as a function of its unknowns, and the solvers that drive them to
-zero."""
+"""The search for an equilibrium: accelerations as a function of unknowns, and the solvers that zero them."""
 
 import math
 
@@ -15,19 +14,16 @@ TOLERANCE = 1e-5
 """Largest acceleration that counts as zero [m/s^2, rad/s^2]: a millionth of g."""
 
 _SETTLED = 2e-9
-"""Change of acceleration a step below which engines count as settled: behind one as slow as ten seconds, 2e-6 from the
-end."""
+"""Change of acceleration a step below which engines count as settled: 2e-6 from the end with a lag of ten seconds."""
 
 _SETTLE_STEPS = 2400
 """Largest number of time steps in which engines may settle: 20 s."""
 
 _GOOD = 0.05
-"""Acceleration at which a search ends, over ``TOLERANCE`` [-]: the remaining settling must not exceed the
-tolerance."""
+"""Acceleration at which a search ends, over ``TOLERANCE`` [-]: the rest is for the remaining settling."""
 
 _NEAR_LIMIT = 0.05
-"""Distance from a limit within which an unknown counts as at it, over its scale [-]: a bounded search stops short of
-limits."""
+"""Distance from a limit at which an unknown counts as at it, over its scale [-]: bounded searches stop short."""
 
 _ALPHA_MAX = 0.5
 _BETA_MAX = 0.3
@@ -77,8 +73,8 @@ class _FoundError(Exception):
 
 
 class TrimProblem:
-    """Unknowns: angle of attack, sideslip, bank or yaw rate, every control input. A rudder adds zero sideslip as a
-    condition."""
+    """Unknowns: angle of attack, sideslip, bank or yaw rate, control inputs. A rudder adds the condition of no
+    sideslip."""
 
     def __init__(self, fdm: Fdm, *, airspeed: float, altitude: float, bank: float, climb_angle: float) -> None:
         self._fdm = fdm
@@ -108,8 +104,7 @@ class TrimProblem:
         return [np.array([start.alpha, start.beta, third] + [start.inputs[i.name] for i in inputs]), *blank]
 
     def solve(self, guess: npt.NDArray[np.float64], *, run_up: bool) -> Trim:
-        """Return the result of Powell's method from a guess. The method knows no limits; a solution beyond one is not
-        an equilibrium."""
+        """Return the result of Powell's method from a guess; a solution beyond a limit is not an equilibrium."""
 
         def scaled(z: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
             # MINPACK steps relative to an unknown, and sideslip is zero: so every unknown is near one.
@@ -138,8 +133,7 @@ class TrimProblem:
         return self._result(guess + self._scale * (np.asarray(solution) - 1.0))
 
     def _run_up(self, guess: npt.NDArray[np.float64]) -> None:
-        """Settle at full throttle first: an earlier guess may have left a governed propeller wind-milling at its fine
-        stop."""
+        """Settle at full throttle first: an earlier guess may have left a governed propeller windmilling."""
         full = [self._upper[3 + k] if i.name == "throttle" else guess[3 + k] for k, i in enumerate(self._fdm.spec.inputs)]
         self.residual(np.array([*guess[:3], *full]))
 

@@ -1,5 +1,4 @@
-"""Where aircraft are known by name: the modules of this folder, installed packages, and Python files of the user add
-to it."""
+"""The registry of aircraft: of this folder, of installed packages, and of the user's Python files."""
 
 from aircraft.spec import AircraftSpec
 from common.registry import Registry

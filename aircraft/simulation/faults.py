@@ -20,8 +20,7 @@ ENGINE = "engine"
 
 _FAILED, _HELD = "fault/{}/failed", "fault/{}/held"
 _SHUT_DOWN = (("propulsion/magneto_cmd", 0.0), ("propulsion/cutoff_cmd", 1.0))
-"""Properties that shut engines down, where a model has them: with only ``set-running`` at 0 a windmilling engine
-starts again."""
+"""Properties that shut engines down, if a model has them; with ``set-running`` alone a windmilling engine restarts."""
 
 
 def fault_names(spec: AircraftSpec) -> tuple[str, ...]:
@@ -100,8 +99,7 @@ class Faults:
         """Names of the faults that have occurred."""
 
     def note_trim(self) -> None:
-        """Store every actuator's command as its trim position; to be called when the aircraft is released from
-        trim."""
+        """Store every actuator's command as its trim position; call it at the release from trim."""
         for actuator in self._fdm.spec.actuators:
             self._fdm.write(_HELD.format(actuator.name), self._fdm.read(actuator.commands[0]))
 

@@ -137,14 +137,12 @@ class Fdm:
             self._initialise(state, wind)
 
     def renew(self) -> None:
-        """Reset every model of JSBSim, with the filters of turbulence, gusts and engines, to how it was loaded; place
-        it next."""
+        """Reset every model of JSBSim, such as turbulence, gusts and engines, as it was loaded; place it next."""
         self._exec.reset_to_initial_conditions(RESET_ONLY)
         self._engines_run = False
 
     def revive(self) -> None:
-        """Let engines that have stopped start again when the aircraft is placed next: too little throttle can stall
-        them."""
+        """Let stopped engines start when the aircraft is placed next: too little throttle can stall them."""
         self._engines_run = self._engines_run and self._running()
 
     def _initialise(self, state: RigidBodyState, wind: tuple[float, float] | None) -> None:

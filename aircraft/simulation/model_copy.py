@@ -119,8 +119,8 @@ def _properties_at_rest(names: list[str]) -> ET.Element:
 
 
 def _copy_referenced(config: ET.Element, root: Path, source: Path, directory: Path) -> None:
-    """Copy the engines, thrusters and systems that stand in the root's common folders; files of the model's own are
-    there."""
+    """Copy the engines, thrusters and systems in the root's common folders; the model's own files are copied
+    already."""
     for element in config.iter():
         if element.tag not in _FOLDERS or not (found := _find(element, root, source)) or found.is_relative_to(source):
             continue

@@ -20,8 +20,7 @@ from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.schedule import LEVEL_GAINS, Schedule
 
 GUSTS = ("gust_along", "gust_right", "gust_down", "gust_p", "gust_q", "gust_r")
-"""Velocity of the air along the trimmed course, to its right and down [m/s], and its rotation about the same axes
-[rad/s]."""
+"""Velocity of the air along the trimmed course, right and down [m/s], and its rotation about these axes [rad/s]."""
 
 MOTION = ("speed", "course_rate")
 """Motion against the mean air: horizontal speed [m/s] and rate of the course [rad/s]; ``airspeed``, ``alpha``,
@@ -102,8 +101,7 @@ def aircraft_in_gusts(model: control.StateSpace, trim: Trim, level_model: contro
 
 
 def velocity_by_polar(airspeed: float, alpha: float, beta: float) -> Array:
-    """Return the rates of the body velocity [m/s] by airspeed [m/s], angle of attack and sideslip [rad], shape (3,
-    3)."""
+    """Return the rates of body velocity [m/s] by airspeed [m/s], angle of attack and sideslip [rad]: (3, 3)."""
     (ca, sa), (cb, sb) = ((math.cos(x), math.sin(x)) for x in (alpha, beta))
     return np.array([
         [ca * cb, -airspeed * sa * cb, -airspeed * ca * sb],

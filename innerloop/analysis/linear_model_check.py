@@ -32,8 +32,7 @@ _SIZE = 0.01
 
 
 _FINE = 8
-"""Substeps of a time step [-]: JSBSim's first-order integration is not part of the linear model, so it is made
-fine."""
+"""Substeps of a time step [-]: the linear model does not have JSBSim's first-order integration errors."""
 
 Array = npt.NDArray[np.float64]
 

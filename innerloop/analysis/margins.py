@@ -94,8 +94,7 @@ class Loops:
         self._at_measurements = 1.0 - np.einsum("fik,fki->fi", plant @ self._sensitivity, law)
 
     def opened(self, name: str) -> Complex:
-        """Return the loop opened at a control or a measurement, closed elsewhere, over frequency, for negative
-        feedback."""
+        """Return the loop opened at a control or measurement, closed elsewhere, for negative feedback."""
         if name in self.controls:
             i = self.controls.index(name)
             sensitivity = self._sensitivity[:, i, i]
@@ -139,8 +138,7 @@ class Loops:
         return np.asarray(np.linalg.eigvals(a + b @ np.linalg.solve(np.eye(len(d)) - d, c)))
 
     def _disk_at_all_controls(self) -> tuple[float, float]:
-        """Return disk margins for simultaneous, independent changes in all controls, by the structured singular
-        value."""
+        """Return disk margins for independent changes in all controls, by the structured singular value."""
         n = len(self.controls)
         one, complex_block = np.ones(n, dtype=int), np.full(n, 2)
         balanced = self._sensitivity[::_MU_STRIDE] - 0.5 * np.eye(n)

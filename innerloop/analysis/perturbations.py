@@ -42,8 +42,7 @@ def _effectiveness(factor: float) -> Change:
 
 
 def _inertia(factor: float) -> Change:
-    """Return a change of all moments of inertia: angular accelerations by forces of the air and the engine divide by
-    it."""
+    """Return a change of all moments of inertia: angular accelerations by air and engine divide by it."""
 
     def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
         del trim

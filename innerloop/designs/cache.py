@@ -138,8 +138,7 @@ def _store(key: str, found: Designed | _Refused) -> None:
 
 
 class _Pickler(pickle.Pickler):
-    """Writes linear systems as their matrices: python-control's own objects hold functions, which cannot be
-    written."""
+    """Pickles linear systems as their matrices: python-control's objects hold functions, which do not pickle."""
 
     def reducer_override(self, obj: object) -> tuple[Callable[..., object], tuple[object, ...]]:
         if isinstance(obj, control.StateSpace):

@@ -1,5 +1,4 @@
-"""From an aircraft to its autopilot: trim, linearise, weigh, design, check; slowed down where margins are too small,
-or refused."""
+"""From an aircraft to its autopilot: trim, linearise, weigh, design, check; slow loops down, or refuse."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -77,8 +77,7 @@ def design_record(design: Design, root: Path) -> Record:
 
 
 def step_sizes(schedule: Schedule) -> dict[str, float]:
-    """Return the steps that are predicted and flown [rad/s, m/s, m]: half the study's turn, and half of the clipped
-    errors."""
+    """Return the steps that are predicted and flown [rad/s, m/s, m]: half a study's turn, half the clipped errors."""
     turn = STANDARD_GRAVITY * math.tan(schedule.envelope.bank) / schedule.level(schedule.middle).airspeed
     room = 0.25 * (schedule.envelope.airspeed_max - schedule.envelope.airspeed_min)
     sizes = {

@@ -12,8 +12,8 @@ from aircraft.spec import Feedback
 from innerloop.jsbsim.properties import commanded_property
 
 _TRAVEL_TIME = 0.4
-"""Longest time for which a sound surface may trail its command [s]: the X8's elevons take 0.30 s from stop to stop,
-and lag by 25 ms."""
+"""Longest time a sound surface may trail its command [s]: the X8's takes 0.30 s from stop to stop and lags by 25
+ms."""
 
 
 class ServoMonitor:
@@ -44,8 +44,7 @@ class ServoMonitor:
             self._surfaces.append((command, position, feedback.travel, recent))
 
     def error(self) -> float:
-        """Return the largest distance of a surface from its recent commands, over its travel [-]; call once per time
-        step."""
+        """Return the largest distance of a surface from its recent commands, over its travel [-]; call once a step."""
         worst = 0.0
         for command, position, travel, recent in self._surfaces:
             recent.append(command())

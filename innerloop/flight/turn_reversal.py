@@ -1,5 +1,4 @@
-"""The turn-reversal response: how the heading rate follows the largest change of command that the guidance can
-give."""
+"""The turn-reversal response: how the heading rate follows the guidance's largest change of command."""
 
 import math
 from dataclasses import dataclass
@@ -84,8 +83,7 @@ def measure_turn_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: floa
 
 
 def displacement(time: Array, reversal: TurnReversalResponse) -> Array:
-    """Return the integral of the course error [s2], per change of the commanded heading rate, ``time`` [s] after
-    it."""
+    """Return the integral of the course error [s2] per change of commanded heading rate, ``time`` [s] after it."""
     after = np.maximum(time - reversal.delay, 0.0)
     lag = reversal.lag
     late = np.minimum(time, reversal.delay)

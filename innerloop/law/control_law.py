@@ -63,8 +63,7 @@ class ControlLaw:
         return float(self._bank_for_turn([[turn, airspeed]])[0])
 
     def bank_slope(self, bank: float, measured_airspeed: float, airspeed: float) -> float:
-        """Return the bank rate per rate of heading rate [s] about a bank: cos^2(bank) times V/g, and what slipping
-        adds to it."""
+        """Return the bank rate per rate of heading rate [s] about a bank: cos^2(bank) V/g, more if it slips."""
         slope = float(np.interp(airspeed, self._airspeeds, self._slopes))
         return math.cos(bank) ** 2 * slope * measured_airspeed / STANDARD_GRAVITY
 
@@ -152,7 +151,6 @@ class _Named:
 
 
 def bank_slopes(schedule: Schedule) -> list[float]:
-    """Return tan(bank) over dimensionless turn V omega/g near level flight, by airspeed: 1 where turns are
-    coordinated."""
+    """Return tan(bank) over dimensionless turn V omega/g near level flight, by airspeed: 1 in coordinated turns."""
     low, high = schedule.bank_for_turn(np.array([-0.2, 0.2]))
     return [(math.tan(b) - math.tan(a)) / 0.4 for a, b in zip(low, high, strict=True)]

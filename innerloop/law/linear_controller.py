@@ -9,8 +9,7 @@ from aircraft.dynamics.equilibrium import Trim
 from innerloop.law.control_law import COMMANDS, STATES, ControlLaw, measurements
 
 _STEP = 1e-4
-"""Step of differences [SI]: the law is made of products and of straight pieces of tables, so only rounding limits it
-from below."""
+"""Step of differences [SI]: the law has products and piecewise linear tables, so only rounding limits it."""
 
 
 def linear_controller(law: ControlLaw, trim: Trim) -> control.StateSpace:

@@ -34,8 +34,7 @@ def quasi_static(model: control.StateSpace) -> control.StateSpace:
 
 
 def state_lag(model: control.StateSpace, control_input: str) -> float:
-    """Return how late a control input comes to act [s]: the area above the step response of the slowest state that
-    follows it."""
+    """Return the lag of a control input [s]: the area above the step response of the slowest state that follows it."""
     driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES]
     if not driven:
         return 0.0

@@ -23,12 +23,10 @@ _LAG_PHASE = 0.18
 """Phase that a loop may lose to its servo and the computing delay at its frequency [rad]: 10 degrees."""
 
 _AUTHORITY_FRACTION = 0.5
-"""Fraction of the control authority that a step of a command may take [-]: the other half is left to gusts and
-feedback."""
+"""Fraction of the control authority that a step of a command may take [-]: the rest is for gusts and feedback."""
 
 _BANK_STEP_FRACTION = 0.5
-"""The step of bank that takes this authority, over the bank limit [-]: from straight flight half-way into the steepest
-turn."""
+"""The step of bank that takes this authority, over the bank limit [-]: half-way into the steepest turn."""
 
 _PITCH_STEP = 0.15
 """The step of pitch that takes this authority [rad]: half the acceptable deviation."""
@@ -62,8 +60,7 @@ _SIDESLIP = 0.05
 
 _PITCH_RATE = 0.5
 _ROLL_RATE = 3.3
-"""Acceptable rates of pitch and roll, over their acceptable angle a unit of time [-]. Roll rate is hardly
-penalised."""
+"""Acceptable rates of pitch and roll, over their angle a unit of time [-]; roll rate is hardly penalised."""
 
 _CLIMB_TIME = 0.5
 _SLOWDOWN_TIME = 2.0
@@ -82,8 +79,7 @@ _ERROR_MAX = 2.0
 steady climb or acceleration."""
 
 _ANTI_WINDUP = 0.33
-"""How fast an integrator follows its saturated control, over the longitudinal bandwidth [-]: within three units of
-time."""
+"""Rate at which integrators follow a saturated control, over the longitudinal bandwidth [-]: three units of time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -156,8 +152,7 @@ class ControlWeights:
 
 
 def reachable_bandwidths(models: Sequence[control.StateSpace], bank: float) -> LoopBandwidths:
-    """Return the bandwidths that an aircraft's level linear models can follow at every one of them, in turns up to
-    ``bank`` [rad]."""
+    """Return the bandwidths that every level linear model of an aircraft can follow, in turns up to ``bank`` [rad]."""
     each = [_reachable(model, bank) for model in models]
     longitudinal = min(bandwidths.longitudinal for bandwidths in each)
     engine = min(bandwidths.airspeed for bandwidths in each)
@@ -223,8 +218,7 @@ def design_weights(bandwidths: LoopBandwidths, airspeed: float) -> DesignWeights
 
 
 def control_weights(model: control.StateSpace, bandwidths: LoopBandwidths, weights: DesignWeights) -> ControlWeights:
-    """Return the acceptable controls at one airspeed: those that move their axis at its frequency, against its own
-    damping."""
+    """Return the controls at one airspeed that move their axis at its frequency, against its own damping."""
     plant = quasi_static(model)
 
     def authority(row: str, column: str) -> float:

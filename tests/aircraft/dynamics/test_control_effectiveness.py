@@ -1,4 +1,4 @@
-"""Straightened controls: a surface that travels further one way is flown by its effect."""
+"""Control-effectiveness linearisation: a surface that travels further one way is commanded by its effect."""
 
 from dataclasses import replace
 
@@ -24,7 +24,7 @@ KINKED = ControlInput(
 
 @pytest.fixture(scope="module")
 def twin():
-    """JSBSim's c310, whose elevator goes 14 degrees up and 4 down, in level flight, and its spec made straight."""
+    """JSBSim's c310, whose elevator goes 14 degrees up and 4 down, in level flight, and its spec with linearised controls."""
     fdm = Fdm(find_spec("c310"))
     level = first_trim(fdm, ALTITUDE)
     return fdm, level, with_linearised_controls(fdm, level)
@@ -65,7 +65,7 @@ def test_the_twins_elevator_bends_as_jsbsim_has_it(twin):
     assert steep.max() / steep.min() == pytest.approx(14.0 / 4.0, rel=0.01)
 
 
-def test_a_bent_elevator_becomes_straight(twin):
+def test_the_effect_of_a_nonlinear_elevator_becomes_linear(twin):
     _, level, spec = twin
     elevator = spec.input("elevator")
     assert elevator.effectiveness
@@ -84,13 +84,13 @@ def test_the_new_command_runs_from_nought_at_the_old_and_over_two_from_stop_to_s
         assert -1.0 <= control_input.command(control_input.lower) < control_input.command(control_input.upper) <= 1.0
 
 
-def test_straight_surfaces_and_the_throttle_are_left_as_they_are():
+def test_linear_surfaces_and_the_throttle_are_left_as_they_are():
     fdm = Fdm(X8)
     level = first_trim(fdm, ALTITUDE)
     assert with_linearised_controls(fdm, level) == X8
 
 
-def test_the_effects_of_a_straightened_aircraft_need_no_more_straightening(twin):
+def test_controls_that_are_linearised_already_are_left_as_they_are(twin):
     _, _, spec = twin
     fdm = Fdm(spec)
     again = with_linearised_controls(fdm, first_trim(fdm, ALTITUDE))
