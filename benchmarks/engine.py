@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import fly_study
 from scenarios.engine.task import Task, Work
@@ -54,7 +54,7 @@ def _whole_study(jobs: int) -> float:
             times.append(time.perf_counter())
 
     with tempfile.TemporaryDirectory() as folder:
-        fly_study(study, Path(folder) / "run", hire=Hiring(jobs=jobs), resume=False, progress=told)
+        fly_study(study, Path(folder) / "run", executor_factory=ExecutorFactory(jobs=jobs), resume=False, progress=told)
     return times[-1] - times[0]
 
 

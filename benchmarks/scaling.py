@@ -13,7 +13,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from scenarios.engine.executors import DASK, LOCAL, Hiring
+from scenarios.engine.executors import DASK, LOCAL, ExecutorFactory
 from scenarios.engine.journal import Journal
 from scenarios.engine.task import Result, Task
 
@@ -65,9 +65,9 @@ class Nothing:
 
 def _throughput(executor: str) -> float:
     """Return how many results a second are in the journal."""
-    with tempfile.TemporaryDirectory() as folder, Hiring(jobs=2, executor=executor)(Nothing()) as crew:
+    with tempfile.TemporaryDirectory() as folder, ExecutorFactory(jobs=2, executor=executor)(Nothing()) as started:
         journal = Journal(Path(folder) / "journal.sqlite")
-        flown = crew.fly(Task(number=i) for i in range(TASKS))
+        flown = started.fly(Task(number=i) for i in range(TASKS))
         journal.add(next(flown))
         began = time.perf_counter()
         for result in flown:

@@ -1,1 +1,1 @@
-"""What flies the studies: work, crews that do it, the journal of what is done. It knows no study."""
+"""What flies the studies: work, executors that do it, the journal of what is done. It knows no study."""

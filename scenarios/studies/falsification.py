@@ -11,7 +11,7 @@ from scipy.stats import qmc
 
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Summary
+from scenarios.engine.runner import Fly, StudySummary
 from scenarios.engine.task import Row, Task
 from scenarios.experiment.draws import drawn_flight, speed_ratio_excess
 from scenarios.experiment.scenario_file import scenario_file
@@ -47,7 +47,7 @@ class FalsifyStudy(SeaStudy):
         """Return the task of a flight, at the point that the search gave it."""
         return self._tasks[number]
 
-    def conduct(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
+    def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Have one generation flown after the other; keep the worst flights."""
         ((_, scenario),) = self.trials.items()
         dimension = len(scenario.draws)
@@ -99,7 +99,7 @@ class FalsifyStudy(SeaStudy):
             run.write_bytes(f"worst/{rank:02d}_{row['flight_id']}.toml", scenario_file(drawn, title=title))
         fly(self.unrecorded([number for _, number, _ in worst], run, journal))
 
-    def summary(self, journal: Journal) -> Summary:
+    def summary(self, journal: Journal) -> StudySummary:
         """Return what the search has found."""
         found = super().summary(journal)
         clearances = [(_clearance(row), row["flight_id"]) for row in journal.rows(SUMMARY)]

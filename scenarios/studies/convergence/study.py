@@ -14,7 +14,7 @@ from gnc.errors import InfeasibleError
 from gnc.laws.delta import look_ahead
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, Summary
+from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
 from scenarios.schema.convergence import ConvergenceScenario
@@ -26,7 +26,7 @@ from scenarios.studies.convergence.ensemble import (
     fly_block,
     trajectory_of,
 )
-from scenarios.studies.manifest import opening_manifest
+from scenarios.studies.manifest import initial_manifest
 
 _SUMMARY = "summary.csv"
 
@@ -105,10 +105,10 @@ class ConvergenceStudy:
         except InfeasibleError as error:
             raise InputError(f"guidance: {error}") from None
         self.planned = scenario.ensemble.trajectories * len(g.laws)
-        self._manifest = opening_manifest(scenario, name, overrides)
+        self._manifest = initial_manifest(scenario, name, overrides)
         self.config_hash = str(self._manifest["config_hash"])
 
-    def opening(self) -> dict[str, Any]:
+    def initial_manifest(self) -> dict[str, Any]:
         """Return what the manifest says before anything has been flown."""
         return self._manifest | {
             "trajectories_planned": self.planned,
@@ -134,11 +134,11 @@ class ConvergenceStudy:
         """Return the flying of its blocks."""
         return ConvergenceWork(blocks=self._blocks)
 
-    def conduct(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
+    def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
         """Have every block flown."""
         fly(Task(number=i) for i in range(len(self._blocks)))
 
-    def finish(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
+    def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
         """Write the time histories of the first trajectories and of the counter-examples."""
         progress("keeping time histories", self.planned, self.planned)
         frame = self._frame(journal)
@@ -161,7 +161,7 @@ class ConvergenceStudy:
     def _frame(self, journal: Journal) -> pd.DataFrame:
         return convergence_table(journal.rows(_SUMMARY), self._scenario.guidance.laws)
 
-    def summary(self, journal: Journal) -> Summary:
+    def summary(self, journal: Journal) -> StudySummary:
         """Return how many trajectories converged."""
         laws = self._scenario.guidance.laws
         frame = self._frame(journal)
@@ -170,7 +170,7 @@ class ConvergenceStudy:
         converged = frame["outcome"] == Outcome.CONVERGED.value
         flown = frame.assign(converged=converged).groupby(["law", "reference"], sort=False)["converged"]
         lines = [f"  {law}, {kind}: {int(of_kind.sum())} of {len(of_kind)} converged" for (law, kind), of_kind in flown]
-        return Summary(
+        return StudySummary(
             done=len(frame),
             met=len(frame) == self.planned and bool(converged[frame["law"].isin(judged)].all()),
             lines=[f"{self.planned} trajectories planned, {len(frame)} done: {int(converged.sum())} converged", *lines],

@@ -8,7 +8,7 @@ import pytest
 
 from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.build import build_reports
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.load import load_study
@@ -24,7 +24,7 @@ def study(*overrides):
 
 
 def run(scenario, path, *, resume=False, progress=lambda *_: None, jobs=1):
-    return run_study(scenario, "convergence", path, hire=Hiring(jobs=jobs), resume=resume, progress=progress)
+    return run_study(scenario, "convergence", path, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
 
 
 @pytest.fixture(scope="module")

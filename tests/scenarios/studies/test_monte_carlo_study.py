@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.schema.monte_carlo_config import MonteCarloScenario
@@ -28,7 +28,7 @@ SHORT = [
 def run(out, *overrides, jobs=2, resume=False, progress=lambda *_: None):
     scenario = load_study("monte_carlo", [*SHORT, *overrides])
     assert isinstance(scenario, MonteCarloScenario)
-    return run_study(scenario, "monte_carlo", out, hire=Hiring(jobs=jobs), resume=resume, progress=progress)
+    return run_study(scenario, "monte_carlo", out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
 
 
 def tables(out):
