@@ -13,6 +13,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from common.run_layout import JOURNAL, MANIFEST, SUMMARY
 from scenarios.engine.executors import DASK, LOCAL, ExecutorFactory
 from scenarios.engine.journal import Journal
 from scenarios.engine.task import Result, Task
@@ -57,7 +58,7 @@ class Nothing:
 
     def fly(self, task: Task) -> Result:
         row = {"flight_id": f"nothing_{task.number:05d}"} | {f"figure_{i}": math.pi * (i + task.number) for i in range(100)}
-        return Result(task=task, tables={"summary.csv": [row]})
+        return Result(task=task, tables={SUMMARY: [row]})
 
     def lost(self, task: Task, reason: str) -> Result:
         raise RuntimeError(f"task {task.number}: {reason}")
@@ -66,7 +67,7 @@ class Nothing:
 def _throughput(executor: str) -> float:
     """Return how many results a second are in the journal."""
     with tempfile.TemporaryDirectory() as folder, ExecutorFactory(jobs=2, executor=executor)(Nothing()) as started:
-        journal = Journal(Path(folder) / "journal.sqlite")
+        journal = Journal(Path(folder) / JOURNAL)
         flown = started.fly(Task(number=i) for i in range(TASKS))
         journal.add(next(flown))
         began = time.perf_counter()
@@ -84,7 +85,7 @@ def _study(name: str, *overrides: str) -> Measured:
         command = [sys.executable, "-m", "scenarios.run", name, *words, "--jobs", "2", "--no-report", "--out", str(out)]
         began = time.perf_counter()
         subprocess.run(command, check=False, capture_output=True)
-        manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+        manifest = json.loads((out / MANIFEST).read_text(encoding="utf-8"))
         if manifest["state"] != "complete":
             raise RuntimeError(f"{' '.join(command)} did not complete in {time.perf_counter() - began:.0f} s")
         size = sum(path.stat().st_size for path in out.rglob("*") if path.is_file()) / 2**20

@@ -17,13 +17,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from common.run_layout import SUMMARY, time_history_path
 from gnc.sea_guidance import SeaGuidance
 from gnc.tracker import Guidance
 from scenarios.engine.task import Task
 from scenarios.planning.sea_planner import SeaPlan, plan_sea_flight
 from scenarios.schema.sea_config import Reports, SeaFlight, SeaScenario, SeaStart, SeaVessel, Wind
 from scenarios.sea_flights import SeaWork, Trial
-from scenarios.simulation.time_history import history_path
 from scenarios.vehicles.sea_airframe import airframe_for
 
 SETTLED = 150.0
@@ -48,8 +48,8 @@ def report_sea_guidance(rounds: int) -> None:
         airframe = airframe_for(SCENARIO, Path(folder))
         work = SeaWork(trials=(Trial(name="bench", scenario=SCENARIO, spreads={}),), histories=1, airframe=airframe)
         flown = work.fly(Task(number=0))
-        row = flown.tables["summary.csv"][0]
-        history = pd.read_parquet(io.BytesIO(flown.files[history_path(row["flight_id"])]))
+        row = flown.tables[SUMMARY][0]
+        history = pd.read_parquet(io.BytesIO(flown.files[time_history_path(row["flight_id"])]))
         plans = [
             plan_sea_flight(SCENARIO, flight_id="bench", seed=row["seed"], airframe=airframe, spreads={}) for _ in range(rounds)
         ]

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from common.run_layout import COMPARISON, CROSSINGS, SUMMARY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
@@ -54,7 +55,7 @@ class FlightRequest:
     @property
     def table(self) -> str:
         """Return the file that its row is in."""
-        return "summary.csv" if self.variant == STUDY else "comparison.csv"
+        return SUMMARY if self.variant == STUDY else COMPARISON
 
 
 def flight_requests(scenario: Scenario) -> list[FlightRequest]:
@@ -173,7 +174,7 @@ class FlightWork:
         return Result(
             task=task,
             items=int(request.variant == STUDY),
-            tables={request.table: [row], "crossings.csv": list(crossings)},
+            tables={request.table: [row], CROSSINGS: list(crossings)},
             files=history_files(task, history, planned=len(self.requests), wanted=self.histories, row=row),
         )
 

@@ -9,6 +9,7 @@ from typing import Any
 import pandas as pd
 
 from common.files import write_json, write_whole
+from common.run_layout import BOUNDS, DESIGN_RECORD, HISTORY_SUFFIX, JOURNAL, MANIFEST, MODEL, STATISTICS
 from scenarios.engine.fingerprint import differences, fingerprint
 from scenarios.errors import InputError
 
@@ -23,14 +24,12 @@ class RunDirectory:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.manifest = path / "manifest.json"
-        self.journal = path / "journal.sqlite"
-        self.innerloop = path / "innerloop.json"
-        self.bounds = path / "bounds.json"
-        self.statistics = path / "statistics.json"
-        self.model = path / "model"
-        self.flights = path / "flights"
-        self.trajectories = path / "trajectories"
+        self.manifest = path / MANIFEST
+        self.journal = path / JOURNAL
+        self.innerloop = path / DESIGN_RECORD
+        self.bounds = path / BOUNDS
+        self.statistics = path / STATISTICS
+        self.model = path / MODEL
 
     def open(self, config_hash: str, *, resume: bool) -> None:
         """Open the directory for a new run, or to resume one of this configuration; see ``open_new`` and ``open_existing``."""
@@ -105,8 +104,10 @@ class RunDirectory:
 
     def write_frame(self, name: str, frame: pd.DataFrame) -> None:
         """Write a table to ``name``, a CSV or Parquet file by its suffix, completely or not at all."""
-        write = frame.to_parquet if name.endswith(".parquet") else frame.to_csv
-        write_whole(self.path / name, lambda part: write(part, index=False))
+        path = self.path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write = frame.to_parquet if name.endswith(HISTORY_SUFFIX) else frame.to_csv
+        write_whole(path, lambda part: write(part, index=False))
 
     def write_bytes(self, name: str, content: bytes) -> None:
         """Write a file of the run, completely or not at all."""

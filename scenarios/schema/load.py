@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from common.run_layout import FLIGHTS, MANIFEST
 from scenarios.errors import InputError
 from scenarios.schema.config import Scenario
 from scenarios.schema.convergence import ConvergenceScenario
@@ -47,7 +48,7 @@ def catalog() -> dict[str, Path]:
 def is_flight(name: str) -> bool:
     """Return whether ``name`` is that of a flight in a run directory: ``RUN_DIR/flights/ID``."""
     path = Path(name)
-    return path.parent.name == "flights" and (path.parents[1] / "manifest.json").is_file()
+    return path.parent.name == FLIGHTS and (path.parents[1] / MANIFEST).is_file()
 
 
 def load_scenario(name: str, overrides: Sequence[str] = ()) -> Scenario:

@@ -5,16 +5,16 @@ from dataclasses import replace
 
 import pandas as pd
 
+from common.run_layout import DRAWS, SUMMARY
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Row, Task
 from scenarios.experiment.sampling import Points
 from scenarios.schema.monte_carlo_config import MonteCarloScenario
-from scenarios.sea_flights import DRAWS
 from scenarios.statistics.estimates import COLUMNS, study_statistics
 from scenarios.statistics.stopping import looks, tight_enough
-from scenarios.studies.sea_study import SUMMARY, SeaStudy
+from scenarios.studies.sea_study import SeaStudy
 
 
 class MonteCarloStudy(SeaStudy):

@@ -7,8 +7,8 @@ import numpy as np
 
 from gnc.analysis.adversary import tightness
 from gnc.errors import InfeasibleError
+from scenarios.engine.task import Row
 from scenarios.flights import FlightRequest
-from scenarios.metrics.figures import Row
 from scenarios.planning.bounded_steering import farthest_start, largest_speed, search_steering
 from scenarios.planning.limits import omega_max
 from scenarios.planning.planner import plan_flight

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from common.run_layout import COMPARISON, HISTORY_SUFFIX, JOURNAL, MANIFEST, SUMMARY
 from scenarios.engine.fingerprint import differences
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
@@ -16,7 +17,7 @@ from scenarios.schema.load import checked
 from scenarios.schema.sea_config import SeaScenario
 from scenarios.studies.registry import study_of
 
-_TABLES = ("summary.csv", "comparison.csv")
+_TABLES = (SUMMARY, COMPARISON)
 """Tables that may have the row of a flight."""
 
 NOT_COMPARED = ("wall_time_s",)
@@ -39,7 +40,7 @@ class Replay:
     planned = 1
 
     def __init__(self, name: str) -> None:
-        self._flight_id = Path(name).name.removesuffix(".parquet")
+        self._flight_id = Path(name).name.removesuffix(HISTORY_SUFFIX)
         self._from = Path(name).parents[1]
         manifest = self._manifest()
         if "replayed" in manifest:
@@ -51,14 +52,14 @@ class Replay:
 
     def _manifest(self) -> dict[str, Any]:
         try:
-            manifest = json.loads((self._from / "manifest.json").read_text(encoding="utf-8"))
+            manifest = json.loads((self._from / MANIFEST).read_text(encoding="utf-8"))
             return dict(manifest)
         except (ValueError, TypeError, OSError) as error:
-            raise InputError(f"'{self._from}': manifest.json cannot be read: {error}; give the directory of a run") from None
+            raise InputError(f"'{self._from}': {MANIFEST} cannot be read: {error}; give the directory of a run") from None
 
     def _found(self) -> tuple[Task, str, Row]:
         """Return the task of the flight, the table that has its row, and the row."""
-        path = RunDirectory(self._from).journal
+        path = self._from / JOURNAL
         if not path.is_file():
             raise InputError(
                 f"'{self._from}' has no {path.name} with the results of its flights; give the directory of a complete run"
@@ -71,7 +72,7 @@ class Replay:
                         return journal.task(number), table, row
         finally:
             journal.close()
-        raise InputError(f"'{self._from}' has no flight '{self._flight_id}'; its summary.csv lists them")
+        raise InputError(f"'{self._from}' has no flight '{self._flight_id}'; its {SUMMARY} lists them")
 
     def _restored(self, manifest: dict[str, Any]) -> Study:
         """Return the study of the run, or of the one trial of it that the flight belongs to.
@@ -113,8 +114,8 @@ class Replay:
     def export(self, run: RunDirectory, journal: Journal) -> None:
         """Write the tables; the row is in ``summary.csv`` even if the flight was a comparison."""
         self._study.export(run, journal)
-        if self._table != _TABLES[0]:
-            (run.path / self._table).replace(run.path / _TABLES[0])
+        if self._table != SUMMARY:
+            (run.path / self._table).replace(run.path / SUMMARY)
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return whether the row is identical to that of the original flight."""

@@ -12,6 +12,7 @@ import numpy as np
 from aircraft.fleet.find import find_spec
 from aircraft.simulation.faults import fault_names
 from aircraft.spec import Envelope
+from common.run_layout import DRAWS, SUMMARY, time_history_path
 from gnc.sea_parameters import Mode
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
@@ -25,14 +26,11 @@ from scenarios.planning.scaling import fitted
 from scenarios.planning.spreads import predicted_spreads
 from scenarios.schema.load import load_study
 from scenarios.schema.sea_config import SeaScenario, SeaTrial
-from scenarios.sea_flights import DETAILS, DRAWS, SeaWork, Trial
-from scenarios.simulation.time_history import history_path
+from scenarios.sea_flights import DETAILS, SeaWork, Trial
 from scenarios.studies.manifest import config_hash, initial_manifest, parameters
 from scenarios.studies.summary import FlightCounts
 from scenarios.vehicles.sea_airframe import airframe_of, design_for
 from scenarios.world.weather import SATELLITES, VESSEL_DATA
-
-SUMMARY = "summary.csv"
 
 
 class SeaStudy:
@@ -123,7 +121,7 @@ class SeaStudy:
             replace(self.task(number), recorded=True)
             for number in numbers
             for row in journal.rows(SUMMARY, first=number, below=number + 1)
-            if not (run.path / history_path(row["flight_id"])).is_file()
+            if not (run.path / time_history_path(row["flight_id"])).is_file()
         ]
 
     def task(self, number: int) -> Task:

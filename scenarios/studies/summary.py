@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Self
 
+from common.run_layout import SUMMARY
 from scenarios.engine.task import Row
 from scenarios.simulation.closed_loop import Outcome
 
@@ -63,7 +64,7 @@ class FlightCounts:
         """Return a line for each of the first flights that failed, and one for the rest."""
         lines = [f"{indent}{row['flight_id']}: {row['outcome']}: {row['message']}" for row in self.failed]
         more = self.done - self.met - len(self.failed)
-        return [*lines, f"{indent}and {more} more failed, see summary.csv"] if more else lines
+        return [*lines, f"{indent}and {more} more failed, see {SUMMARY}"] if more else lines
 
     def manifest(self) -> dict[str, Any]:
         """Return the entries of a manifest."""

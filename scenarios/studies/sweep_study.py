@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from aircraft.spec import AircraftSpec, Envelope
+from common.run_layout import COMPARISON, CROSSINGS, SUMMARY
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
@@ -57,9 +58,9 @@ class SweepStudy:
         }
         self.planned = sum(request.variant == STUDY for request in self._requests)
         self.config_hash = str(self._manifest["config_hash"])
-        self.tables = {"summary.csv": SUMMARY_COLUMNS, "crossings.csv": CROSSING_COLUMNS}
+        self.tables = {SUMMARY: SUMMARY_COLUMNS, CROSSINGS: CROSSING_COLUMNS}
         if self.planned < len(self._requests):
-            self.tables["comparison.csv"] = SUMMARY_COLUMNS
+            self.tables[COMPARISON] = SUMMARY_COLUMNS
 
     def initial_manifest(self) -> dict[str, Any]:
         """Return what the manifest says before anything has been flown."""
@@ -95,7 +96,7 @@ class SweepStudy:
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return what the flights have come to."""
-        counts = FlightCounts.of(journal.rows("summary.csv"), self.planned)
+        counts = FlightCounts.of(journal.rows(SUMMARY), self.planned)
         head = (
             f"{self.planned} flights planned, {counts.done} done: {counts.completed} completed, {counts.met} met every criterion;"
             f" {counts.keepout_violations} keep-out violations"

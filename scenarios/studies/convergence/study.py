@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from common.run_layout import COUNTEREXAMPLES, SUMMARY, trajectory_path
 from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED, Outcome
 from gnc.analysis.ensemble_motion import Vehicle
 from gnc.errors import InfeasibleError
@@ -27,8 +28,6 @@ from scenarios.studies.convergence.ensemble import (
     trajectory_of,
 )
 from scenarios.studies.manifest import initial_manifest
-
-_SUMMARY = "summary.csv"
 
 _LOST = "lost"
 """Outcome of a trajectory whose process was lost."""
@@ -57,7 +56,7 @@ class ConvergenceWork:
     def fly(self, task: Task) -> Result:
         """Fly a block."""
         block = self.blocks[task.number]
-        return Result(task=task, tables={_SUMMARY: fly_block(block)}, items=len(block.cases))
+        return Result(task=task, tables={SUMMARY: fly_block(block)}, items=len(block.cases))
 
     def lost(self, task: Task, reason: str) -> Result:
         """Return the result of a block whose process was lost: a row for each of its trajectories."""
@@ -72,7 +71,7 @@ class ConvergenceWork:
             }
             for case in block.cases
         ]
-        return Result(task=task, tables={_SUMMARY: rows}, items=len(rows), lost=True)
+        return Result(task=task, tables={SUMMARY: rows}, items=len(rows), lost=True)
 
 
 class ConvergenceStudy:
@@ -146,20 +145,19 @@ class ConvergenceStudy:
         # A trajectory whose process was lost has nothing that could be flown again.
         kept = kept[kept["duration_s"].notna()]
         kept["duration_s"] = kept["duration_s"].clip(upper=_HISTORY_MAX)
-        run.trajectories.mkdir(exist_ok=True)
         for _, row in kept.drop_duplicates(["trajectory", "law"]).iterrows():
             band = self._scenario.ensemble.settling_band_m
             history = trajectory_of(row, vehicle=self._vehicle, settling_band=band, step_max=_HISTORY_STEP)
-            run.write_frame(f"{run.trajectories.name}/{row['law']}_{row['trajectory']:05d}.parquet", history)
+            run.write_frame(trajectory_path(row["law"], row["trajectory"]), history)
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
         """Write its tables: blocks are not in the order of their trajectories."""
         frame = self._frame(journal)
-        run.write_frame(_SUMMARY, frame)
-        run.write_frame("counterexamples.csv", counterexamples(frame))
+        run.write_frame(SUMMARY, frame)
+        run.write_frame(COUNTEREXAMPLES, counterexamples(frame))
 
     def _frame(self, journal: Journal) -> pd.DataFrame:
-        return convergence_table(journal.rows(_SUMMARY), self._scenario.guidance.laws)
+        return convergence_table(journal.rows(SUMMARY), self._scenario.guidance.laws)
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return how many trajectories converged."""
