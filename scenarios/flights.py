@@ -19,8 +19,9 @@ from scenarios.metrics.relative_state import flight_history
 from scenarios.planning.planner import FlightPlan, plan_flight
 from scenarios.schema.config import Case, Scenario
 from scenarios.schema.load import with_values
-from scenarios.simulation.closed_loop import Outcome, fly
+from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.failure import failure, unflown
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.time_history import history_files
 from scenarios.vehicles.jsbsim import JsbsimVehicle
 from scenarios.vehicles.kinematic import KinematicVehicle

@@ -20,9 +20,9 @@ from scenarios.metrics.crossings import crossing_rows
 from scenarios.metrics.sea_figures import sea_figures, sea_plan_row, sea_unmet
 from scenarios.planning.sea_planner import SeaPlan, plan_sea_flight
 from scenarios.schema.sea_config import SeaScenario
-from scenarios.simulation.closed_loop import Outcome
 from scenarios.simulation.failure import failure, unflown
 from scenarios.simulation.interventions import INTERVENTION_COLUMNS
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.sea_loop import SEA_COLUMNS, fly_sea
 from scenarios.simulation.time_history import history_files
 from scenarios.vehicles.jsbsim import JsbsimVehicle

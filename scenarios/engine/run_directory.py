@@ -4,14 +4,16 @@ import json
 import uuid
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from common.files import write_json, write_whole
 from common.run_layout import BOUNDS, DESIGN_RECORD, HISTORY_SUFFIX, JOURNAL, MANIFEST, MODEL, STATISTICS
 from scenarios.engine.fingerprint import differences, fingerprint
 from scenarios.errors import InputError
+
+if TYPE_CHECKING:
+    # Commands that only list or refuse something need not wait for it.
+    import pandas as pd
 
 
 class RunDirectory:
@@ -102,7 +104,7 @@ class RunDirectory:
         """Write a JSON file, completely or not at all."""
         write_json(path, value)
 
-    def write_frame(self, name: str, frame: pd.DataFrame) -> None:
+    def write_frame(self, name: str, frame: "pd.DataFrame") -> None:
         """Write a table to ``name``, a CSV or Parquet file by its suffix, completely or not at all."""
         path = self.path / name
         path.parent.mkdir(parents=True, exist_ok=True)

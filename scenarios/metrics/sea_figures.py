@@ -12,7 +12,7 @@ from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import keepout_figures
 from scenarios.planning.sea_planner import SeaPlan
 from scenarios.schema.sea_config import SeaCriteria
-from scenarios.simulation.closed_loop import Outcome
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.sea_loop import DITCHED, SEA_COLUMNS, SeaRecord
 from scenarios.world.weather import SATELLITES, VESSEL_DATA
 

@@ -4,7 +4,7 @@ import typing
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, RootModel
 from pydantic.fields import FieldInfo
 
 from common.spelling import nearest
@@ -12,12 +12,29 @@ from common.spelling import nearest
 
 def known_keys(kind: type[BaseModel]) -> list[str]:
     """Return every dotted key of a schema, sections included; an entry of a list of sections has the index 0."""
-    keys = []
+    keys: list[str] = []
+    if issubclass(kind, RootModel):
+        return keys
     for name, field in kind.model_fields.items():
         keys.append(name)
         for model, listed in _models(field.annotation):
             keys += [f"{name}.0.{key}" if listed else f"{name}.{key}" for key in known_keys(model)]
     return keys
+
+
+def key_parts(kind: type[BaseModel], dotted: str) -> list[str]:
+    """Return the parts of a dotted key; what follows a section that has keys of other sections, such as sweep, is one part."""
+    parts = dotted.split(".")
+    model: type[BaseModel] = kind
+    for depth, part in enumerate(parts[:-1], start=1):
+        field = None if part.isdigit() else model.model_fields.get(part)
+        found = next(_models(field.annotation), None) if field else None
+        if found is None:
+            break
+        model = found[0]
+        if issubclass(model, RootModel):
+            return [*parts[:depth], ".".join(parts[depth:]).strip('"')]
+    return parts
 
 
 def suggestion(kind: type[BaseModel], key: str) -> str:

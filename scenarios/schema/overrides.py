@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from scenarios.errors import InputError
-from scenarios.schema.keys import entry_model, example_value
+from scenarios.schema.keys import entry_model, example_value, key_parts
 
 Document = dict[str, Any]
 """A scenario as read from TOML, before it is checked."""
@@ -69,7 +69,7 @@ def set_value(document: Document, dotted: str, value: object, kind: type[BaseMod
     ------
     InputError : the key goes through a value that is not a table, or to an entry that a list does not have
     """
-    parts = dotted.split(".")
+    parts = key_parts(kind, dotted)
     section: Any = document
     for depth, name in enumerate(parts[:-1]):
         if isinstance(section, list):

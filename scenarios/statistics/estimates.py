@@ -18,7 +18,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from scenarios.statistics.intervals import clopper_pearson, quantile_interval, upper_bound
-from scenarios.statistics.sensitivity import sensitivity
+from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.statistics.stopping import confidence_at
 from scenarios.statistics.violations import Violations, count_violations
 
@@ -74,7 +74,9 @@ def study_statistics(
             "pessimistic": _share(found.events_at_most, found.flights, level),
         },
         "figures": {name: _figure(values, level) for name, values in figures.items()},
-        "sensitivity": {name: asdict(sensitivity(drawn, figures[name], confidence=confidence, seed=seed)) for name in DRIVEN},
+        "sensitivity": {
+            name: asdict(sensitivity_indices(drawn, figures[name], confidence=confidence, seed=seed)) for name in DRIVEN
+        },
     }
     plain: Json = _without_nan(statistics)
     return plain

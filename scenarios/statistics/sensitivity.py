@@ -82,7 +82,7 @@ class Sensitivity:
     message: str
 
 
-def sensitivity(inputs: pd.DataFrame, figure: Array, *, confidence: float, seed: int) -> Sensitivity:
+def sensitivity_indices(inputs: pd.DataFrame, figure: Array, *, confidence: float, seed: int) -> Sensitivity:
     """Estimate which inputs drive a figure.
 
     Parameters

@@ -8,7 +8,7 @@ from typing import Any, Self
 
 from common.run_layout import SUMMARY
 from scenarios.engine.task import Row
-from scenarios.simulation.closed_loop import Outcome
+from scenarios.simulation.outcome import Outcome
 
 FAILED_SHOWN = 20
 """Failed flights that are named on the console, at most."""

@@ -1,11 +1,12 @@
 """Documents: what they extend, which keys they set, and what is said of keys that are not known."""
 
 import pytest
+from pydantic import BaseModel, RootModel
 
 from scenarios.errors import InputError
 from scenarios.schema.keys import known_keys
 from scenarios.schema.load import load_document, load_study
-from scenarios.schema.overrides import given_keys, merged
+from scenarios.schema.overrides import given_keys, merged, set_value
 from scenarios.schema.sea_config import SeaScenario
 
 
@@ -132,3 +133,19 @@ def test_given_keys_are_those_of_the_file_its_base_and_the_overrides(tmp_path):
     path = write(tmp_path, "own.toml", 'extends = "base.toml"\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 5.0]\n')
     document = load_document(path, ["guidance.preview=false"])
     assert given_keys(document) == {"study", "title", "wind.speed_mps", "sensors", "draws", "guidance.preview"}
+
+
+class Sweep(RootModel[dict[str, list[float]]]):
+    """Values by keys of other sections."""
+
+
+class Swept(BaseModel):
+    sweep: Sweep = Sweep({})
+
+
+@pytest.mark.parametrize("key", ["sweep.wind.speed_mps", 'sweep."wind.speed_mps"'])
+def test_a_section_that_has_keys_of_other_sections_takes_them_whole(key):
+    document = {}
+    set_value(document, key, [0.0, 5.0], Swept)
+    assert document == {"sweep": {"wind.speed_mps": [0.0, 5.0]}}
+    assert known_keys(Swept) == ["sweep"]

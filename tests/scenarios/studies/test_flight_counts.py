@@ -1,6 +1,6 @@
 """Counts of the flights of a study."""
 
-from scenarios.simulation.closed_loop import Outcome
+from scenarios.simulation.outcome import Outcome
 from scenarios.studies.summary import FlightCounts
 
 
