@@ -1,4 +1,4 @@
-"""The nearest known name for one that is not known."""
+"""The known name that is spelt most like an unknown one."""
 
 import difflib
 from collections.abc import Iterable

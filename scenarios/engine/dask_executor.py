@@ -1,7 +1,7 @@
 """Executes tasks on the workers of a Dask cluster: a running one, or one that is started on this machine.
 
-The work is sent to every worker once, as a plugin, together with the files that it needs: workers need the same code and packages,
-but no shared file system. If a worker dies, Dask itself gives its task to another.
+The work is sent to every worker once, as a plugin, together with the files that it needs: workers need the same code
+and packages, but no shared file system. If a worker dies, Dask itself gives its task to another.
 """
 
 import faulthandler
@@ -27,7 +27,7 @@ WORKER_COUNT_INTERVAL = 1.0
 """Shortest time between two counts of the workers [s]: a count takes milliseconds."""
 
 WORKER_MEMORY_MIN = 2**30
-"""Least memory limit of a worker that is started here [bytes]: with less, Dask may restart it forever before its first flight."""
+"""Least memory limit of a worker that is started here [bytes]; with less, Dask may restart it before its first flight."""
 
 CONNECT_TIMEOUT = 15.0
 """Time for the scheduler to answer, and for the first worker to register [s]."""

@@ -1,7 +1,8 @@
 """The journal: results of a study, stored on disk as they arrive.
 
-A result is either in the journal or not: whenever and however the program ends, the next one finds every result that was added.
-Tables are written from the journal in the order of the tasks, one row at a time: a study may have more rows than fit into memory.
+A result is either in the journal or not: whenever and however the program ends, the next one finds every result that
+was added. Tables are written from the journal in the order of the tasks, one row at a time: a study may have more rows
+than fit into memory.
 """
 
 import csv
@@ -97,7 +98,7 @@ class Journal:
         return (row for _, row in self.numbered(table, first=first, below=below))
 
     def export(self, table: str, columns: tuple[str, ...], file: IO[str]) -> int:
-        """Write a table as CSV with exactly ``columns``; values that a row lacks are empty. Return the number of rows."""
+        """Write a table as CSV with exactly ``columns``, missing values empty; return the number of rows."""
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
         count = 0

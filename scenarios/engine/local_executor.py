@@ -1,8 +1,8 @@
 """Executes tasks in processes of this machine.
 
-Every process has its own pipe and shares no lock with the others, so that a process that dies at any moment loses its current task
-and nothing else. (Pools that share one channel do not survive that: github.com/noxdafox/pebble/issues/163; the pool of the standard
-library stops altogether.)
+Every process has its own pipe and shares no lock with the others, so that a process that dies at any moment loses its
+current task and nothing else. (Pools that share one channel do not survive that:
+github.com/noxdafox/pebble/issues/163; the pool of the standard library stops altogether.)
 """
 
 import multiprocessing
@@ -100,7 +100,7 @@ class LocalExecutor:
         return max(0.0, deadline - time.monotonic())
 
     def _handle_lost_worker(self, worker: "WorkerProcess", reason: str) -> Iterator[Result]:
-        """Remove a lost process and queue its tasks again; yield the result of its current task after the last attempt."""
+        """Queue the tasks of a lost process again; yield the result of its current task after the last attempt."""
         worker.end(at_once=True)
         current, *queued = worker.tasks
         # The queued tasks had not been started: they do not count as attempted.
@@ -125,7 +125,7 @@ class WorkerProcess:
 
     def __init__(self, work: Work, limits: Limits, others: Sequence[Connection]) -> None:
         self.connection, theirs = multiprocessing.Pipe()
-        # A forked process inherits the ends of all pipes; if it kept them open, no process would ever see this program end.
+        # A forked process inherits the ends of all pipes; if it kept them open, no process would see this program end.
         inherited = [*others, self.connection]
         self._process: BaseProcess = multiprocessing.Process(
             target=_serve, args=(theirs, inherited, work, limits.memory), daemon=True

@@ -19,7 +19,7 @@ def limit_memory(limit: int | None) -> None:
 
 
 def data_memory() -> int:
-    """Return the data memory of this process, which ``limit_memory`` limits [bytes]; 0 if the system does not report it."""
+    """Return the data memory of this process [bytes]; 0 if the system does not report it."""
     try:
         status = Path("/proc/self/status").read_text(encoding="ascii")
     except OSError:

@@ -34,7 +34,7 @@ class RunDirectory:
         self.model = path / MODEL
 
     def open(self, config_hash: str, *, resume: bool) -> None:
-        """Open the directory for a new run, or to resume one of this configuration; see ``open_new`` and ``open_existing``."""
+        """Open the directory for a new run, or to resume one of this configuration."""
         if resume:
             self.open_existing(config_hash)
         else:

@@ -1,4 +1,4 @@
-"""The interface of a study, and its execution: tasks to an executor, results to the journal, tables to the run directory."""
+"""The interface of a study, and its execution with an executor, a journal and a run directory."""
 
 import errno
 import sqlite3
@@ -67,7 +67,8 @@ class Study(Protocol):
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Execute tasks, in one or several calls of ``fly``: their results are in the journal when it returns.
 
-        Tasks whose results are in the journal are skipped, unless they are ``recorded``: those are repeated for their files.
+        Tasks whose results are in the journal are skipped, unless they are ``recorded``: those are repeated for their
+        files.
         """
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:

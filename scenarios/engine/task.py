@@ -15,7 +15,8 @@ class Task:
     Attributes
     ----------
     number : its index in the study, from 0
-    point : coordinates of its random variables in the unit cube, if the study chooses them; otherwise they follow from the number
+    point : coordinates of its random variables in the unit cube, if the study chooses them; otherwise they follow from
+        the number
     recorded : whether its time history is written in any case
     every_step : whether the time history has every step of the guidance
     """

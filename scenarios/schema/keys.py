@@ -23,7 +23,7 @@ def known_keys(kind: type[BaseModel]) -> list[str]:
 
 
 def key_parts(kind: type[BaseModel], dotted: str) -> list[str]:
-    """Return the parts of a dotted key; what follows a section that has keys of other sections, such as sweep, is one part."""
+    """Return the parts of a dotted key; a section that has keys of other sections, such as sweep, takes the rest whole."""
     parts = dotted.split(".")
     model: type[BaseModel] = kind
     for depth, part in enumerate(parts[:-1], start=1):
@@ -38,7 +38,7 @@ def key_parts(kind: type[BaseModel], dotted: str) -> list[str]:
 
 
 def suggestion(kind: type[BaseModel], key: str) -> str:
-    """Return what to add to the message about an unknown key: the most similar known key, or else the known keys of its section."""
+    """Return the end of the message about an unknown key: the most similar known key, or the known keys of its section."""
     *parents, last = key.split(".")
     section = ["0" if part.isdigit() else part for part in parents]
     known = [name.split(".") for name in known_keys(kind)]
@@ -54,7 +54,7 @@ def suggestion(kind: type[BaseModel], key: str) -> str:
 
 
 def entry_model(kind: type[BaseModel], parts: Sequence[str]) -> type[BaseModel] | None:
-    """Return the schema of the entries of the list that a dotted key names; None if it does not name a list of sections."""
+    """Return the schema of the entries of the list that a key names; None if it is not a list of sections."""
     found: tuple[type[BaseModel], bool] | None = kind, False
     for part in parts:
         if found and not part.isdigit():

@@ -115,7 +115,7 @@ def _toml(value: object) -> str:
 
 
 def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> Document:
-    """Return ``base`` extended by ``own``: tables are merged key by key, any other value of ``own`` replaces that of ``base``."""
+    """Return ``base`` extended by ``own``: tables are merged key by key, other values of ``own`` replace those of ``base``."""
     result = dict(base)
     for key, value in own.items():
         below = result.get(key)

@@ -1,4 +1,4 @@
-"""Bounds of the commands of a study's flights: the bound, the worst state that a search finds, and the price of a guarantee."""
+"""Bounds of the commands of a study's flights, the worst states that a search finds, and the price of a guarantee."""
 
 import math
 from typing import Any
@@ -17,18 +17,18 @@ from scenarios.schema.config import Guidance
 from scenarios.schema.load import with_values
 
 SEARCH_STATES = 1_000_000
-"""Random states of each search for the largest command. 10,000 find the same twelve digits for the default look-ahead; a hundred
-times as many take half a second, and leave room for parameters whose worst states are rarer."""
+"""Random states of each search for the largest command. 10,000 find the same twelve digits for the default look-ahead;
+a hundred times as many take half a second, and leave room for parameters whose worst states are rarer."""
 
 RESERVE_MAX_PERCENT, RESERVE_STEP_PERCENT = 60, 5
-"""Reserves for which a guarantee is computed: 60 % brings the convergence time down to 2.3 times that of the default look-ahead."""
+"""Grid of reserves; at 60 % a guarantee converges in 2.3 times the time of the default look-ahead without one."""
 
 RESERVES = (
     0.0,
     float(Guidance.model_fields["reserve"].default),
     *(percent / 100 for percent in range(RESERVE_STEP_PERCENT, RESERVE_MAX_PERCENT + 1, RESERVE_STEP_PERCENT)),
 )
-"""Shares of omega_max that the reference leaves unused: none, as in the paper's Simulation 3, the default, and a grid [-]."""
+"""Fractions of omega_max that the reference leaves unused: none, as in the paper, the default, and a grid [-]."""
 
 
 def bounds_record(requests: list[FlightRequest], seed: int) -> dict[str, Any]:
@@ -42,9 +42,10 @@ def bounds_record(requests: list[FlightRequest], seed: int) -> dict[str, Any]:
     Returns
     -------
     guaranteed_for : speed, omega_max, and the distances between which convergence is estimated
-    flown : a row per distinct set of steering parameters: the bound, and the largest command that a search over states finds
-    guaranteed : for the last flight with a vessel a row per reserve: the parameters that converge fastest while no state demands
-        more than omega_max, or why there are none
+    flown : a row per distinct set of steering parameters: the bound, and the largest command that a search over states
+        finds
+    guaranteed : for the last flight with a vessel a row per reserve: the parameters that converge fastest while no
+        state demands more than omega_max, or why there are none
     """
     missions = [request for request in requests if not math.isnan(request.nu)]
     last = missions[-1].scenario if missions else None

@@ -1,4 +1,4 @@
-"""The convergence of the paper's laws from many starts, as a study."""
+"""The convergence study: the paper's steering laws from many random starts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,13 +33,13 @@ _LOST = "lost"
 """Outcome of a trajectory whose process was lost."""
 
 _HISTORY_MAX = 10_000.0
-"""Longest time history kept [s]; a trajectory can be a hundred times as long, and looks the same from there on."""
+"""Longest time history that is written [s]; a trajectory can be a hundred times as long, with nothing new to see."""
 
 _HISTORY_STEP = 2.0
 """Largest step between samples of a time history [s]."""
 
 _KEPT_MAX = 200
-"""Counter-examples whose time histories are kept, at most: beyond that there is something else to look at."""
+"""Largest number of counter-examples whose time histories are written."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,12 +79,12 @@ class ConvergenceStudy:
 
     Parameters
     ----------
-    scenario, name : what to fly, and what it is called
-    overrides : how the scenario differs from the one of that name, for the record
+    scenario, name : the scenario and its name
+    overrides : overrides that were applied to the scenario, recorded in the manifest
 
     Raises
     ------
-    InputError : parameters that cannot work
+    InputError : guidance parameters without a solution
     """
 
     what = "trajectories"
@@ -108,7 +108,7 @@ class ConvergenceStudy:
         self.config_hash = str(self._manifest["config_hash"])
 
     def initial_manifest(self) -> dict[str, Any]:
-        """Return what the manifest says before anything has been flown."""
+        """Return the manifest as written before the first trajectory."""
         return self._manifest | {
             "trajectories_planned": self.planned,
             "converged_distance_m": DISTANCE_CONVERGED,
@@ -130,19 +130,19 @@ class ConvergenceStudy:
         return tuple(blocks)
 
     def work(self, _: RunDirectory) -> ConvergenceWork:
-        """Return the flying of its blocks."""
+        """Return the work on its blocks."""
         return ConvergenceWork(blocks=self._blocks)
 
     def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
-        """Have every block flown."""
+        """Fly every block."""
         fly(Task(number=i) for i in range(len(self._blocks)))
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
-        """Write the time histories of the first trajectories and of the counter-examples."""
-        progress("keeping time histories", self.planned, self.planned)
+        """Write time histories of the first trajectories and of the counter-examples."""
+        progress("writing time histories", self.planned, self.planned)
         frame = self._frame(journal)
         kept = pd.concat([frame[frame["trajectory"] < self._scenario.ensemble.samples], counterexamples(frame).head(_KEPT_MAX)])
-        # A trajectory whose process was lost has nothing that could be flown again.
+        # A trajectory whose process was lost has no duration to replay.
         kept = kept[kept["duration_s"].notna()]
         kept["duration_s"] = kept["duration_s"].clip(upper=_HISTORY_MAX)
         for _, row in kept.drop_duplicates(["trajectory", "law"]).iterrows():
@@ -151,7 +151,7 @@ class ConvergenceStudy:
             run.write_frame(trajectory_path(row["law"], row["trajectory"]), history)
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write its tables: blocks are not in the order of their trajectories."""
+        """Write the tables, sorted: blocks are not in the order of their trajectories."""
         frame = self._frame(journal)
         run.write_frame(SUMMARY, frame)
         run.write_frame(COUNTEREXAMPLES, counterexamples(frame))
@@ -163,7 +163,7 @@ class ConvergenceStudy:
         """Return how many trajectories converged."""
         laws = self._scenario.guidance.laws
         frame = self._frame(journal)
-        # The verdict is about the laws of the theory or, if there are none, about all.
+        # The verdict is about the laws that the theory covers or, if there are none, about all.
         judged = tuple(law for law in laws if law != "cascade_cut") or laws
         converged = frame["outcome"] == Outcome.CONVERGED.value
         flown = frame.assign(converged=converged).groupby(["law", "reference"], sort=False)["converged"]

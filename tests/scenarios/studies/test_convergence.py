@@ -141,7 +141,7 @@ def test_a_block_whose_process_was_lost_is_a_row_for_each_of_its_trajectories():
 
 
 def test_a_trajectory_that_has_too_little_time_is_a_counterexample(monkeypatch):
-    monkeypatch.setattr("scenarios.studies.convergence.ensemble.PATIENCE", 0.1)
+    monkeypatch.setattr("scenarios.studies.convergence.ensemble.TIME_FACTOR", 0.1)
     rows = study(time_max=1.0, laws=("cascade",))
     missed = counterexamples(rows)
     assert len(missed) > 0

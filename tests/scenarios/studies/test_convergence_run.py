@@ -68,7 +68,7 @@ def test_those_that_do_not_converge_are_kept_with_their_time_histories(tmp_path)
 
     scenario = study("ensemble.time_max_s=1.0", 'guidance.laws=["cascade"]', "ensemble.samples=0")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(convergence, "PATIENCE", 1e-6)
+        patch.setattr(convergence, "TIME_FACTOR", 1e-6)
         result = run(scenario, tmp_path / "run")
     failed = pd.read_csv(tmp_path / "run" / "counterexamples.csv")
     assert not result.all_met
