@@ -1,1 +1,1 @@
-"""What is measured, not asserted."""
+"""Measurements of computing time and memory; nothing is asserted."""

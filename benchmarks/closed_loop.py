@@ -1,9 +1,10 @@
-"""``make bench``: what the autopilot and the guidance cost on top of JSBSim.
+"""``make bench``: computing time of the autopilot and the guidance, relative to JSBSim.
 
-Three loops over the same simulated time, in one process, in turn, again and again: JSBSim with the bare aircraft, JSBSim with
-the autopilot, and the full closed loop with guidance and record. The figures are medians over the rounds; ratios are taken within
-a round, where the machine's speed is the same. Of the full closed loop, that is of a flight, the time is shown beside its limit,
-and beside it what a flight takes besides: planning, the aircraft and its release, figures and time history.
+Three loops over the same simulated time run in one process, in turn, for several rounds: JSBSim with the bare
+aircraft, JSBSim with the autopilot, and the full closed loop with guidance and record. The results are medians over
+the rounds; ratios are formed within a round, in which the speed of the machine is the same. The time of the full
+closed loop is printed beside its limit, and the time of the other parts of a flight: planning, aircraft and release,
+figures, time history.
 """
 
 import statistics
@@ -31,14 +32,16 @@ from scenarios.simulation.closed_loop import fly
 from scenarios.vehicles.six_dof import SixDof
 
 ROUNDS, STUDIES = 15, 3
-FLOWN = 400.0
-"""Simulated time of each run [s]."""
+"""Rounds of the loops, and of whole studies."""
+
+SIMULATED_TIME = 400.0
+"""Simulated time of each loop [s]."""
 
 FLIGHT_MAX, LOOP_MAX = 0.35, 1.3
-"""Limits of a flight's time on one core, where a step of JSBSim alone takes 3.3 us [s], and of it over that with autopilot [-]."""
+"""Limits of the time of a flight, if a JSBSim step takes 3.3 us [s], and of its ratio to the loop with autopilot [-]."""
 
 Timed = Callable[[], float]
-"""Runs something and returns how long it took [s]."""
+"""Runs a part and returns its computing time [s]."""
 
 
 def main() -> None:
@@ -51,10 +54,10 @@ def main() -> None:
         for _ in range(ROUNDS):
             for name, run in runs.items():
                 times[name].append(run())
-        besides = {name: statistics.median(part() for _ in range(ROUNDS)) for name, part in parts.items()}
+        other_parts = {name: statistics.median(part() for _ in range(ROUNDS)) for name, part in parts.items()}
     _report(times)
-    named = ", ".join(f"{name} {1e3 * seconds:.1f}" for name, seconds in besides.items())
-    print(f"beside its closed loop a flight takes {1e3 * sum(besides.values()):.1f} ms: {named}")
+    named = ", ".join(f"{name} {1e3 * seconds:.1f}" for name, seconds in other_parts.items())
+    print(f"the other parts of a flight take {1e3 * sum(other_parts.values()):.1f} ms: {named}")
     report_sea_guidance(ROUNDS)
     report_engine(STUDIES)
 
@@ -75,13 +78,13 @@ def _loops(folder: Path) -> tuple[dict[str, Timed], dict[str, Timed]]:
         reversal=measure_turn_reversal(autopiloted, level, bank),
         envelope=schedule.envelope,
     )
-    # No flight ends before its time: no number of crossings is enough.
-    endless = with_values(scenario, {"flight.duration_max_s": FLOWN, "flight.crossings": 10_000})
+    # So many crossings are never reached: the flight ends by its duration.
+    endless = with_values(scenario, {"flight.duration_max_s": SIMULATED_TIME, "flight.crossings": 10_000})
     lag = guidance_lag(endless, six_dof)
     planned = partial(plan_flight, endless, flight_id="bench", nu=0.5, seed=1, lag=lag, reversal=six_dof.reversal)
     plan = planned()
     record = fly(plan, place_vehicle(endless, plan, root, six_dof))
-    steps = round(FLOWN / TIME_STEP)
+    steps = round(SIMULATED_TIME / TIME_STEP)
 
     def fly_bare() -> float:
         bare.command(dict(level.inputs))
@@ -107,7 +110,7 @@ def _loops(folder: Path) -> tuple[dict[str, Timed], dict[str, Timed]]:
 
 
 def _timed(run: Callable[[], object]) -> float:
-    """Return the time on one core [s], so without that in which the machine did something else."""
+    """Return the CPU time [s]: other programs on the machine do not count."""
     began = time.process_time()
     run()
     return time.process_time() - began
@@ -115,15 +118,16 @@ def _timed(run: Callable[[], object]) -> float:
 
 def _report(times: dict[str, list[float]]) -> None:
     raw, autopiloted = times["JSBSim"], times["JSBSim with autopilot"]
-    print(f"{FLOWN:g} s of flight, {ROUNDS} interleaved rounds, medians")
-    print(f"{'':24}{'us/step':>9}{'s flown/s':>11}{'x JSBSim':>10}{'x autopilot':>13}")
+    print(f"{SIMULATED_TIME:g} s of simulated time, medians of {ROUNDS} interleaved rounds")
+    print(f"{'':24}{'us/step':>9}{'sim s/s':>11}{'x JSBSim':>10}{'x autopilot':>13}")
     for name, values in times.items():
         median = statistics.median(values)
         over_raw = statistics.median(a / b for a, b in zip(values, raw, strict=True))
         over_autopilot = statistics.median(a / b for a, b in zip(values, autopiloted, strict=True))
-        step = 1e6 * median * TIME_STEP / FLOWN
-        print(f"{name:24}{step:9.2f}{FLOWN / median:11.0f}{over_raw:10.2f}{over_autopilot:13.2f}")
-    print(f"a flight of {FLOWN:g} s: {median:.3f} s of at most {FLIGHT_MAX:g}, x{over_autopilot:.2f} of at most x{LOOP_MAX:g}")
+        step = 1e6 * median * TIME_STEP / SIMULATED_TIME
+        print(f"{name:24}{step:9.2f}{SIMULATED_TIME / median:11.0f}{over_raw:10.2f}{over_autopilot:13.2f}")
+    limits = f"limits {FLIGHT_MAX:g} s and {LOOP_MAX:g}"
+    print(f"a flight of {SIMULATED_TIME:g} s: {median:.3f} s, {over_autopilot:.2f} times the loop with autopilot ({limits})")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""What the engine adds to the flights: the second process, the start of a flight.
+"""Computing time that the engine adds to the flights: speed-up by a second process, cost of starting a flight.
 
-One study is flown by one process and by two, in turn, again and again: whole studies, with their journal and their tables. What
-starting a flight costs is what is left of flights of two lengths when the time that grows with the length is taken away.
+A whole study, with journal and tables, is flown by one process and by two, in turn, for several rounds. The cost of
+starting a flight is extrapolated from flights of two lengths to length zero.
 """
 
 import multiprocessing
@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import fly_study
 from scenarios.engine.task import Task, Work
@@ -20,7 +20,7 @@ from scenarios.studies.registry import study_of
 
 FLIGHTS = 40
 LENGTHS = (50.0, 250.0)
-"""Of the flights whose costs are compared [s]."""
+"""Lengths of the flights whose times are compared [s]."""
 
 SETTINGS = ("criteria.settles=false", "histories=0")
 
@@ -33,33 +33,33 @@ def report_engine(rounds: int) -> None:
     ratio, bare_ratio = (statistics.median(a / b for a, b in zip(one, times, strict=True)) for times in (two, bare))
     print(
         f"{FLIGHTS} flights of 300 s, journal and tables included, {rounds} interleaved rounds: {statistics.median(one):.2f} s with"
-        f" one process, {statistics.median(two):.2f} s with two, {ratio:.2f} times as fast; two processes that fly them without the"
-        f" engine are {bare_ratio:.2f} times as fast as one with it"
+        f" one process, {statistics.median(two):.2f} s with two, a speed-up of {ratio:.2f}; two processes without the engine reach"
+        f" {bare_ratio:.2f}"
     )
     with tempfile.TemporaryDirectory() as folder:
         works = [_work(length, Path(folder) / f"{length:g}") for length in LENGTHS]
         short, long = zip(*(tuple(_flight(work) for work in works) for _ in range(5 * rounds)), strict=True)
     per_second = statistics.median((b - a) / (LENGTHS[1] - LENGTHS[0]) for a, b in zip(short, long, strict=True))
     starting = statistics.median(a - per_second * LENGTHS[0] for a in short)
-    print(f"a flight over a real sea: {1e3 * starting:.1f} ms to start and to measure, {1e3 * per_second:.3f} ms per second flown")
+    print(f"a flight: {1e3 * starting:.1f} ms to start and to evaluate, {1e3 * per_second:.3f} ms per simulated second")
 
 
 def _whole_study(jobs: int) -> float:
-    """Return the time in which a study is flown, from its first flight to its tables [s]."""
+    """Return the time of a study, from its first flight to its tables [s]."""
     study = study_of(load_study("monte_carlo", [f"flights={FLIGHTS}", "sampling=random", *SETTINGS]), "bench")
     times: list[float] = []
 
-    def told(doing: str, *_: int) -> None:
-        if doing == "flying":
+    def record_time(activity: str, *_: int) -> None:
+        if activity == "flying":
             times.append(time.perf_counter())
 
     with tempfile.TemporaryDirectory() as folder:
-        fly_study(study, Path(folder) / "run", hire=Hiring(jobs=jobs), resume=False, progress=told)
+        fly_study(study, Path(folder) / "run", executor_factory=ExecutorFactory(jobs=jobs), resume=False, progress=record_time)
     return times[-1] - times[0]
 
 
 def _bare(work: Work) -> float:
-    """Return the time in which two processes fly the same flights, half of them each, and keep nothing [s]."""
+    """Return the time of two processes that fly half of the same flights each, and store nothing [s]."""
     halves = [range(half, FLIGHTS, 2) for half in (0, 1)]
     processes = [multiprocessing.Process(target=_fly_each, args=(work, numbers)) for numbers in halves]
     began = time.perf_counter()
@@ -76,7 +76,7 @@ def _fly_each(work: Work, numbers: Iterable[int]) -> None:
 
 
 def _work(length: float, path: Path) -> Work:
-    """Return the flying of flights of some length [s]."""
+    """Return the work of flights of some length [s]."""
     run = RunDirectory(path)
     run.open_new()
     overrides = [f"flight.duration_max_s={length}", "sampling=random", *SETTINGS]

@@ -1,7 +1,7 @@
-"""``python -m benchmarks.scaling``: how the cost of a study grows with flights, flight time and log rate; ten minutes.
+"""``python -m benchmarks.scaling``: cost of a study over flights, flight time and log rate; ten minutes.
 
-Figures of docs/scaling.md. Each is of a whole study with its journal, tables and time histories, in a process of its own, so that
-peak memory is that of the study alone.
+The results are in docs/scaling.md. Each is that of a whole study with journal, tables and time histories, in its own
+process, so that peak memory is that of the study alone.
 """
 
 import json
@@ -13,7 +13,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from scenarios.engine.executors import DASK, LOCAL, Hiring
+from common.run_layout import JOURNAL, MANIFEST, SUMMARY
+from scenarios.engine.executors import DASK, LOCAL, ExecutorFactory
 from scenarios.engine.journal import Journal
 from scenarios.engine.task import Result, Task
 
@@ -21,10 +22,10 @@ KINEMATIC = ("sea_approach", "fidelity=kinematic", "flight.duration_max_s=2", "c
 SIX_DOF = ("monte_carlo", "sampling=random", "histories=100000")
 
 TASKS = 3_000
-"""Tasks that do nothing, by which it is measured how many results a second the engine takes."""
+"""Number of empty tasks with which the throughput of the engine is measured."""
 
 Measured = tuple[float, float, float]
-"""Time from the first flight to the last table [s], peak memory of the program that hands out the flights [MiB], and size [MiB]."""
+"""Wall time of a run [s], peak memory of the main program [MiB], and size of the run directory [MiB]."""
 
 
 def main() -> None:
@@ -41,33 +42,33 @@ def main() -> None:
     for rate in (5, 10, 20):
         seconds, _, size = _study(*SIX_DOF, "flights=20", f"flight.log_rate_hz={rate}")
         print(f"{rate:8} Hz {seconds / 20:8.3f} s {size / 20:8.2f} MiB")
-    print("results of nothing at all, two processes: journal included, per second")
+    print("empty tasks, two processes, journal included: results per second")
     for executor in (LOCAL, DASK):
         print(f"{executor:>8} {_throughput(executor):8.0f}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Nothing:
-    """Work that costs nothing but its handing out and its result, which is as large as a flight's."""
+class EmptyWork:
+    """Work that does nothing and returns a result as large as that of a flight."""
 
     model: Path | None = None
 
-    def moved(self, _: Path) -> "Nothing":
+    def moved(self, _: Path) -> "EmptyWork":
         return self
 
     def fly(self, task: Task) -> Result:
-        row = {"flight_id": f"nothing_{task.number:05d}"} | {f"figure_{i}": math.pi * (i + task.number) for i in range(100)}
-        return Result(task=task, tables={"summary.csv": [row]})
+        row = {"flight_id": f"empty_{task.number:05d}"} | {f"figure_{i}": math.pi * (i + task.number) for i in range(100)}
+        return Result(task=task, tables={SUMMARY: [row]})
 
     def lost(self, task: Task, reason: str) -> Result:
         raise RuntimeError(f"task {task.number}: {reason}")
 
 
 def _throughput(executor: str) -> float:
-    """Return how many results a second are in the journal."""
-    with tempfile.TemporaryDirectory() as folder, Hiring(jobs=2, executor=executor)(Nothing()) as crew:
-        journal = Journal(Path(folder) / "journal.sqlite")
-        flown = crew.fly(Task(number=i) for i in range(TASKS))
+    """Return the number of results that reach the journal in a second."""
+    with tempfile.TemporaryDirectory() as folder, ExecutorFactory(jobs=2, executor=executor)(EmptyWork()) as started:
+        journal = Journal(Path(folder) / JOURNAL)
+        flown = started.fly(Task(number=i) for i in range(TASKS))
         journal.add(next(flown))
         began = time.perf_counter()
         for result in flown:
@@ -84,7 +85,7 @@ def _study(name: str, *overrides: str) -> Measured:
         command = [sys.executable, "-m", "scenarios.run", name, *words, "--jobs", "2", "--no-report", "--out", str(out)]
         began = time.perf_counter()
         subprocess.run(command, check=False, capture_output=True)
-        manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+        manifest = json.loads((out / MANIFEST).read_text(encoding="utf-8"))
         if manifest["state"] != "complete":
             raise RuntimeError(f"{' '.join(command)} did not complete in {time.perf_counter() - began:.0f} s")
         size = sum(path.stat().st_size for path in out.rglob("*") if path.is_file()) / 2**20

@@ -1,8 +1,8 @@
-"""What wind, estimators, filter and keep-out guard add to a step of the guidance.
+"""Computing time that wind, estimators, filter and keep-out guard add to a step of the guidance.
 
-One flight over a real sea is flown and recorded at the guidance's rate. What was sensed in it then goes, step by step, to the
-guidance as calm air has it (course and speed from the velocity, the law, the trim of the airspeed; no guard) and to that of the
-real sea, in turn, again and again.
+One flight is flown and recorded at the rate of the guidance. Its sensor values are then sent, step by step and in turn
+for several rounds, to the guidance for calm air (course and speed from the velocity, steering law, airspeed trim; no guard)
+and to the guidance for operational conditions.
 """
 
 import copy
@@ -17,17 +17,17 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from common.run_layout import SUMMARY, time_history_path
 from gnc.sea_guidance import SeaGuidance
 from gnc.tracker import Guidance
 from scenarios.engine.task import Task
 from scenarios.planning.sea_planner import SeaPlan, plan_sea_flight
 from scenarios.schema.sea_config import Reports, SeaFlight, SeaScenario, SeaStart, SeaVessel, Wind
 from scenarios.sea_flights import SeaWork, Trial
-from scenarios.simulation.time_history import history_path
 from scenarios.vehicles.sea_airframe import airframe_for
 
 SETTLED = 150.0
-"""From when on steps are timed: the UAV is on its orbit [s]."""
+"""Time from which steps are timed: the UAV is on its orbit [s]."""
 
 SCENARIO = SeaScenario(
     title="bench",
@@ -48,8 +48,8 @@ def report_sea_guidance(rounds: int) -> None:
         airframe = airframe_for(SCENARIO, Path(folder))
         work = SeaWork(trials=(Trial(name="bench", scenario=SCENARIO, spreads={}),), histories=1, airframe=airframe)
         flown = work.fly(Task(number=0))
-        row = flown.tables["summary.csv"][0]
-        history = pd.read_parquet(io.BytesIO(flown.files[history_path(row["flight_id"])]))
+        row = flown.tables[SUMMARY][0]
+        history = pd.read_parquet(io.BytesIO(flown.files[time_history_path(row["flight_id"])]))
         plans = [
             plan_sea_flight(SCENARIO, flight_id="bench", seed=row["seed"], airframe=airframe, spreads={}) for _ in range(rounds)
         ]
@@ -57,9 +57,7 @@ def report_sea_guidance(rounds: int) -> None:
     pairs = [_round(plan, sensed) for plan in plans]
     calm, sea = (statistics.median(times) for times in zip(*pairs, strict=True))
     added = statistics.median((b - a) / a for a, b in pairs)
-    print(
-        f"a step of the guidance: {calm:.1f} us in calm air, {sea:.1f} us over a real sea, which is {added:.2f} of the former more"
-    )
+    print(f"a step of the guidance: {calm:.1f} us in calm air, {sea:.1f} us in operational conditions, {100.0 * added:.0f} % more")
 
 
 def _sensed(history: pd.DataFrame, plan: SeaPlan) -> list[Sensed]:
@@ -80,7 +78,7 @@ def _sensed(history: pd.DataFrame, plan: SeaPlan) -> list[Sensed]:
 
 
 def _round(plan: SeaPlan, sensed: list[Sensed]) -> tuple[float, float]:
-    """Return the time of a step in calm air and over a real sea [us]."""
+    """Return the time of a step in calm air and in operational conditions [us]."""
     guidance = SeaGuidance(plan.guidance, plan.vessel_filter, plan.guard)
     heard = list(reversed(plan.heard or []))
     first = next(i for i, step in enumerate(sensed) if step[0] >= SETTLED)

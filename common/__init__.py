@@ -1,1 +1,1 @@
-"""What every room uses: registries of parts, whole files, command lines, provenance."""
+"""Shared by all rooms: registries, files, the layout of run directories, command lines, provenance."""

@@ -1,4 +1,4 @@
-"""How every command of the project meets its user: typer for the options, one line for an error."""
+"""Command lines of the project: typer for the options, one line for an error."""
 
 import sys
 from collections.abc import Callable
@@ -8,11 +8,11 @@ import typer
 BAD_INPUT, INTERRUPTED = 2, 130
 
 _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
-"""What typer raises for bad options; of the family it exports this member only."""
+"""Base class of the errors that typer raises for bad options, which it does not export."""
 
 
 def run_command(command: Callable[..., None], name: str) -> None:
-    """Run ``command`` as a command line called ``name`` and exit with its status; bad options are one line and status 2."""
+    """Run ``command`` as a command line called ``name`` and exit with its status, 2 for bad options."""
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     app.command()(command)
     try:

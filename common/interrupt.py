@@ -1,8 +1,8 @@
-"""What Ctrl-C does to the processes of a command."""
+"""Ctrl-C in the processes of a command."""
 
 import signal
 
 
 def ignore_interrupt() -> None:
-    """Leave Ctrl-C to the parent process, which decides what becomes of work under way and keeps what is done."""
+    """Ignore Ctrl-C in this process: its parent handles it, and keeps the finished results."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)

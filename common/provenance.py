@@ -1,4 +1,4 @@
-"""What software a run was made with: recorded in its manifest, printed in its report."""
+"""Software of a run: recorded in its manifest, printed in its report."""
 
 import importlib.metadata
 import platform

@@ -1,4 +1,4 @@
-"""Extension points: named parts of one kind, from the project's own folder, from installed packages, or from a Python file."""
+"""Extension points: named parts of one kind, from the project, from installed packages, or from a Python file."""
 
 import functools
 import hashlib

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from common.command_line import BAD_INPUT, INTERRUPTED, run_command
+from common.run_layout import DESIGN_RECORD, MANIFEST, MODEL
 
 
 def command(
@@ -78,9 +79,9 @@ def _design(aircraft: str, out: Path | None, altitude: float, *, no_report: bool
     out.mkdir(parents=True, exist_ok=True)
     found = designed(spec, altitude)
     record = found.record
-    write_script(found.design.schedule, write_root(found.design.schedule, out / "model"))
-    write_json(out / "innerloop.json", record)
-    write_json(out / "manifest.json", design_manifest(record, wall_time=time.monotonic() - started))
+    write_script(found.design.schedule, write_root(found.design.schedule, out / MODEL))
+    write_json(out / DESIGN_RECORD, record)
+    write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started))
     print_design(record)
     print(f"\ndesign: {out}\nJSBSim root with the autopilot: {out / 'model'}")
     for path in () if no_report else build_reports(out):
@@ -92,7 +93,7 @@ def _refuse_another_run(out: Path) -> None:
     from aircraft.errors import AircraftError
 
     try:
-        study = json.loads((out / "manifest.json").read_text(encoding="utf-8")).get("study")
+        study = json.loads((out / MANIFEST).read_text(encoding="utf-8")).get("study")
     except FileNotFoundError:
         return
     except (ValueError, AttributeError):

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from common.command_line import BAD_INPUT, run_command
+from common.run_layout import REPORT_HTML, REPORT_PDF
 
 
 def build_reports(directory: Path) -> list[Path]:
@@ -34,7 +35,7 @@ def build_reports(directory: Path) -> list[Path]:
         what = f"{type(error).__name__}: {error}".splitlines()[0]
         raise ReportError(f"'{directory}' is damaged ({what}); run it again in another --out") from None
     paths = []
-    for name, write in (("report.html", write_html), ("report.pdf", write_pdf)):
+    for name, write in ((REPORT_HTML, write_html), (REPORT_PDF, write_pdf)):
         try:
             write_whole(directory / name, partial(write, report))
         except OSError as error:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from common.run_layout import COMPARISON, CROSSINGS, SUMMARY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
@@ -18,8 +19,9 @@ from scenarios.metrics.relative_state import flight_history
 from scenarios.planning.planner import FlightPlan, plan_flight
 from scenarios.schema.config import Case, Scenario
 from scenarios.schema.load import with_values
-from scenarios.simulation.closed_loop import Outcome, fly
+from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.failure import failure, unflown
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.time_history import history_files
 from scenarios.vehicles.jsbsim import JsbsimVehicle
 from scenarios.vehicles.kinematic import KinematicVehicle
@@ -54,7 +56,7 @@ class FlightRequest:
     @property
     def table(self) -> str:
         """Return the file that its row is in."""
-        return "summary.csv" if self.variant == STUDY else "comparison.csv"
+        return SUMMARY if self.variant == STUDY else COMPARISON
 
 
 def flight_requests(scenario: Scenario) -> list[FlightRequest]:
@@ -173,7 +175,7 @@ class FlightWork:
         return Result(
             task=task,
             items=int(request.variant == STUDY),
-            tables={request.table: [row], "crossings.csv": list(crossings)},
+            tables={request.table: [row], CROSSINGS: list(crossings)},
             files=history_files(task, history, planned=len(self.requests), wanted=self.histories, row=row),
         )
 

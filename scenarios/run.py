@@ -1,4 +1,4 @@
-"""Command line: ``python -m scenarios.run NAME|FILE.toml``. Nothing heavy is imported before it is needed."""
+"""Command line: ``python -m scenarios.run NAME|FILE.toml``. Slow imports wait until they are needed."""
 
 import os
 import shlex
@@ -12,7 +12,7 @@ import typer
 from common.command_line import BAD_INPUT, INTERRUPTED, run_command
 
 if TYPE_CHECKING:
-    from scenarios.engine.runner import Hire
+    from scenarios.engine.executors import ExecutorFactory
 
 MET, NOT_MET = 0, 1
 
@@ -21,33 +21,35 @@ def command(
     name: Annotated[
         str | None,
         typer.Argument(
-            metavar="NAME|FILE.toml|RUN/flights/ID", help="Scenario of the catalog, or a file, or a flight to fly again."
+            metavar="NAME|FILE.toml|RUN/flights/ID", help="A scenario of the catalog, a scenario file, or a flight to replay."
         ),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Run directory; default runs/NAME-DATE-TIME.")] = None,
-    jobs: Annotated[int | None, typer.Option(min=1, max=256, help="Processes; default one per core.")] = None,
+    jobs: Annotated[int | None, typer.Option(min=1, max=256, help="Number of processes; default one per core.")] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed of the random starts.")] = None,
     overrides: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a key, e.g. guidance.preview=false.")
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Override a key, e.g. guidance.preview=false; may be repeated."),
     ] = None,
     executor: Annotated[
-        Literal["local", "dask"], typer.Option(help="Processes of this machine, or a Dask cluster (the extra 'dask').")
+        Literal["local", "dask"], typer.Option(help="Processes of this machine, or a Dask cluster (needs the extra 'dask').")
     ] = "local",
     scheduler: Annotated[
-        str | None, typer.Option(metavar="tcp://HOST:PORT", help="Dask scheduler; without one a cluster is started here.")
+        str | None,
+        typer.Option(metavar="tcp://HOST:PORT", help="Address of a running Dask scheduler; default a cluster on this machine."),
     ] = None,
-    time_limit: Annotated[float, typer.Option(min=1.0, help="Seconds that a flight may take.")] = 600.0,
-    memory_limit: Annotated[float | None, typer.Option(min=0.25, help="GiB that a process may have; default any.")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the run in --out.")] = False,
-    no_report: Annotated[bool, typer.Option("--no-report", help="Leave out report.html and report.pdf.")] = False,
-    list_scenarios: Annotated[bool, typer.Option("--list", help="List the catalog and exit.")] = False,
+    time_limit: Annotated[float, typer.Option(min=1.0, help="Longest computing time of a flight [s].")] = 600.0,
+    memory_limit: Annotated[float | None, typer.Option(min=0.25, help="Memory limit of a process [GiB]; default none.")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue the unfinished run in --out.")] = False,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
+    list_scenarios: Annotated[bool, typer.Option("--list", help="List the scenarios of the catalog and exit.")] = False,
 ) -> None:
-    """Fly a scenario and report on it.
+    """Fly a scenario and write a report.
 
-    Exit status: 0 every flight completed and met its criteria (or every trajectory converged), 1 some did not, 2 bad input, 130
-    interrupted.
+    Exit status: 0 every flight completed and met its criteria (or every trajectory converged), 1 some did not, 2 bad
+    input, 130 interrupted.
     """
-    from scenarios.engine.executors import Hiring
+    from scenarios.engine.executors import ExecutorFactory
     from scenarios.engine.task import Limits
     from scenarios.errors import InputError
 
@@ -56,13 +58,15 @@ def command(
             status = _list()
         else:
             limits = Limits(time=time_limit, memory=None if memory_limit is None else round(memory_limit * 2**30))
-            hire = Hiring(jobs=jobs or os.cpu_count() or 1, executor=executor, scheduler=scheduler, limits=limits)
-            status = _run(name, out, hire, seed, overrides or [], resume, no_report)
+            executor_factory = ExecutorFactory(
+                jobs=jobs or os.cpu_count() or 1, executor=executor, scheduler=scheduler, limits=limits
+            )
+            status = _run(name, out, executor_factory, seed, overrides or [], resume, no_report)
     except InputError as error:
         print(f"error: {error}", file=sys.stderr)
         status = BAD_INPUT
     except KeyboardInterrupt:
-        print("interrupted before anything was flown", file=sys.stderr)
+        print("interrupted before the first flight", file=sys.stderr)
         status = INTERRUPTED
     raise typer.Exit(status)
 
@@ -80,7 +84,7 @@ def _list() -> int:
 def _run(
     name: str | None,
     out: Path | None,
-    hire: "Hire",
+    executor_factory: "ExecutorFactory",
     seed: int | None,
     overrides: list[str],
     resume: bool,
@@ -90,9 +94,9 @@ def _run(
     from scenarios.schema.load import catalog, is_flight, load_study
 
     if name is None:
-        raise InputError(f"no scenario given; name a TOML file or one of: {', '.join(catalog())}")
+        raise InputError(f"no scenario given; give a TOML file or one of: {', '.join(catalog())}")
     if resume and out is None:
-        raise InputError("--resume needs --out, the directory of the run to go on with")
+        raise InputError("--resume needs --out, the directory of the run to continue")
     if seed is not None:
         overrides = [*overrides, f"seed={seed}"]
 
@@ -100,8 +104,10 @@ def _run(
     replayed = is_flight(name)
     directory = out or Path("runs") / f"{'replay-' if replayed else ''}{stem}-{datetime.now():%Y%m%d-%H%M%S}"
     if replayed and overrides:
-        raise InputError(f"'{name}' is flown again as it was; leave out --set and --seed, or fly its scenario")
-    # Before anything heavy is imported: most mistakes are found here.
+        raise InputError(
+            f"'{name}' is a flight, which is replayed unchanged; leave out --set and --seed, or fly its scenario instead"
+        )
+    # Before any slow import: most mistakes in the input are found here.
     scenario = None if replayed else load_study(name, overrides)
 
     from scenarios.engine.progress import progress_bar
@@ -111,26 +117,28 @@ def _run(
             from scenarios.engine.runner import fly_study
             from scenarios.studies.replay import Replay
 
-            result = fly_study(Replay(name), directory, hire=hire, resume=resume, progress=progress)
+            result = fly_study(Replay(name), directory, executor_factory=executor_factory, resume=resume, progress=progress)
         else:
             from scenarios.studies.registry import run_study
 
-            result = run_study(scenario, stem, directory, hire=hire, resume=resume, progress=progress, overrides=overrides)
+            result = run_study(
+                scenario, stem, directory, executor_factory=executor_factory, resume=resume, progress=progress, overrides=overrides
+            )
     for line in result.summary.lines:
         print(line)
     print(f"results: {result.directory}")
     if result.interrupted:
         again = "".join(f"--set {shlex.quote(item)} " for item in overrides)
         again = f"{shlex.quote(name)} {again}--out {shlex.quote(str(directory))} --resume"
-        kept = f"{result.summary.done} of {result.planned} {result.what} are kept"
-        print(f"interrupted; {kept}. Go on with: python -m scenarios.run {again}", file=sys.stderr)
+        kept = f"{result.summary.done} of {result.planned} {result.what} are done and kept"
+        print(f"interrupted; {kept}. Continue with: python -m scenarios.run {again}", file=sys.stderr)
         return INTERRUPTED
     status = MET if no_report else _report(directory)
     return status or (MET if result.all_met else NOT_MET)
 
 
 def _report(directory: Path) -> int:
-    """Build the reports; return the exit status of that."""
+    """Write the reports; return the exit status."""
     from reports.build import build_reports
     from reports.errors import ReportError
 
@@ -142,17 +150,19 @@ def _report(directory: Path) -> int:
         return BAD_INPUT
     except OSError as error:
         again = f"python -m reports.build {directory}"
-        print(f"error: the report cannot be written: {error.strerror}; mend that, and build it with: {again}", file=sys.stderr)
+        print(
+            f"error: the report cannot be written: {error.strerror}; fix that, then build the report with: {again}", file=sys.stderr
+        )
         return BAD_INPUT
     except KeyboardInterrupt:
-        print(f"report interrupted; build it with: python -m reports.build {directory}", file=sys.stderr)
+        print(f"report interrupted; build the report with: python -m reports.build {directory}", file=sys.stderr)
         return INTERRUPTED
     return MET
 
 
 def main() -> None:
     """Entry point."""
-    # A study is flown by processes; threads under each of its small matrices would only be in their way.
+    # A study runs in several processes; BLAS threads for their small matrices would only slow them down.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     run_command(command, "python -m scenarios.run")
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS, SUMMARY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.draws import DrawnFlight, drawn_flight
@@ -19,9 +20,9 @@ from scenarios.metrics.crossings import crossing_rows
 from scenarios.metrics.sea_figures import sea_figures, sea_plan_row, sea_unmet
 from scenarios.planning.sea_planner import SeaPlan, plan_sea_flight
 from scenarios.schema.sea_config import SeaScenario
-from scenarios.simulation.closed_loop import Outcome
 from scenarios.simulation.failure import failure, unflown
 from scenarios.simulation.interventions import INTERVENTION_COLUMNS
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.sea_loop import SEA_COLUMNS, fly_sea
 from scenarios.simulation.time_history import history_files
 from scenarios.vehicles.jsbsim import JsbsimVehicle
@@ -31,11 +32,8 @@ from scenarios.vehicles.vehicle import Vehicle
 
 _CROSSING_COLUMNS = ("flight_id", "trial", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
 
-DETAILS = {"crossings.csv": _CROSSING_COLUMNS, "interventions.csv": INTERVENTION_COLUMNS}
+DETAILS = {CROSSINGS: _CROSSING_COLUMNS, INTERVENTIONS: INTERVENTION_COLUMNS}
 """Tables with several rows of a flight, and their columns."""
-
-DRAWS = "draws.csv"
-"""Table of what was drawn for each flight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,8 +112,8 @@ class SeaWork:
             record = fly_sea(plan, self._vehicle(plan), every_step=task.every_step)
             history = pd.DataFrame(record.every_step, columns=list(SEA_COLUMNS))
             figures, found = sea_figures(plan, record)
-            tables["crossings.csv"] = [named | crossing for crossing in crossing_rows(found)]
-            tables["interventions.csv"] = [named | stretch._asdict() for stretch in record.interventions]
+            tables[CROSSINGS] = [named | crossing for crossing in crossing_rows(found)]
+            tables[INTERVENTIONS] = [named | stretch._asdict() for stretch in record.interventions]
             row |= figures
             unmet = sea_unmet(row, drawn.scenario.criteria)
             row |= {"criteria_met": not unmet, "message": "; ".join([*unmet, *([record.message] if record.message else [])])}
@@ -134,7 +132,7 @@ class SeaWork:
     ) -> Result:
         return Result(
             task=task,
-            tables={"summary.csv": [row], **(tables or {})},
+            tables={SUMMARY: [row], **(tables or {})},
             files=history_files(task, history, planned=self._ends[-1], wanted=self.histories, row=row),
         )
 

@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from common.run_layout import COUNTEREXAMPLES
 from reports.convergence.charts import HISTORIES_PER_LAW, history_chart, settling_charts
 from reports.convergence.data import REFERENCES, ConvergenceData, failed, read_convergence
 from reports.convergence.tables import FAILED_ROWS, failed_table, settling_table
@@ -102,7 +103,7 @@ def _failed(data: ConvergenceData) -> list[Block]:
     for law in data.laws:
         count = len(failed(data.of(law)))
         if count:
-            some = f"; the first {FAILED_ROWS} of {count:,}, all are in counterexamples.csv" if count > FAILED_ROWS else ""
+            some = f"; the first {FAILED_ROWS} of {count:,}, all are in {COUNTEREXAMPLES}" if count > FAILED_ROWS else ""
             blocks += [
                 Heading(f"{law.name}{'' if law.proven else ', of which the theory says nothing'}{some}"),
                 failed_table(data, law),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from common.run_layout import HISTORY_SUFFIX, TRAJECTORIES
 from reports.run.run_data import RunData
 
 
@@ -86,7 +87,7 @@ def read_convergence(run: RunData) -> ConvergenceData:
         unknown = set(rows[column]) - set(known)
         if unknown:
             raise ValueError(f"{column} is {', '.join(map(str, unknown))}; known are {', '.join(known)}")
-    names = (re.fullmatch(r"(\w+)_(\d+)", path.stem) for path in (run.path / "trajectories").glob("*.parquet"))
+    names = (re.fullmatch(r"(\w+)_(\d+)", path.stem) for path in (run.path / TRAJECTORIES).glob(f"*{HISTORY_SUFFIX}"))
     return ConvergenceData(
         run=run,
         rows=rows,

@@ -4,6 +4,7 @@ import math
 
 import pandas as pd
 
+from common.run_layout import COUNTEREXAMPLES
 from reports.convergence.data import ConvergenceData, Law, failed, predicted
 from reports.convergence.tables import reason
 from reports.document.blocks import Verdict
@@ -37,7 +38,7 @@ def convergence_verdict(data: ConvergenceData) -> Verdict:
         for _, row in counter_examples.head(FAILURES_NAMED).iterrows()
     ]
     if len(counter_examples) > FAILURES_NAMED:
-        named.append(f"and {len(counter_examples) - FAILURES_NAMED:,} more, in counterexamples.csv")
+        named.append(f"and {len(counter_examples) - FAILURES_NAMED:,} more, in {COUNTEREXAMPLES}")
     detail = _detail(data)
     if state != "complete":
         detail += f" The run is {state}; continue it with --resume."

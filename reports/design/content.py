@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from common.run_layout import DESIGN_RECORD, MODEL
 from reports.design.data import Record, climbing, complete
 from reports.design.loop_charts import loop_charts
 from reports.design.margin_charts import margin_charts
@@ -33,7 +34,7 @@ def design_content(run: RunData) -> tuple[Verdict, list[Section]]:
     ReportError : the directory holds no design record
     """
     if run.innerloop is None:
-        raise ReportError(f"'{run.path}' holds no design record (no innerloop.json); run innerloop.design again")
+        raise ReportError(f"'{run.path}' holds no design record (no {DESIGN_RECORD}); run innerloop.design again")
     design = complete(run.innerloop)
     sections = [
         _margins(design),
@@ -43,7 +44,7 @@ def design_content(run: RunData) -> tuple[Verdict, list[Section]]:
         Section(anchor="poles", title="Poles", blocks=[pole_chart(design), pole_table(design)]),
         _verification(design),
         _weights(design),
-        _elsewhere(run.path / "model"),
+        _elsewhere(run.path / MODEL),
     ]
     return design_verdict(design), sections
 
@@ -120,7 +121,7 @@ def _elsewhere(root: Path) -> Section:
     scripts = [path for what, path in named if what == "a script"]
     if scripts:
         commands = "; ".join(f"JSBSim --root=model --script={path}" for path in scripts)
-        written = "; ".join(f"model/{Path(path).stem}.csv" for path in scripts)
+        written = "; ".join(f"{MODEL}/{Path(path).stem}.csv" for path in scripts)
         blocks.append(
             Text(
                 f"To fly it in any JSBSim, from the directory of this report: {commands}. With JSBSim's Python package the program"

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.run_layout import SUMMARY
 from reports.document.blocks import Block, Heading, Table, Text
 from reports.document.chart import Array
 from reports.document.tables import number, outcome, parameter_value
@@ -110,7 +111,7 @@ def unmet_blocks(run: RunData) -> list[Block]:
     table = Table(head=head, rows=rows, widths=[2.4, 0.5, 0.6, 0.8, 4.2], prose=True, left_columns=5, breakable=True)
     more = len(unmet) - len(rows)
     text = f"{len(unmet)} flights fell short; those that entered the keep-out area come first."
-    return [Text(text + (f" The first {len(rows)} are listed, {more} more are in summary.csv." if more else "")), table]
+    return [Text(text + (f" The first {len(rows)} are listed, {more} more are in {SUMMARY}." if more else "")), table]
 
 
 def parameter_blocks(trials: list[Trial]) -> list[Block]:

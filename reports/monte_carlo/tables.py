@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from common.run_layout import SUMMARY
 from reports.document.blocks import Table
 from reports.monte_carlo.names import FIGURES, Figure, input_name
 
@@ -48,7 +49,7 @@ def _counted(counts: dict[str, int]) -> str:
 
 def _flights(found: Record) -> str:
     more = found["flights"] - len(found["flight_ids"])
-    return f"{found['flights']:,}: {', '.join(found['flight_ids'])}" + (f" and {more:,} more, in summary.csv" if more else "")
+    return f"{found['flights']:,}: {', '.join(found['flight_ids'])}" + (f" and {more:,} more, in {SUMMARY}" if more else "")
 
 
 def quantile_table(statistics: Record) -> Table:

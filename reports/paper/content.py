@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.run_layout import BOUNDS
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
 from reports.document.tables import length, number, outcome, parameter_table
@@ -19,7 +20,7 @@ from reports.run.run_data import RunData
 
 def paper_content(run: RunData) -> tuple[Verdict, list[Section]]:
     """Return the verdict and the sections of the report of the paper's simulations."""
-    bounds = run.path / "bounds.json"
+    bounds = run.path / BOUNDS
     sections = [
         Section(
             anchor="numbers",

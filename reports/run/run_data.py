@@ -7,6 +7,17 @@ from typing import Any
 
 import pandas as pd
 
+from common.run_layout import (
+    COMPARISON,
+    CROSSINGS,
+    DESIGN_RECORD,
+    DRAWS,
+    MANIFEST,
+    STATISTICS,
+    SUMMARY,
+    time_history_path,
+    trajectory_path,
+)
 from reports.errors import ReportError
 
 
@@ -37,16 +48,16 @@ class RunData:
 
     def history(self, flight_id: str) -> pd.DataFrame | None:
         """Return a flight's time history, or None if it has none."""
-        path = self.path / "flights" / f"{flight_id}.parquet"
+        path = self.path / time_history_path(flight_id)
         return pd.read_parquet(path) if path.is_file() else None
 
     def has_history(self, flight_id: str) -> bool:
         """Return whether a flight has a time history."""
-        return (self.path / "flights" / f"{flight_id}.parquet").is_file()
+        return (self.path / time_history_path(flight_id)).is_file()
 
     def trajectory(self, law: str, number: int) -> pd.DataFrame | None:
         """Return the time history of a trajectory of a convergence study, or None if it was not kept."""
-        path = self.path / "trajectories" / f"{law}_{number:05d}.parquet"
+        path = self.path / trajectory_path(law, number)
         return pd.read_parquet(path) if path.is_file() else None
 
     def crossings_of(self, flight_id: str) -> pd.DataFrame:
@@ -62,25 +73,25 @@ def read_run(path: Path) -> RunData:
     ReportError : it is not one, is damaged, or holds nothing finished
     """
     try:
-        manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
+        manifest = json.loads((path / MANIFEST).read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise ReportError(f"'{path}' holds no run (no manifest.json); give the directory that scenarios.run named") from None
+        raise ReportError(f"'{path}' holds no run (no {MANIFEST}); give the directory that scenarios.run named") from None
     except (json.JSONDecodeError, UnicodeDecodeError, OSError) as error:
-        raise ReportError(f"'{path}': manifest.json cannot be read: {error}; run the scenario again") from None
+        raise ReportError(f"'{path}': {MANIFEST} cannot be read: {error}; run the scenario again") from None
     if not (isinstance(manifest, dict) and isinstance(manifest.get("config"), dict)):
-        raise ReportError(f"'{path}': manifest.json is not that of a run; run the scenario again in another --out")
-    if manifest.get("study") != "design" and not (path / "summary.csv").is_file():
-        raise ReportError(f"'{path}' holds nothing finished (no summary.csv); continue the run with --resume")
+        raise ReportError(f"'{path}': {MANIFEST} is not that of a run; run the scenario again in another --out")
+    if manifest.get("study") != "design" and not (path / SUMMARY).is_file():
+        raise ReportError(f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume")
     try:
         return RunData(
             path=path,
             manifest=manifest,
-            summary=_table(path / "summary.csv"),
-            comparison=_table(path / "comparison.csv"),
-            crossings=_table(path / "crossings.csv", columns=["flight_id", "time_s", "distance_m"]),
-            innerloop=_record(path / "innerloop.json"),
-            statistics=_record(path / "statistics.json"),
-            draws=_table(path / "draws.csv"),
+            summary=_table(path / SUMMARY),
+            comparison=_table(path / COMPARISON),
+            crossings=_table(path / CROSSINGS, columns=["flight_id", "time_s", "distance_m"]),
+            innerloop=_record(path / DESIGN_RECORD),
+            statistics=_record(path / STATISTICS),
+            draws=_table(path / DRAWS),
         )
     except (ValueError, OSError) as error:
         raise ReportError(f"'{path}': a table or a record cannot be read: {error}; run the scenario again") from None

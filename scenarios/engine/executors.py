@@ -1,31 +1,31 @@
-"""Which crew flies a study."""
+"""Choice of the executor of a study: processes of this machine, or a Dask cluster."""
 
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 
-from scenarios.engine.executor import Crew
-from scenarios.engine.local_executor import LocalCrew
+from scenarios.engine.executor import Executor
+from scenarios.engine.local_executor import LocalExecutor
 from scenarios.engine.task import Limits, Work
 from scenarios.errors import InputError
 
 LOCAL, DASK = "local", "dask"
-"""Processes of this machine, or of a Dask cluster."""
+"""Names of the executors."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Hiring:
-    """Makes crews of one kind.
+class ExecutorFactory:
+    """Makes executors of one kind.
 
     Attributes
     ----------
-    jobs : number of processes, where they are started here
+    jobs : number of processes to start; unused with a scheduler, whose workers are running already
     executor : ``LOCAL`` or ``DASK``
     scheduler : address of a Dask scheduler; without one a cluster is started on this machine
-    limits : of a flight
+    limits : time and memory limits of a task
 
     Raises
     ------
-    InputError : a scheduler where none is used, or Dask where it is not installed
+    InputError : a scheduler without Dask, or Dask is not installed
     """
 
     jobs: int = 1
@@ -41,10 +41,10 @@ class Hiring:
                 "--executor is dask, which is not installed; install it with: pip install -c constraints.txt -e '.[dask]'"
             )
 
-    def __call__(self, work: Work) -> Crew:
-        """Return a crew for some work."""
+    def __call__(self, work: Work) -> Executor:
+        """Return an executor for some work."""
         if self.executor == LOCAL:
-            return LocalCrew(work, jobs=self.jobs, limits=self.limits)
-        from scenarios.engine.dask_executor import DaskCrew
+            return LocalExecutor(work, jobs=self.jobs, limits=self.limits)
+        from scenarios.engine.dask_executor import DaskExecutor
 
-        return DaskCrew(work, scheduler=self.scheduler, jobs=self.jobs, limits=self.limits)
+        return DaskExecutor(work, scheduler=self.scheduler, jobs=self.jobs, limits=self.limits)

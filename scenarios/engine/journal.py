@@ -1,7 +1,8 @@
-"""What of a study is done, on disk as it comes.
+"""The journal: results of a study, stored on disk as they arrive.
 
-A result is in the journal or it is not: whatever ends the program, and whenever, the next one finds every result that was
-told to be done. Tables are written from it, in the order of the tasks, one row at a time: a study may have more rows than memory.
+A result is either in the journal or not: whenever and however the program ends, the next one finds every result that
+was added. Tables are written from the journal in the order of the tasks, one row at a time: a study may have more rows
+than fit into memory.
 """
 
 import csv
@@ -16,7 +17,7 @@ from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
 
 _LARGEST = 2**63 - 1
-"""SQLite's largest whole number."""
+"""SQLite's largest integer."""
 
 _SCHEMA = "CREATE TABLE IF NOT EXISTS results (number INTEGER PRIMARY KEY, point TEXT, items INTEGER, lost INTEGER, tables TEXT)"
 
@@ -26,17 +27,17 @@ class Journal:
 
     Parameters
     ----------
-    path : of its file; made if there is none
+    path : path of the file; created if it does not exist
 
     Raises
     ------
-    InputError : another program is writing it, or it is none
+    InputError : another program is writing to it, or it is damaged
     """
 
     def __init__(self, path: Path) -> None:
         self._database = sqlite3.connect(path, isolation_level=None, timeout=0.0)
         try:
-            # Alone: two programs that fly the same study would undo each other's work.
+            # Exclusive: two programs that fly the same study would overwrite each other's results.
             self._database.execute("PRAGMA locking_mode = EXCLUSIVE")
             self._database.execute("PRAGMA journal_mode = WAL")
             self._database.execute("PRAGMA synchronous = NORMAL")
@@ -45,7 +46,9 @@ class Journal:
             self._database.close()
             if "locked" not in str(error):
                 raise
-            raise InputError(f"'{path.parent}' is being flown by another program; wait for it, or choose another --out") from None
+            raise InputError(
+                f"another program is writing to '{path.parent}'; wait until it has ended, or choose another --out"
+            ) from None
         except sqlite3.DatabaseError as error:
             self._database.close()
             if not is_damaged(error):
@@ -53,11 +56,11 @@ class Journal:
             raise InputError(f"'{path}' is damaged; start a new run in another --out") from None
 
     def close(self) -> None:
-        """Close its file."""
+        """Close the file."""
         self._database.close()
 
     def add(self, result: Result) -> None:
-        """Take in a result; no end of the program loses it from then on. One that was there for its task is replaced."""
+        """Store a result, replacing an earlier one of its task; from then on it survives any end of the program."""
         self._database.execute(
             "INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?)",
             (
@@ -70,7 +73,7 @@ class Journal:
         )
 
     def done(self) -> set[int]:
-        """Return the numbers of the tasks that are done; those whose process was lost are not."""
+        """Return the numbers of the tasks that are done; tasks whose process was lost are not."""
         return {number for (number,) in self._database.execute("SELECT number FROM results WHERE NOT lost")}
 
     def task(self, number: int) -> Task:
@@ -79,11 +82,11 @@ class Journal:
         return Task(number=number, point=tuple(json.loads(point)))
 
     def items(self) -> int:
-        """Return how many of what the study counts are done."""
+        """Return the number of items that are done."""
         return int(self._database.execute("SELECT COALESCE(SUM(items), 0) FROM results WHERE NOT lost").fetchone()[0])
 
     def numbered(self, table: str, *, first: int = 0, below: int = _LARGEST) -> Iterator[tuple[int, Row]]:
-        """Yield the rows of a table with the numbers of their tasks, in that order: those from ``first`` to below ``below``."""
+        """Yield task number and row of a table, by ascending task number from ``first`` to below ``below``."""
         query = "SELECT number, tables FROM results WHERE number >= ? AND number < ? ORDER BY number"
         found = self._database.execute(query, (first, below))
         for number, text in found:
@@ -91,11 +94,11 @@ class Journal:
                 yield number, row
 
     def rows(self, table: str, *, first: int = 0, below: int = _LARGEST) -> Iterator[Row]:
-        """Yield the rows of a table in the order of their tasks: of those numbered from ``first`` to below ``below``."""
+        """Yield the rows of a table, by ascending task number from ``first`` to below ``below``."""
         return (row for _, row in self.numbered(table, first=first, below=below))
 
     def export(self, table: str, columns: tuple[str, ...], file: IO[str]) -> int:
-        """Write a table with exactly ``columns`` as CSV; figures that a row lacks are empty. Return the number of rows."""
+        """Write a table as CSV with exactly ``columns``, missing values empty; return the number of rows."""
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
         count = 0
@@ -105,22 +108,22 @@ class Journal:
 
 
 def is_full(error: sqlite3.DatabaseError) -> bool:
-    """Return whether there was no room left on the disk."""
+    """Return whether the disk was full."""
     return _code(error) == sqlite3.SQLITE_FULL
 
 
 def is_damaged(error: sqlite3.DatabaseError) -> bool:
-    """Return whether the file is no journal, or no longer one."""
+    """Return whether the file is damaged, or not a journal."""
     return _code(error) in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 
 
 def _code(error: sqlite3.DatabaseError) -> int:
-    """Return the primary code of SQLite's error."""
+    """Return the primary error code of SQLite."""
     return int(error.sqlite_errorcode) & 0xFF
 
 
 def _plain(value: Any) -> Any:
-    """Return a figure of numpy as Python's own."""
+    """Return a numpy scalar as a Python number."""
     return value.item()
 
 

@@ -1,7 +1,8 @@
-"""Processes of this machine.
+"""Executes tasks in processes of this machine.
 
-Each has a pipe of its own, and shares no lock with the others: one that dies at any moment takes nothing with it but its task.
-(Pools that share a channel do not survive that: github.com/noxdafox/pebble/issues/163, and the standard library's gives up.)
+Every process has its own pipe and shares no lock with the others, so that a process that dies at any moment loses its
+current task and nothing else. (Pools that share one channel do not survive that:
+github.com/noxdafox/pebble/issues/163; the pool of the standard library stops altogether.)
 """
 
 import multiprocessing
@@ -15,117 +16,116 @@ from types import TracebackType
 from typing import Self
 
 from common.interrupt import ignore_interrupt
-from scenarios.engine.executor import TRIES
+from scenarios.engine.executor import MAX_ATTEMPTS, QUEUE_DEPTH
 from scenarios.engine.memory import data_memory, limit_memory
 from scenarios.engine.task import Limits, Result, Task, Work
 from scenarios.errors import InputError
 
-_AHEAD = 2
-"""Tasks that a process has at most: the one at hand, and the next, so that it does not wait for it."""
-
-_NOT_MUCH = 5.0
-"""Time for a process that is done to end by itself [s]."""
+JOIN_TIMEOUT = 5.0
+"""Time that an idle process has to end by itself before it is killed [s]; it takes milliseconds."""
 
 
-class LocalCrew:
-    """Processes of this machine.
+class LocalExecutor:
+    """Executes tasks in processes of this machine.
 
     Parameters
     ----------
-    work : what they do
-    jobs : how many
-    limits : of a task
+    work : what each process does with a task
+    jobs : number of processes
+    limits : time and memory limits of a task
     """
 
     def __init__(self, work: Work, *, jobs: int, limits: Limits) -> None:
         self._work, self._jobs, self._limits = work, jobs, limits
-        self._hands: list[_Hand] = []
-        self._again: deque[Task] = deque()
-        self._tried: Counter[int] = Counter()
+        self._workers: list[WorkerProcess] = []
+        self._retries: deque[Task] = deque()
+        self._attempts: Counter[int] = Counter()
 
     def __enter__(self) -> Self:
-        """Begin; processes start as there is work for them.
+        """Check the memory limit; processes are started when there is work for them.
 
         Raises
         ------
-        InputError : the limit of memory is below what they begin with
+        InputError : the memory limit is below what a process uses before its first task
         """
         memory, needed = self._limits.memory, data_memory()
         if memory is not None and memory < needed:
             raise InputError(
-                f"--memory-limit is {memory / 2**30:.2f} GiB; a process has {needed / 2**30:.2f} GiB before its first flight: give"
-                " more"
+                f"--memory-limit is {memory / 2**30:.2f} GiB; a process uses {needed / 2**30:.2f} GiB before its first flight:"
+                " raise the limit"
             )
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        """End every process, at once after an error."""
-        for hand in self._hands:
-            hand.end(at_once=kind is not None)
-        self._hands.clear()
+        """End every process; after an error kill it."""
+        for worker in self._workers:
+            worker.end(at_once=kind is not None)
+        self._workers.clear()
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Yield the result of every task as it comes; one whose process is lost is tried once more."""
+        """Yield the result of every task as it arrives; a task whose process is lost is tried once more."""
         waiting = iter(tasks)
-        while self._hand_out(waiting):
-            ready = wait([hand.connection for hand in self._hands if hand.tasks], timeout=self._patience())
-            for hand in [hand for hand in self._hands if hand.connection in ready or hand.overdue(self._limits.time)]:
-                if hand.connection in ready:
-                    answer = hand.answer()
+        while self._dispatch(waiting):
+            ready = wait([worker.connection for worker in self._workers if worker.tasks], timeout=self._time_to_deadline())
+            due = [w for w in self._workers if w.connection in ready or w.is_overdue(self._limits.time)]
+            for worker in due:
+                if worker.connection in ready:
+                    answer = worker.receive()
                 else:
-                    hand.kill()
+                    worker.kill()
                     answer = f"did not end within {self._limits.time:g} s"
                 if isinstance(answer, Result):
                     yield answer
                 else:
-                    yield from self._mourn(hand, answer)
+                    yield from self._handle_lost_worker(worker, answer)
 
-    def _hand_out(self, waiting: Iterator[Task]) -> bool:
-        """Give tasks to who is free; return whether any is at work."""
-        for depth in range(1, _AHEAD + 1):
-            for place in range(self._jobs):
-                if place < len(self._hands) and len(self._hands[place].tasks) >= depth:
+    def _dispatch(self, waiting: Iterator[Task]) -> bool:
+        """Send tasks to processes that have room for more; return whether any process is busy."""
+        for depth in range(1, QUEUE_DEPTH + 1):
+            for index in range(self._jobs):
+                if index < len(self._workers) and len(self._workers[index].tasks) >= depth:
                     continue
-                task = self._again.popleft() if self._again else next(waiting, None)
+                task = self._retries.popleft() if self._retries else next(waiting, None)
                 if task is None:
-                    return any(hand.tasks for hand in self._hands)
-                if place == len(self._hands):
-                    self._hands.append(_Hand(self._work, self._limits, [hand.connection for hand in self._hands]))
-                self._hands[place].give(task)
+                    return any(worker.tasks for worker in self._workers)
+                if index == len(self._workers):
+                    others = [worker.connection for worker in self._workers]
+                    self._workers.append(WorkerProcess(self._work, self._limits, others))
+                self._workers[index].send(task)
         return True
 
-    def _patience(self) -> float:
-        """Return the time until the next task is overdue [s]."""
-        due = min(hand.since + self._limits.time for hand in self._hands if hand.tasks)
-        return max(0.0, due - time.monotonic())
+    def _time_to_deadline(self) -> float:
+        """Return the time until the next running task exceeds the time limit [s]."""
+        deadline = min(worker.task_started + self._limits.time for worker in self._workers if worker.tasks)
+        return max(0.0, deadline - time.monotonic())
 
-    def _mourn(self, hand: "_Hand", reason: str) -> Iterator[Result]:
-        """Replace a process that was lost; yield the result of its task if it has been tried often enough."""
-        hand.end(at_once=True)
-        at_hand, *others = hand.tasks
-        # The others had not been begun: they are as they were.
-        self._again.extendleft(reversed(others))
-        self._hands.remove(hand)
-        self._tried[at_hand.number] += 1
-        if self._tried[at_hand.number] < TRIES:
-            self._again.append(at_hand)
+    def _handle_lost_worker(self, worker: "WorkerProcess", reason: str) -> Iterator[Result]:
+        """Queue the tasks of a lost process again; yield the result of its current task after the last attempt."""
+        worker.end(at_once=True)
+        current, *queued = worker.tasks
+        # The queued tasks had not been started: they do not count as attempted.
+        self._retries.extendleft(reversed(queued))
+        self._workers.remove(worker)
+        self._attempts[current.number] += 1
+        if self._attempts[current.number] < MAX_ATTEMPTS:
+            self._retries.append(current)
         else:
-            yield self._work.lost(at_hand, f"{TRIES} processes that flew it were lost; the last one {reason}")
+            yield self._work.lost(current, f"{MAX_ATTEMPTS} processes that flew it were lost; the last one {reason}")
 
 
-class _Hand:
-    """One process, and what it has been given.
+class WorkerProcess:
+    """One process and the tasks that were sent to it.
 
     Attributes
     ----------
-    connection : to it
-    tasks : the one at hand, and those to come
-    since : when it began the one at hand [s]
+    connection : pipe to the process
+    tasks : the current task, then those that are queued in the pipe
+    task_started : when the current task was started [s]
     """
 
     def __init__(self, work: Work, limits: Limits, others: Sequence[Connection]) -> None:
         self.connection, theirs = multiprocessing.Pipe()
-        # A forked process has the ends of all pipes; were it to keep them, none would ever see this program gone.
+        # A forked process inherits the ends of all pipes; if it kept them open, no process would see this program end.
         inherited = [*others, self.connection]
         self._process: BaseProcess = multiprocessing.Process(
             target=_serve, args=(theirs, inherited, work, limits.memory), daemon=True
@@ -133,61 +133,61 @@ class _Hand:
         self._process.start()
         theirs.close()
         self.tasks: deque[Task] = deque()
-        self.since = time.monotonic()
+        self.task_started = time.monotonic()
 
-    def give(self, task: Task) -> None:
-        """Give it a task, to be done after those that it has."""
+    def send(self, task: Task) -> None:
+        """Queue a task."""
         if not self.tasks:
-            self.since = time.monotonic()
+            self.task_started = time.monotonic()
         self.tasks.append(task)
         try:
             self.connection.send(task)
         except (BrokenPipeError, ConnectionResetError):
-            # It is dead: that shows when its answer is asked for.
+            # The process is dead; receive() will say so.
             return
 
-    def overdue(self, limit: float) -> bool:
-        """Return whether it has had more than ``limit`` [s] for the task at hand."""
-        return bool(self.tasks) and time.monotonic() - self.since > limit
+    def is_overdue(self, limit: float) -> bool:
+        """Return whether the current task has taken more than ``limit`` [s]."""
+        return bool(self.tasks) and time.monotonic() - self.task_started > limit
 
-    def answer(self) -> Result | str:
-        """Return its answer, or what became of it."""
+    def receive(self) -> Result | str:
+        """Return the result of the current task, or how the process was lost."""
         try:
             answer: Result | str = self.connection.recv()
         except (EOFError, OSError):
-            self._process.join(_NOT_MUCH)
-            return _how_it_ended(self._process.exitcode)
+            self._process.join(JOIN_TIMEOUT)
+            return _exit_reason(self._process.exitcode)
         if isinstance(answer, Result):
             self.tasks.popleft()
-            self.since = time.monotonic()
+            self.task_started = time.monotonic()
         return answer
 
     def kill(self) -> None:
-        """End it, whatever it does."""
+        """Kill the process."""
         self._process.kill()
 
     def end(self, *, at_once: bool) -> None:
-        """Let it end by itself when it has nothing to do, or at once."""
+        """Close the pipe and wait until the process has ended; kill it first if ``at_once``, or if it does not end."""
         self.connection.close()
         if at_once:
             self._process.kill()
-        self._process.join(_NOT_MUCH)
+        self._process.join(JOIN_TIMEOUT)
         if self._process.is_alive():
             self._process.kill()
             self._process.join()
 
 
-def _how_it_ended(code: int | None) -> str:
+def _exit_reason(code: int | None) -> str:
     if code is None:
         return "closed its connection"
     if code < 0:
         name = signal.Signals(-code).name
-        return f"was ended by {name}" + (", as for lack of memory" if -code == signal.SIGKILL else "")
+        return f"was ended by {name}" + (", possibly for lack of memory" if -code == signal.SIGKILL else "")
     return f"ended with status {code}"
 
 
 def _serve(connection: Connection, inherited: Sequence[Connection], work: Work, memory: int | None) -> None:
-    """Do tasks until there are none, or until whoever gives them is gone."""
+    """Do tasks in a process until the pipe is closed."""
     ignore_interrupt()
     for other in inherited:
         other.close()
@@ -198,7 +198,8 @@ def _serve(connection: Connection, inherited: Sequence[Connection], work: Work, 
             try:
                 connection.send(work.fly(task))
             except MemoryError:
-                connection.send(f"ran out of memory{'' if memory is None else f', of which it had {memory / 2**20:.0f} MiB'}")
+                limit = "" if memory is None else f"; its limit is {memory / 2**20:.0f} MiB"
+                connection.send(f"ran out of memory{limit}")
                 return
     except (EOFError, BrokenPipeError, ConnectionResetError):
         return

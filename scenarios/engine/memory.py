@@ -1,4 +1,4 @@
-"""What memory a process may have, and has."""
+"""Memory limit and memory use of a process."""
 
 import re
 import sys
@@ -9,9 +9,9 @@ if sys.platform != "win32":
 
 
 def limit_memory(limit: int | None) -> None:
-    """Let this process have no more than ``limit`` [bytes] of data from now on; beyond it there is a MemoryError.
+    """Limit the data memory of this process to ``limit`` [bytes]; allocations beyond it raise MemoryError.
 
-    Without effect where the system has no such limit.
+    Without effect on systems that have no such limit.
     """
     if limit is not None and sys.platform != "win32":
         _, hard = resource.getrlimit(resource.RLIMIT_DATA)
@@ -19,7 +19,7 @@ def limit_memory(limit: int | None) -> None:
 
 
 def data_memory() -> int:
-    """Return what this process has of what ``limit_memory`` limits [bytes]; 0 where the system does not say."""
+    """Return the data memory of this process [bytes]; 0 if the system does not report it."""
     try:
         status = Path("/proc/self/status").read_text(encoding="ascii")
     except OSError:
@@ -29,7 +29,7 @@ def data_memory() -> int:
 
 
 def peak_memory() -> float:
-    """Return the most memory that this process has had [bytes]; 0 where the system does not say."""
+    """Return the peak resident memory of this process [bytes]; 0 if the system does not report it."""
     if sys.platform == "win32":
         return 0.0
     unit = 1 if sys.platform == "darwin" else 1024

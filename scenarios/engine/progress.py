@@ -11,15 +11,15 @@ from rich.progress import Progress as Bar
 from scenarios.engine.runner import Progress
 from scenarios.errors import InputError
 
-_BETWEEN = 0.1
-"""Shortest time between two drawings of the bar [s]: flights can be faster than a terminal."""
+REFRESH_INTERVAL = 0.1
+"""Shortest time between two updates of the bar [s]: results may arrive faster than a terminal can show them."""
 
 
 @contextlib.contextmanager
 def progress_bar() -> Iterator[Progress]:
-    """Yield a function to call with what is being done, the number of flights done, and their total.
+    """Yield a function to call with the current activity, the number of finished items and their total.
 
-    The bar appears at the first call, and goes again where input is refused: that leaves nothing but its message.
+    The bar appears at the first call. If the input is refused it is removed, so that only the message is left.
     """
     bar = Bar(
         TextColumn("{task.description}"),
@@ -31,20 +31,20 @@ def progress_bar() -> Iterator[Progress]:
     )
     task = bar.add_task("")
 
-    drawn = -_BETWEEN
+    refreshed = -REFRESH_INTERVAL
 
-    def report(doing: str, done: int, total: int) -> None:
-        nonlocal drawn
+    def report(activity: str, done: int, total: int) -> None:
+        nonlocal refreshed
         bar.start()
         now = time.monotonic()
-        due = now - drawn >= _BETWEEN or done == total
-        drawn = now if due else drawn
-        bar.update(task, description=doing, completed=done, total=total, refresh=due)
+        due = now - refreshed >= REFRESH_INTERVAL or done == total
+        refreshed = now if due else refreshed
+        bar.update(task, description=activity, completed=done, total=total, refresh=due)
 
     try:
         yield report
     except InputError:
-        # Erased from a terminal; elsewhere nothing has been written yet.
+        # This erases the bar from a terminal; to anything else nothing has been written yet.
         bar.live.transient = True
         bar.console.quiet = not bar.console.is_terminal
         raise

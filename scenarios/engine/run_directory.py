@@ -1,16 +1,19 @@
-"""A run directory: what is in it, and writing it whole or not at all."""
+"""The run directory: its files, each written completely or not at all."""
 
 import json
 import uuid
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from common.files import write_json, write_whole
+from common.run_layout import BOUNDS, DESIGN_RECORD, HISTORY_SUFFIX, JOURNAL, MANIFEST, MODEL, STATISTICS
 from scenarios.engine.fingerprint import differences, fingerprint
 from scenarios.errors import InputError
+
+if TYPE_CHECKING:
+    # Commands that only list or refuse something need not wait for it.
+    import pandas as pd
 
 
 class RunDirectory:
@@ -23,17 +26,15 @@ class RunDirectory:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.manifest = path / "manifest.json"
-        self.journal = path / "journal.sqlite"
-        self.innerloop = path / "innerloop.json"
-        self.bounds = path / "bounds.json"
-        self.statistics = path / "statistics.json"
-        self.model = path / "model"
-        self.flights = path / "flights"
-        self.trajectories = path / "trajectories"
+        self.manifest = path / MANIFEST
+        self.journal = path / JOURNAL
+        self.innerloop = path / DESIGN_RECORD
+        self.bounds = path / BOUNDS
+        self.statistics = path / STATISTICS
+        self.model = path / MODEL
 
     def open(self, config_hash: str, *, resume: bool) -> None:
-        """Open the directory for a new run, or to go on with one of this configuration; see ``open_new`` and ``open_existing``."""
+        """Open the directory for a new run, or to resume one of this configuration."""
         if resume:
             self.open_existing(config_hash)
         else:
@@ -44,13 +45,13 @@ class RunDirectory:
 
         Raises
         ------
-        InputError : it holds something already, or cannot be written
+        InputError : the directory is not empty, or cannot be written
         """
         self.refuse_taken()
         self._create()
 
     def refuse_taken(self) -> None:
-        """Raise an InputError where the directory holds something already."""
+        """Raise an InputError if the directory is not empty."""
         if self.manifest.exists():
             raise InputError(
                 f"output directory '{self.path}' holds another run; choose another --out, or continue it with --resume"
@@ -59,11 +60,11 @@ class RunDirectory:
             raise InputError(f"output directory '{self.path}' is not empty; choose another --out")
 
     def open_existing(self, config_hash: str) -> None:
-        """Open a directory that holds an unfinished or finished run of the same configuration.
+        """Open a directory with an unfinished or finished run of the same configuration.
 
         Raises
         ------
-        InputError : there is no run, its configuration differs, or it cannot be written
+        InputError : there is no run, its configuration or software differs, or the directory cannot be written
         """
         if not self.manifest.is_file():
             raise InputError(f"'{self.path}' holds no run to resume; leave out --resume to start one")
@@ -80,13 +81,13 @@ class RunDirectory:
             name = differing[0]
             before, now = theirs.get(name, "unknown"), fingerprint()[name]
             raise InputError(
-                f"'{self.path}' was begun with {name} {before}, now it is {now}: results would not go together;"
-                " resume it with what it was begun with, or start a new run in another --out"
+                f"'{self.path}' was started with {name} {before}, now it is {now}: results would not be comparable;"
+                f" resume it with the same {name}, or start a new run in another --out"
             )
         self._create()
 
     def sweep(self) -> None:
-        """Remove what was being written when the program was killed. Nobody else may be writing."""
+        """Remove partly written files of a program that was killed. No other program may be writing."""
         for part in self.path.rglob(".*.part"):
             part.unlink()
 
@@ -100,16 +101,18 @@ class RunDirectory:
             raise InputError(f"output directory '{self.path}' cannot be written: {error.strerror}; choose another --out") from None
 
     def write_json(self, path: Path, value: Mapping[str, Any]) -> None:
-        """Write a JSON file, whole or not at all."""
+        """Write a JSON file, completely or not at all."""
         write_json(path, value)
 
-    def write_frame(self, name: str, frame: pd.DataFrame) -> None:
-        """Write a table to ``name``, a CSV or Parquet file by its ending, whole or not at all."""
-        write = frame.to_parquet if name.endswith(".parquet") else frame.to_csv
-        write_whole(self.path / name, lambda part: write(part, index=False))
+    def write_frame(self, name: str, frame: "pd.DataFrame") -> None:
+        """Write a table to ``name``, a CSV or Parquet file by its suffix, completely or not at all."""
+        path = self.path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write = frame.to_parquet if name.endswith(HISTORY_SUFFIX) else frame.to_csv
+        write_whole(path, lambda part: write(part, index=False))
 
     def write_bytes(self, name: str, content: bytes) -> None:
-        """Write a file of the run, whole or not at all."""
+        """Write a file of the run, completely or not at all."""
         path = self.path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, lambda part: part.write_bytes(content))

@@ -1,4 +1,4 @@
-"""What the engine needs to know of a study, and flying one into a run directory."""
+"""The interface of a study, and its execution with an executor, a journal and a run directory."""
 
 import errno
 import sqlite3
@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from common.files import write_whole
-from scenarios.engine.executor import Crew
+from scenarios.engine.executor import Executor
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.journal import Journal, is_damaged, is_full
 from scenarios.engine.memory import peak_memory
 from scenarios.engine.run_directory import RunDirectory
@@ -17,25 +18,22 @@ from scenarios.engine.task import Task, Work
 from scenarios.errors import InputError
 
 Progress = Callable[[str, int, int], None]
-"""Called with what is being done, how many of what the study counts are done and how many there are."""
-
-Hire = Callable[[Work], Crew]
-"""Makes the crew for some work."""
+"""Called with the current activity, the number of items that are done and the total number of items."""
 
 Fly = Callable[[Iterable[Task]], None]
-"""Has tasks flown."""
+"""Executes tasks and returns when their results are in the journal."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Summary:
-    """What a study has come to.
+class StudySummary:
+    """The result of a study so far.
 
     Attributes
     ----------
-    done : of what it counts
-    met : whether everything planned is done and met what was asked
-    lines : what happened, in lines of text
-    manifest : what the run says of it
+    done : number of items that are done
+    met : whether all planned items are done and met their criteria
+    lines : the result in lines of text, for the console
+    manifest : entries for the manifest of the run
     """
 
     done: int
@@ -45,12 +43,12 @@ class Summary:
 
 
 class Study(Protocol):
-    """Tasks, what is done with each, and what it comes to.
+    """A set of tasks, the work to be done on each, and the evaluation of their results.
 
     Attributes
     ----------
-    what : it counts, in the plural
-    config_hash : of everything that results depend on
+    what : name of the items that the study counts, in the plural, such as "flights"
+    config_hash : hash of the configuration that results depend on
     """
 
     what: str
@@ -58,68 +56,69 @@ class Study(Protocol):
 
     @property
     def planned(self) -> int:
-        """Return how many there are to be, at most."""
+        """Return the largest possible number of items."""
 
-    def opening(self) -> dict[str, Any]:
-        """Return what the manifest says before anything has been flown."""
+    def initial_manifest(self) -> dict[str, Any]:
+        """Return the manifest as written before the first task."""
 
     def work(self, run: RunDirectory) -> Work:
-        """Return what is done with each task, with what it needs written into the run directory."""
+        """Return the work, after writing the files that it needs into the run directory."""
 
-    def conduct(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Have tasks flown, in one batch or in several: what ``fly`` was given is in the journal when it returns.
+    def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
+        """Execute tasks, in one or several calls of ``fly``: their results are in the journal when it returns.
 
-        What is in the journal already is not flown again. Tasks that are to be ``recorded`` are, for their files alone.
+        Tasks whose results are in the journal are skipped, unless they are ``recorded``: those are repeated for their
+        files.
         """
 
-    def finish(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
-        """Write what the run holds beside its tables, once every task is done."""
+    def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
+        """Write the files of the run beside its tables, when every task is done."""
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write the tables of what is done so far."""
+        """Write the tables of the results so far."""
 
-    def summary(self, journal: Journal) -> Summary:
-        """Return what the study has come to so far."""
+    def summary(self, journal: Journal) -> StudySummary:
+        """Return the result so far."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunResult:
-    """How a run ended.
+    """The outcome of a run.
 
     Attributes
     ----------
     directory : the run directory
-    what, planned : what the study counts, and how many there were to be
-    summary : what it came to
-    interrupted : whether it was stopped before all was done
+    what, planned : name and planned number of the items that the study counts
+    summary : the result of the study
+    interrupted : whether the run was interrupted before every task was done
     """
 
     directory: Path
     what: str
     planned: int
-    summary: Summary
+    summary: StudySummary
     interrupted: bool
 
     @property
     def all_met(self) -> bool:
-        """Whether everything was done, and met what was asked."""
+        """Whether every planned item is done and met its criteria."""
         return self.summary.met and not self.interrupted
 
 
-def fly_study(study: Study, directory: Path, *, hire: Hire, resume: bool, progress: Progress) -> RunResult:
-    """Fly a study into a run directory, or what is left of it.
+def fly_study(study: Study, directory: Path, *, executor_factory: ExecutorFactory, resume: bool, progress: Progress) -> RunResult:
+    """Fly a study, or the unfinished part of it, into a run directory.
 
     Parameters
     ----------
-    study : what to fly
+    study : the study
     directory : the run directory
-    hire : makes the crew
-    resume : go on with the unfinished run in ``directory``
-    progress : told what happens
+    executor_factory : makes the executor
+    resume : continue the unfinished run in ``directory``
+    progress : called as the study advances
 
     Raises
     ------
-    InputError : a directory that cannot be used, or that has no room left: what is done is kept
+    InputError : the directory cannot be used, or the disk is full; finished results are kept
     """
     run = RunDirectory(directory)
     run.open(study.config_hash, resume=resume)
@@ -127,23 +126,23 @@ def fly_study(study: Study, directory: Path, *, hire: Hire, resume: bool, progre
         journal = Journal(run.journal)
         run.sweep()
         try:
-            return _fly(study, run, journal, hire, progress)
+            return _fly(study, run, journal, executor_factory, progress)
         finally:
             journal.close()
     except (OSError, sqlite3.DatabaseError) as error:
         raise _explained(error, run) from None
 
 
-def _fly(study: Study, run: RunDirectory, journal: Journal, hire: Hire, progress: Progress) -> RunResult:
-    manifest = study.opening()
+def _fly(study: Study, run: RunDirectory, journal: Journal, executor_factory: ExecutorFactory, progress: Progress) -> RunResult:
+    manifest = study.initial_manifest()
     run.write_json(run.manifest, manifest | {"state": "running"})
     began = time.perf_counter()
     interrupted = False
     try:
         work = study.work(run)
-        with hire(work) as crew:
-            study.conduct(_flying(study, run, journal, crew, progress), run, journal)
-        study.finish(run, journal, progress)
+        with executor_factory(work) as executor:
+            study.run(_executing(study, run, journal, executor, progress), run, journal)
+        study.postprocess(run, journal, progress)
     except KeyboardInterrupt:
         interrupted = True
     study.export(run, journal)
@@ -157,14 +156,14 @@ def _fly(study: Study, run: RunDirectory, journal: Journal, hire: Hire, progress
     return RunResult(directory=run.path, what=study.what, planned=study.planned, summary=summary, interrupted=interrupted)
 
 
-def _flying(study: Study, run: RunDirectory, journal: Journal, crew: Crew, progress: Progress) -> Fly:
+def _executing(study: Study, run: RunDirectory, journal: Journal, executor: Executor, progress: Progress) -> Fly:
     before, done = journal.done(), journal.items()
     progress("flying", done, study.planned)
 
     def fly(tasks: Iterable[Task]) -> None:
         nonlocal done
-        for result in crew.fly(task for task in tasks if task.recorded or task.number not in before):
-            # A result counts as done once it is in the journal; its files are there by then.
+        for result in executor.fly(task for task in tasks if task.recorded or task.number not in before):
+            # Files first: a result counts as done when it is in the journal.
             for name, content in result.files.items():
                 run.write_bytes(name, content)
             if not result.task.recorded:
@@ -176,7 +175,7 @@ def _flying(study: Study, run: RunDirectory, journal: Journal, crew: Crew, progr
 
 
 def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, tuple[str, ...]]) -> None:
-    """Write tables from the journal into the run directory: their columns by their file names."""
+    """Write tables from the journal into the run directory; ``tables`` gives the columns of each file."""
     for name, columns in tables.items():
 
         def write(path: Path, name: str = name, columns: tuple[str, ...] = columns) -> None:
@@ -187,10 +186,12 @@ def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, tuple
 
 
 def _explained(error: OSError | sqlite3.DatabaseError, run: RunDirectory) -> Exception:
-    """Return what to tell of an error of the disk."""
+    """Return the error to raise for an error of the disk or of the journal."""
     full = error.errno in (errno.ENOSPC, errno.EDQUOT) if isinstance(error, OSError) else is_full(error)
     if full:
-        return InputError(f"there is no room left for '{run.path}'; everything done is kept: make room, and go on with --resume")
+        return InputError(
+            f"the disk of '{run.path}' is full; finished results are kept: free some space and continue with --resume"
+        )
     if isinstance(error, sqlite3.DatabaseError) and is_damaged(error):
         return InputError(f"'{run.journal}' is damaged; start a new run in another --out")
     return error

@@ -1,22 +1,24 @@
-"""What a crew does, piece by piece, and what comes of it."""
+"""Tasks, the work that is done on them, and their results."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
 Row = dict[str, Any]
+"""A row of a table: values by column."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
-    """A piece of work: mostly a flight.
+    """A piece of work, usually one flight.
 
     Attributes
     ----------
-    number : in its study, from 0
-    point : where in the unit cube of what is drawn, for a study that chooses it; otherwise what is drawn follows from the number
-    recorded : whether a time history is wanted, come what may
-    every_step : whether that is to have every step of the guidance
+    number : its index in the study, from 0
+    point : coordinates of its random variables in the unit cube, if the study chooses them; otherwise they follow from
+        the number
+    recorded : whether its time history is written in any case
+    every_step : whether the time history has every step of the guidance
     """
 
     number: int
@@ -27,15 +29,15 @@ class Task:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
-    """What became of a piece of work.
+    """The result of a task.
 
     Attributes
     ----------
-    task : that was done
-    tables : rows by the table that they belong to
+    task : the task
+    tables : rows by the file name of their table
     files : contents of files by their paths in the run directory
-    items : how many of what the study counts
-    lost : whether its process was lost, so that it may be tried again
+    items : number of items of the study in this result
+    lost : whether its process was lost, so that the task is tried again by ``--resume``
     """
 
     task: Task
@@ -46,24 +48,24 @@ class Result:
 
 
 class Work(Protocol):
-    """What a study does with each task. It is sent to every process once: it must be possible to pickle it.
+    """What a study does with each task. It is sent to every process once, so it must be picklable.
 
-    What it returns depends on itself and on the task alone, not on what the process did before.
+    A result depends on the work and the task alone, not on what the process did before.
 
     Attributes
     ----------
-    model : directory of files that it needs, or none
+    model : directory of the files that the work needs, or None
     """
 
     @property
     def model(self) -> Path | None:
-        """Return the directory of files that it needs."""
+        """Return the directory of the files that the work needs, or None."""
 
     def moved(self, model: Path) -> "Work":
         """Return the same work with its files in another directory."""
 
     def fly(self, task: Task) -> Result:
-        """Do a task. Whatever goes wrong is a row with its reason, but for a lack of memory, which is raised."""
+        """Do a task. Every failure becomes a row with its reason, except MemoryError, which is raised."""
 
     def lost(self, task: Task, reason: str) -> Result:
         """Return the result of a task whose process was lost."""
@@ -71,12 +73,12 @@ class Work(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """What a flight may take before its process is ended and it is tried once more.
+    """Limits of a task; beyond them its process is killed and the task is tried once more.
 
     Attributes
     ----------
-    time : [s]
-    memory : of the process [bytes], or none
+    time : time of a task [s]
+    memory : data memory of a process [bytes], or None for no limit
     """
 
     time: float = 600.0

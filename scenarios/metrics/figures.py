@@ -1,11 +1,12 @@
 """From a flight's record to its row in the summary."""
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from common.numeric import rms
+from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import keepout_figures
 from scenarios.planning.planner import FlightPlan, Mission
@@ -14,7 +15,6 @@ from scenarios.simulation.closed_loop import COLUMNS, FlightRecord
 from scenarios.world.steady_vessel import Vessel
 
 Array = npt.NDArray[np.float64]
-Row = dict[str, Any]
 
 SUMMARY_COLUMNS = (
     "flight_id", "outcome", "message", "criteria_met", "aircraft", "fidelity", "seed", "nu", "plume_heading_deg",
@@ -132,14 +132,14 @@ def _settled_figures(plan: FlightPlan, history: Array, to_reference: Array) -> R
     heading_rate_error = column(history, "heading_rate_rad_s") - column(history, "reference_heading_rate_rad_s")
     return {
         "settling_time_s": float(column(history, "time_s")[0]),
-        "tracking_error_rms_m": _rms(to_reference),
+        "tracking_error_rms_m": rms(to_reference),
         "tracking_error_max_m": float(np.max(to_reference)),
-        "airspeed_error_rms_mps": _rms(airspeed_error),
+        "airspeed_error_rms_mps": rms(airspeed_error),
         "airspeed_error_max_mps": float(np.max(np.abs(airspeed_error))),
-        "airspeed_trim_rms_mps": _rms(column(history, "airspeed_command_mps") - plan.reference.speed),
-        "altitude_error_rms_m": _rms(altitude_error),
+        "airspeed_trim_rms_mps": rms(column(history, "airspeed_command_mps") - plan.reference.speed),
+        "altitude_error_rms_m": rms(altitude_error),
         "altitude_error_max_m": float(np.max(np.abs(altitude_error))),
-        "heading_rate_error_rms_rad_s": _rms(heading_rate_error),
+        "heading_rate_error_rms_rad_s": rms(heading_rate_error),
     }
 
 
@@ -229,7 +229,3 @@ def _at_most(name: str, value: float | None, limit: float, unit: str) -> tuple[b
     if value is None:
         return False, f"{name} is unknown: the flight never settled"
     return value <= limit, f"{name} {value:.2f} {unit} above {limit:g} {unit}"
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))

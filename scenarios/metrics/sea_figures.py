@@ -1,22 +1,22 @@
 """From the record of a flight over the real sea to its row in the summary."""
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from common.numeric import rms
 from gnc.sea_parameters import Mode
+from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import keepout_figures
 from scenarios.planning.sea_planner import SeaPlan
 from scenarios.schema.sea_config import SeaCriteria
-from scenarios.simulation.closed_loop import Outcome
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.sea_loop import DITCHED, SEA_COLUMNS, SeaRecord
 from scenarios.world.weather import SATELLITES, VESSEL_DATA
 
 Array = npt.NDArray[np.float64]
-Row = dict[str, Any]
 
 _GIVEN_UP = (Mode.GLIDING.value, Mode.TERMINATING.value, DITCHED)
 """Modes of a flight that is over for its task."""
@@ -147,12 +147,12 @@ def _settled_figures(plan: SeaPlan, history: Array, position: Array) -> Row:
         sea_column(history, "wind_east_mps") - plan.weather.wind_east,
     )
     return {
-        "tracking_error_rms_m": _rms(np.hypot(to_north, to_east)),
+        "tracking_error_rms_m": rms(np.hypot(to_north, to_east)),
         "tracking_error_max_m": float(np.max(np.hypot(to_north, to_east))),
         "spread_m": float(np.std(towards)),
-        "wind_error_rms_mps": _rms(wind),
-        "vessel_error_rms_m": _rms(_vessel_error(history)),
-        "centre_error_rms_m": _rms(sea_column(history, "centre_error_m")),
+        "wind_error_rms_mps": rms(wind),
+        "vessel_error_rms_m": rms(_vessel_error(history)),
+        "centre_error_rms_m": rms(sea_column(history, "centre_error_m")),
     }
 
 
@@ -250,7 +250,3 @@ def sea_unmet(row: Row, criteria: SeaCriteria) -> list[str]:
     if criteria.modes_at_end:
         checks.append((row["mode_at_end"] in criteria.modes_at_end, f"ended {row['mode_at_end']}"))
     return [message for met, message in checks if not met]
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))

@@ -3,26 +3,14 @@
 import math
 import struct
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
 
 from gnc.tracker import Guidance
 from scenarios.planning.planner import FlightPlan, Mission
+from scenarios.simulation.outcome import Outcome
 from scenarios.vehicles.vehicle import SAMPLE_COLUMNS, Vehicle
-
-
-class Outcome(Enum):
-    """How a flight ended."""
-
-    COMPLETED = "completed"
-    NOT_SETTLED = "not_settled"
-    DIVERGED = "diverged"
-    INFEASIBLE = "infeasible"
-    TRIM_FAILED = "trim_failed"
-    FAILED = "failed"
-
 
 COLUMNS = (
     "time_s",

@@ -7,7 +7,7 @@ from aircraft.errors import AircraftError
 from gnc.errors import InfeasibleError
 from scenarios.engine.task import Row
 from scenarios.errors import InputError
-from scenarios.simulation.closed_loop import Outcome
+from scenarios.simulation.outcome import Outcome
 
 
 def failure(error: Exception) -> Row:

@@ -11,8 +11,8 @@ from gnc.estimation.health import Trouble
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.sea_guidance import SeaGuidance
 from scenarios.planning.sea_planner import SeaPlan
-from scenarios.simulation.closed_loop import Outcome
 from scenarios.simulation.interventions import Intervention, interventions
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.sea_settling import Settling
 from scenarios.vehicles.vehicle import SAMPLE_COLUMNS, Vehicle
 from scenarios.world.weather import SATELLITES, VESSEL_DATA

@@ -4,6 +4,7 @@ import io
 
 import pandas as pd
 
+from common.run_layout import time_history_path
 from scenarios.engine.task import Row, Task
 
 
@@ -22,11 +23,6 @@ def keeps_history(task: Task, *, planned: int, wanted: int, row: Row) -> bool:
     return sampled or task.recorded or task.every_step or not row["criteria_met"]
 
 
-def history_path(flight_id: str) -> str:
-    """Return where in a run directory the time history of a flight is."""
-    return f"flights/{flight_id}.parquet"
-
-
 def history_files(task: Task, history: pd.DataFrame | None, *, planned: int, wanted: int, row: Row) -> dict[str, bytes]:
     """Return the time history of a flight as a Parquet file, by its path, if there is one and it is kept.
 
@@ -39,4 +35,4 @@ def history_files(task: Task, history: pd.DataFrame | None, *, planned: int, wan
         return {}
     buffer = io.BytesIO()
     history.to_parquet(buffer, index=False)
-    return {history_path(row["flight_id"]): buffer.getvalue()}
+    return {time_history_path(row["flight_id"]): buffer.getvalue()}

@@ -1,11 +1,13 @@
-"""What the flights of a Monte Carlo study say, with how sure that is: ``statistics.json``.
+"""Estimates of a Monte Carlo study and their confidence intervals: ``statistics.json``.
 
-Intervals are those of independent flights. Noise, turbulence and sensors have seeds of their own, which are independent; inputs
-are so only in plain sampling. In a Latin hypercube they are not, but a mean over n of its flights, and so a share, has at most
-n/(n - 1) times the variance that n independent ones have, and usually less: A. B. Owen, "Monte Carlo variance of scrambled net
-quadrature", SIAM Journal on Numerical Analysis 34 (1997). The intervals of shares and of quantiles, which are shares of the flights
-below them, are kept for it: they are rather too wide. A bound on a variance is not one on an interval's tails, so this is a reason
-and no proof. Of a scrambled Sobol' sequence the same paper bounds the ratio of variances by e, 2.72, for the worst figure there is.
+Intervals assume independent flights. Noise, turbulence and sensors are independent, because every flight has its own
+seeds; the random variables are independent in plain sampling only. In a Latin hypercube they are not, but the mean of
+a figure over n of its flights has at most n/(n - 1) times the variance of the mean over n independent flights, and
+usually less: A. B. Owen, "Monte Carlo variance of scrambled net quadrature", SIAM Journal on Numerical Analysis 34
+(1997). That covers probabilities, and quantiles, which are probabilities of lying below a value. So the same intervals
+are used for Latin hypercubes and tend to be too wide. A bound on a variance is not a bound on the tails of an
+interval: this is an argument, not a proof. For a scrambled Sobol' sequence the same paper bounds the ratio of the
+variances by e = 2.72, whatever the figure.
 """
 
 import math
@@ -18,27 +20,27 @@ import numpy.typing as npt
 import pandas as pd
 
 from scenarios.statistics.intervals import clopper_pearson, quantile_interval, upper_bound
-from scenarios.statistics.sensitivity import sensitivity
+from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.statistics.stopping import confidence_at
 from scenarios.statistics.violations import Violations, count_violations
 
 PROBABILITIES = (0.01, 0.05, 0.5, 0.95, 0.99)
-"""Of the quantiles that every figure has."""
+"""Probabilities of the quantiles that are given for every figure."""
 
 EXTREMES = (0.001, 0.999)
-"""Of the quantiles that a figure has where there are flights enough for an interval: 3,688 at a confidence of 0.95."""
+"""Probabilities of quantiles that are given if their interval exists: from 3,688 flights at a confidence of 0.95."""
 
 NAMED_MAX = 10
-"""Flights of each outcome that are named; ``summary.csv`` has all."""
+"""Largest number of flights that are named for each outcome; ``summary.csv`` has all."""
 
 COLUMNS = (
     "flight_id", "outcome", "mode_at_end", "min_distance_m", "keepout_radius_m", "keepout_violations", "crossing_interval_mean_s",
     "crossing_interval_predicted_s", "crossing_distance_min_m", "tracking_error_rms_m", "settling_time_s",
 )  # fmt: skip
-"""Columns of the summary that are looked at."""
+"""Columns of the summary that the estimates use."""
 
 DRIVEN = ("clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
-"""Figures that it is asked of what drives them."""
+"""Figures for which sensitivity indices are estimated."""
 
 Array = npt.NDArray[np.float64]
 Json = dict[str, Any]
@@ -47,16 +49,16 @@ Json = dict[str, Any]
 def study_statistics(
     rows: pd.DataFrame, inputs: pd.DataFrame, *, confidence: float, seed: int, look_number: int | None = None
 ) -> Json:
-    """Return everything that ``statistics.json`` says; what is not a number is None.
+    """Return the content of ``statistics.json``; values that are not a number become None.
 
     Parameters
     ----------
-    rows : of the summary ``COLUMNS``, a row per flight that is done, also of those that failed
-    inputs : ``draws.csv``: ``flight_id``, ``trial`` and a column per drawn key
-    confidence : of each interval, between 0 and 1; not of all of them together
-    seed : of what is drawn by lot for the sensitivity indices
-    look_number : at which the study stopped, from 1; intervals are made wider for the looks before
-        (``scenarios.statistics.stopping``). None for a study that is looked at only at its end
+    rows : columns ``COLUMNS`` of the summary, a row per flight that is done, failed flights included
+    inputs : ``draws.csv``: ``flight_id``, ``trial`` and a column per random variable
+    confidence : confidence of each interval, between 0 and 1; not of all of them together
+    seed : seed of the random numbers for the sensitivity indices
+    look_number : number of the look at which the study stopped, from 1; intervals are widened for the looks before it
+        (``scenarios.statistics.stopping``). None for a study that is evaluated only at its end
     """
     level = confidence if look_number is None else confidence_at(look_number, confidence)
     found = count_violations(rows)
@@ -74,17 +76,19 @@ def study_statistics(
             "pessimistic": _share(found.events_at_most, found.flights, level),
         },
         "figures": {name: _figure(values, level) for name, values in figures.items()},
-        "sensitivity": {name: asdict(sensitivity(drawn, figures[name], confidence=confidence, seed=seed)) for name in DRIVEN},
+        "sensitivity": {
+            name: asdict(sensitivity_indices(drawn, figures[name], confidence=confidence, seed=seed)) for name in DRIVEN
+        },
     }
     plain: Json = _without_nan(statistics)
     return plain
 
 
 def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
-    """Return what a study is judged by: of each flight, shape (n,), not a number where it has no such figure.
+    """Return the figures of each flight, shape (n,); not a number where a flight has no such figure.
 
-    Distances in metres, the clearance from r_min; the error of the mean crossing interval relative to the predicted one [-]; the
-    settling time in seconds, which a flight that never settled does not have.
+    Distances are in metres, and the clearance is measured from r_min; the error of the mean crossing interval is
+    relative to the predicted interval [-]; the settling time is in seconds, and a flight that never settled has none.
     """
 
     def column(name: str) -> Array:
@@ -107,7 +111,7 @@ def _named(found: Violations) -> Json:
 
 
 def _counts(words: "pd.Series[str]") -> dict[str, int]:
-    """Return how often each word occurs, the most frequent first; flights that have none are left out."""
+    """Return how often each word occurs, the most frequent first; flights without a word are left out."""
     return dict(Counter(str(word) for word in words.dropna()).most_common())
 
 
@@ -135,7 +139,7 @@ def _figure(values: Array, level: float) -> Json:
 
 
 def _without_nan(value: Any) -> Any:
-    """Return a nested value with None for what is not a number, which JSON cannot say."""
+    """Return a nested value with None in place of every number that is not finite, which JSON cannot express."""
     if isinstance(value, dict):
         return {key: _without_nan(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

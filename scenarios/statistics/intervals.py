@@ -1,4 +1,4 @@
-"""Intervals that hold a probability or a quantile with a stated confidence, whatever the distribution. For independent flights."""
+"""Confidence intervals of probabilities and quantiles, for independent flights and any distribution."""
 
 import math
 from dataclasses import dataclass
@@ -11,27 +11,27 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """From ``low`` to ``high``, in the unit of what it holds; a side that the sample is too small for is not a number."""
+    """An interval in the unit of its quantity; a limit for which the sample is too small is not a number."""
 
     low: float
     high: float
 
     @property
     def width(self) -> float:
-        """How wide it is; not a number if a side is missing."""
+        """Width of the interval; not a number if a limit is missing."""
         return self.high - self.low
 
 
 def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
-    """Return the exact two-sided interval of a probability: each side is missed with half of what confidence leaves, at most.
+    """Return the exact two-sided interval of a probability; each limit errs with (1 - confidence)/2 at most.
 
-    C. J. Clopper and E. S. Pearson, "The use of confidence or fiducial limits illustrated in the case of the binomial",
-    Biometrika 26 (1934).
+    C. J. Clopper and E. S. Pearson, "The use of confidence or fiducial limits illustrated in the case of the
+    binomial", Biometrika 26 (1934).
 
     Parameters
     ----------
-    events, trials : how often it happened, of how many times; without any trial the interval is 0 to 1
-    confidence : between 0 and 1
+    events, trials : number of events and of trials; without any trial the interval is 0 to 1
+    confidence : confidence level, between 0 and 1
 
     Raises
     ------
@@ -43,7 +43,7 @@ def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
 
 
 def upper_bound(events: int, trials: int, confidence: float) -> float:
-    """Return what a probability is at most: the exact one-sided bound of Clopper and Pearson [-].
+    """Return the exact one-sided upper bound of a probability, of Clopper and Pearson [-].
 
     Parameters and errors are those of ``clopper_pearson``.
     """
@@ -56,22 +56,22 @@ def upper_bound(events: int, trials: int, confidence: float) -> float:
 
 
 def quantile_interval(values: Array, probability: float, confidence: float) -> Interval:
-    """Return the interval from order statistics that holds a quantile, for any distribution.
+    """Return the confidence interval of a quantile from order statistics, for any distribution.
 
-    Of n values the number that lie below the quantile is binomial; the l-th and the u-th smallest enclose it, where l - 1 such
-    values or fewer, and u or more, each have half the probability that confidence leaves, at most. H. A. David and
-    H. N. Nagaraja, "Order Statistics", 3rd ed. (2003), section 7.1.
+    The number of values below the quantile is binomial. The l-th and the u-th smallest value enclose the quantile if
+    the probabilities of at most l - 1 values below it, and of at least u, are each (1 - confidence)/2 at most. H. A.
+    David and H. N. Nagaraja, "Order Statistics", 3rd ed. (2003), section 7.1.
 
     Parameters
     ----------
-    values : shape (n,), in any order, without what is not a number
-    probability : of a value below the quantile, between 0 and 1
+    values : shape (n,), in any order, all finite
+    probability : probability of a value below the quantile, between 0 and 1
     confidence : between 0 and 1
 
     Returns
     -------
-    interval : in the unit of ``values``; a side is not a number where even the smallest or largest value does not reach the
-        confidence, as for quantiles near 0 or 1 of few values
+    interval : in the unit of ``values``; a limit is not a number if even the smallest or largest value does not reach
+        the confidence, as for quantiles near 0 or 1 of few values
 
     Raises
     ------
@@ -85,7 +85,7 @@ def quantile_interval(values: Array, probability: float, confidence: float) -> I
     if not len(values):
         return Interval(math.nan, math.nan)
     tail, count = 0.5 * (1.0 - confidence), len(values)
-    # A ppf is the smallest number with at least that probability: one less has less than a tail, one more leaves a tail at most.
+    # ppf(p) is the smallest number with a cumulative probability of p or more: the largest l and the smallest u follow.
     low = int(binom.ppf(tail, count, probability))
     high = int(binom.ppf(1.0 - tail, count, probability)) + 1
     ordered = np.sort(values)

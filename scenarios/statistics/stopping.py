@@ -1,11 +1,12 @@
-"""When a Monte Carlo study has flown enough: the interval that was asked for is as tight as wanted.
+"""Stopping rule of a Monte Carlo study: it may stop when the demanded confidence intervals are narrow enough.
 
-Who looks again and again, and stops when he likes what he sees, is wrong more often than his interval says. Here intervals are
-looked at after fixed numbers of flights alone, and look k may be wrong with probability alpha/(k (k + 1)), alpha being one minus
-the confidence. That adds up to alpha over all looks, however many there are: with the confidence none of them is wrong, and so
-neither is the one that the study stops at, whatever it stops for. The union bound over looks at geometrically growing numbers is
-that of V. Mnih, C. Szepesvari and J.-Y. Audibert, "Empirical Bernstein stopping", ICML 2008; spending alpha over looks that is
-of K. K. G. Lan and D. L. DeMets, "Discrete sequential boundaries for clinical trials", Biometrika 70 (1983).
+A study that evaluates its intervals repeatedly, and stops as soon as they look good, is wrong more often than their
+confidence says. Here intervals are evaluated only after fixed numbers of flights (looks), and the intervals of look k
+may be wrong with probability alpha/(k (k + 1)), where alpha is one minus the confidence. The sum over all looks is
+alpha, however many there are: with the stated confidence no look is wrong, and so neither is the one at which the
+study stops. The union bound over looks at geometrically growing numbers of flights is that of V. Mnih, C. Szepesvari
+and J.-Y. Audibert, "Empirical Bernstein stopping", ICML 2008; spending alpha over looks is that of K. K. G. Lan and D.
+L. DeMets, "Discrete sequential boundaries for clinical trials", Biometrika 70 (1983).
 """
 
 import numpy as np
@@ -15,14 +16,14 @@ from scenarios.statistics.intervals import quantile_interval, upper_bound
 from scenarios.statistics.violations import count_violations
 
 FIRST_LOOK = 256
-"""Flights before the first look. Powers of two are where a Sobol' sequence is balanced."""
+"""Number of flights before the first look; a Sobol' sequence is balanced at powers of two."""
 
 
 def looks(planned: int) -> list[int]:
-    """Return after how many flights a study is looked at: 256, twice as many each time, and all that are planned.
+    """Return the numbers of flights at which a study is evaluated: 256, doubled each time, and all that are planned.
 
-    The first so many flights of the plan count, not those that happened to be done first: what is seen does not depend on how
-    many processes fly.
+    A look evaluates the first flights of the plan, not those that happened to be done first: the result does not
+    depend on the number of processes.
 
     Parameters
     ----------
@@ -39,14 +40,14 @@ def looks(planned: int) -> list[int]:
 
 
 def confidence_at(look_number: int, confidence: float) -> float:
-    """Return the confidence that the intervals of one look are made with, for all looks together to hold with ``confidence``.
+    """Return the confidence of the intervals of one look, such that all looks together hold with ``confidence``.
 
-    A study without an interval that it stops for is looked at once, at its end, and has all of ``confidence`` then.
+    A study without a stopping rule is evaluated once, at its end, with all of ``confidence``.
 
     Parameters
     ----------
-    look_number : from 1
-    confidence : between 0 and 1
+    look_number : number of the look, from 1
+    confidence : confidence of all looks together, between 0 and 1
     """
     if look_number < 1:
         raise ValueError(f"look number is {look_number}; looks are counted from 1")
@@ -62,23 +63,23 @@ def tight_enough(
     distance_quantile_width_m: float | None = None,
     distance_quantile: float = 0.01,
 ) -> bool:
-    """Return whether a study may stop at a look: everything that is asked for is as tight as wanted.
+    """Return whether a study may stop at a look: every demanded interval is narrow enough.
 
     Parameters
     ----------
-    rows : of the summary, of the first so many flights of the plan
+    rows : rows of the summary of the first flights of the plan
     look_number, confidence : as in ``confidence_at``
-    violation_upper : what the probability of entering the keep-out area is shown to be at most, by the one-sided bound; flights
-        of which it is not known whether they entered count as if they did [-]
-    distance_quantile_width_m : largest width of the two-sided interval of a quantile of the closest approach [m]
-    distance_quantile : of which probability
+    violation_upper : demanded one-sided upper bound of the probability of a keep-out violation; flights for which that
+        is unknown count as violations [-]
+    distance_quantile_width_m : demanded width of the two-sided interval of a quantile of the closest approach [m]
+    distance_quantile : probability of that quantile
 
     Raises
     ------
-    ValueError : nothing is asked for
+    ValueError : neither interval is demanded
     """
     if violation_upper is None and distance_quantile_width_m is None:
-        raise ValueError("nothing to stop for: give violation_upper or distance_quantile_width_m, or look at the end alone")
+        raise ValueError("no interval is demanded; give violation_upper or distance_quantile_width_m")
     level = confidence_at(look_number, confidence)
     if violation_upper is not None:
         found = count_violations(rows)
@@ -87,6 +88,6 @@ def tight_enough(
     if distance_quantile_width_m is not None:
         distances = pd.to_numeric(rows["min_distance_m"], errors="coerce").to_numpy(dtype=np.float64)
         interval = quantile_interval(distances[np.isfinite(distances)], distance_quantile, level)
-        # A side that is missing makes the width not a number, which is at most nothing.
+        # If a limit is missing the width is not a number, and this comparison is false.
         return interval.width <= distance_quantile_width_m
     return True

@@ -1,24 +1,24 @@
-"""How many flights entered the keep-out area, and of how many that is not known."""
+"""Flights with keep-out violations, and flights for which that is unknown."""
 
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from scenarios.simulation.closed_loop import Outcome
+from scenarios.simulation.outcome import Outcome
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Violations:
-    """Flights counted by whether they kept out.
+    """Counts of flights by keep-out violation.
 
     Attributes
     ----------
-    flights : all
-    measured : flights with a measured distance
-    events : measured flights that entered
-    unknown : flights not seen to enter and not measured to their end, by outcome: those without any measurement, and those
-        that went out of control
+    flights : number of all flights
+    measured : number of flights with a measured distance
+    events : number of measured flights with a keep-out violation
+    unknown : names of the flights without a recorded violation that were not measured to their end, by outcome:
+        flights without any measurement, and flights that went out of control
     """
 
     flights: int
@@ -28,12 +28,12 @@ class Violations:
 
     @property
     def events_at_most(self) -> int:
-        """Flights that entered, if every flight did of which it is not known."""
+        """Number of flights with a violation, if every unknown flight had one."""
         return self.events + sum(len(flights) for flights in self.unknown.values())
 
 
 def count_violations(rows: pd.DataFrame) -> Violations:
-    """Count the flights of a summary that entered the keep-out area at any time, each once.
+    """Count the flights of a summary that violated the keep-out area at any time, each once.
 
     Parameters
     ----------

@@ -9,14 +9,15 @@ import numpy.typing as npt
 from scipy.optimize import Bounds, differential_evolution
 from scipy.stats import qmc
 
+from common.run_layout import SUMMARY, WORST
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Summary
+from scenarios.engine.runner import Fly, StudySummary
 from scenarios.engine.task import Row, Task
 from scenarios.experiment.draws import drawn_flight, speed_ratio_excess
 from scenarios.experiment.scenario_file import scenario_file
 from scenarios.schema.monte_carlo_config import FalsifyScenario
-from scenarios.studies.sea_study import SUMMARY, SeaStudy
+from scenarios.studies.sea_study import SeaStudy
 
 UNFLOWN = 1e6
 """Clearance of a flight that has none, because it was not flown [m]: no optimum, and finite, as the search needs it."""
@@ -47,7 +48,7 @@ class FalsifyStudy(SeaStudy):
         """Return the task of a flight, at the point that the search gave it."""
         return self._tasks[number]
 
-    def conduct(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
+    def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Have one generation flown after the other; keep the worst flights."""
         ((_, scenario),) = self.trials.items()
         dimension = len(scenario.draws)
@@ -96,17 +97,17 @@ class FalsifyStudy(SeaStudy):
         for rank, (clearance, number, row) in enumerate(worst, start=1):
             drawn = drawn_flight(trial, scenario, number, self._tasks[number].point)
             title = f"{scenario.title}: number {rank}, {clearance:.2f} m from the keep-out area"
-            run.write_bytes(f"worst/{rank:02d}_{row['flight_id']}.toml", scenario_file(drawn, title=title))
+            run.write_bytes(f"{WORST}/{rank:02d}_{row['flight_id']}.toml", scenario_file(drawn, title=title))
         fly(self.unrecorded([number for _, number, _ in worst], run, journal))
 
-    def summary(self, journal: Journal) -> Summary:
+    def summary(self, journal: Journal) -> StudySummary:
         """Return what the search has found."""
         found = super().summary(journal)
         clearances = [(_clearance(row), row["flight_id"]) for row in journal.rows(SUMMARY)]
         if not clearances:
             return found
         least, flight_id = min(clearances)
-        line = f"closest: {flight_id}, {least:.2f} m from the keep-out area; the worst are in worst/, as scenarios to fly again"
+        line = f"closest: {flight_id}, {least:.2f} m from the keep-out area; the worst are in {WORST}/, as scenarios to fly again"
         manifest = found.manifest | {"worst_flight": flight_id, "worst_clearance_m": least}
         return replace(found, lines=[*found.lines, line], manifest=manifest)
 

@@ -1,4 +1,4 @@
-"""What a run says about itself."""
+"""The manifest of a run: configuration, software and parameters."""
 
 import hashlib
 import json
@@ -13,13 +13,13 @@ from common.provenance import provenance
 from scenarios.engine.fingerprint import fingerprint
 
 
-def opening_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -> dict[str, Any]:
-    """Return what a manifest holds before anything has been flown.
+def initial_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -> dict[str, Any]:
+    """Return the manifest as written before the first flight.
 
     Parameters
     ----------
-    scenario, name : what will be flown, and what it is called
-    overrides : how the scenario differs from the one of that name
+    scenario, name : the scenario and its name
+    overrides : overrides that were applied to the scenario
     """
     config = scenario.model_dump(mode="json")
     return {
@@ -36,13 +36,13 @@ def opening_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -
 
 
 def config_hash(*scenarios: BaseModel) -> str:
-    """Return a hash of everything in the scenarios that the result depends on."""
+    """Return a hash of the scenarios."""
     text = "\n".join(json.dumps(scenario.model_dump(mode="json"), sort_keys=True) for scenario in scenarios)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
-    """Return every key of the scenario that has a number, a word or a switch, with its value, default if any, meaning and unit."""
+    """Return every key of the scenario's sections with value, default if any, meaning and unit."""
     listed = []
     for section_name in type(scenario).model_fields:
         section = getattr(scenario, section_name)

@@ -5,16 +5,16 @@ from dataclasses import replace
 
 import pandas as pd
 
+from common.run_layout import DRAWS, SUMMARY
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, Summary
+from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Row, Task
 from scenarios.experiment.sampling import Points
 from scenarios.schema.monte_carlo_config import MonteCarloScenario
-from scenarios.sea_flights import DRAWS
 from scenarios.statistics.estimates import COLUMNS, study_statistics
 from scenarios.statistics.stopping import looks, tight_enough
-from scenarios.studies.sea_study import SUMMARY, SeaStudy
+from scenarios.studies.sea_study import SeaStudy
 
 
 class MonteCarloStudy(SeaStudy):
@@ -40,7 +40,7 @@ class MonteCarloStudy(SeaStudy):
         """Return the task of a flight, at its point."""
         return Task(number=number, point=self._points.at(number))
 
-    def conduct(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
+    def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Have flights flown up to one look after the other, until one shows what was asked for."""
         first = 0
         stops = self._scenario.statistics.stops
@@ -52,7 +52,7 @@ class MonteCarloStudy(SeaStudy):
                 self._stopped = flights < self.planned
                 self.flights = dict.fromkeys(self.flights, flights)
                 break
-        fly(self.telling(run, journal))
+        fly(self.representative_flights(run, journal))
 
     def _tight(self, journal: Journal, flights: int) -> bool:
         s = self._scenario.statistics
@@ -66,7 +66,7 @@ class MonteCarloStudy(SeaStudy):
             distance_quantile=s.distance_quantile,
         )
 
-    def finish(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
+    def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
         """Write ``statistics.json``."""
         progress("estimating", self.planned, self.planned)
         statistics = study_statistics(
@@ -78,7 +78,7 @@ class MonteCarloStudy(SeaStudy):
         )
         run.write_json(run.statistics, statistics)
 
-    def summary(self, journal: Journal) -> Summary:
+    def summary(self, journal: Journal) -> StudySummary:
         """Return what the flights have come to, and whether the study stopped by itself."""
         found = super().summary(journal)
         if not self._stopped:

@@ -1,11 +1,11 @@
-"""From a scenario file to its study, and flying it."""
+"""Choice of the study that a scenario describes, and its execution."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Hire, Progress, RunResult, Study, fly_study
+from scenarios.engine.runner import Progress, RunResult, Study, fly_study
 from scenarios.schema.config import Scenario
 from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.load import AnyStudy
@@ -17,12 +17,12 @@ def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> St
 
     Parameters
     ----------
-    scenario, name : what to fly, and what it is called
-    overrides : how it differs from the one of that name, for the record
+    scenario, name : the scenario and its name
+    overrides : overrides that were applied to the scenario, recorded in the manifest
 
     Raises
     ------
-    InputError : it cannot be flown
+    InputError : the scenario cannot be flown
     """
     if isinstance(scenario, Scenario):
         from scenarios.studies.sweep_study import SweepStudy
@@ -50,7 +50,7 @@ def run_study(
     name: str,
     directory: Path,
     *,
-    hire: Hire | None = None,
+    executor_factory: ExecutorFactory | None = None,
     resume: bool = False,
     progress: Progress = lambda *_: None,
     overrides: Sequence[str] = (),
@@ -59,19 +59,19 @@ def run_study(
 
     Parameters
     ----------
-    scenario, name : what to fly, and what it is called
+    scenario, name : the scenario and its name
     directory : the run directory
-    hire : makes the crew; one process of this machine if not given
-    resume : go on with the unfinished run in ``directory``
-    progress : told what happens
-    overrides : how the scenario differs from the one of that name, for the record
+    executor_factory : makes the executor; the default is one process of this machine
+    resume : continue the unfinished run in ``directory``
+    progress : called as the study advances
+    overrides : overrides that were applied to the scenario, recorded in the manifest
 
     Raises
     ------
-    InputError : it cannot be flown, or not into this directory
+    InputError : the scenario cannot be flown, or the directory cannot be used
     """
     if not resume:
         RunDirectory(directory).refuse_taken()
     progress("preparing", 0, 1)
     study = study_of(scenario, name, overrides)
-    return fly_study(study, directory, hire=hire or Hiring(), resume=resume, progress=progress)
+    return fly_study(study, directory, executor_factory=executor_factory or ExecutorFactory(), resume=resume, progress=progress)

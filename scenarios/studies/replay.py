@@ -1,13 +1,14 @@
-"""One flight of a run, flown again from its manifest with every step of the guidance recorded."""
+"""Replay of one flight of a run, from its manifest, with every step of the guidance recorded."""
 
 import json
 from pathlib import Path
 from typing import Any
 
+from common.run_layout import COMPARISON, HISTORY_SUFFIX, JOURNAL, MANIFEST, SUMMARY
 from scenarios.engine.fingerprint import differences
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, Study, Summary
+from scenarios.engine.runner import Fly, Progress, Study, StudySummary
 from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.flights import STUDY
@@ -16,19 +17,19 @@ from scenarios.schema.load import checked
 from scenarios.schema.sea_config import SeaScenario
 from scenarios.studies.registry import study_of
 
-_TABLES = ("summary.csv", "comparison.csv")
-"""Where the row of a flight may be."""
+_TABLES = (SUMMARY, COMPARISON)
+"""Tables that may have the row of a flight."""
 
-_OWN = ("wall_time_s",)
-"""Figures that differ from one flying to the next."""
+NOT_COMPARED = ("wall_time_s",)
+"""Columns that differ between repetitions of the same flight."""
 
 
 class Replay:
-    """One flight as a study.
+    """The replay of one flight, as a study.
 
     Parameters
     ----------
-    name : ``RUN_DIR/flights/ID``, with or without the ending of its time history
+    name : ``RUN_DIR/flights/ID``, with or without the suffix of its time history
 
     Raises
     ------
@@ -39,30 +40,30 @@ class Replay:
     planned = 1
 
     def __init__(self, name: str) -> None:
-        self._flight_id = Path(name).name.removesuffix(".parquet")
+        self._flight_id = Path(name).name.removesuffix(HISTORY_SUFFIX)
         self._from = Path(name).parents[1]
         manifest = self._manifest()
         if "replayed" in manifest:
-            raise InputError(
-                f"'{self._from}' holds a flight that was flown again already; give it as RUN_DIR/flights/ID of its first run"
-            )
+            raise InputError(f"'{self._from}' is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run")
         self._task, self._table, self._row = self._found()
         self._study = self._restored(manifest)
-        self._begun_with = manifest.get("fingerprint", {})
+        self._original_fingerprint = manifest.get("fingerprint", {})
         self.config_hash = f"{self._study.config_hash} {self._flight_id}"
 
     def _manifest(self) -> dict[str, Any]:
         try:
-            manifest = json.loads((self._from / "manifest.json").read_text(encoding="utf-8"))
+            manifest = json.loads((self._from / MANIFEST).read_text(encoding="utf-8"))
             return dict(manifest)
         except (ValueError, TypeError, OSError) as error:
-            raise InputError(f"'{self._from}': manifest.json cannot be read: {error}; give the directory of a run") from None
+            raise InputError(f"'{self._from}': {MANIFEST} cannot be read: {error}; give the directory of a run") from None
 
     def _found(self) -> tuple[Task, str, Row]:
-        """Return the task of the flight, and its row and what table that is in."""
-        path = RunDirectory(self._from).journal
+        """Return the task of the flight, the table that has its row, and the row."""
+        path = self._from / JOURNAL
         if not path.is_file():
-            raise InputError(f"'{self._from}' has no {path.name}, in which its flights are; give the directory of a whole run")
+            raise InputError(
+                f"'{self._from}' has no {path.name} with the results of its flights; give the directory of a complete run"
+            )
         journal = Journal(path)
         try:
             for table in _TABLES:
@@ -71,12 +72,12 @@ class Replay:
                         return journal.task(number), table, row
         finally:
             journal.close()
-        raise InputError(f"'{self._from}' has no flight '{self._flight_id}'; its summary.csv lists them")
+        raise InputError(f"'{self._from}' has no flight '{self._flight_id}'; its {SUMMARY} lists them")
 
     def _restored(self, manifest: dict[str, Any]) -> Study:
         """Return the study of the run, or of the one trial of it that the flight belongs to.
 
-        A trial is taken as it was flown, fitted to its aircraft, and not from the catalog, which may have changed.
+        The trial comes from the manifest, scaled to its aircraft, and not from the catalog, which may have changed.
         """
         if "trials" in manifest:
             trial = self._row["trial"]
@@ -87,53 +88,53 @@ class Replay:
             return study_of(checked(config | {"study": "sea"}, SeaScenario), trial)
         if manifest.get("study") in ("flights", "paper"):
             return study_of(checked(manifest["config"], Scenario), str(manifest["name"]))
-        raise InputError(f"'{self._from}' is a study of {manifest.get('study')}; what can be flown again are flights")
+        raise InputError(f"'{self._from}' is a study of {manifest.get('study')}; only single flights can be replayed")
 
-    def opening(self) -> dict[str, Any]:
-        """Return what the manifest says before anything has been flown."""
-        manifest = self._study.opening()
-        again: dict[str, Any] = {"title": f"{manifest['title']}: {self._flight_id}, flown again", "replayed": self._flight_id}
+    def initial_manifest(self) -> dict[str, Any]:
+        """Return the manifest as written before the flight."""
+        manifest = self._study.initial_manifest()
+        replayed: dict[str, Any] = {"title": f"{manifest['title']}: replay of {self._flight_id}", "replayed": self._flight_id}
         if "trials" in manifest:
-            again["trials"] = {trial: config | {"flights": 1} for trial, config in manifest["trials"].items()}
+            replayed["trials"] = {trial: config | {"flights": 1} for trial, config in manifest["trials"].items()}
         else:
-            again["variants"] = {self._flight_id: STUDY}
-        return manifest | again | {"config_hash": self.config_hash, "flights_planned": 1}
+            replayed["variants"] = {self._flight_id: STUDY}
+        return manifest | replayed | {"config_hash": self.config_hash, "flights_planned": 1}
 
     def work(self, run: RunDirectory) -> Work:
-        """Return the flying of the flight."""
+        """Return the work of the original study."""
         return self._study.work(run)
 
-    def conduct(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
-        """Have the flight flown."""
+    def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
+        """Fly the flight."""
         fly([Task(number=self._task.number, point=self._task.point, every_step=True)])
 
-    def finish(self, _run: RunDirectory, _journal: Journal, _progress: Progress) -> None:
-        """Leave it at that."""
+    def postprocess(self, _run: RunDirectory, _journal: Journal, _progress: Progress) -> None:
+        """Do nothing: a replay has only tables and its time history."""
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write its tables; the flight is what it is about, also if it was a comparison."""
+        """Write the tables; the row is in ``summary.csv`` even if the flight was a comparison."""
         self._study.export(run, journal)
-        if self._table != _TABLES[0]:
-            (run.path / self._table).replace(run.path / _TABLES[0])
+        if self._table != SUMMARY:
+            (run.path / self._table).replace(run.path / SUMMARY)
 
-    def summary(self, journal: Journal) -> Summary:
-        """Return whether it went as it did the first time."""
+    def summary(self, journal: Journal) -> StudySummary:
+        """Return whether the row is identical to that of the original flight."""
         rows = list(journal.rows(self._table))
         if not rows:
-            return Summary(done=0, met=False, lines=["not flown"], manifest={"identical": False})
+            return StudySummary(done=0, met=False, lines=["not flown"], manifest={"identical": False})
         differing = [
             name for name in dict.fromkeys([*self._row, *rows[0]])
-            if name not in _OWN and json.dumps(self._row.get(name)) != json.dumps(rows[0].get(name))
+            if name not in NOT_COMPARED and json.dumps(self._row.get(name)) != json.dumps(rows[0].get(name))
         ]  # fmt: skip
         lines = [f"{self._flight_id}: {rows[0]['outcome']} {rows[0].get('message', '')}".rstrip()]
         if not differing:
-            lines.append(f"identical to the flight in {self._from}, in every figure of its row to the last bit")
+            lines.append(f"identical to the flight in {self._from}: every value of its row agrees to the last bit")
         else:
-            was = ", ".join(f"{name} {self._row.get(name)} -> {rows[0].get(name)}" for name in differing[:3])
-            lines.append(f"differs from the flight in {self._from} in {len(differing)} figures: {was}; {self._why()}")
-        return Summary(done=1, met=not differing, lines=lines, manifest={"identical": not differing})
+            changes = ", ".join(f"{name} {self._row.get(name)} -> {rows[0].get(name)}" for name in differing[:3])
+            lines.append(f"differs from the flight in {self._from} in {len(differing)} values: {changes}; {self._reason()}")
+        return StudySummary(done=1, met=not differing, lines=lines, manifest={"identical": not differing})
 
-    def _why(self) -> str:
-        """Return what may be the reason."""
-        changed = differences(self._begun_with)
-        return f"it was flown with another {', '.join(changed)}" if changed else "nothing that results depend on has changed"
+    def _reason(self) -> str:
+        """Return a possible reason."""
+        changed = differences(self._original_fingerprint)
+        return f"the original was flown with a different {', '.join(changed)}" if changed else "software and source are unchanged"

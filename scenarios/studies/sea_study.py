@@ -12,10 +12,11 @@ import numpy as np
 from aircraft.fleet.find import find_spec
 from aircraft.simulation.faults import fault_names
 from aircraft.spec import Envelope
+from common.run_layout import DRAWS, SUMMARY, time_history_path
 from gnc.sea_parameters import Mode
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, Summary, write_tables
+from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws
@@ -25,14 +26,11 @@ from scenarios.planning.scaling import fitted
 from scenarios.planning.spreads import predicted_spreads
 from scenarios.schema.load import load_study
 from scenarios.schema.sea_config import SeaScenario, SeaTrial
-from scenarios.sea_flights import DETAILS, DRAWS, SeaWork, Trial
-from scenarios.simulation.time_history import history_path
-from scenarios.studies.manifest import config_hash, opening_manifest, parameters
-from scenarios.studies.summary import Tally
+from scenarios.sea_flights import DETAILS, SeaWork, Trial
+from scenarios.studies.manifest import config_hash, initial_manifest, parameters
+from scenarios.studies.summary import FlightCounts
 from scenarios.vehicles.sea_airframe import airframe_of, design_for
 from scenarios.world.weather import SATELLITES, VESSEL_DATA
-
-SUMMARY = "summary.csv"
 
 
 class SeaStudy:
@@ -63,7 +61,7 @@ class SeaStudy:
         keys = dict.fromkeys(draw.key for scenario in trials.values() for draw in scenario.draws)
         self.tables = {SUMMARY: SEA_SUMMARY_COLUMNS, DRAWS: ("flight_id", "trial", "nu", *keys), **DETAILS}
         self.config_hash = config_hash(study, *trials.values())
-        self._manifest = opening_manifest(study, name, overrides) | {
+        self._manifest = initial_manifest(study, name, overrides) | {
             # A list of trials does not change with what it lists.
             "config_hash": self.config_hash,
             "study": "sea",
@@ -76,7 +74,7 @@ class SeaStudy:
         """Number of flights."""
         return sum(self.flights.values())
 
-    def opening(self) -> dict[str, Any]:
+    def initial_manifest(self) -> dict[str, Any]:
         """Return what the manifest says before anything has been flown."""
         return self._manifest | self._sizes()
 
@@ -97,12 +95,12 @@ class SeaStudy:
         ]
         return SeaWork(trials=tuple(trials), histories=self.histories, airframe=airframe, refusal=self._refusal)
 
-    def conduct(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
+    def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Have every flight flown; then those again that have no time history, but should be looked at."""
         fly(Task(number=i) for i in range(self.planned))
-        fly(self.telling(run, journal))
+        fly(self.representative_flights(run, journal))
 
-    def telling(self, run: RunDirectory, journal: Journal) -> list[Task]:
+    def representative_flights(self, run: RunDirectory, journal: Journal) -> list[Task]:
         """Return the closest flight of each trial, and the one whose closest approach is the median, to be recorded."""
         # Figures alone: a hundred thousand rows would be too many.
         distances = {trial: (array("d"), array("q")) for trial in self.trials}
@@ -123,36 +121,36 @@ class SeaStudy:
             replace(self.task(number), recorded=True)
             for number in numbers
             for row in journal.rows(SUMMARY, first=number, below=number + 1)
-            if not (run.path / history_path(row["flight_id"])).is_file()
+            if not (run.path / time_history_path(row["flight_id"])).is_file()
         ]
 
     def task(self, number: int) -> Task:
         """Return the task of a flight."""
         return Task(number=number)
 
-    def finish(self, _run: RunDirectory, _journal: Journal, _progress: Progress) -> None:
+    def postprocess(self, _run: RunDirectory, _journal: Journal, _progress: Progress) -> None:
         """Leave it at that."""
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
         """Write its tables."""
         write_tables(run, journal, self.tables)
 
-    def summary(self, journal: Journal) -> Summary:
+    def summary(self, journal: Journal) -> StudySummary:
         """Return what the flights have come to."""
-        whole = Tally(planned=self.planned)
-        tallies = {trial: Tally(planned=flights) for trial, flights in self.flights.items()}
+        whole = FlightCounts(planned=self.planned)
+        trial_counts = {trial: FlightCounts(planned=flights) for trial, flights in self.flights.items()}
         for row in journal.rows(SUMMARY):
             whole.add(row)
-            tallies[row["trial"]].add(row)
+            trial_counts[row["trial"]].add(row)
         lines = [f"{whole.planned} flights planned, {whole.done} done"]
-        for trial, tally in tallies.items():
-            nearest = "" if math.isinf(tally.nearest) else f", nearest {tally.nearest:.1f} m"
-            kept = f"{tally.entries} entries into the keep-out area{nearest}"
-            lines.append(f"  {trial}: {tally.met} of {tally.planned} met every criterion; {kept}")
-        return Summary(
+        for trial, counts in trial_counts.items():
+            nearest = "" if math.isinf(counts.nearest) else f", nearest {counts.nearest:.1f} m"
+            kept = f"{counts.keepout_violations} keep-out violations{nearest}"
+            lines.append(f"  {trial}: {counts.met} of {counts.planned} met every criterion; {kept}")
+        return StudySummary(
             done=whole.done,
             met=whole.met == whole.planned,
-            lines=[*lines, *whole.unmet_lines("    ")],
+            lines=[*lines, *whole.failed_lines("    ")],
             manifest=whole.manifest() | self._sizes(),
         )
 

@@ -5,9 +5,10 @@ from dataclasses import replace
 from typing import Any
 
 from aircraft.spec import AircraftSpec, Envelope
+from common.run_layout import COMPARISON, CROSSINGS, SUMMARY
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, Summary, write_tables
+from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.flights import STUDY, FlightRequest, FlightWork, flight_requests, guidance_lag
@@ -15,9 +16,9 @@ from scenarios.metrics.figures import SUMMARY_COLUMNS
 from scenarios.planning.limits import check_flyable
 from scenarios.planning.scaling import fitted
 from scenarios.schema.config import Scenario
-from scenarios.studies.manifest import opening_manifest
+from scenarios.studies.manifest import initial_manifest
 from scenarios.studies.paper_bounds import bounds_record
-from scenarios.studies.summary import Tally
+from scenarios.studies.summary import FlightCounts
 from scenarios.vehicles.six_dof import design_of, six_dof_of, spec_flown
 
 CROSSING_COLUMNS = ("flight_id", "variant", "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
@@ -51,17 +52,17 @@ class SweepStudy:
         ]
         if schedule:
             _check_flights(self._requests, schedule.spec, schedule.envelope)
-        self._manifest = opening_manifest(self._scenario, name, overrides) | {
+        self._manifest = initial_manifest(self._scenario, name, overrides) | {
             "seeds": {request.flight_id: request.seed for request in self._requests},
             "variants": {request.flight_id: request.variant for request in self._requests},
         }
         self.planned = sum(request.variant == STUDY for request in self._requests)
         self.config_hash = str(self._manifest["config_hash"])
-        self.tables = {"summary.csv": SUMMARY_COLUMNS, "crossings.csv": CROSSING_COLUMNS}
+        self.tables = {SUMMARY: SUMMARY_COLUMNS, CROSSINGS: CROSSING_COLUMNS}
         if self.planned < len(self._requests):
-            self.tables["comparison.csv"] = SUMMARY_COLUMNS
+            self.tables[COMPARISON] = SUMMARY_COLUMNS
 
-    def opening(self) -> dict[str, Any]:
+    def initial_manifest(self) -> dict[str, Any]:
         """Return what the manifest says before anything has been flown."""
         return self._manifest | {"flights_planned": self.planned}
 
@@ -79,11 +80,11 @@ class SweepStudy:
             model=run.model if six_dof else None,
         )
 
-    def conduct(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
+    def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
         """Have every flight flown."""
         fly(Task(number=i) for i in range(len(self._requests)))
 
-    def finish(self, run: RunDirectory, _journal: Journal, progress: Progress) -> None:
+    def postprocess(self, run: RunDirectory, _journal: Journal, progress: Progress) -> None:
         """Bound the commands of the paper's flights."""
         if self._scenario.study == "paper":
             progress("bounding commands", self.planned, self.planned)
@@ -93,15 +94,17 @@ class SweepStudy:
         """Write its tables."""
         write_tables(run, journal, self.tables)
 
-    def summary(self, journal: Journal) -> Summary:
+    def summary(self, journal: Journal) -> StudySummary:
         """Return what the flights have come to."""
-        tally = Tally.of(journal.rows("summary.csv"), self.planned)
+        counts = FlightCounts.of(journal.rows(SUMMARY), self.planned)
         head = (
-            f"{self.planned} flights planned, {tally.done} done: {tally.completed} completed, {tally.met} met every criterion;"
-            f" {tally.entries} entries into the keep-out area"
+            f"{self.planned} flights planned, {counts.done} done: {counts.completed} completed, {counts.met} met every criterion;"
+            f" {counts.keepout_violations} keep-out violations"
         )
-        manifest = tally.manifest() | {"guidance_lag_s": self._manifest.get("guidance_lag_s")}
-        return Summary(done=tally.done, met=tally.met == self.planned, lines=[head, *tally.unmet_lines("  ")], manifest=manifest)
+        manifest = counts.manifest() | {"guidance_lag_s": self._manifest.get("guidance_lag_s")}
+        return StudySummary(
+            done=counts.done, met=counts.met == self.planned, lines=[head, *counts.failed_lines("  ")], manifest=manifest
+        )
 
 
 def _check_flights(requests: Sequence[FlightRequest], spec: AircraftSpec, envelope: Envelope) -> None:

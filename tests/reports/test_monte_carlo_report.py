@@ -22,7 +22,7 @@ from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import RunData, read_run
 from scenarios.schema.load import load_study
 from scenarios.statistics.estimates import study_statistics
-from scenarios.studies.manifest import opening_manifest, parameters
+from scenarios.studies.manifest import initial_manifest, parameters
 from tests.scenarios.study_rows import RADIUS, few_indices, study_rows
 
 FLIGHTS = 250
@@ -32,7 +32,7 @@ def run_of(rows, inputs, **changes):
     """Return a run directory as read, with as much of a manifest as a report needs."""
     study = load_study("sea_wind", [])
     config = study.model_dump(mode="json")
-    manifest = opening_manifest(study, "study", []) | {
+    manifest = initial_manifest(study, "study", []) | {
         "study": "sea",
         "trials": {"study": config},
         "trial_parameters": {"study": json.loads(json.dumps(parameters(study)))},

@@ -220,7 +220,7 @@ def test_an_error_that_nobody_thought_of_is_a_row_too(broken, tmp_path):
 
 
 def test_a_lack_of_memory_is_no_row_but_ends_the_process(broken, tmp_path):
-    # The crew tries the flight once more, in a process of its own.
+    # The executor tries the flight once more, in a process of its own.
     broken(MemoryError())
     with pytest.raises(MemoryError):
         fly(tmp_path, start=ASTERN)

@@ -1,4 +1,4 @@
-"""Where the vehicles of the convergence study start, and what they follow."""
+"""Starts and references of the convergence study."""
 
 import math
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from gnc.analysis.turning_reference import TurningReferences
 from gnc.reference.oscillation import design_oscillation
 
 REFERENCES = ("circle", "oscillation", "random")
-"""Kinds of reference, in turn."""
+"""Kinds of reference, cycled through the trajectories."""
 
 CIRCLE_HEADING_RATES = (0.05, 0.5)
 """|omega_r| of circles, uniform, to either side [rad/s]."""
@@ -42,12 +42,12 @@ class Case:
     Attributes
     ----------
     trajectory : its number
-    kind : of ``REFERENCES``
+    kind : kind of its reference, one of ``REFERENCES``
     north, east : the vehicle's start from the reference's [m]
     course : chi at the start [rad]
     reference_course : chi_r at the start [rad]
     rate : constant part of omega_r [rad/s]
-    terms : the rest of it
+    terms : sinusoids that are added to it
     """
 
     trajectory: int

@@ -1,4 +1,4 @@
-"""From how many of 10,000 starts a vehicle reaches its reference, and how fast."""
+"""Ensemble of trajectories: how many of the starts converge to the reference, and how fast."""
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
@@ -17,13 +17,13 @@ from scenarios.errors import InputError
 from scenarios.studies.convergence.cases import CIRCLE_HEADING_RATES, REFERENCES, Case, draw_case, references_of
 
 BLOCK = 1250
-"""Trajectories that one process flies before the next are handed out, at most."""
-PATIENCE = 20.0
-"""A trajectory may take this many times what the averaged motion predicts; of 20,000 the slowest took 7 times as long."""
-PATIENCE_CUT = 2.0
-"""Under cut commands, where some never arrive, this many times."""
-PATIENCE_STRAIGHT = 10.0
-"""But at least this many times what the straightest way there takes on what turning the reference leaves."""
+"""Largest number of trajectories in a task."""
+TIME_FACTOR = 20.0
+"""Time limit of a trajectory over the prediction by averaged motion; the slowest of 20,000 took 7 times as long."""
+TIME_FACTOR_CUT = 2.0
+"""The same for cut commands, with which some trajectories never converge."""
+TIME_FACTOR_STRAIGHT = 10.0
+"""Least time limit for cut commands over the time of a straight flight, at the speed left by turning."""
 
 COLUMNS = (
     "trajectory", "law", "reference", "reference_heading_rate_max_rad_s", "start_north_m", "start_east_m", "start_distance_m",
@@ -31,14 +31,14 @@ COLUMNS = (
     "settling_time_predicted_s", "distance_final_m", "phi_final_rad", "duration_s", "distance_max_m", "heading_rate_max_rad_s",
     "reference_terms",
 )  # fmt: skip
-"""Columns of the table, in order. A settling time that a trajectory does not have is empty."""
+"""Columns of the table, in order; a trajectory that did not settle has no settling time."""
 
 Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Block:
-    """Trajectories of one law and one kind of reference, to be flown together."""
+    """Trajectories of one law and one kind of reference that are integrated together."""
 
     law: Steering
     vehicle: Vehicle
@@ -58,18 +58,19 @@ def convergence_blocks(
     time_max: float,
     laws: Sequence[str],
 ) -> list[Block]:
-    """Return a study's trajectories, one per start and law, in blocks that are to be flown together; those that take long first.
+    """Return a study's trajectories, one per start and law, in blocks that are integrated together; the longest first.
 
-    Starts are uniform over the disc about the reference, their courses uniform; the references are a circle, an oscillation and a
-    random course in turn. The rows of a block depend neither on the other laws nor on the other blocks, bit for bit.
+    Starts are uniform over the disc about the reference, their courses uniform; the references are a circle, an
+    oscillation and a random course in turn. The rows of a block depend neither on the other laws nor on the other
+    blocks, bit for bit.
 
     Parameters
     ----------
-    trajectories, seed : how many, and the seed of their draws
+    trajectories, seed : number of trajectories, and the seed of their random starts
     distance_max : of the starts [m]
-    vehicle : what flies; its heading_rate_max is also what oscillations are designed for
+    vehicle : the vehicle; oscillations are designed for its heading_rate_max
     settling_band : distance below which a trajectory counts as settled [m]
-    time_max : limit [s]; the patiences of this file give more to starts from which more is expected to be needed
+    time_max : limit [s]; starts from which more time is predicted get more
     laws : values of ``gnc.analysis.ensemble_motion.Steering``
 
     Raises
@@ -91,7 +92,7 @@ def convergence_blocks(
     blocks = [
         block for law in laws for block in _blocks(Steering(law), vehicle, cases, settling_band=settling_band, time_max=time_max)
     ]
-    # The longest first: the last to finish is then a short one.
+    # The longest first, so that the last block to finish is a short one.
     return sorted(blocks, key=lambda block: -float(block.time_max.max()))
 
 
@@ -108,10 +109,11 @@ def counterexamples(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def trajectory_of(row: pd.Series, *, vehicle: Vehicle, settling_band: float, step_max: float = 0.5) -> pd.DataFrame:
-    """Return the time history of one row, flown again with steps of at most ``step_max`` [s].
+    """Return the time history of one row, integrated again with steps of at most ``step_max`` [s].
 
-    Columns: time_s, north_m, east_m, course_rad of the vehicle, the same of the reference (which starts at 0, 0), distance_m,
-    phi_rad and heading_rate_rad_s. It ends where the row ends, to within the tolerances of the integration.
+    Columns: time_s, north_m, east_m, course_rad of the vehicle, the same of the reference (which starts at 0, 0),
+    distance_m, phi_rad and heading_rate_rad_s. It ends where the row ends, to within the tolerances of the
+    integration.
     """
     terms = json.loads(row["reference_terms"])
     references = TurningReferences(
@@ -160,7 +162,7 @@ def _course(references: TurningReferences, time: Array) -> Array:
 
 
 def _reference_track(references: TurningReferences, speed: float, time: Array) -> tuple[Array, Array]:
-    """Return north and east [m] of one reference: its velocity integrated between times by Gauss's rule of three points."""
+    """Return north and east [m] of one reference: its velocity integrated by Gauss's rule of three points."""
     nodes, weights = np.polynomial.legendre.leggauss(3)
     step = np.diff(time)
     north, east = np.zeros_like(step), np.zeros_like(step)
@@ -174,7 +176,7 @@ def _reference_track(references: TurningReferences, speed: float, time: Array) -
 def _blocks(law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_band: float, time_max: float) -> Iterator[Block]:
     """Yield the trajectories in blocks of one kind of reference, the longest first.
 
-    A block takes at least as long as its longest trajectory, so that like belongs with like.
+    A block takes as long as its longest trajectory, so trajectories of similar length share a block.
     """
     for kind in REFERENCES:
         chosen = [case for case in cases if case.kind == kind]
@@ -184,11 +186,11 @@ def _blocks(law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_
         to_reference = -np.array([[case.north for case in chosen], [case.east for case in chosen]])
         predicted = averaged_settling_time(vehicle.look_ahead, vehicle.speed, references, to_reference, settling_band)
         limit = averaged_settling_time(vehicle.look_ahead, vehicle.speed, references, to_reference, DISTANCE_CONVERGED)
-        limit *= PATIENCE_CUT if law is Steering.CASCADE_CUT else PATIENCE
+        limit *= TIME_FACTOR_CUT if law is Steering.CASCADE_CUT else TIME_FACTOR
         if law is Steering.CASCADE_CUT:
             # Turning once at omega_max leaves 1 - omega_r/omega_max of the reference's time of turn to fly straight.
             straight = vehicle.speed * (1.0 - np.abs(references.rate) / vehicle.heading_rate_max)
-            limit = np.maximum(limit, PATIENCE_STRAIGHT * np.hypot(*to_reference) / straight)
+            limit = np.maximum(limit, TIME_FACTOR_STRAIGHT * np.hypot(*to_reference) / straight)
         limit = np.maximum(limit, time_max)
         order = np.argsort(-limit, kind="stable")
         for first in range(0, len(chosen), BLOCK):

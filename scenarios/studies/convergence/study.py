@@ -1,4 +1,4 @@
-"""The convergence of the paper's laws from many starts, as a study."""
+"""The convergence study: the paper's steering laws from many random starts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,13 +8,14 @@ from typing import Any
 
 import pandas as pd
 
+from common.run_layout import COUNTEREXAMPLES, SUMMARY, trajectory_path
 from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED, Outcome
 from gnc.analysis.ensemble_motion import Vehicle
 from gnc.errors import InfeasibleError
 from gnc.laws.delta import look_ahead
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, Summary
+from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
 from scenarios.schema.convergence import ConvergenceScenario
@@ -26,21 +27,19 @@ from scenarios.studies.convergence.ensemble import (
     fly_block,
     trajectory_of,
 )
-from scenarios.studies.manifest import opening_manifest
-
-_SUMMARY = "summary.csv"
+from scenarios.studies.manifest import initial_manifest
 
 _LOST = "lost"
 """Outcome of a trajectory whose process was lost."""
 
 _HISTORY_MAX = 10_000.0
-"""Longest time history kept [s]; a trajectory can be a hundred times as long, and looks the same from there on."""
+"""Longest time history that is written [s]; a trajectory can be a hundred times as long, with nothing new to see."""
 
 _HISTORY_STEP = 2.0
 """Largest step between samples of a time history [s]."""
 
 _KEPT_MAX = 200
-"""Counter-examples whose time histories are kept, at most: beyond that there is something else to look at."""
+"""Largest number of counter-examples whose time histories are written."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +56,7 @@ class ConvergenceWork:
     def fly(self, task: Task) -> Result:
         """Fly a block."""
         block = self.blocks[task.number]
-        return Result(task=task, tables={_SUMMARY: fly_block(block)}, items=len(block.cases))
+        return Result(task=task, tables={SUMMARY: fly_block(block)}, items=len(block.cases))
 
     def lost(self, task: Task, reason: str) -> Result:
         """Return the result of a block whose process was lost: a row for each of its trajectories."""
@@ -72,7 +71,7 @@ class ConvergenceWork:
             }
             for case in block.cases
         ]
-        return Result(task=task, tables={_SUMMARY: rows}, items=len(rows), lost=True)
+        return Result(task=task, tables={SUMMARY: rows}, items=len(rows), lost=True)
 
 
 class ConvergenceStudy:
@@ -80,12 +79,12 @@ class ConvergenceStudy:
 
     Parameters
     ----------
-    scenario, name : what to fly, and what it is called
-    overrides : how the scenario differs from the one of that name, for the record
+    scenario, name : the scenario and its name
+    overrides : overrides that were applied to the scenario, recorded in the manifest
 
     Raises
     ------
-    InputError : parameters that cannot work
+    InputError : guidance parameters without a solution
     """
 
     what = "trajectories"
@@ -105,11 +104,11 @@ class ConvergenceStudy:
         except InfeasibleError as error:
             raise InputError(f"guidance: {error}") from None
         self.planned = scenario.ensemble.trajectories * len(g.laws)
-        self._manifest = opening_manifest(scenario, name, overrides)
+        self._manifest = initial_manifest(scenario, name, overrides)
         self.config_hash = str(self._manifest["config_hash"])
 
-    def opening(self) -> dict[str, Any]:
-        """Return what the manifest says before anything has been flown."""
+    def initial_manifest(self) -> dict[str, Any]:
+        """Return the manifest as written before the first trajectory."""
         return self._manifest | {
             "trajectories_planned": self.planned,
             "converged_distance_m": DISTANCE_CONVERGED,
@@ -131,46 +130,45 @@ class ConvergenceStudy:
         return tuple(blocks)
 
     def work(self, _: RunDirectory) -> ConvergenceWork:
-        """Return the flying of its blocks."""
+        """Return the work on its blocks."""
         return ConvergenceWork(blocks=self._blocks)
 
-    def conduct(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
-        """Have every block flown."""
+    def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
+        """Fly every block."""
         fly(Task(number=i) for i in range(len(self._blocks)))
 
-    def finish(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
-        """Write the time histories of the first trajectories and of the counter-examples."""
-        progress("keeping time histories", self.planned, self.planned)
+    def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
+        """Write time histories of the first trajectories and of the counter-examples."""
+        progress("writing time histories", self.planned, self.planned)
         frame = self._frame(journal)
         kept = pd.concat([frame[frame["trajectory"] < self._scenario.ensemble.samples], counterexamples(frame).head(_KEPT_MAX)])
-        # A trajectory whose process was lost has nothing that could be flown again.
+        # A trajectory whose process was lost has no duration to replay.
         kept = kept[kept["duration_s"].notna()]
         kept["duration_s"] = kept["duration_s"].clip(upper=_HISTORY_MAX)
-        run.trajectories.mkdir(exist_ok=True)
         for _, row in kept.drop_duplicates(["trajectory", "law"]).iterrows():
             band = self._scenario.ensemble.settling_band_m
             history = trajectory_of(row, vehicle=self._vehicle, settling_band=band, step_max=_HISTORY_STEP)
-            run.write_frame(f"{run.trajectories.name}/{row['law']}_{row['trajectory']:05d}.parquet", history)
+            run.write_frame(trajectory_path(row["law"], row["trajectory"]), history)
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write its tables: blocks are not in the order of their trajectories."""
+        """Write the tables, sorted: blocks are not in the order of their trajectories."""
         frame = self._frame(journal)
-        run.write_frame(_SUMMARY, frame)
-        run.write_frame("counterexamples.csv", counterexamples(frame))
+        run.write_frame(SUMMARY, frame)
+        run.write_frame(COUNTEREXAMPLES, counterexamples(frame))
 
     def _frame(self, journal: Journal) -> pd.DataFrame:
-        return convergence_table(journal.rows(_SUMMARY), self._scenario.guidance.laws)
+        return convergence_table(journal.rows(SUMMARY), self._scenario.guidance.laws)
 
-    def summary(self, journal: Journal) -> Summary:
+    def summary(self, journal: Journal) -> StudySummary:
         """Return how many trajectories converged."""
         laws = self._scenario.guidance.laws
         frame = self._frame(journal)
-        # The verdict is about the laws of the theory or, if there are none, about all.
+        # The verdict is about the laws that the theory covers or, if there are none, about all.
         judged = tuple(law for law in laws if law != "cascade_cut") or laws
         converged = frame["outcome"] == Outcome.CONVERGED.value
         flown = frame.assign(converged=converged).groupby(["law", "reference"], sort=False)["converged"]
         lines = [f"  {law}, {kind}: {int(of_kind.sum())} of {len(of_kind)} converged" for (law, kind), of_kind in flown]
-        return Summary(
+        return StudySummary(
             done=len(frame),
             met=len(frame) == self.planned and bool(converged[frame["law"].isin(judged)].all()),
             lines=[f"{self.planned} trajectories planned, {len(frame)} done: {int(converged.sum())} converged", *lines],

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from scenarios.engine.fingerprint import fingerprint
-from scenarios.engine.runner import Summary, write_tables
+from scenarios.engine.runner import StudySummary, write_tables
 from scenarios.engine.task import Result, Task
 
 TABLE = "rows.csv"
@@ -75,19 +75,19 @@ class SquareStudy:
         self.planned = sum(map(len, batches))
         self.seen = []
 
-    def opening(self):
+    def initial_manifest(self):
         return {"config_hash": self.config_hash, "fingerprint": fingerprint()}
 
     def work(self, _run):
         return self._work
 
-    def conduct(self, fly, _run, journal):
+    def run(self, fly, _run, journal):
         for batch in self._batches:
             fly(Task(number=i) for i in batch)
             self.seen.append(journal.done())
         fly([Task(number=i, recorded=True) for i in self._recorded])
 
-    def finish(self, _run, _journal, progress):
+    def postprocess(self, _run, _journal, progress):
         progress("finishing", self.planned, self.planned)
 
     def export(self, run, journal):
@@ -95,4 +95,4 @@ class SquareStudy:
 
     def summary(self, journal):
         done = journal.items()
-        return Summary(done=done, met=done == self.planned, lines=[], manifest={"squares_done": done})
+        return StudySummary(done=done, met=done == self.planned, lines=[], manifest={"squares_done": done})

@@ -147,7 +147,9 @@ def test_a_second_program_is_refused_in_a_line_until_the_first_is_gone(tmp_path)
     )
     with holder:
         assert holder.stdout.readline() == "held\n"
-        with pytest.raises(InputError, match="is being flown by another program; wait for it, or choose another --out") as refused:
+        with pytest.raises(
+            InputError, match=r"another program is writing to .*; wait until it has ended, or choose another --out"
+        ) as refused:
             Journal(path)
         assert "\n" not in str(refused.value)
         assert str(tmp_path) in str(refused.value)

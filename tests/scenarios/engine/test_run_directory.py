@@ -61,5 +61,5 @@ def test_a_file_of_the_run_is_written_with_the_directory_that_it_is_in(tmp_path)
     run = RunDirectory(tmp_path / "run")
     run.open_new()
     run.write_bytes("flights/a.parquet", b"PAR1")
-    assert (run.flights / "a.parquet").read_bytes() == b"PAR1"
-    assert [path.name for path in run.flights.iterdir()] == ["a.parquet"]
+    assert (run.path / "flights" / "a.parquet").read_bytes() == b"PAR1"
+    assert [path.name for path in (run.path / "flights").iterdir()] == ["a.parquet"]

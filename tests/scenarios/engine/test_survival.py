@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.scenarios.short_trial import short_trial
@@ -30,7 +30,7 @@ def trial(tmp_path_factory):
 
 def fly(path, out):
     resume = (out / "manifest.json").is_file()
-    run_study(load_study(str(path)), path.stem, out, hire=Hiring(jobs=2), resume=resume)
+    run_study(load_study(str(path)), path.stem, out, executor_factory=ExecutorFactory(jobs=2), resume=resume)
 
 
 @pytest.fixture(scope="module")

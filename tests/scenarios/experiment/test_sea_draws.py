@@ -89,8 +89,14 @@ def test_speed_ratios_that_no_draw_has_are_refused_in_a_line():
         ({"key": "vessel.speed_mps", "normal": [8.0, 2.0]}, "vessel.speed_mps: value is -"),
         # Some 4e-12 of it lies beyond 41 m/s: rounding takes a little from the limit.
         ({"key": "wind.speed_mps", "weibull": [2.0, 8.0], "within": [0.0, 41.0]}, "wind.speed_mps: value is 40.9999"),
-        ({"key": "vessel.manoeuvres.0.turn_deg", "uniform": [-90.0, 90.0]}, "'0' is no place in a list of 0: they count from 0"),
-        ({"key": "vessel.manoeuvres.first.turn_deg", "uniform": [-90.0, 90.0]}, "'first' is no place in a list of 0"),
+        (
+            {"key": "vessel.manoeuvres.0.turn_deg", "uniform": [-90.0, 90.0]},
+            r"vessel\.manoeuvres has no entries; add one with --set 'vessel\.manoeuvres=\[\{at_s=100, turn_deg=-90\.0\}\]'",
+        ),
+        (
+            {"key": "vessel.manoeuvres.first.turn_deg", "uniform": [-90.0, 90.0]},
+            "unknown key 'vessel.manoeuvres.first.turn_deg'; vessel.manoeuvres has no entries",
+        ),
     ],
 )
 def test_what_cannot_be_drawn_is_refused_before_anything_is_flown(draw, words):
@@ -232,13 +238,15 @@ def test_a_key_within_a_list_can_be_set_like_any_other():
     both = ["vessel.manoeuvres=[{at_s = 10.0, turn_deg = 20.0}]", "vessel.manoeuvres.0.turn_deg=35"]
     (manoeuvre,) = load_study("sea_wind", both).vessel.manoeuvres
     assert (manoeuvre.at_s, manoeuvre.turn_deg) == (10.0, 35.0)
-    with pytest.raises(InputError, match=r"'1' is no place in a list of 1: they count from 0"):
+    with pytest.raises(InputError, match=r"vessel.manoeuvres has 1 entry, numbered from 0, and '1' is not one of them"):
         load_study("sea_wind", [both[0], "vessel.manoeuvres.1.turn_deg=35"])
 
 
-def test_a_place_beyond_the_list_is_refused_before_anything_is_flown():
+def test_an_index_beyond_the_list_is_refused_before_anything_is_flown():
     trial = scenario(vessel=MANOEUVRES, draws=[{"key": "vessel.manoeuvres.2.turn_deg", "uniform": [30.0, 60.0]}])
-    with pytest.raises(InputError, match=r"unknown key 'vessel.manoeuvres.2.turn_deg'; '2' is no place in a list of 2"):
+    with pytest.raises(
+        InputError, match=r"unknown key 'vessel.manoeuvres.2.turn_deg'; vessel.manoeuvres has 2 entries, numbered from 0"
+    ):
         check_draws("trial", trial)
 
 

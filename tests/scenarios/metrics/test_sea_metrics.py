@@ -9,7 +9,7 @@ from sea_cases import AIRFRAME, SEA_COLUMNS, scenario
 
 from scenarios.metrics.sea_figures import sea_figures, sea_plan_row, sea_unmet
 from scenarios.planning.sea_planner import plan_sea_flight
-from scenarios.simulation.closed_loop import Outcome
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.sea_loop import SeaRecord
 
 STEP = 0.1

@@ -16,7 +16,8 @@ from scenarios.flights import flight_requests, guidance_lag, place_vehicle
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.scaling import fitted, units
 from scenarios.schema.load import load_scenario, with_values
-from scenarios.simulation.closed_loop import COLUMNS, Outcome, fly
+from scenarios.simulation.closed_loop import COLUMNS, fly
+from scenarios.simulation.outcome import Outcome
 
 SPEED, GRAVITY = 19.42, 9.80665
 

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from scenarios.statistics import sensitivity as module
-from scenarios.statistics.sensitivity import sensitivity
+from scenarios.statistics.sensitivity import sensitivity_indices
 
 
 def words_and_noise(flights=400):
@@ -28,7 +28,7 @@ def few_resamples():
 
 @pytest.fixture(scope="module")
 def found():
-    return sensitivity(*words_and_noise(), confidence=0.95, seed=1)
+    return sensitivity_indices(*words_and_noise(), confidence=0.95, seed=1)
 
 
 def test_a_category_that_parts_the_figure_in_two_has_the_indices_that_follow_from_their_definitions(found):
@@ -44,7 +44,7 @@ def test_a_category_that_parts_the_figure_in_two_has_the_indices_that_follow_fro
 def test_a_sum_of_two_inputs_has_their_shares_of_the_variance():
     generator = np.random.default_rng(6)
     inputs = pd.DataFrame({"wind.speed_mps": generator.uniform(size=800), "vessel.speed_mps": generator.uniform(size=800)})
-    found = sensitivity(inputs, inputs.to_numpy() @ [2.0, 1.0], confidence=0.95, seed=1)
+    found = sensitivity_indices(inputs, inputs.to_numpy() @ [2.0, 1.0], confidence=0.95, seed=1)
     assert [index.key for index in found.inputs] == ["wind.speed_mps", "vessel.speed_mps"]
     # Variances are 4/12 and 1/12. Classes, six of 133 flights here, hide 1/36 of an input's variance and add 1/133 of the other's;
     # shares of 800 flights have a deviation of some 0.02.
@@ -60,7 +60,7 @@ def test_what_does_nothing_does_not_rise_above_the_noise_floor_and_what_drives_d
 def test_the_names_of_categories_and_the_order_of_flights_given_do_not_matter_to_who_drives():
     inputs, figure = words_and_noise()
     renamed = inputs.replace({"turbulence.level": {"light": "zephyr", "severe": "gale"}})
-    backwards = sensitivity(renamed.iloc[::-1], figure[::-1], confidence=0.95, seed=2)
+    backwards = sensitivity_indices(renamed.iloc[::-1], figure[::-1], confidence=0.95, seed=2)
     # As close to 1/2 as in the first test: only what is drawn by lot differs.
     assert backwards.inputs[0].delta == pytest.approx(0.5, abs=0.03)
 
@@ -69,7 +69,7 @@ def test_the_same_seed_gives_the_same_indices_and_leaves_everybody_elses_random_
     inputs, figure = words_and_noise(250)
     state = np.random.get_state()[1].copy()  # noqa: NPY002 - that it is not touched is what is tested
     filters = list(warnings.filters)
-    first, second = (sensitivity(inputs, figure, confidence=0.95, seed=0) for _ in range(2))
+    first, second = (sensitivity_indices(inputs, figure, confidence=0.95, seed=0) for _ in range(2))
     assert first == second
     assert np.array_equal(np.random.get_state()[1], state)  # noqa: NPY002 - as above
     assert warnings.filters == filters
@@ -78,7 +78,7 @@ def test_the_same_seed_gives_the_same_indices_and_leaves_everybody_elses_random_
 def test_an_input_that_is_another_in_one_flight_alone_drives_nothing():
     inputs, figure = words_and_noise(250)
     inputs["turbulence.gusts"] = np.where(np.arange(250) == 3, 1, 0)
-    found = {index.key: index for index in sensitivity(inputs, figure, confidence=0.95, seed=1).inputs}
+    found = {index.key: index for index in sensitivity_indices(inputs, figure, confidence=0.95, seed=1).inputs}
     # One flight in 250.
     assert abs(found["turbulence.gusts"].delta) < 0.01
 
@@ -87,7 +87,7 @@ def test_of_many_flights_so_many_are_looked_at_as_is_said(monkeypatch):
     monkeypatch.setattr(module, "FLIGHTS_MAX", 220)
     inputs, figure = words_and_noise()
     figure[:10] = np.nan
-    found = sensitivity(inputs, figure, confidence=0.95, seed=1)
+    found = sensitivity_indices(inputs, figure, confidence=0.95, seed=1)
     assert (found.flights, found.known) == (220, 390)
 
 
@@ -95,7 +95,7 @@ def test_inputs_that_say_nothing_are_left_out_with_the_reason_and_the_others_sta
     inputs, figure = words_and_noise(250)
     inputs["keepout.radius_m"] = 200.0
     inputs["reports.missing"] = np.where(np.arange(250) < 100, np.nan, inputs["wind.from_deg"])
-    left = sensitivity(inputs, figure, confidence=0.95, seed=1)
+    left = sensitivity_indices(inputs, figure, confidence=0.95, seed=1)
     assert left.left_out == {
         "keepout.radius_m": "the same in every flight",
         "reports.missing": "not drawn for every flight",
@@ -115,7 +115,7 @@ def test_inputs_that_say_nothing_are_left_out_with_the_reason_and_the_others_sta
     ],
 )
 def test_where_there_are_no_indices_the_reason_is_given(change, message):
-    found = sensitivity(*change(*words_and_noise()), confidence=0.95, seed=1)
+    found = sensitivity_indices(*change(*words_and_noise()), confidence=0.95, seed=1)
     assert found.message.startswith(message)
     assert found.inputs == ()
     assert np.isnan(found.delta_floor)

@@ -102,7 +102,7 @@ def test_both_of_two_wishes_have_to_be_met():
 
 
 def test_a_stop_for_nothing_and_looks_that_cannot_be_are_refused():
-    with pytest.raises(ValueError, match="nothing to stop for: give violation_upper or distance_quantile_width_m"):
+    with pytest.raises(ValueError, match="no interval is demanded; give violation_upper or distance_quantile_width_m"):
         tight_enough(rows_with(np.full(3, 210.0)), look_number=1, confidence=0.95)
     with pytest.raises(ValueError, match="planned flights are 0; plan one at least"):
         looks(0)

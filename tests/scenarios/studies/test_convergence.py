@@ -11,7 +11,7 @@ import pytest
 from gnc.analysis.averaged_motion import averaged_settling_time
 from gnc.analysis.ensemble_motion import Vehicle
 from gnc.laws.delta import look_ahead
-from scenarios.engine.local_executor import LocalCrew
+from scenarios.engine.local_executor import LocalExecutor
 from scenarios.engine.task import Limits, Task
 from scenarios.errors import InputError
 from scenarios.studies.convergence.cases import REFERENCES, draw_case, references_of
@@ -36,8 +36,8 @@ STUDY = {
 def results(jobs=1, **changes):
     """Yield the result of each block as it comes."""
     blocks = convergence_blocks(**(STUDY | changes))
-    with LocalCrew(ConvergenceWork(blocks=tuple(blocks)), jobs=jobs, limits=Limits()) as crew:
-        yield from crew.fly(Task(number=i) for i in range(len(blocks)))
+    with LocalExecutor(ConvergenceWork(blocks=tuple(blocks)), jobs=jobs, limits=Limits()) as executor:
+        yield from executor.fly(Task(number=i) for i in range(len(blocks)))
 
 
 def study(jobs=1, **changes):
@@ -141,7 +141,7 @@ def test_a_block_whose_process_was_lost_is_a_row_for_each_of_its_trajectories():
 
 
 def test_a_trajectory_that_has_too_little_time_is_a_counterexample(monkeypatch):
-    monkeypatch.setattr("scenarios.studies.convergence.ensemble.PATIENCE", 0.1)
+    monkeypatch.setattr("scenarios.studies.convergence.ensemble.TIME_FACTOR", 0.1)
     rows = study(time_max=1.0, laws=("cascade",))
     missed = counterexamples(rows)
     assert len(missed) > 0

@@ -8,7 +8,7 @@ import pytest
 
 from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.build import build_reports
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.load import load_study
@@ -24,7 +24,7 @@ def study(*overrides):
 
 
 def run(scenario, path, *, resume=False, progress=lambda *_: None, jobs=1):
-    return run_study(scenario, "convergence", path, hire=Hiring(jobs=jobs), resume=resume, progress=progress)
+    return run_study(scenario, "convergence", path, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +68,7 @@ def test_those_that_do_not_converge_are_kept_with_their_time_histories(tmp_path)
 
     scenario = study("ensemble.time_max_s=1.0", 'guidance.laws=["cascade"]', "ensemble.samples=0")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(convergence, "PATIENCE", 1e-6)
+        patch.setattr(convergence, "TIME_FACTOR", 1e-6)
         result = run(scenario, tmp_path / "run")
     failed = pd.read_csv(tmp_path / "run" / "counterexamples.csv")
     assert not result.all_met
@@ -158,7 +158,7 @@ def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_res
         ("ensemble.trajectories=0", ["ensemble.trajectories", "greater than or equal to 1"]),
         ("guidance.heading_rate_max_rad_s=0.4", ["heading_rate_max_rad_s", "0.4", "greater than 0.5"]),
         ("fidelity=six_dof", ["fidelity", "'six_dof'", "kinematic"]),
-        ("keepout.radius_m=200", ["unknown key 'keepout'", "scenarios/schema/convergence.py"]),
+        ("keepout.radius_m=200", ["unknown key 'keepout'; known are study, title", "ensemble, guidance"]),
     ],
 )
 def test_bad_values_are_refused_in_one_line(override, words):

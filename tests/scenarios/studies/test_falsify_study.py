@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from reports.build import build_reports
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.schema.monte_carlo_config import FalsifyScenario
@@ -54,7 +54,7 @@ def search(tmp_path_factory):
 def run(search, out, *, jobs=2, resume=False, progress=lambda *_: None):
     scenario = load_study(str(search))
     assert isinstance(scenario, FalsifyScenario)
-    return run_study(scenario, "short", out, hire=Hiring(jobs=jobs), resume=resume, progress=progress)
+    return run_study(scenario, "short", out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import pytest
 
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
 from scenarios.schema.load import is_flight, load_study
@@ -36,7 +36,7 @@ def runs(tmp_path_factory):
 
 
 def replay(name, out):
-    return fly_study(Replay(str(name)), out, hire=Hiring(), resume=False, progress=lambda *_: None)
+    return fly_study(Replay(str(name)), out, executor_factory=ExecutorFactory(), resume=False, progress=lambda *_: None)
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_a_flight_is_flown_again_identically_with_every_step_of_the_guidance(run
 def test_a_report_of_one_flight_is_about_that_flight(runs, tmp_path, run, flight_id):
     replay(runs / run / "flights" / flight_id, tmp_path / "again")
     report = content(read_run(tmp_path / "again"))
-    assert report.title.endswith(f"{flight_id.removesuffix('.parquet')}, flown again")
+    assert report.title.endswith(f"replay of {flight_id.removesuffix('.parquet')}")
     assert "Nothing was flown" not in report.verdict.headline
     assert "1 of 1 flights" in report.verdict.detail
     assert not [failure for failure in report.verdict.failures if "not flown yet" in failure]
@@ -84,12 +84,12 @@ def test_a_flight_that_goes_another_way_is_told_with_what_has_changed(runs, tmp_
     assert not result.all_met
     assert "differs from the flight in" in result.summary.lines[-1]
     assert "start_distance_m" in result.summary.lines[-1]
-    assert result.summary.lines[-1].endswith("it was flown with another numpy")
+    assert result.summary.lines[-1].endswith("the original was flown with a different numpy")
 
 
 def test_a_flight_that_was_flown_again_is_not_flown_again_from_there(runs, tmp_path):
     replay(runs / "sea" / "flights" / "two_00001", tmp_path / "again")
-    with pytest.raises(InputError, match="flown again already; give it as RUN_DIR/flights/ID of its first run"):
+    with pytest.raises(InputError, match="is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run"):
         Replay(str(tmp_path / "again" / "flights" / "two_00001"))
 
 

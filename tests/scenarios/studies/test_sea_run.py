@@ -5,7 +5,7 @@ import json
 import pandas as pd
 import pytest
 
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
@@ -45,7 +45,9 @@ def quiet(doing, done, total):
 
 def run(path, out, *overrides, jobs=1, resume=False, progress=quiet):
     study = load_study(str(path), overrides)
-    return run_study(study, path.stem, out, hire=Hiring(jobs=jobs), resume=resume, progress=progress, overrides=overrides)
+    return run_study(
+        study, path.stem, out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress, overrides=overrides
+    )
 
 
 def tables(directory):
@@ -187,5 +189,5 @@ def test_trials_that_need_different_autopilots_are_refused(tmp_path):
 def test_what_happened_is_told_in_lines(listed, tmp_path):
     lines = run(listed, tmp_path / "run", "share=0.1", "vessel.speed_mps=19.4", "speed_ratio=[0, 9]").summary.lines
     assert lines[0] == "2 flights planned, 2 done"
-    assert lines[1].startswith("  one: 0 of 1 met every criterion; 0 entries")
+    assert lines[1].startswith("  one: 0 of 1 met every criterion; 0 keep-out violations")
     assert lines[3].startswith("    one_00000: infeasible: the vessel moves at up to")

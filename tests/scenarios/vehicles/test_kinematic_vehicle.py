@@ -10,7 +10,8 @@ from scenarios.errors import InputError
 from scenarios.flights import flight_requests, guidance_lag, place_vehicle
 from scenarios.planning.planner import plan_flight
 from scenarios.schema.load import load_scenario
-from scenarios.simulation.closed_loop import COLUMNS, Outcome, fly
+from scenarios.simulation.closed_loop import COLUMNS, fly
+from scenarios.simulation.outcome import Outcome
 from scenarios.vehicles.kinematic import KinematicVehicle
 from scenarios.vehicles.vehicle import SAMPLE_COLUMNS
 

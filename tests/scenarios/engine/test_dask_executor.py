@@ -10,7 +10,7 @@ import sys
 import pandas as pd
 import pytest
 
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.task import Limits
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
@@ -52,8 +52,10 @@ def dask(command, *words, cwd):
         process.wait()
 
 
-def fly(out, *, progress=lambda *_: None, **hiring):
-    return run_study(load_study("sea_together", SETTINGS), "sea_together", out, hire=Hiring(**hiring), progress=progress)
+def fly(out, *, progress=lambda *_: None, **executors):
+    return run_study(
+        load_study("sea_together", SETTINGS), "sea_together", out, executor_factory=ExecutorFactory(**executors), progress=progress
+    )
 
 
 def test_a_study_that_loses_a_worker_in_the_middle_has_the_rows_of_a_local_one(tmp_path):
@@ -86,12 +88,12 @@ def test_a_study_that_loses_a_worker_in_the_middle_has_the_rows_of_a_local_one(t
 
 
 def test_a_limit_of_memory_with_which_no_worker_lives_is_refused_in_one_line(tmp_path):
-    with pytest.raises(InputError, match=r"--memory-limit is 0\.30 GiB; a worker of Dask's needs 1 GiB: give more"):
+    with pytest.raises(InputError, match=r"--memory-limit is 0\.30 GiB; a Dask worker needs 1 GiB: raise the limit"):
         fly(tmp_path / "run", executor="dask", limits=Limits(memory=round(0.3 * 2**30)))
 
 
 def test_a_scheduler_that_is_not_there_is_named_in_one_line(tmp_path, monkeypatch):
-    monkeypatch.setattr("scenarios.engine.dask_executor._CONNECT_TIME", 1.0)
+    monkeypatch.setattr("scenarios.engine.dask_executor.CONNECT_TIMEOUT", 1.0)
     with pytest.raises(InputError, match=r"--scheduler tcp://127\.0\.0\.1:\d+ does not answer") as refused:
         fly(tmp_path / "run", executor="dask", scheduler=f"tcp://127.0.0.1:{free_port()}")
     assert "\n" not in str(refused.value)

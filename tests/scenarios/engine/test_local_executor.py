@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from engine_cases import TABLE, Squares, begun, workers
 
-from scenarios.engine.executor import TRIES
-from scenarios.engine.local_executor import LocalCrew
+from scenarios.engine.executor import MAX_ATTEMPTS
+from scenarios.engine.local_executor import LocalExecutor
 from scenarios.engine.task import Limits, Task
 from scenarios.errors import InputError
 
@@ -29,8 +29,8 @@ def tasks(count):
 
 def fly(work, numbers, *, jobs=2, limits=None):
     """Return the results of tasks, in their order, whoever was first."""
-    with LocalCrew(work, jobs=jobs, limits=limits or Limits()) as crew:
-        results = list(crew.fly(Task(number=i) for i in numbers))
+    with LocalExecutor(work, jobs=jobs, limits=limits or Limits()) as executor:
+        results = list(executor.fly(Task(number=i) for i in numbers))
     return sorted(results, key=lambda result: result.task.number)
 
 
@@ -48,7 +48,7 @@ def once(path, how):
 def assert_lost(result, *words):
     assert result.lost
     (row,) = result.tables[TABLE]
-    for word in (f"{TRIES} processes that flew it were lost", *words):
+    for word in (f"{MAX_ATTEMPTS} processes that flew it were lost", *words):
         assert word in row["reason"]
 
 
@@ -84,9 +84,9 @@ def test_nothing_to_do_is_nothing_done(tmp_path):
 
 
 def test_a_crew_does_one_batch_after_the_other(tmp_path):
-    with LocalCrew(Squares(marks=tmp_path), jobs=2, limits=Limits()) as crew:
-        first = [result.task.number for result in crew.fly(tasks(4))]
-        second = [result.task.number for result in crew.fly([Task(number=7, recorded=True)])]
+    with LocalExecutor(Squares(marks=tmp_path), jobs=2, limits=Limits()) as executor:
+        first = [result.task.number for result in executor.fly(tasks(4))]
+        second = [result.task.number for result in executor.fly([Task(number=7, recorded=True)])]
     assert (sorted(first), second) == ([0, 1, 2, 3], [7])
 
 
@@ -100,8 +100,8 @@ def test_tasks_are_taken_as_processes_get_free(jobs, tmp_path):
             taken += 1
             yield Task(number=number)
 
-    with LocalCrew(Squares(marks=tmp_path), jobs=jobs, limits=Limits()) as crew:
-        flying = crew.fly(endless())
+    with LocalExecutor(Squares(marks=tmp_path), jobs=jobs, limits=Limits()) as executor:
+        flying = executor.fly(endless())
         # Each has the one at hand and the next; one more is what was just given for the result.
         for received, _ in enumerate(itertools.islice(flying, 30), start=1):
             assert taken - received <= 2 * jobs + 1
@@ -121,13 +121,13 @@ def test_a_task_whose_processes_are_killed_is_lost_and_says_why(jobs, tmp_path):
     results = fly(Squares(marks=tmp_path, does={3: killed}), range(8), jobs=jobs)
     assert_lost(results[3], "the last one was ended by SIGKILL")
     assert_done(results, {*range(8)} - {3})
-    assert [begun(tmp_path, number) for number in range(8)] == [1, 1, 1, TRIES, 1, 1, 1, 1]
+    assert [begun(tmp_path, number) for number in range(8)] == [1, 1, 1, MAX_ATTEMPTS, 1, 1, 1, 1]
 
 
 def test_the_last_task_can_be_lost_too_and_so_can_all(tmp_path):
     results = fly(Squares(marks=tmp_path, does=dict.fromkeys(range(4), killed)), range(4))
     assert [result.lost for result in results] == [True] * 4
-    assert [begun(tmp_path, number) for number in range(4)] == [TRIES] * 4
+    assert [begun(tmp_path, number) for number in range(4)] == [MAX_ATTEMPTS] * 4
 
 
 def test_an_error_that_work_lets_through_is_a_lost_process(tmp_path, capfd):
@@ -147,7 +147,7 @@ def test_a_task_that_hangs_is_ended_and_lost(tmp_path):
     results = fly(work, range(6), limits=Limits(time=0.6))
     assert_lost(results[2], "did not end within 0.6 s")
     assert_done(results, {*range(6)} - {2})
-    assert begun(tmp_path, 2) == TRIES
+    assert begun(tmp_path, 2) == MAX_ATTEMPTS
     assert time.monotonic() - began < LONG / 2
 
 
@@ -162,9 +162,9 @@ def test_a_task_that_runs_out_of_memory_is_lost_and_says_why(tmp_path):
     limit = memory() + 2**28
     # Four times what is left: refused at once, so that nothing of it is ever there.
     results = fly(Squares(marks=tmp_path, does={2: functools.partial(bytearray, 2**30)}), range(6), limits=Limits(memory=limit))
-    assert_lost(results[2], f"ran out of memory, of which it had {limit / 2**20:.0f} MiB")
+    assert_lost(results[2], f"ran out of memory; its limit is {limit / 2**20:.0f} MiB")
     assert_done(results, {*range(6)} - {2})
-    assert begun(tmp_path, 2) == TRIES
+    assert begun(tmp_path, 2) == MAX_ATTEMPTS
     # Where there is no limit there is no lack.
     assert not fly(Squares(marks=tmp_path, does={2: functools.partial(bytearray, 2**28)}), [2])[0].lost
 
@@ -173,8 +173,8 @@ def test_an_interrupt_ends_processes_at_once(tmp_path):
     work = Squares(marks=tmp_path, does=dict.fromkeys(range(1, 9), functools.partial(time.sleep, LONG)))
 
     def interrupted():
-        with LocalCrew(work, jobs=2, limits=Limits()) as crew:
-            for _ in crew.fly(tasks(9)):
+        with LocalExecutor(work, jobs=2, limits=Limits()) as executor:
+            for _ in executor.fly(tasks(9)):
                 raise KeyboardInterrupt
 
     began = time.monotonic()
@@ -196,15 +196,15 @@ import itertools, sys, time
 from pathlib import Path
 sys.path[:0] = sys.argv[2:]
 from engine_cases import Squares
-from scenarios.engine.local_executor import LocalCrew
+from scenarios.engine.local_executor import LocalExecutor
 from scenarios.engine.task import Limits, Task
 from scenarios.errors import InputError
 class Slow(Squares):
     def fly(self, task):
         time.sleep(0.05)
         return super().fly(task)
-with LocalCrew(Slow(marks=Path(sys.argv[1])), jobs=2, limits=Limits()) as crew:
-    for result in crew.fly(Task(number=i) for i in itertools.count()):
+with LocalExecutor(Slow(marks=Path(sys.argv[1])), jobs=2, limits=Limits()) as executor:
+    for result in executor.fly(Task(number=i) for i in itertools.count()):
         if result.task.number == 3:
             print("flying", flush=True)
             {waits}
@@ -232,5 +232,5 @@ def test_processes_whose_parent_is_killed_end_by_themselves(waits, tmp_path):
 
 
 def test_a_limit_of_memory_that_nothing_can_keep_is_refused_in_a_line(tmp_path):
-    with pytest.raises(InputError, match=r"--memory-limit is 0\.00 GiB; a process has \d\.\d\d GiB before its first flight"):
-        LocalCrew(Squares(marks=tmp_path), jobs=1, limits=Limits(memory=2**20)).__enter__()
+    with pytest.raises(InputError, match=r"--memory-limit is 0\.00 GiB; a process uses \d\.\d\d GiB before its first flight"):
+        LocalExecutor(Squares(marks=tmp_path), jobs=1, limits=Limits(memory=2**20)).__enter__()

@@ -1,26 +1,26 @@
 import pytest
 from engine_cases import Squares
 
-from scenarios.engine import executors as hiring
-from scenarios.engine.executors import DASK, LOCAL, Hiring
-from scenarios.engine.local_executor import LocalCrew
+from scenarios.engine import executors
+from scenarios.engine.executors import DASK, LOCAL, ExecutorFactory
+from scenarios.engine.local_executor import LocalExecutor
 from scenarios.errors import InputError
 
 
 def test_processes_of_this_machine_are_hired_where_nothing_else_is_said(tmp_path):
-    assert isinstance(Hiring()(Squares(marks=tmp_path)), LocalCrew)
-    assert Hiring().executor == LOCAL
-    assert Hiring().jobs == 1
+    assert isinstance(ExecutorFactory()(Squares(marks=tmp_path)), LocalExecutor)
+    assert ExecutorFactory().executor == LOCAL
+    assert ExecutorFactory().jobs == 1
 
 
 def test_a_scheduler_that_would_not_be_asked_is_refused():
     with pytest.raises(InputError, match=r"--scheduler is tcp://10\.0\.0\.1:8786 with --executor local; add --executor dask"):
-        Hiring(scheduler="tcp://10.0.0.1:8786")
+        ExecutorFactory(scheduler="tcp://10.0.0.1:8786")
 
 
 @pytest.mark.parametrize("scheduler", [None, "tcp://10.0.0.1:8786"])
 def test_dask_where_it_is_not_installed_is_refused_with_what_to_install(monkeypatch, scheduler):
-    monkeypatch.setattr(hiring, "find_spec", lambda _: None)
+    monkeypatch.setattr(executors, "find_spec", lambda _: None)
     with pytest.raises(InputError, match=r"--executor is dask, which is not installed; .* pip install .*\[dask\]") as refused:
-        Hiring(executor=DASK, scheduler=scheduler)
+        ExecutorFactory(executor=DASK, scheduler=scheduler)
     assert "\n" not in str(refused.value)

@@ -9,7 +9,7 @@ import signal
 import pytest
 from engine_cases import TABLE, Squares, SquareStudy, begun
 
-from scenarios.engine.executors import Hiring
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import fly_study
@@ -29,7 +29,7 @@ def out(tmp_path):
 
 
 def fly(study, out, *, resume=False, jobs=1, progress=lambda *_: None):
-    return fly_study(study, out, hire=Hiring(jobs=jobs), resume=resume, progress=progress)
+    return fly_study(study, out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
 
 
 def interrupt_at(count):
@@ -102,7 +102,7 @@ def test_a_run_that_was_killed_before_its_tables_were_written_goes_on_too(marks,
     fly(study, out, progress=interrupt_at(5))
     # As kill -9 leaves it: what was being written lies about, and nothing says that it has ended.
     (out / TABLE).unlink()
-    (out / "manifest.json").write_text(json.dumps(study.opening() | {"state": "running"}), encoding="utf-8")
+    (out / "manifest.json").write_text(json.dumps(study.initial_manifest() | {"state": "running"}), encoding="utf-8")
     parts = [out / f".{TABLE}.123.part", out / "files" / ".5.txt.123.part"]
     for part in parts:
         part.write_bytes(b"half")
@@ -165,7 +165,7 @@ def full_after(count, name):
 
 
 def refused_for_room(study, out):
-    words = rf"no room left for '{re.escape(str(out))}'; .* is kept: .* go on with --resume"
+    words = rf"the disk of '{re.escape(str(out))}' is full; .* are kept: .* continue with --resume"
     with pytest.raises(InputError, match=words) as refused:
         fly(study, out)
     assert "\n" not in str(refused.value)
@@ -229,7 +229,7 @@ def test_a_run_that_other_code_began_is_not_gone_on_with(marks, out):
     for name in ("jsbsim", "source"):
         other = before | {"fingerprint": before["fingerprint"] | {name: "0.0.1"}}
         (out / "manifest.json").write_text(json.dumps(other), encoding="utf-8")
-        words = rf"was begun with {name} 0\.0\.1, now it is .*: results would not go together"
+        words = rf"was started with {name} 0\.0\.1, now it is .*: results would not be comparable"
         with pytest.raises(InputError, match=words) as refused:
             fly(study, out, resume=True)
         assert "\n" not in str(refused.value)
@@ -254,7 +254,7 @@ def test_a_run_that_another_program_flies_is_left_to_it(marks, out):
     other = Journal(out / "journal.sqlite")
     before = (out / "manifest.json").read_bytes()
     (out / ".table.part").touch()  # what the other one is writing
-    with pytest.raises(InputError, match="is being flown by another program"):
+    with pytest.raises(InputError, match="another program is writing to"):
         fly(study, out, resume=True)
     other.close()
     assert (out / ".table.part").exists()

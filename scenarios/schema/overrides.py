@@ -1,0 +1,132 @@
+"""Changes to a scenario document: ``--set key=value`` with dotted keys, and which keys a document sets."""
+
+import tomllib
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel
+
+from scenarios.errors import InputError
+from scenarios.schema.keys import entry_model, example_value, key_parts
+
+Document = dict[str, Any]
+"""A scenario as read from TOML, before it is checked."""
+
+
+def parse_override(override: str) -> tuple[str, object]:
+    """Return key and value of ``key=value``, the value in TOML; a bare word is a string.
+
+    Raises
+    ------
+    InputError : no equals sign, or a list or table that is not valid TOML
+    """
+    key, equals, text = override.partition("=")
+    if not equals or not key.strip():
+        raise InputError(f"--set '{override}' is not of the form key=value, e.g. --set guidance.preview=false")
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError as error:
+        if text.strip().startswith(("[", "{")):
+            raise InputError(
+                f"--set '{override}' is not valid TOML: {error}; words in a list are quoted: 'key=[\"word\"]'"
+            ) from None
+        value = text
+    if key.strip() == "extends":
+        raise InputError(f"--set '{override}': extends stands in a scenario file; name the scenario to fly instead")
+    return key.strip(), value
+
+
+def apply_override(document: Document, key: str, value: object, kind: type[BaseModel]) -> None:
+    """Set a key for every flight of a document: no case and no random variable sets it otherwise.
+
+    Parameters
+    ----------
+    document : changed in place
+    key, value : the dotted key and its new value
+    kind : schema of the document
+
+    Raises
+    ------
+    InputError : as of ``set_value``
+    """
+    set_value(document, key, value, kind)
+    cases = document.get("cases", [])
+    for case in cases if isinstance(cases, list) else []:
+        for values in (case.get("set"), case.get("set_kinematic")) if isinstance(case, dict) else ():
+            if isinstance(values, dict):
+                values.pop(key, None)
+    draws = document.get("draws", [])
+    if key != "draws" and isinstance(draws, list):
+        document["draws"] = [draw for draw in draws if not (isinstance(draw, dict) and draw.get("key") == key)]
+        if not draws and "draws" in document:
+            del document["draws"]
+
+
+def set_value(document: Document, dotted: str, value: object, kind: type[BaseModel]) -> None:
+    """Set a dotted key of a document in place; numbers in it are indices of lists.
+
+    Raises
+    ------
+    InputError : the key goes through a value that is not a table, or to an entry that a list does not have
+    """
+    parts = key_parts(kind, dotted)
+    section: Any = document
+    for depth, name in enumerate(parts[:-1]):
+        if isinstance(section, list):
+            key: Any = _index(section, parts, depth, value, kind)
+            child = section[key]
+        else:
+            key = name
+            if parts[depth + 1].isdigit() and not section.get(name) and entry_model(kind, parts[: depth + 1]):
+                section[name] = []
+            child = section.setdefault(name, {})
+        if isinstance(child, tuple):
+            section[key] = child = list(child)
+        if not isinstance(child, dict | list):
+            raise InputError(f"unknown key '{dotted}'; '{name}' is a value, not a section")
+        section = child
+    last: Any = _index(section, parts, len(parts) - 1, value, kind) if isinstance(section, list) else parts[-1]
+    section[last] = value
+
+
+def _index(entries: list[Any], parts: list[str], depth: int, value: object, kind: type[BaseModel]) -> int:
+    """Return the index that a part of a dotted key names.
+
+    Raises
+    ------
+    InputError : the list has no such entry; the message says how to add one to an empty list
+    """
+    name, parents = parts[depth], parts[:depth]
+    if name.isdigit() and int(name) < len(entries):
+        return int(name)
+    message = f"unknown key '{'.'.join(parts)}'; {'.'.join(parents)} "
+    model = entry_model(kind, parents)
+    if entries or model is None:
+        entry = "entry" if len(entries) == 1 else "entries"
+        raise InputError(f"{message}has {len(entries)} {entry}, numbered from 0, and '{name}' is not one of them")
+    given = {".".join(parts[depth + 1 :]): value} if depth + 1 < len(parts) else {}
+    needed = {key: example_value(field) for key, field in model.model_fields.items() if field.is_required() and key not in given}
+    items = ", ".join(f"{key}={_toml(item)}" for key, item in (needed | given).items())
+    raise InputError(f"{message}has no entries; add one with --set '{'.'.join(parents)}=[{{{items}}}]'")
+
+
+def _toml(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else f'"{value}"' if isinstance(value, str) else str(value)
+
+
+def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> Document:
+    """Return ``base`` extended by ``own``: tables are merged key by key, other values of ``own`` replace those of ``base``."""
+    result = dict(base)
+    for key, value in own.items():
+        below = result.get(key)
+        result[key] = merged(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
+    return result
+
+
+def given_keys(document: Mapping[str, Any]) -> set[str]:
+    """Return the dotted keys that a document itself sets; a list, and an empty table, count as one key."""
+    keys: set[str] = set()
+    for key, value in document.items():
+        below = given_keys(value) if isinstance(value, Mapping) else set()
+        keys |= {f"{key}.{name}" for name in below} or {key}
+    return keys

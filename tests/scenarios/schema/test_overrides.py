@@ -1,0 +1,151 @@
+"""Documents: what they extend, which keys they set, and what is said of keys that are not known."""
+
+import pytest
+from pydantic import BaseModel, RootModel
+
+from scenarios.errors import InputError
+from scenarios.schema.keys import known_keys
+from scenarios.schema.load import load_document, load_study
+from scenarios.schema.overrides import given_keys, merged, set_value
+from scenarios.schema.sea_config import SeaScenario
+
+
+def write(folder, name, text):
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def refusal(name, *overrides):
+    with pytest.raises(InputError) as refused:
+        load_study(name, overrides)
+    message = str(refused.value)
+    assert "\n" not in message
+    return message
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("wind.form_deg=3", "unknown key 'wind.form_deg'; did you mean 'wind.from_deg'?"),
+        ("wnd.speed_mps=3", "unknown key 'wnd'; did you mean 'wind'?"),
+        ("speed_mps=3", "unknown key 'speed_mps'; did you mean 'vessel.speed_mps' or 'wind.speed_mps'?"),
+        ("wind.direction=3", "unknown key 'wind.direction'; known in wind are speed_mps, from_deg"),
+        ("vessel.manoeuvres=[{at_s=1, turn_dg=3}]", "did you mean 'vessel.manoeuvres.0.turn_deg'?"),
+        ("turbulence.level=sever", "turbulence.level: value is 'sever'; did you mean 'severe'? it must be 'none', 'light'"),
+        ("guidance.law=lyapunow", "guidance.law: value is 'lyapunow'; did you mean 'lyapunov'?"),
+        ("study=monte_karlo", "study is 'monte_karlo'; did you mean 'monte_carlo'? it must be one of"),
+        ("extends=sim3", "extends stands in a scenario file"),
+    ],
+)
+def test_an_unknown_word_gets_the_nearest_known_one(override, words):
+    assert words in refusal("sea_approach", override)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("sweep_mu", "unknown scenario 'sweep_mu'; did you mean 'sweep_nu'? give the path of a TOML file or one of: convergence"),
+        ("swep_nu.toml", "no scenario file 'swep_nu.toml'; did you mean 'sweep_nu'?"),
+        ("xyz", "unknown scenario 'xyz'; give the path of a TOML file or one of: convergence"),
+    ],
+)
+def test_an_unknown_scenario_gets_the_nearest_known_one(name, words):
+    assert words in refusal(name)
+
+
+def test_an_entry_of_an_empty_list_is_refused_with_how_to_add_one():
+    message = refusal("sea_approach", "vessel.manoeuvres.0.turn_deg=90")
+    assert "vessel.manoeuvres has no entries; add one with --set 'vessel.manoeuvres=[{at_s=100, turn_deg=90}]'" in message
+    # And that is accepted.
+    (manoeuvre,) = load_study("sea_approach", ["vessel.manoeuvres=[{at_s=100, turn_deg=90}]"]).vessel.manoeuvres
+    assert (manoeuvre.at_s, manoeuvre.turn_deg) == (100.0, 90.0)
+
+
+def test_an_entry_of_a_list_that_does_not_exist_is_an_unknown_key():
+    assert refusal("sea_approach", "vessel.manouvres.0.turn_deg=90") == (
+        "unknown key 'vessel.manouvres'; did you mean 'vessel.manoeuvres'?"
+    )
+
+
+def test_a_file_with_a_byte_order_mark_is_read(tmp_path):
+    path = write(tmp_path, "marked.toml", '\ufeffstudy = "sea"\ntitle = "marked"\n')
+    assert load_study(path).title == "marked"
+
+
+def test_known_keys_go_through_sections_and_lists_of_sections():
+    keys = known_keys(SeaScenario)
+    assert {"wind", "wind.speed_mps", "vessel.manoeuvres", "vessel.manoeuvres.0.at_s", "draws.0.key"} <= set(keys)
+    assert len(keys) == len(set(keys))
+
+
+def test_a_file_extends_a_scenario_of_the_catalog(tmp_path):
+    path = write(tmp_path, "own.toml", 'extends = "sea_wind"\ntitle = "own"\n[wind]\nspeed_mps = 3.0\n')
+    own, base = load_study(path), load_study("sea_wind")
+    assert (own.title, own.wind.speed_mps) == ("own", 3.0)
+    same = {"title", "wind"}
+    assert own.model_dump(exclude=same) == base.model_dump(exclude=same)
+
+
+def test_a_chain_of_files_is_resolved_relative_to_each_file(tmp_path):
+    (tmp_path / "bases").mkdir()
+    write(tmp_path / "bases", "first.toml", 'study = "sea"\ntitle = "first"\n[wind]\nspeed_mps = 3.0\nfrom_deg = 10.0\n')
+    write(tmp_path / "bases", "second.toml", 'extends = "first.toml"\n[wind]\nspeed_mps = 4.0\n')
+    path = write(tmp_path, "third.toml", 'extends = "bases/second.toml"\ntitle = "third"\n[vessel]\nspeed_mps = 5.0\n')
+    third = load_study(path)
+    assert third.title == "third"
+    assert (third.wind.speed_mps, third.wind.from_deg, third.vessel.speed_mps) == (4.0, 10.0, 5.0)
+
+
+def test_overrides_come_after_what_a_file_extends(tmp_path):
+    write(tmp_path, "base.toml", 'study = "sea"\ntitle = "base"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n')
+    path = write(tmp_path, "own.toml", 'extends = "base.toml"\n')
+    assert len(load_study(path).draws) == 1
+    own = load_study(path, ["wind.speed_mps=2"])
+    assert (own.wind.speed_mps, own.draws) == (2.0, ())
+
+
+def test_lists_are_replaced_and_tables_are_merged():
+    base = {"a": {"x": 1, "y": [1, 2]}, "b": [{"k": 1}], "c": 1}
+    own = {"a": {"y": [3]}, "b": [{"k": 2}, {"k": 3}], "c": {"z": 1}}
+    assert merged(base, own) == {"a": {"x": 1, "y": [3]}, "b": [{"k": 2}, {"k": 3}], "c": {"z": 1}}
+    assert base == {"a": {"x": 1, "y": [1, 2]}, "b": [{"k": 1}], "c": 1}
+
+
+@pytest.mark.parametrize(
+    ("extends", "words"),
+    [
+        ('"b.toml"', "a.toml: extends goes in a circle: b.toml -> a.toml -> b.toml; remove one of them"),
+        ('"sea_wnd"', "b.toml: extends: unknown scenario 'sea_wnd'; did you mean 'sea_wind'?"),
+        ('"c.toml"', "b.toml: extends: no scenario file 'c.toml'"),
+        ("3", "b.toml: extends is 3; give one catalog name or one path of a TOML file"),
+        ('["sea_wind", "sim3"]', "b.toml: extends is ['sea_wind', 'sim3']; give one catalog name"),
+    ],
+)
+def test_what_cannot_be_extended_is_refused_in_one_line(tmp_path, extends, words):
+    write(tmp_path, "a.toml", 'extends = "b.toml"\n')
+    path = write(tmp_path, "b.toml", f'title = "b"\nextends = {extends.replace("b.toml", "a.toml")}\n')
+    assert words in refusal(path)
+
+
+def test_given_keys_are_those_of_the_file_its_base_and_the_overrides(tmp_path):
+    write(tmp_path, "base.toml", 'study = "sea"\ntitle = "base"\n[wind]\nspeed_mps = 3.0\n[sensors]\n')
+    path = write(tmp_path, "own.toml", 'extends = "base.toml"\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 5.0]\n')
+    document = load_document(path, ["guidance.preview=false"])
+    assert given_keys(document) == {"study", "title", "wind.speed_mps", "sensors", "draws", "guidance.preview"}
+
+
+class Sweep(RootModel[dict[str, list[float]]]):
+    """Values by keys of other sections."""
+
+
+class Swept(BaseModel):
+    sweep: Sweep = Sweep({})
+
+
+@pytest.mark.parametrize("key", ["sweep.wind.speed_mps", 'sweep."wind.speed_mps"'])
+def test_a_section_that_has_keys_of_other_sections_takes_them_whole(key):
+    document = {}
+    set_value(document, key, [0.0, 5.0], Swept)
+    assert document == {"sweep": {"wind.speed_mps": [0.0, 5.0]}}
+    assert known_keys(Swept) == ["sweep"]
