@@ -22,8 +22,9 @@ from gnc.analysis.bounds import (
 )
 from gnc.analysis.worst_position import shares, shares_at_most
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade import cascade_law, lyapunov_law
+from gnc.laws.cascade import cascade_law
 from gnc.laws.delta import delta_length, look_ahead, relative_state, relative_velocity
+from gnc.laws.lyapunov import lyapunov_law
 
 distances = st.floats(0.0, 8.0).map(lambda power: 10.0 ** (power - 2.0))
 turns = st.floats(0.0, 1.0)

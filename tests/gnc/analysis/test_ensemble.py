@@ -24,8 +24,9 @@ from gnc.analysis.ensemble_motion import MOTIONS, Steering, Vehicle
 from gnc.analysis.turning_reference import TurningReferences
 from gnc.angles import wrap
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade import cascade_law, lyapunov_law
+from gnc.laws.cascade import cascade_law
 from gnc.laws.delta import relative_velocity
+from gnc.laws.lyapunov import lyapunov_law
 
 K_1, GAIN, STEERING_MAX = 0.001, 1.5, 0.4
 VEHICLE = Vehicle(
