@@ -8,12 +8,11 @@ round the keep-out area; whatever is asked for passes the keep-out guard.
 import math
 
 from gnc.airspeed.pace_hold import airspeed_to_hold
-from gnc.angles import wrap
 from gnc.estimation.health import Health, Trouble
 from gnc.estimation.navigation import Navigation
 from gnc.estimation.vessel_filter import VesselFilter, VesselMotion
-from gnc.limits import limited
 from gnc.mission.transit import Transit
+from gnc.numeric import limited, wrap
 from gnc.reference.mean_motion import mean_motion
 from gnc.reference.moving_centre import MovingCentre
 from gnc.reference.steered import SteeredReference

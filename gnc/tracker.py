@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from gnc.laws.steering_law import SteeringLaw
-from gnc.limits import limited
-from gnc.reference.oscillating import Reference
+from gnc.numeric import limited
+from gnc.reference.reference import Reference
 from gnc.safety.keepout_guard import KeepoutGuard
 
 
@@ -39,7 +39,7 @@ class PlacedReference:
 
     Attributes
     ----------
-    north, east, course, heading_rate, speed : as of ``gnc.reference.oscillating.Reference``
+    north, east, course, heading_rate, speed : as of ``gnc.reference.reference.Reference``
     """
 
     __slots__ = ("course", "east", "heading_rate", "north", "speed")

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 from gnc.laws.delta import LookAhead, bare_state, look_ahead, relative_velocity
 from gnc.laws.steering_law import check_parameters, steering_law
-from gnc.limits import limited
-from gnc.reference.oscillating import Reference
+from gnc.numeric import limited
+from gnc.reference.reference import Reference
 
 
 def h(phi: float, gain: float, rate_max: float) -> float:

@@ -3,9 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from gnc.angles import wrap
 from gnc.laws.steering_law import check_parameters, steering_law
-from gnc.reference.oscillating import Reference
+from gnc.numeric import wrap
+from gnc.reference.reference import Reference
 
 
 def line_of_sight_law(to_reference_north: float, to_reference_east: float, course: float, gain: float) -> float:

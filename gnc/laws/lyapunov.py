@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from gnc.laws.delta import LookAhead, RelativeState, bare_state, look_ahead, relative_velocity
 from gnc.laws.steering_law import check_parameters, steering_law
-from gnc.reference.oscillating import Reference
+from gnc.reference.reference import Reference
 
 
 def lyapunov_law(state: RelativeState, speed: float, omega_rho: float, k_1: float) -> float:

@@ -6,7 +6,7 @@ from dataclasses import fields
 from typing import Any, Protocol
 
 from common.registry import Registry
-from gnc.reference.oscillating import Reference
+from gnc.reference.reference import Reference
 
 
 class SteeringLaw(Protocol):

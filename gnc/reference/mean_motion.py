@@ -6,7 +6,7 @@ across, it turns the mean course, which moves the orbit's centre by itself, the 
 
 import math
 
-from gnc.limits import limited
+from gnc.numeric import limited
 from gnc.reference.moving_centre import MovingCentre
 
 _CENTRE_GAIN = 0.1

@@ -8,8 +8,7 @@ Everything is in the frame of the air mass.
 import math
 from dataclasses import dataclass
 
-from gnc.angles import wrap
-from gnc.limits import limited
+from gnc.numeric import limited, wrap
 
 _AXIS_GAIN = 0.1
 """Rate at which the axis goes where it should, per difference, in units of omega_max [-].

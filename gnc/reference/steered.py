@@ -9,21 +9,12 @@ by dchi moves the centre by dchi times its distance from the reference, up to a 
 eta. Both therefore move mostly while the reference passes the centre.
 """
 
-import bisect
 import math
-from functools import lru_cache
 
-import numpy as np
-from scipy.special import j0, jv
-
-from gnc.angles import wrap
+from gnc.numeric import wrap
+from gnc.reference.orbit_tables import eta_for_mean_speed, unit_offset
 from gnc.reference.oscillation import GRAVITY
 
-_ORDERS = 4
-"""Pairs of Bessel functions in the series of the orbit; what is left out is below 1e-4 of its width at the largest eta."""
-
-_ETA_TOP = 2.9
-_ETA_STEP = 0.005
 _ETA_FREQUENCY = 0.2
 """Amplitude below which the frequency no longer rises [rad]: nearly straight flight needs no fast weave."""
 
@@ -56,7 +47,7 @@ class SteeredReference:
 
     Attributes
     ----------
-    north, east, course, heading_rate, speed : as of ``gnc.reference.oscillating.Reference``
+    north, east, course, heading_rate, speed : as of ``gnc.reference.reference.Reference``
     mean_course, eta, omega_0, phase : of the oscillation [rad, rad, rad/s, rad]
     """
 
@@ -169,57 +160,3 @@ class SteeredReference:
         by_heading_rate = (self._available - abs(self._mean_rate) - abs(self._eta_rate)) / eta
         by_roll_rate = math.sqrt(self._acceleration / eta)
         return by_heading_rate if by_heading_rate < by_roll_rate else by_roll_rate
-
-
-def eta_for_mean_speed(speed_ratio: float) -> float:
-    """Return eta [rad] for a mean speed over speed, by a table of J_0: equation (6), within 1e-5.
-
-    Differs from ``gnc.reference.bessel.eta_for_speed_ratio`` because a steered reference asks often, and may have to back
-    away: ratios down to -0.2 are those of eta beyond the first zero of J_0. Ratios outside -0.2 to 1 are those of the nearest end.
-    """
-    ratios, etas = _inverse_table()
-    if speed_ratio >= 1.0:
-        return 0.0
-    # Near 1 the ratio is 1 - eta^2/4, so that eta is smooth over the root of what is missing.
-    missing = math.sqrt(1.0 - speed_ratio)
-    i = min(max(bisect.bisect(ratios, missing), 1), len(ratios) - 1)
-    share = min(1.0, (missing - ratios[i - 1]) / (ratios[i] - ratios[i - 1]))
-    return etas[i - 1] + share * (etas[i] - etas[i - 1])
-
-
-def unit_offset(eta: float, phase: float) -> tuple[float, float]:
-    """Return where the reference is from the orbit's centre, along the mean course and to its right, in units of V_r/omega_0.
-
-    The series of ``gnc.reference.orbit.offset`` with its Bessel functions from a table, and with theta = ``phase`` [rad].
-    """
-    table = _bessel_table()
-    place = min(max(eta, 0.0), _ETA_TOP - 2.0 * _ETA_STEP) / _ETA_STEP
-    i = int(place)
-    share = place - i
-    low, high = table[i], table[i + 1]
-    along = right = 0.0
-    for k in range(_ORDERS):
-        odd = low[2 * k] + share * (high[2 * k] - low[2 * k])
-        even = low[2 * k + 1] + share * (high[2 * k + 1] - low[2 * k + 1])
-        right += odd * math.sin((2 * k + 1) * phase)
-        along += even * math.sin((2 * k + 2) * phase)
-    return along, right
-
-
-@lru_cache(maxsize=1)
-def _inverse_table() -> tuple[list[float], list[float]]:
-    etas = np.arange(0.0, _ETA_TOP, _ETA_STEP)
-    missing = np.sqrt(np.maximum(0.0, 1.0 - j0(etas)))
-    kept = missing <= math.sqrt(1.2)
-    return missing[kept].tolist(), etas[kept].tolist()
-
-
-@lru_cache(maxsize=1)
-def _bessel_table() -> list[list[float]]:
-    """Coefficients of sin(theta), sin(2 theta), ... by eta, rightward and along in turn."""
-    etas = np.arange(0.0, _ETA_TOP + _ETA_STEP, _ETA_STEP)
-    columns = []
-    for k in range(1, _ORDERS + 1):
-        columns.append(2.0 * (-1.0) ** (k - 1) * jv(2 * k - 1, etas) / (2 * k - 1))
-        columns.append((-1.0) ** k * jv(2 * k, etas) / k)
-    return np.stack(columns, axis=-1).tolist()  # type: ignore[no-any-return]

@@ -12,19 +12,12 @@ The guard plans no way round; it keeps out and no more.
 import math
 from collections import deque
 
-_TURN = 0.125
-"""Course turned between two looks at a turn away, at most; half of it where the lag is shorter than a look [rad]."""
-_TURN_MAX = 2.5 * math.pi
-"""Course after which a turn away is over: the whole way round, and what heading rate the other way and a moving disc add [rad]."""
+from gnc.safety.turn_prediction import Motion, TurnPrediction
+
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
 _BISECTIONS = 5
 """The share of the turn away is within 1/32 of the least."""
-
-_Motion = tuple[float, float, float, float, float, float, float]
-"""Arguments of ``KeepoutGuard.limit`` from x to heading_rate."""
-_Start = tuple[float, float, float, float]
-"""x, y, course and heading rate."""
 
 
 class KeepoutGuard:
@@ -49,14 +42,11 @@ class KeepoutGuard:
 
     __slots__ = (
         "_acceleration",
-        "_chord",
         "_delay",
         "_free_extra",
         "_free_steps",
-        "_hold",
         "_lag",
-        "_look",
-        "_looks_max",
+        "_prediction",
         "_radius",
         "_rate",
         "_side",
@@ -85,12 +75,15 @@ class KeepoutGuard:
         self._delay = round(delay / time_step) * time_step
         self._under_way: deque[float] = deque(maxlen=round(delay / time_step))
         self._speed_error, self._acceleration = speed_error, acceleration
-        self._hold = _held(time_step, lag)
-        look = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
-        self._look = _held(look, lag)
-        self._looks_max = math.ceil(_TURN_MAX / (heading_rate_max * look))
-        half = 0.5 * heading_rate_max * look
-        self._chord = math.sin(half) / half
+        self._prediction = TurnPrediction(
+            radius=radius,
+            heading_rate_max=heading_rate_max,
+            lag=lag,
+            delay=self._delay,
+            time_step=time_step,
+            speed_error=speed_error,
+            acceleration=acceleration,
+        )
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
         self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * lag + self._delay + time_step
         self._side = 0.0
@@ -131,7 +124,7 @@ class KeepoutGuard:
         motion = (x, y, velocity_north, velocity_east, course, speed, heading_rate)
         free = self._free_when_far(motion, extra_radius)
         if free <= 0.0:
-            then = self._then(motion)
+            then = self._prediction.when_acting(motion, self._under_way)
             free = self._free_by_turning_away(command, then, extra_radius)
         if free >= 0.0:
             self.intervening = self.lost = False
@@ -162,32 +155,12 @@ class KeepoutGuard:
 
         Parameters are those of ``limit``. That no other commands do better is argued in docs/keepout_guard.md.
         """
-        then = self._then((x, y, velocity_north, velocity_east, course, speed, heading_rate))
+        motion = (x, y, velocity_north, velocity_east, course, speed, heading_rate)
+        then = self._prediction.when_acting(motion, self._under_way)
         start = (then[0], then[1], then[4], then[6])
-        return max(self._turn_away(side, start, then, self._delay, extra_radius, -math.inf)[0] for side in (1.0, -1.0))
+        return max(self._prediction.turn_away(side, start, then, self._delay, extra_radius, -math.inf)[0] for side in (1.0, -1.0))
 
-    def _then(self, motion: _Motion) -> _Motion:
-        """Return the motion when a command given now begins to act: those before it cannot be taken back."""
-        count = self._under_way.maxlen
-        if not count:
-            return motion
-        x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
-        duration, turned, mean, kept = self._hold
-        turned_by, mean_by, kept_by = duration - turned, 0.5 * duration - mean, 1.0 - kept
-        begun, middles = course, 0.0
-        # Before the first call the commands under way are taken to be the turn that is flown.
-        for command in self._under_way or (heading_rate,) * count:
-            middles += course + mean * heading_rate + mean_by * command
-            course += turned * heading_rate + turned_by * command
-            heading_rate = kept * heading_rate + kept_by * command
-        middle, half = middles / count, 0.5 * (course - begun)
-        # One chord will do, with the sine over arc of half the course turned.
-        chord = speed * (1.0 - half * half / 6.0)
-        x += (chord * math.cos(middle) - velocity_north) * self._delay
-        y += (chord * math.sin(middle) - velocity_east) * self._delay
-        return x, y, velocity_north, velocity_east, course, speed, heading_rate
-
-    def _free_when_far(self, motion: _Motion, extra_radius: float) -> float:
+    def _free_when_far(self, motion: Motion, extra_radius: float) -> float:
         """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
         x, y, velocity_north, velocity_east, _, speed, _ = motion
         duration, acceleration = self._turn_time, self._acceleration
@@ -195,20 +168,20 @@ class KeepoutGuard:
         gap = math.hypot(x, y) - self._radius - extra_radius - (closing + 0.5 * acceleration * duration) * duration
         return min(gap / (closing + 1.5 * acceleration * duration), duration)
 
-    def _free_by_turning_away(self, command: float, motion: _Motion, extra_radius: float) -> float:
+    def _free_by_turning_away(self, command: float, motion: Motion, extra_radius: float) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
-        after = self._after(command, motion)
+        after = self._prediction.after(command, motion)
         x, y, course, _ = after
         floor = _RESOLUTION * motion[5] / self._rate
         nearer = 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
         for side in (nearer, -nearer):
-            slack, free = self._turn_away(side, after, motion, self._delay + self._time_step, extra_radius, floor)
+            slack, free = self._prediction.turn_away(side, after, motion, self._delay + self._time_step, extra_radius, floor)
             if slack >= floor:
                 self._side = side
                 return free
         return -1.0
 
-    def _mix(self, command: float, motion: _Motion, extra_radius: float) -> float:
+    def _mix(self, command: float, motion: Motion, extra_radius: float) -> float:
         """Return the command with the least of a turn away that keeps the radius, or the better turn if none does [rad/s]."""
         x, y, _, _, course, speed, heading_rate = motion
         floor = _RESOLUTION * speed / self._rate
@@ -216,7 +189,9 @@ class KeepoutGuard:
         slacks = []
         for side in (self._side, -self._side) if self._side else (1.0, -1.0):
             turn = side * self._rate
-            slack, _ = self._turn_away(side, self._after(turn, motion), motion, begun, extra_radius, -math.inf)
+            slack, _ = self._prediction.turn_away(
+                side, self._prediction.after(turn, motion), motion, begun, extra_radius, -math.inf
+            )
             slacks.append((slack, side))
             if self._side and slack >= 0.0:
                 break
@@ -233,112 +208,9 @@ class KeepoutGuard:
         for _ in range(_BISECTIONS):
             share = 0.5 * (low + high)
             trial = command + share * (turn - command)
-            slack, _ = self._turn_away(side, self._after(trial, motion), motion, begun, extra_radius, floor)
+            slack, _ = self._prediction.turn_away(side, self._prediction.after(trial, motion), motion, begun, extra_radius, floor)
             if slack >= floor:
                 high, mixed = share, trial
             else:
                 low = share
         return mixed
-
-    def _after(self, command: float, motion: _Motion) -> _Start:
-        """Return where a command held for one time step leads."""
-        x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
-        duration, turned, mean, kept = self._hold
-        middle = course + mean * heading_rate + (0.5 * duration - mean) * command
-        return (
-            x + (speed * math.cos(middle) - velocity_north) * duration,
-            y + (speed * math.sin(middle) - velocity_east) * duration,
-            course + turned * heading_rate + (duration - turned) * command,
-            kept * heading_rate + (1.0 - kept) * command,
-        )
-
-    def _turn_away(
-        self, side: float, start: _Start, motion: _Motion, time: float, extra_radius: float, floor: float
-    ) -> tuple[float, float]:
-        """Return by how much a full turn away keeps the radius [m], and for how long [s] no command before it can change that.
-
-        It is over once the vehicle recedes and its turn makes it recede faster: by going on until it heads straight away, and
-        straight on then, it recedes for good. The search ends early below ``floor``.
-
-        Parameters
-        ----------
-        side : 1 to the right, -1 to the left
-        start : of the turn
-        motion : when the command that is judged begins to act
-        time : from now to the start [s]
-        extra_radius, floor : [m]
-        """
-        cos, sin, sqrt = math.cos, math.sin, math.sqrt
-        x, y, course, heading_rate = start
-        _, _, velocity_north, velocity_east, _, speed, _ = motion
-        duration, turned, mean, kept = self._look
-        turn = side * self._rate
-        ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - kept) * turn
-        chord = speed * duration * self._chord
-        north, east = velocity_north * duration, velocity_east * duration
-        error, half, lag = self._speed_error, 0.5 * self._acceleration, self._lag
-        fixed = self._radius + extra_radius
-        least = slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
-        outward = side * (y * cos(course) - x * sin(course))
-        acting = time - self._delay
-        gain = -1.0
-        share, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
-        for look in range(self._looks_max):
-            if least < floor:
-                break
-            middle = course + mean * heading_rate + ahead
-            cos_m, sin_m = cos(middle), sin(middle)
-            x += chord * cos_m - north
-            y += chord * sin_m - east
-            course += turned * heading_rate + gained
-            heading_rate = kept * heading_rate + won
-            time += duration
-            acting += duration
-            fade *= kept
-            last, before, before_outward = slack, rise, outward
-            outward = side * (y * cos_m - x * sin_m)
-            slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
-            rise = slack - last
-            shared = slack / (acting - lag * (1.0 - fade))
-            share = shared if shared < share else share
-            if rise < 0.0:
-                if gain >= 0.0:
-                    break
-                least = slack if slack < least else least
-                continue
-            if look == 0:
-                # There is no look before; the rate at the start stands in for it.
-                before = 2.0 * duration * (_range_rate(start, motion) - error) - rise
-            if before < 0.0:
-                # The vertex of the parabola through three looks.
-                least = min(least, last - (before + rise) ** 2 / (8.0 * (rise - before)))
-            # Also if it came past straight away between two looks: it would have stopped there.
-            if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
-                # It is over. A look farther may put the next one off.
-                best, gain = gain, max(gain, min(share, rise / duration))
-                if gain == best or outward < 0.0:
-                    break
-        return least, gain / (2.0 * speed * self._rate)
-
-
-def _range_rate(start: _Start, motion: _Motion) -> float:
-    """Return the rate at which the distance from the disc's centre grows [m/s]."""
-    x, y, course, _ = start
-    _, _, velocity_north, velocity_east, _, speed, _ = motion
-    return ((speed * math.cos(course) - velocity_north) * x + (speed * math.sin(course) - velocity_east) * y) / math.hypot(x, y)
-
-
-def _held(duration: float, lag: float) -> tuple[float, float, float, float]:
-    """Return what a vehicle with a lag makes of a heading rate that it has, while a command is held.
-
-    Returns
-    -------
-    duration : of the command [s]
-    turned : course, per heading rate at the start [s]; the rest of the duration is course per command
-    mean : course on the mean of the duration, per heading rate at the start [s]; the rest of its half is per command
-    kept : heading rate at the end, per heading rate at the start [-]; the rest of 1 is per command
-    """
-    if lag == 0.0:
-        return duration, 0.0, 0.0, 0.0
-    turned = -lag * math.expm1(-duration / lag)
-    return duration, turned, lag * (1.0 - turned / duration), math.exp(-duration / lag)

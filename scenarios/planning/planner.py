@@ -6,15 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from gnc.errors import InfeasibleError
-from gnc.reference.oscillating import CirclingReference, Reference, ReferencePoint, ReferenceStart, start_reference
-from gnc.reference.oscillation import Oscillation
+from gnc.reference.circling import CirclingReference
 from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
+from gnc.reference.reference import Orbit, Reference, ReferenceStart
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.tracker import GuidanceParameters
 from innerloop.flight.turn_reversal import Reversal
 from scenarios.planning.bounded_steering import Steering, plan_steering, steering_law
 from scenarios.planning.limits import omega_max
-from scenarios.planning.reference import oscillation_at
+from scenarios.planning.reference import oscillation_at, shape_of_reference
 from scenarios.schema.config import Scenario
 from scenarios.world.steady_vessel import Vessel
 
@@ -39,7 +39,7 @@ class Mission:
 
     nu: float
     vessel: Vessel
-    oscillation: Oscillation
+    oscillation: Orbit
     centre_distance: float
     keepout_radius: float
     guard: KeepoutGuard | None
@@ -154,13 +154,16 @@ def _mission(scenario: Scenario, nu: float, turning: Reversal) -> tuple[Mission,
     return mission, centre
 
 
-def _oscillating(scenario: Scenario, mission: Mission, centre: tuple[float, float, float], time_step: float) -> ReferencePoint:
-    phase = math.radians(scenario.guidance.phase_deg)
+def _oscillating(scenario: Scenario, mission: Mission, centre: tuple[float, float, float], time_step: float) -> Reference:
     north, east = mission.vessel.place_ned(centre[0], centre[1])
-    start = start_reference(
-        mission.oscillation, phase=phase, centre_north=north, centre_east=east, vessel_course=mission.vessel.course
+    return shape_of_reference().reference(
+        mission.oscillation,
+        phase=math.radians(scenario.guidance.phase_deg),
+        centre_north=north,
+        centre_east=east,
+        vessel_course=mission.vessel.course,
+        time_step=time_step,
     )
-    return ReferencePoint(mission.oscillation, start, phase=phase, time_step=time_step)
 
 
 def _circle(scenario: Scenario, time_step: float) -> CirclingReference:

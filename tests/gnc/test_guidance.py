@@ -19,7 +19,7 @@ from gnc.laws.cascade import CascadeLaw, cascade_law
 from gnc.laws.delta import relative_state, relative_velocity
 from gnc.laws.line_of_sight import LineOfSightLaw, line_of_sight_law
 from gnc.laws.lyapunov import LyapunovLaw, lyapunov_law
-from gnc.reference.oscillating import ReferencePoint, start_reference
+from gnc.reference.oscillating import OscillatingReference, start_reference
 from gnc.reference.placement import PlumeAxis, distance_by_paper
 from gnc.safety.keepout_guard import KeepoutGuard
 
@@ -105,7 +105,7 @@ def test_with_lag_the_command_is_the_law_as_it_will_stand_then(heading_rate):
     oscillation = paper_oscillation(0.5)
     lag = 0.4
     guidance = make_guidance(guidance_parameters(lag=lag), oscillation)
-    ahead = ReferencePoint(
+    ahead = OscillatingReference(
         oscillation,
         start_reference(oscillation, phase=0.0, centre_north=0.0, centre_east=0.0, vessel_course=0.0),
         phase=0.0,
@@ -215,7 +215,7 @@ def test_the_reference_shown_is_the_one_now_also_with_preview(lag):
     oscillation = paper_oscillation(0.3)
     guidance = make_guidance(guidance_parameters(lag=lag), oscillation, phase=0.7, centre=(-214.0, 5.0), vessel_course=0.3)
     start = start_reference(oscillation, phase=0.7, centre_north=-214.0, centre_east=5.0, vessel_course=0.3)
-    alone = ReferencePoint(oscillation, start, phase=0.7, time_step=TIME_STEP)
+    alone = OscillatingReference(oscillation, start, phase=0.7, time_step=TIME_STEP)
     for _ in range(100):
         shown = guidance.reference
         # The same arithmetic.

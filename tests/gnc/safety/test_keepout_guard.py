@@ -8,7 +8,7 @@ from gnc_cases import HEADING_RATE_MAX, SPEED, courses, examples, fly, guidance_
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.angles import wrap
+from gnc.numeric import wrap
 from gnc.reference.placement import PlumeAxis, distance_by_paper
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.unicycle import lagged_move, unicycle_move
