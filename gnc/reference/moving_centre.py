@@ -19,14 +19,24 @@ It is slow enough to even out what reports of the vessel scatter.
 _IN_PLACE = 0.04
 """Distance from its place within which the centre counts as being there, over r_CO [-]."""
 
-_AXIS_SPEED = 0.7
-"""Share of the vehicle's speed at which the centre may be swung round the vessel [-]: it must be followed."""
+_AXIS_SPEED_FRACTION = 0.7
+"""Fraction of the vehicle's speed at which the centre may be swung round the vessel [-]: it must be followed."""
 
 _DISTANCE_GAIN = 0.12
 """Rate at which the centre's distance goes where it should, per difference, in units of omega_max [-]."""
 
-_DISTANCE_SHARE = 0.3
-"""Share of the speed that the vehicle has over the vessel at which the centre's distance may change [-]."""
+_DISTANCE_SPEED_FRACTION = 0.3
+"""Fraction of the speed that the vehicle has over the vessel at which the centre's distance may change [-]."""
+
+
+_VESSEL_SPEED_MIN = 0.1
+"""Speed over ground that a vessel is given at least where its turn is reckoned from it [m/s]: at rest it has no course."""
+
+_EXCESS_SPEED_MIN = 0.05
+"""Least fraction of V_r that the vehicle is taken to have over the vessel [-]: also outrun, it corrects the distance."""
+
+_CENTRE_SPEED_MIN = 0.01
+"""Speed that the centre is given at least where its direction is reckoned from it [m/s]: at rest it has none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,16 +124,18 @@ class MovingCentre:
             over_ground = math.hypot(vessel_north, vessel_east)
             if over_ground >= p.apparent_wind_min or not self._started:
                 wanted = math.atan2(vessel_east, vessel_north) + p.plume_heading
-                turn = (vessel_north * acceleration_east - vessel_east * acceleration_north) / max(over_ground, 0.1) ** 2
+                turn = (vessel_north * acceleration_east - vessel_east * acceleration_north) / max(
+                    over_ground, _VESSEL_SPEED_MIN
+                ) ** 2
         if not self._started:
             self._started, self.axis = True, wanted
             self.distance = self._target(air_north, air_east) + further
-        fastest = _AXIS_SPEED * p.speed / self.distance
+        fastest = _AXIS_SPEED_FRACTION * p.speed / self.distance
         turn = limited(turn + _AXIS_GAIN * p.heading_rate_max * wrap(wanted - self.axis), fastest)
         swing = turn * self.distance
         swung_north, swung_east = air_north - swing * math.sin(self.axis), air_east + swing * math.cos(self.axis)
         target = self._target(swung_north, swung_east) + further
-        fastest = _DISTANCE_SHARE * max(0.05, 1.0 - self.speed_ratio) * p.speed
+        fastest = _DISTANCE_SPEED_FRACTION * max(_EXCESS_SPEED_MIN, 1.0 - self.speed_ratio) * p.speed
         recede = limited(_DISTANCE_GAIN * p.heading_rate_max * (target - self.distance), fastest)
         self.axis = wrap(self.axis + turn * time_step)
         self.distance += recede * time_step
@@ -138,9 +150,9 @@ class MovingCentre:
         p = self._parameters
         last = len(p.along) - 1
         moving = math.hypot(velocity_north, velocity_east)
-        place = min(moving / p.speed / p.speed_ratio_max, 1.0) * last
-        i = min(int(place), last - 1)
-        along = p.along[i] + (place - i) * (p.along[i + 1] - p.along[i])
-        across = p.across[i] + (place - i) * (p.across[i + 1] - p.across[i])
-        sideways = abs(velocity_east * math.cos(self.axis) - velocity_north * math.sin(self.axis)) / max(moving, 0.01)
+        row = min(moving / p.speed / p.speed_ratio_max, 1.0) * last
+        i = min(int(row), last - 1)
+        along = p.along[i] + (row - i) * (p.along[i + 1] - p.along[i])
+        across = p.across[i] + (row - i) * (p.across[i + 1] - p.across[i])
+        sideways = abs(velocity_east * math.cos(self.axis) - velocity_north * math.sin(self.axis)) / max(moving, _CENTRE_SPEED_MIN)
         return p.distance_min + along + (across - along) * sideways

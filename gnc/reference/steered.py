@@ -144,6 +144,7 @@ class SteeredReference:
     @property
     def speed_ratio(self) -> float:
         """Return the mean speed over the speed, J_0(eta) [-]: equation (5)."""
+        # The power series of J_0 in (eta/2)^2, whose k-th term is -x/k^2 of the one before: good to 5e-7 up to eta = 2.4.
         x = 0.25 * self.eta * self.eta
         return 1.0 - x * (1.0 - x / 4.0 * (1.0 - x / 9.0 * (1.0 - x / 16.0 * (1.0 - x / 25.0 * (1.0 - x / 36.0)))))
 
