@@ -46,7 +46,7 @@ def fly_ensemble(
 
     Parameters
     ----------
-    law, vehicle : how it is steered, and what flies
+    law, vehicle : steering law and vehicle, the same for all
     references : of n vehicles
     to_reference : d at time 0, north and east, shape (2, n) [m]
     course : chi at time 0, shape (n,) [rad]
@@ -54,7 +54,7 @@ def fly_ensemble(
     time_max : limit, for all or for each, shape () or (n,) [s]
     tolerances : of the integration
     places : trajectories under way at once, begun in the order given: the longest first keep places busy to the end
-    observe : told every step, and the start
+    observe : called at the start and after every step
 
     Raises
     ------
@@ -163,7 +163,7 @@ class _Flight:
         return norm
 
     def _watch(self, step: Array, accepted: npt.NDArray[np.bool_]) -> None:
-        """Note what the step brought: distances, commands, and when the settling band was left for the inside."""
+        """Record what the step brought: distances, commands, and when the settling band was left for the inside."""
         now = self._now
         before, state = now.distance, now.state
         now.distance = np.sqrt(state[0] * state[0] + state[1] * state[1])
@@ -174,8 +174,8 @@ class _Flight:
         now.last_outside = np.where(outside, now.time, now.last_outside)
         crossed = (before >= self._band) & ~outside
         if crossed.any():
-            share = (self._band - now.distance[crossed]) / (before[crossed] - now.distance[crossed])
-            now.last_outside[crossed] = now.time[crossed] - share * step[crossed]
+            fraction = (self._band - now.distance[crossed]) / (before[crossed] - now.distance[crossed])
+            now.last_outside[crossed] = now.time[crossed] - fraction * step[crossed]
         if self._observe is not None and accepted.any():
             phi = self._motion.phi(now.time, state)
             self._observe(self.index[accepted], now.time[accepted], state[:, accepted], phi[accepted], command[accepted])

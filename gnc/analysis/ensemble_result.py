@@ -25,7 +25,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tolerances:
-    """What the integration of one step may err by.
+    """Tolerated integration error of one step.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class EnsembleResult:
     ----------
     outcome, message : and what it means
     settling_time : when the distance was last at least the settling band, linear between steps [s]; NaN if it is at the end
-    duration : flown until then [s]
+    duration : time until then [s]
     distance : at the end [m]
     distance_max : largest ever [m]
     phi_0, phi : vehicle course against that of z, at the start and at the end [rad]

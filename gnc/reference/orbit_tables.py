@@ -1,4 +1,4 @@
-"""What a steered reference asks of its orbit at every step, from tables."""
+"""Amplitude and shape of a steered reference's orbit, from tables: they are needed at every step."""
 
 import bisect
 import math
@@ -23,7 +23,7 @@ _ETA_STEP = 0.005
 def eta_for_mean_speed(speed_ratio: float) -> float:
     """Return eta [rad] for a mean speed over speed, by a table of J_0: equation (6), within 1e-5.
 
-    Differs from ``gnc.reference.bessel.eta_for_speed_ratio`` because a steered reference asks often, and may have to back
+    Differs from ``gnc.reference.bessel.eta_for_speed_ratio`` because a steered reference needs it often, and may have to back
     away: ratios down to -0.2 are those of eta beyond the first zero of J_0. Ratios outside -0.2 to 1 are those of the nearest end.
     """
     ratios, etas = _inverse_table()

@@ -16,16 +16,16 @@ from gnc.reference.orbit_tables import eta_for_mean_speed, unit_offset
 from gnc.reference.oscillation import GRAVITY
 
 _ETA_FREQUENCY = 0.2
-"""Amplitude below which the frequency no longer rises [rad]: nearly straight flight needs no fast weave."""
+"""Amplitude below which the frequency no longer rises [rad]: nearly straight flight needs no fast oscillation."""
 
 _GATE = 0.2
-"""Share of their rates that mean course and amplitude keep where the reference is farthest from the centre [-]."""
+"""Fraction of their rates that mean course and amplitude keep where the reference is farthest from the centre [-]."""
 
 _RATE_GAIN = 0.8
-"""Rate of mean course and amplitude per difference from what is wanted, in units of the heading rate [-]."""
+"""Rate of mean course and amplitude per difference from what is demanded, in units of the heading rate [-]."""
 
-_RATE_SHARE = 0.3
-"""Share of the heading rate that either of them may take [-]."""
+_RATE_FRACTION = 0.3
+"""Fraction of the heading rate that either of them may take [-]."""
 
 _SMOOTHING = 0.25
 """Time constant of their rates, over one through the heading rate [-]: that of a rolling aircraft does not jump."""
@@ -41,7 +41,7 @@ class SteeredReference:
     speed_ratio : its mean speed over its speed [-]
     phase : theta [rad]
     speed : V_r [m/s]
-    heading_rate : what it may turn at most, reserve taken off [rad/s]
+    heading_rate : largest that it may have, omega_max less the reserve [rad/s]
     roll_rate_max : of the vehicle; bounds eta omega_0^2 by g/V times it [rad/s]
     time_step : [s]
 
@@ -56,10 +56,10 @@ class SteeredReference:
         "_available",
         "_cos_course",
         "_cos_phase",
+        "_eta_demand",
         "_eta_rate",
-        "_eta_wanted",
+        "_mean_demand",
         "_mean_rate",
-        "_mean_wanted",
         "_rate_gain",
         "_rate_max",
         "_sin_course",
@@ -93,13 +93,13 @@ class SteeredReference:
         self._available = heading_rate
         self._acceleration = GRAVITY * roll_rate_max / speed
         self._time_step = time_step
-        self._rate_max = _RATE_SHARE * heading_rate
+        self._rate_max = _RATE_FRACTION * heading_rate
         self._smoothing = min(1.0, time_step * heading_rate / _SMOOTHING)
         self._rate_gain = _RATE_GAIN * heading_rate
         self._mean_rate = self._eta_rate = 0.0
         self.north, self.east = north, east
-        self.mean_course = self._mean_wanted = mean_course
-        self.eta = self._eta_wanted = eta_for_mean_speed(speed_ratio)
+        self.mean_course = self._mean_demand = mean_course
+        self.eta = self._eta_demand = eta_for_mean_speed(speed_ratio)
         self.phase = phase
         self.omega_0 = self._frequency()
         self._cos_phase = math.cos(phase)
@@ -108,20 +108,20 @@ class SteeredReference:
         self.heading_rate = -self.eta * self.omega_0 * math.sin(phase)
 
     def steer(self, mean_course: float, speed_ratio: float) -> None:
-        """Set the mean course [rad] and the mean speed over the speed [-] that are wanted from now on."""
-        self._mean_wanted = mean_course
-        self._eta_wanted = eta_for_mean_speed(speed_ratio)
+        """Set the mean course [rad] and the mean speed over the speed [-] that are demanded from now on."""
+        self._mean_demand = mean_course
+        self._eta_demand = eta_for_mean_speed(speed_ratio)
 
     def step(self) -> None:
         """Advance one time step."""
         cos, sin, dt, rate_max, smoothing = math.cos, math.sin, self._time_step, self._rate_max, self._smoothing
         phase, eta, mean_course, cos_phase = self.phase, self.eta, self.mean_course, self._cos_phase
         gate = _GATE + (1.0 - _GATE) * cos_phase * cos_phase
-        turn = self._rate_gain * wrap(self._mean_wanted - mean_course)
+        turn = self._rate_gain * wrap(self._mean_demand - mean_course)
         if not -rate_max < turn < rate_max:
             turn = math.copysign(rate_max, turn)
         self._mean_rate = mean_rate = self._mean_rate + smoothing * (gate * turn - self._mean_rate)
-        grow = self._rate_gain * (self._eta_wanted - eta)
+        grow = self._rate_gain * (self._eta_demand - eta)
         if not -rate_max < grow < rate_max:
             grow = math.copysign(rate_max, grow)
         self._eta_rate = eta_rate = self._eta_rate + smoothing * (gate * grow - self._eta_rate)

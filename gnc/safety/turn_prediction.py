@@ -4,9 +4,9 @@ import math
 from collections import deque
 
 _TURN = 0.125
-"""Course turned between two looks at a turn away, at most; half of it where the lag is shorter than a look [rad]."""
+"""Course turned between two points of a predicted turn, at most; half of it where the lag is shorter than that takes [rad]."""
 _TURN_MAX = 2.5 * math.pi
-"""Course after which a turn away is over: the whole way round, and what heading rate the other way and a moving disc add [rad]."""
+"""Course after which a turn away is over [rad]: once round, and what a turn the other way before it and the disc's motion add."""
 
 Motion = tuple[float, float, float, float, float, float, float]
 """Arguments of ``KeepoutGuard.limit`` from x to heading_rate."""
@@ -23,7 +23,7 @@ class TurnPrediction:
     """
 
     __slots__ = (
-        "_acceleration", "_chord", "_delay", "_hold", "_lag", "_look", "_looks_max", "_radius", "_rate", "_speed_error",
+        "_acceleration", "_chord", "_delay", "_hold", "_interval", "_lag", "_points_max", "_radius", "_rate", "_speed_error",
     )  # fmt: skip
 
     def __init__(
@@ -41,10 +41,10 @@ class TurnPrediction:
         self._lag, self._delay = lag, delay
         self._speed_error, self._acceleration = speed_error, acceleration
         self._hold = _held(time_step, lag)
-        look = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
-        self._look = _held(look, lag)
-        self._looks_max = math.ceil(_TURN_MAX / (heading_rate_max * look))
-        half = 0.5 * heading_rate_max * look
+        interval = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
+        self._interval = _held(interval, lag)
+        self._points_max = math.ceil(_TURN_MAX / (heading_rate_max * interval))
+        half = 0.5 * heading_rate_max * interval
         self._chord = math.sin(half) / half
 
     def when_acting(self, motion: Motion, under_way: deque[float]) -> Motion:
@@ -56,14 +56,14 @@ class TurnPrediction:
         if not count:
             return motion
         x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
-        duration, turned, mean, kept = self._hold
-        turned_by, mean_by, kept_by = duration - turned, 0.5 * duration - mean, 1.0 - kept
+        duration, turned, mean, decay = self._hold
+        turned_by, mean_by, gained_by = duration - turned, 0.5 * duration - mean, 1.0 - decay
         begun, middles = course, 0.0
         # Before the first call the commands under way are taken to be the turn that is flown.
         for command in under_way or (heading_rate,) * count:
             middles += course + mean * heading_rate + mean_by * command
             course += turned * heading_rate + turned_by * command
-            heading_rate = kept * heading_rate + kept_by * command
+            heading_rate = decay * heading_rate + gained_by * command
         middle, half = middles / count, 0.5 * (course - begun)
         # One chord will do, with the sine over arc of half the course turned.
         chord = speed * (1.0 - half * half / 6.0)
@@ -74,17 +74,17 @@ class TurnPrediction:
     def after(self, command: float, motion: Motion) -> Start:
         """Return where a command held for one time step leads."""
         x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
-        duration, turned, mean, kept = self._hold
+        duration, turned, mean, decay = self._hold
         middle = course + mean * heading_rate + (0.5 * duration - mean) * command
         return (
             x + (speed * math.cos(middle) - velocity_north) * duration,
             y + (speed * math.sin(middle) - velocity_east) * duration,
             course + turned * heading_rate + (duration - turned) * command,
-            kept * heading_rate + (1.0 - kept) * command,
+            decay * heading_rate + (1.0 - decay) * command,
         )
 
     def turn_away(
-        self, side: float, start: Start, motion: Motion, time: float, extra_radius: float, floor: float
+        self, side: float, start: Start, motion: Motion, time: float, radius_inflation: float, floor: float
     ) -> tuple[float, float]:
         """Return by how much a full turn away keeps the radius [m], and for how long [s] no command before it can change that.
 
@@ -97,24 +97,24 @@ class TurnPrediction:
         start : of the turn
         motion : when the command that is judged begins to act
         time : from now to the start [s]
-        extra_radius, floor : [m]
+        radius_inflation, floor : [m]
         """
         cos, sin, sqrt = math.cos, math.sin, math.sqrt
         x, y, course, heading_rate = start
         _, _, velocity_north, velocity_east, _, speed, _ = motion
-        duration, turned, mean, kept = self._look
+        duration, turned, mean, decay = self._interval
         turn = side * self._rate
-        ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - kept) * turn
+        ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - decay) * turn
         chord = speed * duration * self._chord
         north, east = velocity_north * duration, velocity_east * duration
         error, half, lag = self._speed_error, 0.5 * self._acceleration, self._lag
-        fixed = self._radius + extra_radius
+        fixed = self._radius + radius_inflation
         least = slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
         outward = side * (y * cos(course) - x * sin(course))
         acting = time - self._delay
         gain = -1.0
-        share, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
-        for look in range(self._looks_max):
+        least_rate, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
+        for point in range(self._points_max):
             if least < floor:
                 break
             middle = course + mean * heading_rate + ahead
@@ -122,31 +122,31 @@ class TurnPrediction:
             x += chord * cos_m - north
             y += chord * sin_m - east
             course += turned * heading_rate + gained
-            heading_rate = kept * heading_rate + won
+            heading_rate = decay * heading_rate + won
             time += duration
             acting += duration
-            fade *= kept
+            fade *= decay
             last, before, before_outward = slack, rise, outward
             outward = side * (y * cos_m - x * sin_m)
             slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
             rise = slack - last
-            shared = slack / (acting - lag * (1.0 - fade))
-            share = shared if shared < share else share
+            slack_rate = slack / (acting - lag * (1.0 - fade))
+            least_rate = slack_rate if slack_rate < least_rate else least_rate
             if rise < 0.0:
                 if gain >= 0.0:
                     break
                 least = slack if slack < least else least
                 continue
-            if look == 0:
-                # There is no look before; the rate at the start stands in for it.
+            if point == 0:
+                # There is no point before; the rate at the start stands in for it.
                 before = 2.0 * duration * (_range_rate(start, motion) - error) - rise
             if before < 0.0:
-                # The vertex of the parabola through three looks.
+                # The vertex of the parabola through three points.
                 least = min(least, last - (before + rise) ** 2 / (8.0 * (rise - before)))
-            # Also if it came past straight away between two looks: it would have stopped there.
+            # Also if it came past straight away between two points: it would have stopped there.
             if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
-                # It is over. A look farther may put the next one off.
-                best, gain = gain, max(gain, min(share, rise / duration))
+                # It is over. One point more may allow more time until the next prediction.
+                best, gain = gain, max(gain, min(least_rate, rise / duration))
                 if gain == best or outward < 0.0:
                     break
         return least, gain / (2.0 * speed * self._rate)
@@ -167,7 +167,7 @@ def _held(duration: float, lag: float) -> tuple[float, float, float, float]:
     duration : of the command [s]
     turned : course, per heading rate at the start [s]; the rest of the duration is course per command
     mean : course on the mean of the duration, per heading rate at the start [s]; the rest of its half is per command
-    kept : heading rate at the end, per heading rate at the start [-]; the rest of 1 is per command
+    decay : heading rate at the end, per heading rate at the start [-]; the rest of 1 is per command
     """
     if lag == 0.0:
         return duration, 0.0, 0.0, 0.0

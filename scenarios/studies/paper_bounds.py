@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from gnc.analysis.adversary import tightness
+from gnc.analysis.worst_case_search import tightness
 from gnc.errors import InfeasibleError
 from scenarios.flights import FlightRequest
 from scenarios.metrics.figures import Row

@@ -18,13 +18,13 @@ from gnc_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.analysis.adversary import heading_rates
 from gnc.analysis.bounds import (
     convergence_time,
     fastest_within,
     heading_rate_bound,
     heading_rate_bound_least,
 )
+from gnc.analysis.worst_case_search import heading_rates
 from gnc.errors import InfeasibleError
 from gnc.laws.cascade import CascadeLaw
 from gnc.laws.delta import delta_length, look_ahead

@@ -359,7 +359,7 @@ def test_a_vehicle_that_a_growing_radius_overtakes_flies_straight_away_from_it(w
     for _ in range(200):
         x, y, course, turn = state
         # As of a vessel that is not heard of, whose disc grows faster than the vehicle flies.
-        command = guard.limit(want, x, y, 0.0, 0.0, course, SPEED, turn, extra_radius=5000.0)
+        command = guard.limit(want, x, y, 0.0, 0.0, course, SPEED, turn, radius_inflation=5000.0)
         assert guard.lost
         state = moved(state, command, 0.4, TIME_STEP)
     x, y, course, _ = state
@@ -374,7 +374,7 @@ def test_a_radius_that_grows_is_looked_at_at_once():
     motion = (0.0, 250.0, 0.0, 0.0, 0.0, SPEED, 0.0)
     assert guard.limit(-HEADING_RATE_MAX, *motion) == -HEADING_RATE_MAX
     assert guard._free_steps > 0
-    assert guard.limit(-HEADING_RATE_MAX, *motion, extra_radius=49.99) > -HEADING_RATE_MAX
+    assert guard.limit(-HEADING_RATE_MAX, *motion, radius_inflation=49.99) > -HEADING_RATE_MAX
 
 
 def test_interventions_are_counted_once_each():
