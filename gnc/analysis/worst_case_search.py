@@ -23,7 +23,7 @@ _GATHERED_SIGMA = 0.3
 """How widely they gather: standard deviation of the log of distance, and of course [-, rad]."""
 
 _LOG_DISTANCES = (-7.0, 5.0)
-"""Log of the others' distances over sqrt(R/epsilon) [-]: from a thousandth, near the reference, to 150 times, where z is all d."""
+"""Log of the others' distances over sqrt(R/epsilon) [-]: from 0.001, near the reference, to 150, where delta outgrows d."""
 
 _LOG10_ANGLES = (-3.0, 0.0)
 """Decimal log of the gathered samples' angles to head on [-]: from what the refinement takes over, 0.001 rad, to a right angle."""
