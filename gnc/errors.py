@@ -2,4 +2,4 @@
 
 
 class InfeasibleError(ValueError):
-    """What is asked cannot be flown. The message names the quantity, its value, the limit and the remedy."""
+    """The problem has no solution that can be flown. The message names the quantity, its value, the limit and the remedy."""

@@ -8,12 +8,11 @@ round the keep-out area; whatever is asked for passes the keep-out guard.
 import math
 
 from gnc.airspeed.pace_hold import airspeed_to_hold
-from gnc.angles import wrap
-from gnc.estimation.health import Health, Trouble
+from gnc.estimation.health import Fault, Health
 from gnc.estimation.navigation import Navigation
 from gnc.estimation.vessel_filter import VesselFilter, VesselMotion
-from gnc.limits import limited
 from gnc.mission.transit import Transit
+from gnc.numeric import limited, wrap
 from gnc.reference.mean_motion import mean_motion
 from gnc.reference.moving_centre import MovingCentre
 from gnc.reference.steered import SteeredReference
@@ -182,7 +181,9 @@ class SeaGuidance:
         if guard is not None:
             # A turn away is flown at V_r at least: see ``gnc.tracker``.
             turning = speed if speed > self._speed else self._speed
-            command = guard.limit(command, x, y, away_north, away_east, course, turning, heading_rate, extra_radius=self._further)
+            command = guard.limit(
+                command, x, y, away_north, away_east, course, turning, heading_rate, radius_inflation=self._further
+            )
         guidance.heading_rate_command = command
         command /= faster
         limit = self._limit
@@ -203,10 +204,10 @@ class SeaGuidance:
         """Look whether the vehicle does as it is told; from the first trouble on it leaves."""
         # An aircraft that is still speeding up beyond V_r lacks nothing.
         lack = min(self.airspeed_command, self._speed) - airspeed
-        trouble = self.health.look(lack, airspeed, heading_rate, self.heading_rate_command, servo_error)
-        if trouble is not Trouble.NONE:
+        fault = self.health.check(lack, airspeed, heading_rate, self.heading_rate_command, servo_error)
+        if fault is not Fault.NONE:
             self._troubled = True
-            self.mode = Mode.GLIDING if trouble is Trouble.NO_THRUST else Mode.TERMINATING
+            self.mode = Mode.GLIDING if fault is Fault.THRUST_LOST else Mode.TERMINATING
 
     def _away(self, x: float, y: float, course: float, heading_rate: float) -> float:
         """Return the heading rate that leads straight away from the vessel [rad/s].
@@ -265,7 +266,7 @@ class SeaGuidance:
             acceleration_east=vessel.acceleration_east,
             wind_north=navigation.wind.north,
             wind_east=navigation.wind.east,
-            further=self._orbit_further + (0.0 if self._closing_in else p.standoff) + self._manoeuvre_room(vessel),
+            additional_range=self._orbit_further + (0.0 if self._closing_in else p.standoff) + self._manoeuvre_room(vessel),
         )
         if not started:
             self._start_reference(vessel)

@@ -4,22 +4,12 @@ import copy
 import math
 from collections import deque
 from dataclasses import dataclass
-from enum import Enum
 from typing import Generic, TypeVar
 
-from gnc.laws.cascade import cascade_law, line_of_sight_law, lyapunov_law
-from gnc.laws.delta import LookAhead, RelativeState, bare_state, relative_velocity
-from gnc.limits import limited
-from gnc.reference.oscillating import Reference
+from gnc.laws.steering_law import SteeringLaw
+from gnc.numeric import limited
+from gnc.reference.reference import Reference
 from gnc.safety.keepout_guard import KeepoutGuard
-
-
-class Law(Enum):
-    """Which steering law flies."""
-
-    CASCADE = "cascade"
-    LYAPUNOV = "lyapunov"
-    LINE_OF_SIGHT = "line_of_sight"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,10 +19,6 @@ class GuidanceParameters:
     Attributes
     ----------
     law : steering law
-    look_ahead : of the delta formulation
-    gain : of the cascade and line-of-sight laws [1/s]
-    rate_max : largest contribution of h(phi) in the cascade law [rad/s]
-    k_1 : gain of the Lyapunov law [1/m^2]
     heading_rate_max : omega_max; no command exceeds it; infinite for a vehicle that can fly anything [rad/s]
     time_step : [s]
     lag : of the vehicle's heading rate behind its command [s]; above 0 the law runs that much ahead of time
@@ -40,11 +26,7 @@ class GuidanceParameters:
     airspeed_trim_max : largest change of commanded airspeed [m/s]
     """
 
-    law: Law
-    look_ahead: LookAhead
-    gain: float
-    rate_max: float
-    k_1: float
+    law: SteeringLaw
     heading_rate_max: float
     time_step: float
     lag: float
@@ -57,7 +39,7 @@ class PlacedReference:
 
     Attributes
     ----------
-    north, east, course, heading_rate, speed : as of ``gnc.reference.oscillating.Reference``
+    north, east, course, heading_rate, speed : as of ``gnc.reference.reference.Reference``
     """
 
     __slots__ = ("course", "east", "heading_rate", "north", "speed")
@@ -95,6 +77,7 @@ class Guidance(Generic[AnyReference]):
 
     __slots__ = (
         "_lag",
+        "_law",
         "_parameters",
         "_speed",
         "_until_ahead",
@@ -109,6 +92,7 @@ class Guidance(Generic[AnyReference]):
 
     def __init__(self, parameters: GuidanceParameters, reference: AnyReference, *, guard: KeepoutGuard | None = None) -> None:
         self._parameters = parameters
+        self._law = parameters.law.heading_rate
         self._speed = reference.speed
         self.reference = PlacedReference(reference)
         self.ahead = copy.copy(reference)
@@ -159,7 +143,7 @@ class Guidance(Generic[AnyReference]):
             then_north += speed * lag * math.cos(middle)
             then_east += speed * lag * math.sin(middle)
             then_course += 0.5 * lag * (heading_rate + last)
-        wanted = self._steer(ahead, ahead.north - then_north, ahead.east - then_east, then_course, speed)
+        wanted = self._law(ahead, ahead.north - then_north, ahead.east - then_east, then_course, speed)
         command = limited(wanted, p.heading_rate_max)
         self.saturated = command != wanted
         if self.guard is not None:
@@ -181,13 +165,3 @@ class Guidance(Generic[AnyReference]):
         ahead = self.ahead
         ahead.step()
         self._until_ahead.append((ahead.north, ahead.east, ahead.course, ahead.heading_rate))
-
-    def _steer(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
-        p = self._parameters
-        if p.law is Law.LINE_OF_SIGHT:
-            return line_of_sight_law(to_north, to_east, course, p.gain)
-        state = bare_state(p.look_ahead, to_north, to_east, reference.course, course)
-        _, omega_rho = relative_velocity(p.look_ahead, state, self._speed, speed, reference.heading_rate)
-        if p.law is Law.CASCADE:
-            return cascade_law(state[3], omega_rho, p.gain, p.rate_max)
-        return lyapunov_law(RelativeState(*state), speed, omega_rho, p.k_1)

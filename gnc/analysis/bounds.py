@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import Bounds, minimize
 
-from gnc.analysis.worst_position import largest_over_positions
+from gnc.analysis.worst_position import worst_case_over_positions
 from gnc.errors import InfeasibleError
 from gnc.laws.delta import LookAhead, look_ahead
 
@@ -73,10 +73,10 @@ def heading_rate_bound(
     sigma = _sigma(parameters)
     of_speed = speed / parameters.radius
 
-    def omega_rho(speed_share: _Array, turn_share: _Array) -> _Array:
-        return of_speed * speed_share + reference_heading_rate_max * turn_share
+    def omega_rho(speed_factor: _Array, turn_factor: _Array) -> _Array:
+        return of_speed * speed_factor + reference_heading_rate_max * turn_factor
 
-    return steering_max + largest_over_positions(omega_rho, sigma, tolerance)
+    return steering_max + worst_case_over_positions(omega_rho, sigma, tolerance)
 
 
 def heading_rate_bound_least(
@@ -180,10 +180,10 @@ def fastest_within(
             parameters, speed=speed, distance_from=distance_from, distance_to=distance_to, gain=gain, steering_max=steering_max
         )
 
-    def objective(shares: _Array) -> float:
-        return math.log(time(*_design(shares, task, _least_radius_head_on)))
+    def objective(fractions: _Array) -> float:
+        return math.log(time(*_design(fractions, task, _least_radius_head_on)))
 
-    start = min((np.array([a, b]) for a in _SHARES for b in _SHARES), key=objective)
+    start = min((np.array([a, b]) for a in _FRACTIONS for b in _FRACTIONS), key=objective)
     found = minimize(objective, start, method="Nelder-Mead", bounds=Bounds(0.01, 0.99), tol=1e-4)
     if not found.success:
         raise InfeasibleError(f"the search for the fastest look-ahead did not converge: {found.message}; report these parameters")
@@ -213,16 +213,16 @@ class _Task(NamedTuple):
 _LeastRadius = Callable[[float, float, float, float], float]
 """From sigma, V, omega_r and the limit of omega_rho to the least R."""
 
-_SHARES = np.linspace(0.05, 0.95, 19)
+_FRACTIONS = np.linspace(0.05, 0.95, 19)
 
 
-def _design(shares: _Array, task: _Task, least_radius: _LeastRadius) -> tuple[LookAhead, float]:
-    """Return look-ahead and steering_max for shares, within 0 and 1, of the largest sigma and of the largest steering_max."""
-    sigma_share, steering_share = shares.tolist()
+def _design(fractions: _Array, task: _Task, least_radius: _LeastRadius) -> tuple[LookAhead, float]:
+    """Return look-ahead and steering_max for fractions, within 0 and 1, of the largest sigma and of the largest steering_max."""
+    sigma_fraction, steering_fraction = fractions.tolist()
     turning = task.reference_heading_rate_max
-    steering_max = steering_share * min(task.limit - turning, task.gain * math.pi)
+    steering_max = steering_fraction * min(task.limit - turning, task.gain * math.pi)
     room = task.limit - steering_max
-    sigma = sigma_share * min(1.0 - turning / room, _SIGMA_MAX)
+    sigma = sigma_fraction * min(1.0 - turning / room, _SIGMA_MAX)
     # With epsilon = 1/(4 sigma^2 R) the time has a minimum over R, this over sigma: a shorter R would only raise epsilon.
     quickest = math.sqrt((task.distance_from**2 - task.distance_to**2) / (8.0 * math.log(task.distance_from / task.distance_to)))
     radius = max(least_radius(sigma, task.speed, turning, room), quickest / sigma, task.speed / (2.0 * turning))
@@ -232,11 +232,11 @@ def _design(shares: _Array, task: _Task, least_radius: _LeastRadius) -> tuple[Lo
 def _least_radius(sigma: float, speed: float, reference_heading_rate_max: float, room: float) -> float:
     """Return an R [m] with which |omega_rho| stays within ``room`` [rad/s], the least but for the tolerance."""
 
-    def radius(speed_share: _Array, turn_share: _Array) -> _Array:
-        left = room - reference_heading_rate_max * turn_share
-        return np.divide(speed * speed_share, left, out=np.full_like(left, np.inf), where=left > 0.0)
+    def radius(speed_factor: _Array, turn_factor: _Array) -> _Array:
+        left = room - reference_heading_rate_max * turn_factor
+        return np.divide(speed * speed_factor, left, out=np.full_like(left, np.inf), where=left > 0.0)
 
-    return largest_over_positions(radius, sigma, _TOLERANCE)
+    return worst_case_over_positions(radius, sigma, _TOLERANCE)
 
 
 def _least_radius_head_on(sigma: float, speed: float, reference_heading_rate_max: float, room: float) -> float:

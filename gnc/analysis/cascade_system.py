@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 from gnc.analysis.dynamics import state_rates
+from gnc.laws.cascade import h
 from gnc.laws.delta import LookAhead, RelativeState
-from gnc.limits import limited
 
 
 class DrivenState(NamedTuple):
@@ -21,18 +21,6 @@ class DrivenState(NamedTuple):
     delta: float
     rho: float
     phi_r: float
-
-
-def h(phi: float, gain: float, rate_max: float) -> float:
-    """Return h(phi) [rad/s] of equation (30): gain phi, kept within ``rate_max``. It is 0 at 0 and has the sign of phi elsewhere.
-
-    Parameters
-    ----------
-    phi : vehicle course against that of z [rad], within -pi and pi
-    gain : [1/s], above 0
-    rate_max : largest |h| [rad/s], above 0
-    """
-    return limited(gain * phi, rate_max)
 
 
 def driven_rates(

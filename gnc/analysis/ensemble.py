@@ -5,79 +5,17 @@ Step size and acceptance are each trajectory's own; trajectories that finish giv
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
 
 from gnc.analysis.dormand_prince import dormand_prince_step
 from gnc.analysis.ensemble_motion import MOTIONS, Array, Motion, Steering, Vehicle
+from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, PHI_CONVERGED, EnsembleResult, Outcome, Tolerances
 from gnc.analysis.turning_reference import TurningReferences
 from gnc.errors import InfeasibleError
 
-DISTANCE_CONVERGED = 0.02
-"""Distance within which a vehicle is on its reference [m]."""
-PHI_CONVERGED = 2e-4
-"""|phi| within which a vehicle is on its reference [rad]."""
-
 _SAFETY, _SHRINK_MAX, _GROW_MAX = 0.9, 0.2, 5.0
-
-
-class Outcome(Enum):
-    """How a trajectory ended."""
-
-    CONVERGED = "converged"
-    TIME_UP = "time_up"
-    STEPS_UP = "steps_up"
-    NOT_FINITE = "not_finite"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Tolerances:
-    """What the integration of one step may err by.
-
-    Attributes
-    ----------
-    relative : of the distance to the reference [-]
-    absolute : of position, on top of it [m]
-    step_max : largest step [s]
-    steps_max : after so many steps, rejected ones included, a trajectory is given up
-    """
-
-    relative: float = 1e-6
-    absolute: float = 1e-4
-    step_max: float = 10.0
-    steps_max: int = 2_000_000
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EnsembleResult:
-    """How n trajectories ended; arrays of shape (n,).
-
-    Distances and commands are those at the ends of steps, which are some seconds long.
-
-    Attributes
-    ----------
-    outcome, message : and what it means
-    settling_time : when the distance was last at least the settling band, linear between steps [s]; NaN if it is at the end
-    duration : flown until then [s]
-    distance : at the end [m]
-    distance_max : largest ever [m]
-    phi_0, phi : vehicle course against that of z, at the start and at the end [rad]
-    heading_rate_max : largest |omega| commanded [rad/s]
-    steps : of the integration, rejected ones included
-    """
-
-    outcome: tuple[Outcome, ...]
-    message: tuple[str, ...]
-    settling_time: Array
-    duration: Array
-    distance: Array
-    distance_max: Array
-    phi_0: Array
-    phi: Array
-    heading_rate_max: Array
-    steps: npt.NDArray[np.int64]
 
 
 Observer = Callable[[npt.NDArray[np.int64], Array, Array, Array, Array], None]
@@ -108,7 +46,7 @@ def fly_ensemble(
 
     Parameters
     ----------
-    law, vehicle : how it is steered, and what flies
+    law, vehicle : steering law and vehicle, the same for all
     references : of n vehicles
     to_reference : d at time 0, north and east, shape (2, n) [m]
     course : chi at time 0, shape (n,) [rad]
@@ -116,7 +54,7 @@ def fly_ensemble(
     time_max : limit, for all or for each, shape () or (n,) [s]
     tolerances : of the integration
     places : trajectories under way at once, begun in the order given: the longest first keep places busy to the end
-    observe : told every step, and the start
+    observe : called at the start and after every step
 
     Raises
     ------
@@ -225,7 +163,7 @@ class _Flight:
         return norm
 
     def _watch(self, step: Array, accepted: npt.NDArray[np.bool_]) -> None:
-        """Note what the step brought: distances, commands, and when the settling band was left for the inside."""
+        """Record what the step brought: distances, commands, and when the settling band was left for the inside."""
         now = self._now
         before, state = now.distance, now.state
         now.distance = np.sqrt(state[0] * state[0] + state[1] * state[1])
@@ -236,8 +174,8 @@ class _Flight:
         now.last_outside = np.where(outside, now.time, now.last_outside)
         crossed = (before >= self._band) & ~outside
         if crossed.any():
-            share = (self._band - now.distance[crossed]) / (before[crossed] - now.distance[crossed])
-            now.last_outside[crossed] = now.time[crossed] - share * step[crossed]
+            fraction = (self._band - now.distance[crossed]) / (before[crossed] - now.distance[crossed])
+            now.last_outside[crossed] = now.time[crossed] - fraction * step[crossed]
         if self._observe is not None and accepted.any():
             phi = self._motion.phi(now.time, state)
             self._observe(self.index[accepted], now.time[accepted], state[:, accepted], phi[accepted], command[accepted])

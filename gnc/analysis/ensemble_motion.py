@@ -67,7 +67,7 @@ class Motion(ABC):
 
     Parameters
     ----------
-    vehicle, references : what flies, and after what
+    vehicle, references : the vehicles and the references that they track
     """
 
     def __init__(self, vehicle: Vehicle, references: TurningReferences) -> None:

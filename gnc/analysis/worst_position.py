@@ -12,19 +12,19 @@ _CELLS = 24
 """Cells a side to begin with."""
 
 
-def largest_over_positions(value: Callable[[_Array, _Array], _Array], sigma: float, tolerance: float) -> float:
-    """Return an upper bound, at most ``tolerance`` high, of a value that rises with both shares, over all positions.
+def worst_case_over_positions(value: Callable[[_Array, _Array], _Array], sigma: float, tolerance: float) -> float:
+    """Return an upper bound, at most ``tolerance`` high, of a value that rises with both factors, over all positions.
 
     Branch and bound: cells are quartered until none can hold a value above the largest met in the middle of a cell, but for the
-    tolerance. That ends because the bounds of ``shares_at_most`` close in on ``shares`` as cells shrink.
+    tolerance. That ends because the bounds of ``factors_at_most`` close in on ``factors`` as cells shrink.
     """
     edges = np.linspace(0.0, math.pi, _CELLS + 1)
     low, high = (np.stack(np.meshgrid(ends, ends)).reshape(2, -1) for ends in (edges[:-1], edges[1:]))
     largest = 0.0
     while low.size:
         middle = 0.5 * (low + high)
-        largest = max(largest, float(np.max(value(*shares(sigma, *middle)))))
-        open_still = value(*shares_at_most(sigma, low, high)) > largest * (1.0 + 0.5 * tolerance)
+        largest = max(largest, float(np.max(value(*factors(sigma, *middle)))))
+        open_still = value(*factors_at_most(sigma, low, high)) > largest * (1.0 + 0.5 * tolerance)
         low, middle, high = low[:, open_still], middle[:, open_still], high[:, open_still]
         corners = [(low[0], middle[0]), (middle[0], high[0])], [(low[1], middle[1]), (middle[1], high[1])]
         quarters = [(*across, *along) for across in corners[0] for along in corners[1]]
@@ -33,7 +33,7 @@ def largest_over_positions(value: Callable[[_Array, _Array], _Array], sigma: flo
     return largest * (1.0 + tolerance)
 
 
-def shares(sigma: float, alpha: _Array, beta: _Array) -> tuple[_Array, _Array]:
+def factors(sigma: float, alpha: _Array, beta: _Array) -> tuple[_Array, _Array]:
     """Return what multiplies V/R and what multiplies omega_r in the largest |omega_rho| at a position, over all courses.
 
     They are (R/rho)(|w_x| + |w|) and (delta/rho) cos(phi_r) of docs/actuation_bounds.md.
@@ -52,8 +52,8 @@ def shares(sigma: float, alpha: _Array, beta: _Array) -> tuple[_Array, _Array]:
     return 0.5 * (along + (1.0 + cos_a) * across) / rho_squared, (1.0 - x + x * k) / rho_squared
 
 
-def shares_at_most(sigma: float, low: _Array, high: _Array) -> tuple[_Array, _Array]:
-    """Return upper bounds of both ``shares`` over cells: each term at the end of the cell where it is largest."""
+def factors_at_most(sigma: float, low: _Array, high: _Array) -> tuple[_Array, _Array]:
+    """Return upper bounds of both ``factors`` over cells: each term at the end of the cell where it is largest."""
     (a_1, b_1), (a_2, b_2) = low, high
     s_1, s_2 = _sine_range(a_1, a_2)
     sin_b_1, sin_b_2 = _sine_range(b_1, b_2)
@@ -72,8 +72,8 @@ def shares_at_most(sigma: float, low: _Array, high: _Array) -> tuple[_Array, _Ar
         sigma * c_2 + np.maximum(s_1 * (k_2 - 1.0), s_2 * (k_2 - 1.0)),
         -sigma * c_1 - np.minimum(s_1 * (k_1 - 1.0), s_2 * (k_1 - 1.0)),
     )
-    speed_share = 0.5 * (s_2 * sin_b_2 * along / rho_squared_1 + c_2 * across)
-    return speed_share, (1.0 + np.maximum(x_1 * (k_2 - 1.0), x_2 * (k_2 - 1.0))) / rho_squared_1
+    speed_factor = 0.5 * (s_2 * sin_b_2 * along / rho_squared_1 + c_2 * across)
+    return speed_factor, (1.0 + np.maximum(x_1 * (k_2 - 1.0), x_2 * (k_2 - 1.0))) / rho_squared_1
 
 
 def _sine_range(low: _Array, high: _Array) -> tuple[_Array, _Array]:

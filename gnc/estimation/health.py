@@ -1,54 +1,54 @@
-"""Whether the vehicle still flies as it is told, from its speed, its turning, and what its servos report."""
+"""Whether the vehicle still follows its commands, judged by its airspeed, its heading rate and its servos' reports."""
 
 import math
 from enum import Enum
 
 
-class Trouble(Enum):
-    """What is wrong with the vehicle."""
+class Fault(Enum):
+    """A fault of the vehicle."""
 
     NONE = "none"
-    NO_THRUST = "no thrust"
-    NO_CONTROL = "no control"
-    STUCK = "stuck control surface"
+    THRUST_LOST = "thrust lost"
+    CONTROL_LOST = "control lost"
+    ACTUATOR_STUCK = "actuator stuck"
 
 
 class Health:
-    """Watches speed, heading rate and servos. Trouble, once found, stays.
+    """Monitors airspeed, heading rate and servos. A fault, once detected, stays.
 
-    Thrust is gone when the airspeed stays below its command and does not rise. Control is gone when the heading rate stays away
-    from what a vehicle with its lag would make of the commands. A control surface is stuck when it stays away from where it was
-    told to go; that shows before the vehicle's turning does, by seconds, and turbulence does not look like it.
+    Thrust is lost when the airspeed stays below its command and does not rise. Control is lost when the heading rate stays away
+    from that of a vehicle with its lag under the same commands. An actuator is stuck when its control surface stays away from its
+    command; that is detected seconds before the heading rate shows it, and turbulence does not cause it.
 
     Parameters
     ----------
-    airspeed_error : mean lack of airspeed that is too much [m/s]
-    heading_rate_error : mean size of the difference that is too much [rad/s]
-    servo_error : mean of the servos' errors that is too much [-]
+    airspeed_error : mean lack of airspeed above which thrust counts as lost [m/s]
+    heading_rate_error : mean absolute difference above which control counts as lost [rad/s]
+    servo_error : mean error of a control surface, over its travel, above which it counts as stuck [-]
     lag : of the heading rate behind its command [s]
-    time_step : between looks [s]
+    time_step : between checks [s]
     patience : time constant of the means [s]
     servo_patience : time constant of the mean of the servos' errors, several lags of a servo [s]
 
     Attributes
     ----------
-    trouble : what is wrong
+    fault : detected, if any
     """
 
     __slots__ = (
         "_airspeed_error",
+        "_decay",
         "_expected",
-        "_kept",
-        "_lag_kept",
+        "_lag_decay",
         "_last_airspeed",
         "_mean_error",
         "_mean_gain",
         "_mean_lack",
         "_mean_servo_error",
         "_rate_error",
+        "_servo_decay",
         "_servo_error",
-        "_servo_kept",
-        "trouble"
+        "fault",
     )  # fmt: skip
 
     def __init__(
@@ -63,36 +63,41 @@ class Health:
         servo_patience: float,
     ) -> None:
         self._airspeed_error, self._rate_error, self._servo_error = airspeed_error, heading_rate_error, servo_error
-        self._kept, self._servo_kept = math.exp(-time_step / patience), math.exp(-time_step / servo_patience)
-        self._lag_kept = math.exp(-time_step / lag) if lag > 0.0 else 0.0
+        self._decay, self._servo_decay = math.exp(-time_step / patience), math.exp(-time_step / servo_patience)
+        self._lag_decay = math.exp(-time_step / lag) if lag > 0.0 else 0.0
         self._mean_lack = self._mean_gain = self._mean_error = self._mean_servo_error = self._expected = 0.0
         self._last_airspeed = 0.0
-        self.trouble = Trouble.NONE
+        self.fault = Fault.NONE
 
-    def look(self, lack: float, airspeed: float, heading_rate: float, command: float, servo_error: float) -> Trouble:
-        """Return what is wrong.
+    @property
+    def fault_detected(self) -> bool:
+        """Return whether a fault has been detected."""
+        return self.fault is not Fault.NONE
+
+    def check(self, lack: float, airspeed: float, heading_rate: float, command: float, servo_error: float) -> Fault:
+        """Return the fault that has been detected, if any.
 
         Parameters
         ----------
         lack : commanded less measured airspeed [m/s]
         airspeed : measured [m/s]
         heading_rate : of that motion [rad/s]
-        command : heading rate that was last asked for [rad/s]
-        servo_error : of the control surface that is farthest from what it was told, over its travel [-]
+        command : last heading-rate command [rad/s]
+        servo_error : of the control surface that is farthest from its command, over its travel [-]
         """
-        kept, servo_kept = self._kept, self._servo_kept
-        self._expected = self._lag_kept * self._expected + (1.0 - self._lag_kept) * command
-        self._mean_lack = kept * self._mean_lack + (1.0 - kept) * lack
+        decay, servo_decay = self._decay, self._servo_decay
+        self._expected = self._lag_decay * self._expected + (1.0 - self._lag_decay) * command
+        self._mean_lack = decay * self._mean_lack + (1.0 - decay) * lack
         gained = airspeed - self._last_airspeed if self._last_airspeed else 0.0
         self._last_airspeed = airspeed
-        self._mean_gain = kept * self._mean_gain + (1.0 - kept) * gained
-        self._mean_error = kept * self._mean_error + (1.0 - kept) * abs(heading_rate - self._expected)
-        self._mean_servo_error = servo_kept * self._mean_servo_error + (1.0 - servo_kept) * servo_error
-        if self.trouble is Trouble.NONE:
+        self._mean_gain = decay * self._mean_gain + (1.0 - decay) * gained
+        self._mean_error = decay * self._mean_error + (1.0 - decay) * abs(heading_rate - self._expected)
+        self._mean_servo_error = servo_decay * self._mean_servo_error + (1.0 - servo_decay) * servo_error
+        if not self.fault_detected:
             if self._mean_servo_error > self._servo_error:
-                self.trouble = Trouble.STUCK
+                self.fault = Fault.ACTUATOR_STUCK
             elif self._mean_lack > self._airspeed_error and self._mean_gain < 0.0:
-                self.trouble = Trouble.NO_THRUST
+                self.fault = Fault.THRUST_LOST
             elif self._mean_error > self._rate_error:
-                self.trouble = Trouble.NO_CONTROL
-        return self.trouble
+                self.fault = Fault.CONTROL_LOST
+        return self.fault

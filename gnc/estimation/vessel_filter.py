@@ -8,7 +8,7 @@ Covariance = tuple[float, float, float, float, float, float]
 
 
 class VesselReport(NamedTuple):
-    """What a vessel says of itself, as AIS does.
+    """What a vessel reports of itself, as by AIS.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class VesselReport(NamedTuple):
 
 
 class VesselMotion(NamedTuple):
-    """Where a vessel is taken to be.
+    """A vessel's estimated motion.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class VesselFilter:
         self.time = -math.inf
 
     def report(self, report: VesselReport) -> None:
-        """Take in a report."""
+        """Correct the estimate by a report."""
         if report.time <= self.time:
             return
         if self.time == -math.inf:
@@ -84,32 +84,32 @@ class VesselFilter:
             self._covariance = (self._position, 0.0, 0.0, self._velocity, 0.0, self._acceleration_variance)
         else:
             ahead = report.time - self.time
-            self._north, self._east = self._moved(self._north, ahead), self._moved(self._east, ahead)
-            self._covariance = self._spread(ahead)
-            self._take(0, report.north, report.east, self._position)
-            self._take(1, report.velocity_north, report.velocity_east, self._velocity)
+            self._north, self._east = self._predicted(self._north, ahead), self._predicted(self._east, ahead)
+            self._covariance = self._predicted_covariance(ahead)
+            self._correct(0, report.north, report.east, self._position)
+            self._correct(1, report.velocity_north, report.velocity_east, self._velocity)
         self.time = report.time
 
     def at(self, time: float) -> VesselMotion:
         """Return the motion extrapolated to ``time`` [s], not before that of the newest report."""
         ahead = time - self.time
-        north, east = self._moved(self._north, ahead), self._moved(self._east, ahead)
-        sigma = math.sqrt(max(0.0, self._spread(ahead)[0]))
+        north, east = self._predicted(self._north, ahead), self._predicted(self._east, ahead)
+        sigma = math.sqrt(max(0.0, self._predicted_covariance(ahead)[0]))
         return VesselMotion(north[0], east[0], north[1], east[1], north[2], east[2], sigma)
 
     def _transition(self, time: float) -> tuple[float, float, float]:
         """Return how acceleration now acts on place, velocity and acceleration after ``time``."""
         memory = self._memory
-        kept = math.exp(-time / memory)
-        to_velocity = memory * (1.0 - kept)
-        return memory * (time - to_velocity), to_velocity, kept
+        decay = math.exp(-time / memory)
+        to_velocity = memory * (1.0 - decay)
+        return memory * (time - to_velocity), to_velocity, decay
 
-    def _moved(self, state: State, time: float) -> State:
-        to_place, to_velocity, kept = self._transition(time)
+    def _predicted(self, state: State, time: float) -> State:
+        to_place, to_velocity, decay = self._transition(time)
         place, velocity, acceleration = state
-        return place + time * velocity + to_place * acceleration, velocity + to_velocity * acceleration, kept * acceleration
+        return place + time * velocity + to_place * acceleration, velocity + to_velocity * acceleration, decay * acceleration
 
-    def _spread(self, time: float) -> Covariance:
+    def _predicted_covariance(self, time: float) -> Covariance:
         """Return the covariance after ``time``: F P F' + Q."""
         b, c, d = self._transition(time)
         p00, p01, p02, p11, p12, p22 = self._covariance
@@ -144,7 +144,7 @@ class VesselFilter:
             scale * (1.0 - e * e),
         )
 
-    def _take(self, i: int, north: float, east: float, variance: float) -> None:
+    def _correct(self, i: int, north: float, east: float, variance: float) -> None:
         """Update both axes with a measured place (i = 0) or velocity (i = 1)."""
         p = self._covariance
         column = ((p[0], p[1], p[2]), (p[1], p[3], p[4]))[i]

@@ -38,7 +38,7 @@ class WindFilter:
         return math.sqrt(0.5 * (self._p_nn + self._p_ee) + math.hypot(half, self._p_ne))
 
     def update(self, airspeed: float, air_course: float, velocity_north: float, velocity_east: float, time_step: float) -> None:
-        """Take in one measurement.
+        """Correct the estimate by one measurement.
 
         Parameters
         ----------
@@ -56,14 +56,14 @@ class WindFilter:
         self._scalar(-sin_c, cos_c, east * cos_c - north * sin_c, airspeed * airspeed * self._course_variance)
 
     def _scalar(self, h_north: float, h_east: float, measured: float, variance: float) -> None:
-        """Take in one component of the wind, in the direction ``h_north``, ``h_east``."""
+        """Correct by one component of the wind, in the direction ``h_north``, ``h_east``."""
         to_north = self._p_nn * h_north + self._p_ne * h_east
         to_east = self._p_ne * h_north + self._p_ee * h_east
-        spread = h_north * to_north + h_east * to_east + variance
-        gain_north, gain_east = to_north / spread, to_east / spread
-        surprise = measured - h_north * self.north - h_east * self.east
-        self.north += gain_north * surprise
-        self.east += gain_east * surprise
+        innovation_variance = h_north * to_north + h_east * to_east + variance
+        gain_north, gain_east = to_north / innovation_variance, to_east / innovation_variance
+        innovation = measured - h_north * self.north - h_east * self.east
+        self.north += gain_north * innovation
+        self.east += gain_east * innovation
         self._p_nn -= gain_north * to_north
         self._p_ne -= gain_north * to_east
         self._p_ee -= gain_east * to_east

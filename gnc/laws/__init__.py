@@ -1,1 +1,8 @@
-"""Steering laws: one file each, behind one Protocol."""
+"""Steering laws: each a frozen dataclass in a file of its own, registered by name, behind the Protocol ``SteeringLaw``."""
+
+from gnc.laws.cascade import CascadeLaw
+from gnc.laws.line_of_sight import LineOfSightLaw
+from gnc.laws.lyapunov import LyapunovLaw
+from gnc.laws.steering_law import STEERING_LAWS, SteeringLaw
+
+__all__ = ["STEERING_LAWS", "CascadeLaw", "LineOfSightLaw", "LyapunovLaw", "SteeringLaw"]

@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
-from gnc.angles import wrap
 from gnc.errors import InfeasibleError
+from gnc.numeric import wrap
 
 
 class RelativeState(NamedTuple):

@@ -6,7 +6,7 @@ side that is shorter. The vehicle heads so that its velocity relative to the dis
 
 import math
 
-from gnc.angles import wrap
+from gnc.numeric import wrap
 
 _OUTWARD = 0.6
 """How far the way leans outwards for a vehicle at the centre of the circle that it should keep out of [rad]."""

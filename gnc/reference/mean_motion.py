@@ -6,17 +6,17 @@ across, it turns the mean course, which moves the orbit's centre by itself, the 
 
 import math
 
-from gnc.limits import limited
+from gnc.numeric import limited
 from gnc.reference.moving_centre import MovingCentre
 
 _CENTRE_GAIN = 0.1
-"""Wanted drift of the orbit's centre per distance from where it should be, in units of omega_max [-]."""
+"""Demanded drift of the orbit's centre per distance from where it should be, in units of omega_max [-]."""
 
-_ALONG_SHARE = 0.3
-"""Largest share of the vehicle's speed that such a drift takes along the centre's motion [-]; that changes the amplitude alone."""
+_ALONG_FRACTION = 0.3
+"""Largest fraction of V_r that such a drift takes along the centre's motion [-]; it changes the amplitude alone."""
 
-_ACROSS_SHARE = 0.4
-"""Largest share of the centre's speed that it takes across [-]: more would turn the orbit instead of moving it."""
+_ACROSS_FRACTION = 0.4
+"""Largest fraction of the centre's speed that it takes across [-]: more would turn the orbit instead of moving it."""
 
 _STILL = 0.05
 """Speed ratio below which a centre's motion gives no direction to an orbit [-]: then it lies across the plume."""
@@ -24,11 +24,17 @@ _STILL = 0.05
 _SLOW = 0.25
 """Speed ratio below which that gain falls in proportion [-]: turning the mean course by a little moves a slow orbit by much."""
 
+_SLOW_GAIN_MIN = 0.1
+"""Fraction of that gain which is kept at any speed ratio [-]: an orbit at rest across the plume has to be centred, too."""
+
+_SPEED_RATIO_MIN = 0.1
+"""Speed ratio that a mean motion has at least where it is turned [-]: a smaller one would be turned to any course by a drift."""
+
 
 def mean_motion(
     centre: MovingCentre, off_north: float, off_east: float, speed: float, heading_rate_max: float
 ) -> tuple[float, float]:
-    """Return the mean course [rad] and the mean speed over the speed [-] that are wanted.
+    """Return the mean course [rad] and the mean speed over the speed [-] to demand of the reference.
 
     Parameters
     ----------
@@ -42,10 +48,10 @@ def mean_motion(
     else:
         cos_m, sin_m = -math.cos(centre.axis), -math.sin(centre.axis)
     gain = _CENTRE_GAIN * heading_rate_max
-    most = _ALONG_SHARE * speed
+    most = _ALONG_FRACTION * speed
     along = moving + limited(gain * (off_north * cos_m + off_east * sin_m), most)
-    gain *= min(1.0, max(_CENTRE_GAIN, moving / (_SLOW * speed)))
-    most = _ACROSS_SHARE * max(moving, 0.1 * speed)
+    gain *= min(1.0, max(_SLOW_GAIN_MIN, moving / (_SLOW * speed)))
+    most = _ACROSS_FRACTION * max(moving, _SPEED_RATIO_MIN * speed)
     across = limited(gain * (off_east * cos_m - off_north * sin_m), most)
-    turned = math.atan2(across, max(along, 2.0 * _STILL * speed))
+    turned = math.atan2(across, max(along, _SPEED_RATIO_MIN * speed))
     return math.atan2(sin_m, cos_m) + turned, along / math.cos(turned) / speed

@@ -8,26 +8,35 @@ Everything is in the frame of the air mass.
 import math
 from dataclasses import dataclass
 
-from gnc.angles import wrap
-from gnc.limits import limited
+from gnc.numeric import limited, wrap
 
 _AXIS_GAIN = 0.1
-"""Rate at which the axis goes where it should, per difference, in units of omega_max [-].
+"""Rate of the axis per difference from where it should be, in units of omega_max [-].
 
-It is slow enough to even out what reports of the vessel scatter.
+It is slow enough to average the scatter of the vessel's reports.
 """
 
 _IN_PLACE = 0.04
 """Distance from its place within which the centre counts as being there, over r_CO [-]."""
 
-_AXIS_SPEED = 0.7
-"""Share of the vehicle's speed at which the centre may be swung round the vessel [-]: it must be followed."""
+_AXIS_SPEED_FRACTION = 0.7
+"""Fraction of the vehicle's speed at which the centre may be swung round the vessel [-]: it must be followed."""
 
 _DISTANCE_GAIN = 0.12
-"""Rate at which the centre's distance goes where it should, per difference, in units of omega_max [-]."""
+"""Rate of the centre's distance per difference from where it should be, in units of omega_max [-]."""
 
-_DISTANCE_SHARE = 0.3
-"""Share of the speed that the vehicle has over the vessel at which the centre's distance may change [-]."""
+_DISTANCE_SPEED_FRACTION = 0.3
+"""Fraction of the speed that the vehicle has over the vessel at which the centre's distance may change [-]."""
+
+
+_VESSEL_SPEED_MIN = 0.1
+"""Speed over ground that a vessel is given at least where its turn is computed from it [m/s]: at rest it has no course."""
+
+_EXCESS_SPEED_MIN = 0.05
+"""Least fraction of V_r that the vehicle is taken to have over the vessel [-]: also outrun, it corrects the distance."""
+
+_CENTRE_SPEED_MIN = 0.01
+"""Speed that the centre is given at least where its direction is computed from it [m/s]: at rest it has none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,8 +48,8 @@ class CentreParameters:
     distance_min : that the orbit keeps from the vessel [m]
     speed_ratio_max : up to which the half-widths reach [-]
     along, across : |d_x|max and |d_y|max of the orbit, equation (12), at equal steps of nu from 0 [m]
-    plume_heading : chi_P from the vessel's bow, or none where the plume trails behind the vessel's motion through the air [rad]
-    apparent_wind_min : below this a plume has no direction that could be known [m/s]
+    plume_heading : chi_P from the vessel's bow, or None where the plume trails behind the vessel's motion through the air [rad]
+    apparent_wind_min : below this the plume's direction counts as unknown [m/s]
     speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
     """
 
@@ -90,7 +99,7 @@ class MovingCentre:
         acceleration_east: float,
         wind_north: float,
         wind_east: float,
-        further: float,
+        additional_range: float,
     ) -> None:
         """Move on by ``time_step`` [s].
 
@@ -99,32 +108,34 @@ class MovingCentre:
         vessel_north, vessel_east : its velocity over the ground [m/s]
         acceleration_north, acceleration_east : of the vessel [m/s^2]
         wind_north, wind_east : velocity of the air mass [m/s]
-        further : how much further off than its distance the centre has to be, for now [m]
+        additional_range : added to r_CO for now [m]
         """
         p = self._parameters
         air_north, air_east = vessel_north - wind_north, vessel_east - wind_east
         through_air = math.hypot(air_north, air_east)
         self.speed_ratio = through_air / p.speed
-        wanted, turn = self.axis, 0.0
+        demanded, turn = self.axis, 0.0
         if p.plume_heading is None:
             self.plume_known = through_air >= p.apparent_wind_min
             if self.plume_known:
-                wanted = math.atan2(-air_east, -air_north)
+                demanded = math.atan2(-air_east, -air_north)
                 turn = (air_north * acceleration_east - air_east * acceleration_north) / through_air**2
         else:
             over_ground = math.hypot(vessel_north, vessel_east)
             if over_ground >= p.apparent_wind_min or not self._started:
-                wanted = math.atan2(vessel_east, vessel_north) + p.plume_heading
-                turn = (vessel_north * acceleration_east - vessel_east * acceleration_north) / max(over_ground, 0.1) ** 2
+                demanded = math.atan2(vessel_east, vessel_north) + p.plume_heading
+                turn = (vessel_north * acceleration_east - vessel_east * acceleration_north) / max(
+                    over_ground, _VESSEL_SPEED_MIN
+                ) ** 2
         if not self._started:
-            self._started, self.axis = True, wanted
-            self.distance = self._target(air_north, air_east) + further
-        fastest = _AXIS_SPEED * p.speed / self.distance
-        turn = limited(turn + _AXIS_GAIN * p.heading_rate_max * wrap(wanted - self.axis), fastest)
+            self._started, self.axis = True, demanded
+            self.distance = self._target(air_north, air_east) + additional_range
+        fastest = _AXIS_SPEED_FRACTION * p.speed / self.distance
+        turn = limited(turn + _AXIS_GAIN * p.heading_rate_max * wrap(demanded - self.axis), fastest)
         swing = turn * self.distance
         swung_north, swung_east = air_north - swing * math.sin(self.axis), air_east + swing * math.cos(self.axis)
-        target = self._target(swung_north, swung_east) + further
-        fastest = _DISTANCE_SHARE * max(0.05, 1.0 - self.speed_ratio) * p.speed
+        target = self._target(swung_north, swung_east) + additional_range
+        fastest = _DISTANCE_SPEED_FRACTION * max(_EXCESS_SPEED_MIN, 1.0 - self.speed_ratio) * p.speed
         recede = limited(_DISTANCE_GAIN * p.heading_rate_max * (target - self.distance), fastest)
         self.axis = wrap(self.axis + turn * time_step)
         self.distance += recede * time_step
@@ -139,9 +150,9 @@ class MovingCentre:
         p = self._parameters
         last = len(p.along) - 1
         moving = math.hypot(velocity_north, velocity_east)
-        place = min(moving / p.speed / p.speed_ratio_max, 1.0) * last
-        i = min(int(place), last - 1)
-        along = p.along[i] + (place - i) * (p.along[i + 1] - p.along[i])
-        across = p.across[i] + (place - i) * (p.across[i + 1] - p.across[i])
-        sideways = abs(velocity_east * math.cos(self.axis) - velocity_north * math.sin(self.axis)) / max(moving, 0.01)
+        row = min(moving / p.speed / p.speed_ratio_max, 1.0) * last
+        i = min(int(row), last - 1)
+        along = p.along[i] + (row - i) * (p.along[i + 1] - p.along[i])
+        across = p.across[i] + (row - i) * (p.across[i + 1] - p.across[i])
+        sideways = abs(velocity_east * math.cos(self.axis) - velocity_north * math.sin(self.axis)) / max(moving, _CENTRE_SPEED_MIN)
         return p.distance_min + along + (across - along) * sideways

@@ -10,14 +10,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import jv
 
-from gnc.reference.oscillation import Oscillation
+from gnc.reference.reference import Array, Orbit
 
 _TERMS = np.arange(1, 25)
 
-Array = npt.NDArray[np.float64]
 
-
-def f_x(oscillation: Oscillation, time: npt.ArrayLike) -> Array:
+def f_x(oscillation: Orbit, time: npt.ArrayLike) -> Array:
     """Return F_x = integral of cos[eta cos(omega_0 t)] from 0 [s]: equation (12)."""
     t = np.asarray(time, dtype=np.float64)[..., None]
     series = (-1.0) ** _TERMS * jv(2 * _TERMS, oscillation.eta) / (_TERMS * oscillation.omega_0)
@@ -25,7 +23,7 @@ def f_x(oscillation: Oscillation, time: npt.ArrayLike) -> Array:
     return np.asarray(oscillation.nu * t[..., 0] + periodic)
 
 
-def f_y(oscillation: Oscillation, time: npt.ArrayLike) -> Array:
+def f_y(oscillation: Orbit, time: npt.ArrayLike) -> Array:
     """Return F_y = integral of sin[eta cos(omega_0 t)] from 0 [s]: equation (12)."""
     t = np.asarray(time, dtype=np.float64)[..., None]
     odd = 2 * _TERMS - 1
@@ -33,7 +31,7 @@ def f_y(oscillation: Oscillation, time: npt.ArrayLike) -> Array:
     return np.asarray(np.sum(series * np.sin(odd * oscillation.omega_0 * t), axis=-1))
 
 
-def offset(oscillation: Oscillation, time: npt.ArrayLike) -> tuple[Array, Array]:
+def offset(oscillation: Orbit, time: npt.ArrayLike) -> tuple[Array, Array]:
     """Return where the reference is from the centre of oscillation: along the vessel's course and to its right [m].
 
     ``time`` [s] counts from a passage through the centre with phi_0 = 0.
@@ -42,7 +40,7 @@ def offset(oscillation: Oscillation, time: npt.ArrayLike) -> tuple[Array, Array]
     return oscillation.speed * (f_x(oscillation, t) - oscillation.nu * t), oscillation.speed * f_y(oscillation, t)
 
 
-def half_widths(oscillation: Oscillation) -> tuple[float, float]:
+def half_widths(oscillation: Orbit) -> tuple[float, float]:
     """Return |d_x|max and |d_y|max [m], the orbit's half-widths along and across the vessel's course: equation (12).
 
     They are reached at t_x = arccos[arccos(nu)/eta]/omega_0 and t_y = pi/(2 omega_0).

@@ -1,58 +1,21 @@
-"""The virtual reference point: oscillating about the centre of oscillation, or circling."""
+"""The paper's reference point, which oscillates about the centre of oscillation."""
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
-from gnc.reference.orbit import offset
-from gnc.reference.oscillation import Oscillation
-
-
-class Reference(Protocol):
-    """A point of constant speed to be tracked, moved in equal time steps: equation (13).
-
-    Attributes
-    ----------
-    north, east : position [m]
-    course : chi_r [rad]
-    heading_rate : omega_r [rad/s]
-    speed : V_r [m/s]
-    """
-
-    north: float
-    east: float
-    course: float
-    heading_rate: float
-    speed: float
-
-    def step(self) -> None:
-        """Advance one time step."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReferenceStart:
-    """Where a reference starts.
-
-    Attributes
-    ----------
-    north, east : [m]
-    course : chi_r [rad]
-    """
-
-    north: float
-    east: float
-    course: float
+from gnc.reference.oscillation import Oscillation, design_oscillation
+from gnc.reference.reference import Orbit, Reference, ReferenceStart, reference_shape
 
 
 def start_reference(
-    oscillation: Oscillation, *, phase: float, centre_north: float, centre_east: float, vessel_course: float
+    oscillation: Orbit, *, phase: float, centre_north: float, centre_east: float, vessel_course: float
 ) -> ReferenceStart:
     """Return the start of a reference at phase phi_0 [rad] whose orbit is centred on a CO at ``centre_north``, ``centre_east`` [m].
 
     The course is eta cos(phi_0) from the vessel's, equation (7). Differs from equation (3), which says A/omega_0 and so holds for
     phi_0 = 0 only, and from starting on the CO: with another phase that orbit would not be centred on it.
     """
-    along, right = (float(x) for x in offset(oscillation, phase / oscillation.omega_0))
+    along, right = (float(x) for x in oscillation.offset(phase / oscillation.omega_0))
     sin_v, cos_v = math.sin(vessel_course), math.cos(vessel_course)
     return ReferenceStart(
         north=centre_north + along * cos_v - right * sin_v,
@@ -61,7 +24,7 @@ def start_reference(
     )
 
 
-class ReferencePoint:
+class OscillatingReference:
     """The reference point, moved in equal time steps: equations (2), (3) and (4).
 
     Its course is known in closed form; its position is integrated by Simpson's rule, good to 1e-9 m a step at 20 Hz. Time comes
@@ -100,7 +63,7 @@ class ReferencePoint:
         "speed",
     )
 
-    def __init__(self, oscillation: Oscillation, start: ReferenceStart, *, phase: float, time_step: float) -> None:
+    def __init__(self, oscillation: Orbit, start: ReferenceStart, *, phase: float, time_step: float) -> None:
         self._eta = oscillation.eta
         self._omega_0 = oscillation.omega_0
         self._amplitude = oscillation.amplitude
@@ -134,52 +97,27 @@ class ReferencePoint:
         self.heading_rate = vessel_heading_rate - self._amplitude * sin(angle)
 
 
-class CirclingReference:
-    """A reference that turns steadily, that of the paper's Simulation 1: equation (13) with a constant omega_r.
+@reference_shape("sinusoid")
+@dataclass(frozen=True, slots=True)
+class Sinusoid:
+    """The paper's reference: its course oscillates about the vessel's as a sinusoid."""
 
-    Its motion is known in closed form; time comes from the step count.
+    def design(
+        self, *, nu: float, speed: float, heading_rate_max: float, reserve: float, vessel_heading_rate: float, roll_rate_max: float
+    ) -> Oscillation:
+        """Return the fastest oscillation that the vehicle can follow; parameters are those of ``ReferenceShape``."""
+        return design_oscillation(
+            nu=nu,
+            speed=speed,
+            heading_rate_max=heading_rate_max,
+            reserve=reserve,
+            vessel_heading_rate=vessel_heading_rate,
+            roll_rate_max=roll_rate_max,
+        )
 
-    Parameters
-    ----------
-    start : position and course at time 0
-    speed : V_r [m/s]
-    heading_rate : omega_r [rad/s], positive to the right, not 0
-    time_step : [s]
-
-    Attributes
-    ----------
-    north, east : position [m]
-    course : chi_r [rad]
-    heading_rate, speed : omega_r [rad/s] and V_r [m/s]
-    """
-
-    __slots__ = (
-        "_centre_east",
-        "_centre_north",
-        "_course",
-        "_radius",
-        "_steps",
-        "_turn",
-        "course",
-        "east",
-        "heading_rate",
-        "north",
-        "speed",
-    )
-
-    def __init__(self, start: ReferenceStart, *, speed: float, heading_rate: float, time_step: float) -> None:
-        self.speed, self.heading_rate = speed, heading_rate
-        self.north, self.east, self.course = start.north, start.east, start.course
-        self._course = start.course
-        self._turn = heading_rate * time_step
-        self._radius = speed / heading_rate
-        self._centre_north = start.north - self._radius * math.sin(start.course)
-        self._centre_east = start.east + self._radius * math.cos(start.course)
-        self._steps = 0
-
-    def step(self) -> None:
-        """Advance one time step."""
-        self._steps += 1
-        self.course = self._course + self._steps * self._turn
-        self.north = self._centre_north + self._radius * math.sin(self.course)
-        self.east = self._centre_east - self._radius * math.cos(self.course)
+    def reference(
+        self, orbit: Orbit, *, phase: float, centre_north: float, centre_east: float, vessel_course: float, time_step: float
+    ) -> Reference:
+        """Return a reference on an orbit of this shape; parameters are those of ``ReferenceShape``."""
+        start = start_reference(orbit, phase=phase, centre_north=centre_north, centre_east=centre_east, vessel_course=vessel_course)
+        return OscillatingReference(orbit, start, phase=phase, time_step=time_step)

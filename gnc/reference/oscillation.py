@@ -3,8 +3,12 @@
 import math
 from dataclasses import dataclass
 
+import numpy.typing as npt
+
 from gnc.errors import InfeasibleError
 from gnc.reference.bessel import eta_for_speed_ratio
+from gnc.reference.orbit import half_widths, offset
+from gnc.reference.reference import Array
 
 GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s^2]."""
@@ -12,7 +16,7 @@ GRAVITY = 9.80665
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Oscillation:
-    """The reference's course oscillation about the vessel's course.
+    """The paper's orbit: the reference's course oscillates about the vessel's as a sinusoid.
 
     Attributes
     ----------
@@ -43,6 +47,14 @@ class Oscillation:
     def crossing_interval(self) -> float:
         """Time between crossings of the centre of oscillation, half a period [s]."""
         return math.pi / self.omega_0
+
+    def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
+        """Return where the reference is from the centre of oscillation, by ``gnc.reference.orbit.offset`` [m]."""
+        return offset(self, time)
+
+    def half_widths(self) -> tuple[float, float]:
+        """Return the orbit's half-widths along and across the vessel's course, by ``gnc.reference.orbit.half_widths`` [m]."""
+        return half_widths(self)
 
 
 def design_oscillation(

@@ -8,8 +8,7 @@ import numpy.typing as npt
 from scipy.optimize import minimize_scalar
 
 from gnc.errors import InfeasibleError
-from gnc.reference.orbit import half_widths, offset
-from gnc.reference.oscillation import Oscillation
+from gnc.reference.reference import Orbit
 
 _ORBIT_POINTS = 7201
 
@@ -34,19 +33,19 @@ def centre_of_oscillation(distance: float, axis: PlumeAxis) -> tuple[float, floa
     return horizontal * math.cos(axis.heading), horizontal * math.sin(axis.heading), distance * math.sin(axis.elevation)
 
 
-def reach(oscillation: Oscillation, axis: PlumeAxis) -> float:
+def reach(orbit: Orbit, axis: PlumeAxis) -> float:
     """Return d_max [m], the paper's estimate of how far the orbit reaches from the CO towards the vessel: equation (11)."""
-    along, across = half_widths(oscillation)
+    along, across = orbit.half_widths()
     return along + (across - along) * abs(math.sin(axis.heading))
 
 
-def distance_by_paper(oscillation: Oscillation, axis: PlumeAxis, distance_min: float) -> float:
+def distance_by_paper(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
     """Return r_CO [m] by the paper's rule, equation (10), for a keep-out sphere of radius ``distance_min`` r_min [m]."""
     _check(axis, distance_min)
-    return distance_min + reach(oscillation, axis) * math.cos(axis.elevation)
+    return distance_min + reach(orbit, axis) * math.cos(axis.elevation)
 
 
-def distance_exact(oscillation: Oscillation, axis: PlumeAxis, distance_min: float) -> float:
+def distance_exact(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
     """Return the smallest r_CO [m] for which the whole orbit stays ``distance_min`` r_min [m] away from the plume's origin.
 
     For every point o of the orbit, |r_CO u + o| >= r_min bounds r_CO from below by the larger root of a quadratic; the result is
@@ -60,13 +59,13 @@ def distance_exact(oscillation: Oscillation, axis: PlumeAxis, distance_min: floa
     _check(axis, distance_min)
 
     def needed(time: npt.ArrayLike) -> npt.NDArray[np.float64]:
-        along, across = offset(oscillation, time)
+        along, across = orbit.offset(time)
         towards = math.cos(axis.elevation) * (along * math.cos(axis.heading) + across * math.sin(axis.heading))
         inside = towards**2 - along**2 - across**2 + distance_min**2
         # Where the root is imaginary, the line through that point never enters the sphere.
         return np.where(inside >= 0.0, -towards + np.sqrt(np.maximum(inside, 0.0)), 0.0)
 
-    times = np.linspace(0.0, oscillation.period, _ORBIT_POINTS)
+    times = np.linspace(0.0, orbit.period, _ORBIT_POINTS)
     step = float(times[1])
     coarse = float(times[np.argmax(needed(times))])
     fine = minimize_scalar(lambda t: -float(needed(t)), bounds=(coarse - step, coarse + step), method="bounded")

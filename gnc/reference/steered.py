@@ -9,32 +9,23 @@ by dchi moves the centre by dchi times its distance from the reference, up to a 
 eta. Both therefore move mostly while the reference passes the centre.
 """
 
-import bisect
 import math
-from functools import lru_cache
 
-import numpy as np
-from scipy.special import j0, jv
-
-from gnc.angles import wrap
+from gnc.numeric import wrap
+from gnc.reference.orbit_tables import eta_for_mean_speed, unit_offset
 from gnc.reference.oscillation import GRAVITY
 
-_ORDERS = 4
-"""Pairs of Bessel functions in the series of the orbit; what is left out is below 1e-4 of its width at the largest eta."""
-
-_ETA_TOP = 2.9
-_ETA_STEP = 0.005
 _ETA_FREQUENCY = 0.2
-"""Amplitude below which the frequency no longer rises [rad]: nearly straight flight needs no fast weave."""
+"""Amplitude below which the frequency no longer rises [rad]: nearly straight flight needs no fast oscillation."""
 
 _GATE = 0.2
-"""Share of their rates that mean course and amplitude keep where the reference is farthest from the centre [-]."""
+"""Fraction of their rates that mean course and amplitude keep where the reference is farthest from the centre [-]."""
 
 _RATE_GAIN = 0.8
-"""Rate of mean course and amplitude per difference from what is wanted, in units of the heading rate [-]."""
+"""Rate of mean course and amplitude per difference from what is demanded, in units of the heading rate [-]."""
 
-_RATE_SHARE = 0.3
-"""Share of the heading rate that either of them may take [-]."""
+_RATE_FRACTION = 0.3
+"""Fraction of the heading rate that either of them may take [-]."""
 
 _SMOOTHING = 0.25
 """Time constant of their rates, over one through the heading rate [-]: that of a rolling aircraft does not jump."""
@@ -50,13 +41,13 @@ class SteeredReference:
     speed_ratio : its mean speed over its speed [-]
     phase : theta [rad]
     speed : V_r [m/s]
-    heading_rate : what it may turn at most, reserve taken off [rad/s]
+    heading_rate : largest that it may have, omega_max less the reserve [rad/s]
     roll_rate_max : of the vehicle; bounds eta omega_0^2 by g/V times it [rad/s]
     time_step : [s]
 
     Attributes
     ----------
-    north, east, course, heading_rate, speed : as of ``gnc.reference.oscillating.Reference``
+    north, east, course, heading_rate, speed : as of ``gnc.reference.reference.Reference``
     mean_course, eta, omega_0, phase : of the oscillation [rad, rad, rad/s, rad]
     """
 
@@ -65,10 +56,10 @@ class SteeredReference:
         "_available",
         "_cos_course",
         "_cos_phase",
+        "_eta_demand",
         "_eta_rate",
-        "_eta_wanted",
+        "_mean_demand",
         "_mean_rate",
-        "_mean_wanted",
         "_rate_gain",
         "_rate_max",
         "_sin_course",
@@ -102,13 +93,13 @@ class SteeredReference:
         self._available = heading_rate
         self._acceleration = GRAVITY * roll_rate_max / speed
         self._time_step = time_step
-        self._rate_max = _RATE_SHARE * heading_rate
+        self._rate_max = _RATE_FRACTION * heading_rate
         self._smoothing = min(1.0, time_step * heading_rate / _SMOOTHING)
         self._rate_gain = _RATE_GAIN * heading_rate
         self._mean_rate = self._eta_rate = 0.0
         self.north, self.east = north, east
-        self.mean_course = self._mean_wanted = mean_course
-        self.eta = self._eta_wanted = eta_for_mean_speed(speed_ratio)
+        self.mean_course = self._mean_demand = mean_course
+        self.eta = self._eta_demand = eta_for_mean_speed(speed_ratio)
         self.phase = phase
         self.omega_0 = self._frequency()
         self._cos_phase = math.cos(phase)
@@ -117,20 +108,20 @@ class SteeredReference:
         self.heading_rate = -self.eta * self.omega_0 * math.sin(phase)
 
     def steer(self, mean_course: float, speed_ratio: float) -> None:
-        """Set the mean course [rad] and the mean speed over the speed [-] that are wanted from now on."""
-        self._mean_wanted = mean_course
-        self._eta_wanted = eta_for_mean_speed(speed_ratio)
+        """Set the mean course [rad] and the mean speed over the speed [-] that are demanded from now on."""
+        self._mean_demand = mean_course
+        self._eta_demand = eta_for_mean_speed(speed_ratio)
 
     def step(self) -> None:
         """Advance one time step."""
         cos, sin, dt, rate_max, smoothing = math.cos, math.sin, self._time_step, self._rate_max, self._smoothing
         phase, eta, mean_course, cos_phase = self.phase, self.eta, self.mean_course, self._cos_phase
         gate = _GATE + (1.0 - _GATE) * cos_phase * cos_phase
-        turn = self._rate_gain * wrap(self._mean_wanted - mean_course)
+        turn = self._rate_gain * wrap(self._mean_demand - mean_course)
         if not -rate_max < turn < rate_max:
             turn = math.copysign(rate_max, turn)
         self._mean_rate = mean_rate = self._mean_rate + smoothing * (gate * turn - self._mean_rate)
-        grow = self._rate_gain * (self._eta_wanted - eta)
+        grow = self._rate_gain * (self._eta_demand - eta)
         if not -rate_max < grow < rate_max:
             grow = math.copysign(rate_max, grow)
         self._eta_rate = eta_rate = self._eta_rate + smoothing * (gate * grow - self._eta_rate)
@@ -153,6 +144,7 @@ class SteeredReference:
     @property
     def speed_ratio(self) -> float:
         """Return the mean speed over the speed, J_0(eta) [-]: equation (5)."""
+        # The power series of J_0 in (eta/2)^2, whose k-th term is -x/k^2 of the one before: good to 5e-7 up to eta = 2.4.
         x = 0.25 * self.eta * self.eta
         return 1.0 - x * (1.0 - x / 4.0 * (1.0 - x / 9.0 * (1.0 - x / 16.0 * (1.0 - x / 25.0 * (1.0 - x / 36.0)))))
 
@@ -169,57 +161,3 @@ class SteeredReference:
         by_heading_rate = (self._available - abs(self._mean_rate) - abs(self._eta_rate)) / eta
         by_roll_rate = math.sqrt(self._acceleration / eta)
         return by_heading_rate if by_heading_rate < by_roll_rate else by_roll_rate
-
-
-def eta_for_mean_speed(speed_ratio: float) -> float:
-    """Return eta [rad] for a mean speed over speed, by a table of J_0: equation (6), within 1e-5.
-
-    Differs from ``gnc.reference.bessel.eta_for_speed_ratio`` because a steered reference asks often, and may have to back
-    away: ratios down to -0.2 are those of eta beyond the first zero of J_0. Ratios outside -0.2 to 1 are those of the nearest end.
-    """
-    ratios, etas = _inverse_table()
-    if speed_ratio >= 1.0:
-        return 0.0
-    # Near 1 the ratio is 1 - eta^2/4, so that eta is smooth over the root of what is missing.
-    missing = math.sqrt(1.0 - speed_ratio)
-    i = min(max(bisect.bisect(ratios, missing), 1), len(ratios) - 1)
-    share = min(1.0, (missing - ratios[i - 1]) / (ratios[i] - ratios[i - 1]))
-    return etas[i - 1] + share * (etas[i] - etas[i - 1])
-
-
-def unit_offset(eta: float, phase: float) -> tuple[float, float]:
-    """Return where the reference is from the orbit's centre, along the mean course and to its right, in units of V_r/omega_0.
-
-    The series of ``gnc.reference.orbit.offset`` with its Bessel functions from a table, and with theta = ``phase`` [rad].
-    """
-    table = _bessel_table()
-    place = min(max(eta, 0.0), _ETA_TOP - 2.0 * _ETA_STEP) / _ETA_STEP
-    i = int(place)
-    share = place - i
-    low, high = table[i], table[i + 1]
-    along = right = 0.0
-    for k in range(_ORDERS):
-        odd = low[2 * k] + share * (high[2 * k] - low[2 * k])
-        even = low[2 * k + 1] + share * (high[2 * k + 1] - low[2 * k + 1])
-        right += odd * math.sin((2 * k + 1) * phase)
-        along += even * math.sin((2 * k + 2) * phase)
-    return along, right
-
-
-@lru_cache(maxsize=1)
-def _inverse_table() -> tuple[list[float], list[float]]:
-    etas = np.arange(0.0, _ETA_TOP, _ETA_STEP)
-    missing = np.sqrt(np.maximum(0.0, 1.0 - j0(etas)))
-    kept = missing <= math.sqrt(1.2)
-    return missing[kept].tolist(), etas[kept].tolist()
-
-
-@lru_cache(maxsize=1)
-def _bessel_table() -> list[list[float]]:
-    """Coefficients of sin(theta), sin(2 theta), ... by eta, rightward and along in turn."""
-    etas = np.arange(0.0, _ETA_TOP + _ETA_STEP, _ETA_STEP)
-    columns = []
-    for k in range(1, _ORDERS + 1):
-        columns.append(2.0 * (-1.0) ** (k - 1) * jv(2 * k - 1, etas) / (2 * k - 1))
-        columns.append((-1.0) ** k * jv(2 * k, etas) / k)
-    return np.stack(columns, axis=-1).tolist()  # type: ignore[no-any-return]

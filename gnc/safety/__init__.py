@@ -1,1 +1,5 @@
-"""The keep-out guard, whatever the law asks."""
+"""The keep-out guard: a filter that keeps the vehicle out of a moving disc whatever the steering law demands."""
+
+from gnc.safety.keepout_guard import KeepoutGuard
+
+__all__ = ["KeepoutGuard"]

@@ -1,9 +1,10 @@
-"""Keeping out of a moving disc whatever the guidance asks: a filter of heading-rate commands, after docs/keepout_guard.md.
+"""Keeping out of a moving disc whatever the guidance demands: a filter of heading-rate commands, after docs/keepout_guard.md.
 
-The guard predicts, at each step, the vehicle's path if it flew the wanted command for that step and then turned away at omega_max,
-to the left or to the right, with the vehicle's own lag. While one of the two keeps the radius the guidance is free. Otherwise as
-much of the turn that was safe at the last step is mixed in as is needed: that turn is still possible, and so is staying out (a
-backup-manoeuvre safety filter: Gurriet et al., "An Online Approach to Active Set Invariance", CDC 2018).
+The guard predicts, at each step, the vehicle's path if it flew the demanded heading rate for that step and then turned
+away at omega_max, to the left or to the right, with the vehicle's own lag. While one of the two keeps the radius the
+guidance is free. Otherwise as much of the turn that was safe at the last step is mixed in as is needed: that turn is
+still possible, and so is staying out (a backup-manoeuvre safety filter: Gurriet et al., "An Online Approach to Active
+Set Invariance", CDC 2018).
 
 Everything is posed in the air mass, relative to the disc: the vehicle's course and speed are those of its motion through the air.
 The guard plans no way round; it keeps out and no more.
@@ -12,23 +13,16 @@ The guard plans no way round; it keeps out and no more.
 import math
 from collections import deque
 
-_TURN = 0.125
-"""Course turned between two looks at a turn away, at most; half of it where the lag is shorter than a look [rad]."""
-_TURN_MAX = 2.5 * math.pi
-"""Course after which a turn away is over: the whole way round, and what heading rate the other way and a moving disc add [rad]."""
+from gnc.safety.turn_prediction import Motion, TurnPrediction
+
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
 _BISECTIONS = 5
-"""The share of the turn away is within 1/32 of the least."""
-
-_Motion = tuple[float, float, float, float, float, float, float]
-"""Arguments of ``KeepoutGuard.limit`` from x to heading_rate."""
-_Start = tuple[float, float, float, float]
-"""x, y, course and heading rate."""
+"""Halvings of the fraction of the turn away, which is found to 1/32."""
 
 
 class KeepoutGuard:
-    """A moving disc that commands must not lead into. It has a memory, and is to be asked once per time step.
+    """A moving disc that commands must not lead into. It keeps a memory and must be called once per time step.
 
     Parameters
     ----------
@@ -38,25 +32,22 @@ class KeepoutGuard:
     delay : dead time before that; the command's next whole step counts [s]
     time_step : for which a command is held [s]
     speed_error : b, bound on the error of the relative velocity that is given, airspeed, wind and disc together [m/s]
-    acceleration : a, bound on how fast that velocity changes other than by turning the vehicle [m/s2]
+    acceleration : a, bound on how fast that velocity changes other than by turning the vehicle [m/s^2]
 
     Attributes
     ----------
     intervening : whether the last command was changed
-    interventions : how often that began
+    interventions : how often interventions began
     lost : whether neither turn away held the radius at the last step; the better one is flown
     """
 
     __slots__ = (
         "_acceleration",
-        "_chord",
         "_delay",
-        "_free_extra",
+        "_free_inflation",
         "_free_steps",
-        "_hold",
         "_lag",
-        "_look",
-        "_looks_max",
+        "_prediction",
         "_radius",
         "_rate",
         "_side",
@@ -85,16 +76,19 @@ class KeepoutGuard:
         self._delay = round(delay / time_step) * time_step
         self._under_way: deque[float] = deque(maxlen=round(delay / time_step))
         self._speed_error, self._acceleration = speed_error, acceleration
-        self._hold = _held(time_step, lag)
-        look = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
-        self._look = _held(look, lag)
-        self._looks_max = math.ceil(_TURN_MAX / (heading_rate_max * look))
-        half = 0.5 * heading_rate_max * look
-        self._chord = math.sin(half) / half
+        self._prediction = TurnPrediction(
+            radius=radius,
+            heading_rate_max=heading_rate_max,
+            lag=lag,
+            delay=self._delay,
+            time_step=time_step,
+            speed_error=speed_error,
+            acceleration=acceleration,
+        )
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
         self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * lag + self._delay + time_step
         self._side = 0.0
-        self._free_steps, self._free_extra = 0, 0.0
+        self._free_steps, self._free_inflation = 0, 0.0
         self.intervening = self.lost = False
         self.interventions = 0
 
@@ -109,30 +103,30 @@ class KeepoutGuard:
         speed: float,
         heading_rate: float,
         *,
-        extra_radius: float = 0.0,
+        radius_inflation: float = 0.0,
     ) -> float:
         """Return the command, or as much of a turn away as is needed [rad/s].
 
         Parameters
         ----------
-        command : what the guidance wants [rad/s]
+        command : that the guidance demands [rad/s]
         x, y : of the vehicle, north and east of the disc's centre [m]
         velocity_north, velocity_east : of the disc in the air mass [m/s]
         course, speed : of the vehicle in the air mass [rad, m/s]
         heading_rate : rate of that course now [rad/s]
-        extra_radius : added to the radius, e.g. for a disc not heard of for a while [m]
+        radius_inflation : added to the radius, e.g. while no report of the disc's motion is received [m]
         """
         bounded = -self._rate <= command <= self._rate
-        if self._free_steps > 0 and bounded and extra_radius <= self._free_extra:
+        if self._free_steps > 0 and bounded and radius_inflation <= self._free_inflation:
             self._free_steps -= 1
             self._under_way.append(command)
             return command
-        self._free_steps, self._free_extra = 0, extra_radius
+        self._free_steps, self._free_inflation = 0, radius_inflation
         motion = (x, y, velocity_north, velocity_east, course, speed, heading_rate)
-        free = self._free_when_far(motion, extra_radius)
+        free = self._free_when_far(motion, radius_inflation)
         if free <= 0.0:
-            then = self._then(motion)
-            free = self._free_by_turning_away(command, then, extra_radius)
+            then = self._prediction.when_acting(motion, self._under_way)
+            free = self._free_by_turning_away(command, then, radius_inflation)
         if free >= 0.0:
             self.intervening = self.lost = False
             if bounded:
@@ -140,7 +134,7 @@ class KeepoutGuard:
         else:
             self.interventions += not self.intervening
             self.intervening = True
-            command = self._mix(command, then, extra_radius)
+            command = self._mix(command, then, radius_inflation)
         if not self._under_way:
             self._under_way.extend([heading_rate] * (self._under_way.maxlen or 0))
         self._under_way.append(command)
@@ -156,59 +150,41 @@ class KeepoutGuard:
         speed: float,
         heading_rate: float,
         *,
-        extra_radius: float = 0.0,
+        radius_inflation: float = 0.0,
     ) -> float:
         """Return by how much the better turn away, begun now, keeps the radius [m]; negative if no command can hold it.
 
         Parameters are those of ``limit``. That no other commands do better is argued in docs/keepout_guard.md.
         """
-        then = self._then((x, y, velocity_north, velocity_east, course, speed, heading_rate))
+        motion = (x, y, velocity_north, velocity_east, course, speed, heading_rate)
+        then = self._prediction.when_acting(motion, self._under_way)
         start = (then[0], then[1], then[4], then[6])
-        return max(self._turn_away(side, start, then, self._delay, extra_radius, -math.inf)[0] for side in (1.0, -1.0))
+        return max(
+            self._prediction.turn_away(side, start, then, self._delay, radius_inflation, -math.inf)[0] for side in (1.0, -1.0)
+        )
 
-    def _then(self, motion: _Motion) -> _Motion:
-        """Return the motion when a command given now begins to act: those before it cannot be taken back."""
-        count = self._under_way.maxlen
-        if not count:
-            return motion
-        x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
-        duration, turned, mean, kept = self._hold
-        turned_by, mean_by, kept_by = duration - turned, 0.5 * duration - mean, 1.0 - kept
-        begun, middles = course, 0.0
-        # Before the first call the commands under way are taken to be the turn that is flown.
-        for command in self._under_way or (heading_rate,) * count:
-            middles += course + mean * heading_rate + mean_by * command
-            course += turned * heading_rate + turned_by * command
-            heading_rate = kept * heading_rate + kept_by * command
-        middle, half = middles / count, 0.5 * (course - begun)
-        # One chord will do, with the sine over arc of half the course turned.
-        chord = speed * (1.0 - half * half / 6.0)
-        x += (chord * math.cos(middle) - velocity_north) * self._delay
-        y += (chord * math.sin(middle) - velocity_east) * self._delay
-        return x, y, velocity_north, velocity_east, course, speed, heading_rate
-
-    def _free_when_far(self, motion: _Motion, extra_radius: float) -> float:
+    def _free_when_far(self, motion: Motion, radius_inflation: float) -> float:
         """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
         x, y, velocity_north, velocity_east, _, speed, _ = motion
         duration, acceleration = self._turn_time, self._acceleration
         closing = speed + math.hypot(velocity_north, velocity_east) + self._speed_error
-        gap = math.hypot(x, y) - self._radius - extra_radius - (closing + 0.5 * acceleration * duration) * duration
+        gap = math.hypot(x, y) - self._radius - radius_inflation - (closing + 0.5 * acceleration * duration) * duration
         return min(gap / (closing + 1.5 * acceleration * duration), duration)
 
-    def _free_by_turning_away(self, command: float, motion: _Motion, extra_radius: float) -> float:
+    def _free_by_turning_away(self, command: float, motion: Motion, radius_inflation: float) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
-        after = self._after(command, motion)
+        after = self._prediction.after(command, motion)
         x, y, course, _ = after
         floor = _RESOLUTION * motion[5] / self._rate
         nearer = 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
         for side in (nearer, -nearer):
-            slack, free = self._turn_away(side, after, motion, self._delay + self._time_step, extra_radius, floor)
+            slack, free = self._prediction.turn_away(side, after, motion, self._delay + self._time_step, radius_inflation, floor)
             if slack >= floor:
                 self._side = side
                 return free
         return -1.0
 
-    def _mix(self, command: float, motion: _Motion, extra_radius: float) -> float:
+    def _mix(self, command: float, motion: Motion, radius_inflation: float) -> float:
         """Return the command with the least of a turn away that keeps the radius, or the better turn if none does [rad/s]."""
         x, y, _, _, course, speed, heading_rate = motion
         floor = _RESOLUTION * speed / self._rate
@@ -216,7 +192,9 @@ class KeepoutGuard:
         slacks = []
         for side in (self._side, -self._side) if self._side else (1.0, -1.0):
             turn = side * self._rate
-            slack, _ = self._turn_away(side, self._after(turn, motion), motion, begun, extra_radius, -math.inf)
+            slack, _ = self._prediction.turn_away(
+                side, self._prediction.after(turn, motion), motion, begun, radius_inflation, -math.inf
+            )
             slacks.append((slack, side))
             if self._side and slack >= 0.0:
                 break
@@ -231,114 +209,13 @@ class KeepoutGuard:
         mixed = turn
         low, high = 0.0, 1.0
         for _ in range(_BISECTIONS):
-            share = 0.5 * (low + high)
-            trial = command + share * (turn - command)
-            slack, _ = self._turn_away(side, self._after(trial, motion), motion, begun, extra_radius, floor)
+            fraction = 0.5 * (low + high)
+            trial = command + fraction * (turn - command)
+            slack, _ = self._prediction.turn_away(
+                side, self._prediction.after(trial, motion), motion, begun, radius_inflation, floor
+            )
             if slack >= floor:
-                high, mixed = share, trial
+                high, mixed = fraction, trial
             else:
-                low = share
+                low = fraction
         return mixed
-
-    def _after(self, command: float, motion: _Motion) -> _Start:
-        """Return where a command held for one time step leads."""
-        x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
-        duration, turned, mean, kept = self._hold
-        middle = course + mean * heading_rate + (0.5 * duration - mean) * command
-        return (
-            x + (speed * math.cos(middle) - velocity_north) * duration,
-            y + (speed * math.sin(middle) - velocity_east) * duration,
-            course + turned * heading_rate + (duration - turned) * command,
-            kept * heading_rate + (1.0 - kept) * command,
-        )
-
-    def _turn_away(
-        self, side: float, start: _Start, motion: _Motion, time: float, extra_radius: float, floor: float
-    ) -> tuple[float, float]:
-        """Return by how much a full turn away keeps the radius [m], and for how long [s] no command before it can change that.
-
-        It is over once the vehicle recedes and its turn makes it recede faster: by going on until it heads straight away, and
-        straight on then, it recedes for good. The search ends early below ``floor``.
-
-        Parameters
-        ----------
-        side : 1 to the right, -1 to the left
-        start : of the turn
-        motion : when the command that is judged begins to act
-        time : from now to the start [s]
-        extra_radius, floor : [m]
-        """
-        cos, sin, sqrt = math.cos, math.sin, math.sqrt
-        x, y, course, heading_rate = start
-        _, _, velocity_north, velocity_east, _, speed, _ = motion
-        duration, turned, mean, kept = self._look
-        turn = side * self._rate
-        ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - kept) * turn
-        chord = speed * duration * self._chord
-        north, east = velocity_north * duration, velocity_east * duration
-        error, half, lag = self._speed_error, 0.5 * self._acceleration, self._lag
-        fixed = self._radius + extra_radius
-        least = slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
-        outward = side * (y * cos(course) - x * sin(course))
-        acting = time - self._delay
-        gain = -1.0
-        share, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
-        for look in range(self._looks_max):
-            if least < floor:
-                break
-            middle = course + mean * heading_rate + ahead
-            cos_m, sin_m = cos(middle), sin(middle)
-            x += chord * cos_m - north
-            y += chord * sin_m - east
-            course += turned * heading_rate + gained
-            heading_rate = kept * heading_rate + won
-            time += duration
-            acting += duration
-            fade *= kept
-            last, before, before_outward = slack, rise, outward
-            outward = side * (y * cos_m - x * sin_m)
-            slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
-            rise = slack - last
-            shared = slack / (acting - lag * (1.0 - fade))
-            share = shared if shared < share else share
-            if rise < 0.0:
-                if gain >= 0.0:
-                    break
-                least = slack if slack < least else least
-                continue
-            if look == 0:
-                # There is no look before; the rate at the start stands in for it.
-                before = 2.0 * duration * (_range_rate(start, motion) - error) - rise
-            if before < 0.0:
-                # The vertex of the parabola through three looks.
-                least = min(least, last - (before + rise) ** 2 / (8.0 * (rise - before)))
-            # Also if it came past straight away between two looks: it would have stopped there.
-            if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
-                # It is over. A look farther may put the next one off.
-                best, gain = gain, max(gain, min(share, rise / duration))
-                if gain == best or outward < 0.0:
-                    break
-        return least, gain / (2.0 * speed * self._rate)
-
-
-def _range_rate(start: _Start, motion: _Motion) -> float:
-    """Return the rate at which the distance from the disc's centre grows [m/s]."""
-    x, y, course, _ = start
-    _, _, velocity_north, velocity_east, _, speed, _ = motion
-    return ((speed * math.cos(course) - velocity_north) * x + (speed * math.sin(course) - velocity_east) * y) / math.hypot(x, y)
-
-
-def _held(duration: float, lag: float) -> tuple[float, float, float, float]:
-    """Return what a vehicle with a lag makes of a heading rate that it has, while a command is held.
-
-    Returns
-    -------
-    duration : of the command [s]
-    turned : course, per heading rate at the start [s]; the rest of the duration is course per command
-    mean : course on the mean of the duration, per heading rate at the start [s]; the rest of its half is per command
-    kept : heading rate at the end, per heading rate at the start [-]; the rest of 1 is per command
-    """
-    if lag == 0.0:
-        return duration, 0.0, 0.0, 0.0
-    turned = -lag * math.expm1(-duration / lag)
-    return duration, turned, lag * (1.0 - turned / duration), math.exp(-duration / lag)

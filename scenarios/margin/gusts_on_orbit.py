@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import jv
 
-from gnc.reference.oscillation import Oscillation
+from gnc.reference.reference import Orbit
 from innerloop.analysis.gust_response import GUSTS
 
 _SIDEBANDS = np.arange(-12, 13)
@@ -23,7 +23,7 @@ _TURNED = (("gust_along", "gust_right"), ("gust_p", "gust_q"))
 Array = npt.NDArray[np.float64]
 
 
-def gusts_on_orbit(filters: control.StateSpace, oscillation: Oscillation, frequencies: Array) -> Array:
+def gusts_on_orbit(filters: control.StateSpace, oscillation: Orbit, frequencies: Array) -> Array:
     """Return the power spectral densities of ``GUSTS`` in the axes of the path, shape (frequencies, 6), averaged over the orbit.
 
     The variance is the integral over positive frequencies over pi. Components are taken as independent: those that the course turns

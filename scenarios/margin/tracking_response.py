@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gnc.airspeed.pace_hold import SpeedHold, air_turn
-from gnc.reference.oscillating import CirclingReference, ReferenceStart
+from gnc.reference.circling import CirclingReference
+from gnc.reference.reference import ReferenceStart
 from gnc.tracker import Guidance, GuidanceParameters
 from innerloop.analysis.gust_response import GUSTS, gust_loop
 from innerloop.law.control_law import COMMANDS

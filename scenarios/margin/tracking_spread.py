@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gnc.airspeed.pace_hold import SpeedHold
-from gnc.reference.oscillation import Oscillation
+from gnc.reference.reference import Orbit
 from gnc.tracker import GuidanceParameters
 from innerloop.analysis.dryden import GustStatistics, dryden_filters
 from innerloop.synthesis.schedule import Schedule
@@ -65,7 +65,7 @@ class Spread:
 def tracking_spread(
     schedule: Schedule,
     turbulence: GustStatistics,
-    oscillation: Oscillation,
+    oscillation: Orbit,
     guidance: GuidanceParameters,
     hold: SpeedHold,
     *,

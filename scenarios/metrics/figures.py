@@ -64,10 +64,10 @@ def plan_row(plan: FlightPlan) -> Row:
     """Return the part of a row that is known once the flight is planned."""
     row: Row = {
         "heading_rate_limit_rad_s": plan.heading_rate_max,
-        "heading_rate_bound_rad_s": plan.heading_rate_bound if math.isfinite(plan.heading_rate_bound) else math.nan,
-        "epsilon_per_m": plan.guidance.look_ahead.epsilon,
-        "look_ahead_m": plan.guidance.look_ahead.radius,
-        "steering_max_rad_s": plan.guidance.rate_max,
+        "heading_rate_bound_rad_s": plan.steering.bound if math.isfinite(plan.steering.bound) else math.nan,
+        "epsilon_per_m": plan.steering.look_ahead.epsilon,
+        "look_ahead_m": plan.steering.look_ahead.radius,
+        "steering_max_rad_s": plan.steering.steering_max,
     }
     mission = plan.mission
     if mission is None:

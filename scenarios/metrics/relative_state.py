@@ -15,7 +15,7 @@ def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
     history = pd.DataFrame(record.every_step, columns=list(COLUMNS))
     motion = history[["reference_north_m", "north_m", "reference_east_m", "east_m", "reference_course_rad", "course_rad"]]
     states: list[RelativeState] = [
-        relative_state(plan.guidance.look_ahead, to_north - north, to_east - east, reference_course, course)
+        relative_state(plan.steering.look_ahead, to_north - north, to_east - east, reference_course, course)
         for to_north, north, to_east, east, reference_course, course in motion.itertuples(index=False, name=None)
     ]
     history[list(RELATIVE_COLUMNS)] = states

@@ -1,12 +1,14 @@
 """The look-ahead and the steering of a flight: given, or searched so that no state asks for more than omega_max."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 from gnc.analysis.bounds import BoundedSteering, fastest_within, heading_rate_bound
 from gnc.errors import InfeasibleError
 from gnc.laws.delta import LookAhead, look_ahead
-from scenarios.schema.config import Scenario
+from gnc.laws.steering_law import STEERING_LAWS, SteeringLaw
+from scenarios.schema.config import Guidance, Scenario
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,6 +25,13 @@ class Steering:
     look_ahead: LookAhead
     steering_max: float
     bound: float
+
+
+def steering_law(guidance: Guidance, **searched: float) -> SteeringLaw:
+    """Return the steering law of a scenario, its parameters as given or, where they were searched, as found."""
+    law: Any = STEERING_LAWS.get(guidance.law)
+    made: SteeringLaw = law(**{of.name: searched.get(of.name, getattr(guidance, of.name)) for of in fields(law) if of.init})
+    return made
 
 
 def plan_steering(scenario: Scenario, heading_rate_max: float, reference_heading_rate: float) -> Steering:

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from gnc.errors import InfeasibleError
-from gnc.reference.oscillating import CirclingReference, Reference, ReferencePoint, ReferenceStart, start_reference
-from gnc.reference.oscillation import Oscillation
+from gnc.reference.circling import CirclingReference
 from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
+from gnc.reference.reference import Orbit, Reference, ReferenceStart
 from gnc.safety.keepout_guard import KeepoutGuard
-from gnc.tracker import GuidanceParameters, Law
+from gnc.tracker import GuidanceParameters
 from innerloop.flight.turn_reversal import TurnReversalResponse
-from scenarios.planning.bounded_steering import plan_steering
+from scenarios.planning.bounded_steering import Steering, plan_steering, steering_law
 from scenarios.planning.limits import omega_max
-from scenarios.planning.reference import oscillation_at
+from scenarios.planning.reference import oscillation_at, shape_of_reference
 from scenarios.schema.config import Scenario
 from scenarios.world.steady_vessel import Vessel
 
@@ -39,7 +39,7 @@ class Mission:
 
     nu: float
     vessel: Vessel
-    oscillation: Oscillation
+    oscillation: Orbit
     centre_distance: float
     keepout_radius: float
     guard: KeepoutGuard | None
@@ -57,7 +57,7 @@ class FlightPlan:
     reference : at time 0
     guidance : parameters of the outer loop
     heading_rate_max : omega_max, whether commands are cut at it or not [rad/s]
-    heading_rate_bound : on what the law asks for in any state; infinite if there is none [rad/s]
+    steering : look-ahead and limits of the delta formulation, which every time history shows
     altitude : commanded [m]
     start_north, start_east, start_course : of the UAV [m, m, rad]
     duration_max, settling_band, log_interval : when to stop and what to record; the last in guidance steps
@@ -68,7 +68,7 @@ class FlightPlan:
     reference: Reference
     guidance: GuidanceParameters
     heading_rate_max: float
-    heading_rate_bound: float
+    steering: Steering
     altitude: float
     start_north: float
     start_east: float
@@ -106,7 +106,7 @@ def plan_flight(
         vessel, heading_rate = mission.vessel, mission.oscillation.amplitude
         altitude = vessel.source_height + centre[2]
         reference = _oscillating(scenario, mission, centre, time_step)
-    guidance, bound = _guidance(scenario, heading_rate, lag)
+    steering = plan_steering(scenario, omega_max(scenario.guidance), heading_rate)
     north, east, course = _start(scenario, vessel, seed)
     if mission:
         _check_start(scenario, mission, north, east, course)
@@ -114,9 +114,9 @@ def plan_flight(
         flight_id=flight_id,
         mission=mission,
         reference=reference,
-        guidance=guidance,
+        guidance=_guidance(scenario, steering, lag),
         heading_rate_max=omega_max(scenario.guidance),
-        heading_rate_bound=bound,
+        steering=steering,
         altitude=altitude,
         start_north=north,
         start_east=east,
@@ -154,13 +154,16 @@ def _mission(scenario: Scenario, nu: float, turning: TurnReversalResponse) -> tu
     return mission, centre
 
 
-def _oscillating(scenario: Scenario, mission: Mission, centre: tuple[float, float, float], time_step: float) -> ReferencePoint:
-    phase = math.radians(scenario.guidance.phase_deg)
+def _oscillating(scenario: Scenario, mission: Mission, centre: tuple[float, float, float], time_step: float) -> Reference:
     north, east = mission.vessel.place_ned(centre[0], centre[1])
-    start = start_reference(
-        mission.oscillation, phase=phase, centre_north=north, centre_east=east, vessel_course=mission.vessel.course
+    return shape_of_reference().reference(
+        mission.oscillation,
+        phase=math.radians(scenario.guidance.phase_deg),
+        centre_north=north,
+        centre_east=east,
+        vessel_course=mission.vessel.course,
+        time_step=time_step,
     )
-    return ReferencePoint(mission.oscillation, start, phase=phase, time_step=time_step)
 
 
 def _circle(scenario: Scenario, time_step: float) -> CirclingReference:
@@ -175,23 +178,18 @@ def _circle(scenario: Scenario, time_step: float) -> CirclingReference:
     return CirclingReference(start, speed=speed, heading_rate=speed / radius, time_step=time_step)
 
 
-def _guidance(scenario: Scenario, reference_heading_rate: float, lag: float) -> tuple[GuidanceParameters, float]:
-    """Return the parameters of the outer loop, and the bound on what its law asks for [rad/s]."""
+def _guidance(scenario: Scenario, steering: Steering, lag: float) -> GuidanceParameters:
+    """Return the parameters of the outer loop."""
     g = scenario.guidance
-    steering = plan_steering(scenario, omega_max(scenario.guidance), reference_heading_rate)
-    parameters = GuidanceParameters(
-        law=Law(g.law),
-        look_ahead=steering.look_ahead,
-        gain=g.gain_per_s,
-        rate_max=steering.steering_max,
-        k_1=g.lyapunov_gain_per_m2,
+    epsilon, radius = steering.look_ahead
+    return GuidanceParameters(
+        law=steering_law(g, epsilon_per_m=epsilon, look_ahead_m=radius, steering_max_rad_s=steering.steering_max),
         heading_rate_max=omega_max(scenario.guidance) if g.command_limit else math.inf,
         time_step=1.0 / g.rate_hz,
         lag=lag if g.preview else 0.0,
         airspeed_gain=g.airspeed_gain_per_s if g.airspeed_trim else 0.0,
         airspeed_trim_max=g.airspeed_trim_max_mps,
     )
-    return parameters, steering.bound
 
 
 def _guard(scenario: Scenario, above: float, turning: TurnReversalResponse) -> KeepoutGuard | None:

@@ -5,8 +5,7 @@ import math
 
 import numpy as np
 
-from gnc.reference.orbit import half_widths
-from gnc.reference.oscillation import Oscillation, design_oscillation
+from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape
 from scenarios.planning.limits import omega_max
 from scenarios.schema.config import Guidance
 
@@ -14,13 +13,19 @@ RATIO_STEPS = 48
 """Steps of nu at which orbits are tabled."""
 
 
-def oscillation_at(guidance: Guidance, nu: float) -> Oscillation:
+def shape_of_reference() -> ReferenceShape:
+    """Return the shape of the reference's orbit."""
+    return REFERENCE_SHAPES.get("sinusoid")()
+
+
+def oscillation_at(guidance: Guidance, nu: float) -> Orbit:
     """Return the reference's oscillation at a speed ratio, or raise an InfeasibleError."""
-    return design_oscillation(
+    return shape_of_reference().design(
         nu=nu,
         speed=guidance.airspeed_mps,
         heading_rate_max=omega_max(guidance),
         reserve=guidance.reserve,
+        vessel_heading_rate=0.0,
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
 
@@ -33,4 +38,4 @@ def orbits(guidance: Guidance, speed_ratio_max: float) -> tuple[tuple[float, ...
     """
     ratios = np.linspace(0.0, speed_ratio_max, RATIO_STEPS + 1).tolist()
     oscillations = [oscillation_at(guidance, ratio) for ratio in ratios]
-    return tuple(o.period for o in oscillations), tuple(half_widths(o) for o in oscillations)
+    return tuple(o.period for o in oscillations), tuple(o.half_widths() for o in oscillations)

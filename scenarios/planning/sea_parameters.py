@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
 from gnc.estimation.navigation import NavigationParameters
-from gnc.laws.delta import look_ahead
 from gnc.reference.moving_centre import CentreParameters
 from gnc.sea_parameters import SeaParameters
-from gnc.tracker import GuidanceParameters, Law
+from gnc.tracker import GuidanceParameters
+from scenarios.planning.bounded_steering import steering_law
 from scenarios.planning.limits import omega_max
 from scenarios.schema.sea_config import SeaScenario
 from scenarios.vehicles.sea_airframe import Airframe
@@ -96,11 +96,7 @@ def tracking_parameters(scenario: SeaScenario, airframe: Airframe) -> GuidancePa
     """Return the parameters of the tracking law of a scenario."""
     g = scenario.guidance
     return GuidanceParameters(
-        law=Law(g.law),
-        look_ahead=look_ahead(g.epsilon_per_m, g.look_ahead_m),
-        gain=g.gain_per_s,
-        rate_max=g.steering_max_rad_s,
-        k_1=g.lyapunov_gain_per_m2,
+        law=steering_law(g),
         heading_rate_max=omega_max(g),
         time_step=1.0 / g.rate_hz,
         lag=airframe.lag if g.preview else 0.0,

@@ -9,7 +9,7 @@ import numpy as np
 from aircraft.atmosphere.weather import Weather
 from gnc.errors import InfeasibleError
 from gnc.estimation.vessel_filter import VesselFilter, VesselReport
-from gnc.reference.oscillation import Oscillation
+from gnc.reference.reference import Orbit
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.sea_parameters import SeaParameters
 from innerloop.flight.turn_reversal import TurnReversalResponse
@@ -50,7 +50,7 @@ class SeaPlan:
 
     flight_id: str
     nu: float
-    oscillation: Oscillation
+    oscillation: Orbit
     periods: tuple[float, ...]
     guidance: SeaParameters
     guard: KeepoutGuard | None

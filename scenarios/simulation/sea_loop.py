@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from gnc.estimation.health import Trouble
+from gnc.estimation.health import Fault
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.sea_guidance import SeaGuidance
 from scenarios.planning.sea_planner import SeaPlan
@@ -79,7 +79,7 @@ def fly_sea(plan: SeaPlan, vehicle: Vehicle, *, every_step: bool = False) -> Sea
             sample = vehicle.sample()
             complete = flight.record(step * time_step, sample, judged=sampled)
         if sampled:
-            ditched = flight.guidance.health.trouble is not Trouble.NONE and sample[0] < _ON_THE_WATER
+            ditched = flight.guidance.health.fault_detected and sample[0] < _ON_THE_WATER
             message = "" if ditched else vehicle.fault(sample)
             if message:
                 outcome, message = Outcome.DIVERGED, f"{message} at {step * time_step:.1f} s"
@@ -154,7 +154,7 @@ class _Flight:
         if guidance.altitude_command != self._altitude:
             self._altitude = guidance.altitude_command
             vehicle.command_altitude(self._altitude)
-        if not self._held and guidance.health.trouble is Trouble.STUCK:
+        if not self._held and guidance.health.fault is Fault.ACTUATOR_STUCK:
             # Where one surface is elevator and aileron, each would undo the other's work.
             self._held = True
             vehicle.hold_elevator()

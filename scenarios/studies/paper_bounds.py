@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from gnc.analysis.adversary import tightness
+from gnc.analysis.worst_case_search import tightness
 from gnc.errors import InfeasibleError
 from scenarios.engine.task import Row
 from scenarios.flights import FlightRequest
@@ -71,20 +71,20 @@ def _flown(requests: list[FlightRequest], generator: np.random.Generator) -> lis
             plan = plan_flight(settings, flight_id=request.flight_id, nu=request.nu, seed=request.seed, lag=0.0)
         except InfeasibleError:
             continue
-        if not math.isfinite(plan.heading_rate_bound):
+        if not math.isfinite(plan.steering.bound):
             continue
-        g, speed = plan.guidance, largest_speed(settings)
+        steering, gain, speed = plan.steering, settings.guidance.gain_per_s, largest_speed(settings)
         turn = plan.mission.oscillation.amplitude if plan.mission else abs(plan.reference.heading_rate)
-        key = (speed, turn, *g.look_ahead, g.gain, g.rate_max)
+        key = (speed, turn, *steering.look_ahead, gain, steering.steering_max)
         if key in rows:
             rows[key]["flights"].append(request.flight_id)
             continue
         found = tightness(
-            g.look_ahead,
+            steering.look_ahead,
             speed=speed,
             reference_heading_rate_max=turn,
-            gain=g.gain,
-            steering_max=g.rate_max,
+            gain=gain,
+            steering_max=steering.steering_max,
             samples=SEARCH_STATES,
             generator=generator,
         )
@@ -94,9 +94,9 @@ def _flown(requests: list[FlightRequest], generator: np.random.Generator) -> lis
             "speed_mps": speed,
             "reference_heading_rate_max_rad_s": turn,
             "heading_rate_max_rad_s": plan.heading_rate_max,
-            "epsilon_per_m": g.look_ahead.epsilon,
-            "look_ahead_m": g.look_ahead.radius,
-            "steering_max_rad_s": g.rate_max,
+            "epsilon_per_m": steering.look_ahead.epsilon,
+            "look_ahead_m": steering.look_ahead.radius,
+            "steering_max_rad_s": steering.steering_max,
             "bound_rad_s": found.bound,
             "largest_found_rad_s": found.largest,
         }

@@ -12,10 +12,11 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
+from gnc.laws.cascade import CascadeLaw
 from gnc.laws.delta import look_ahead, relative_state, relative_velocity
-from gnc.reference.oscillating import ReferencePoint, start_reference
+from gnc.reference.oscillating import OscillatingReference, start_reference
 from gnc.reference.oscillation import design_oscillation
-from gnc.tracker import Guidance, GuidanceParameters, Law
+from gnc.tracker import Guidance, GuidanceParameters
 from gnc.unicycle import unicycle_move, unicycle_rates
 
 SPEED = 19.42
@@ -102,11 +103,7 @@ def guidance_parameters(**changes):
     return GuidanceParameters(
         **(
             {
-                "law": Law.CASCADE,
-                "look_ahead": LOOK_AHEAD,
-                "gain": 1.5,
-                "rate_max": 0.4,
-                "k_1": 0.001,
+                "law": CascadeLaw(),
                 "heading_rate_max": HEADING_RATE_MAX,
                 "time_step": 0.05,
                 "lag": 0.0,
@@ -120,7 +117,7 @@ def guidance_parameters(**changes):
 
 def make_guidance(parameters, oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0.0, guard=None):
     start = start_reference(oscillation, phase=phase, centre_north=centre[0], centre_east=centre[1], vessel_course=vessel_course)
-    reference = ReferencePoint(oscillation, start, phase=phase, time_step=parameters.time_step)
+    reference = OscillatingReference(oscillation, start, phase=phase, time_step=parameters.time_step)
     return Guidance(parameters, reference, guard=guard)
 
 

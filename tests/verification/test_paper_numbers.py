@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from gnc.laws.cascade import lyapunov_law
 from gnc.laws.delta import RelativeState, look_ahead, relative_state
+from gnc.laws.lyapunov import lyapunov_law
 from gnc.reference.bessel import ETA_MAX, eta_for_speed_ratio, mean_speed_ratio
 from gnc.reference.orbit import f_x, half_widths, offset
 from gnc.reference.oscillation import GRAVITY, design_oscillation, heading_rate_for_bank

@@ -18,14 +18,15 @@ from gnc_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.analysis.adversary import heading_rates
 from gnc.analysis.bounds import (
     convergence_time,
     fastest_within,
     heading_rate_bound,
     heading_rate_bound_least,
 )
+from gnc.analysis.worst_case_search import heading_rates
 from gnc.errors import InfeasibleError
+from gnc.laws.cascade import CascadeLaw
 from gnc.laws.delta import delta_length, look_ahead
 
 
@@ -174,9 +175,12 @@ def test_the_guidance_flies_its_preview_without_a_command_above_the_bound():
     oscillation = paper_oscillation(0.5, reserve=0.3)
     found = fastest(0.3, limit=HEADING_RATE_MAX)
     parameters = guidance_parameters(
-        look_ahead=found.look_ahead,
-        gain=found.gain,
-        rate_max=found.steering_max,
+        law=CascadeLaw(
+            epsilon_per_m=found.look_ahead.epsilon,
+            look_ahead_m=found.look_ahead.radius,
+            gain_per_s=found.gain,
+            steering_max_rad_s=found.steering_max,
+        ),
         lag=0.5,
         # Not to be cut at omega_max: the law itself keeps it.
         heading_rate_max=10.0,

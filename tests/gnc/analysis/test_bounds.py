@@ -15,15 +15,16 @@ from gnc_cases import (
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from gnc.analysis.adversary import heading_rates, largest_heading_rate, tightness
 from gnc.analysis.bounds import (
     heading_rate_bound,
     heading_rate_bound_least,
 )
-from gnc.analysis.worst_position import shares, shares_at_most
+from gnc.analysis.worst_case_search import heading_rates, largest_heading_rate, tightness
+from gnc.analysis.worst_position import factors, factors_at_most
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade import cascade_law, lyapunov_law
+from gnc.laws.cascade import cascade_law
 from gnc.laws.delta import delta_length, look_ahead, relative_state, relative_velocity
+from gnc.laws.lyapunov import lyapunov_law
 
 distances = st.floats(0.0, 8.0).map(lambda power: 10.0 ** (power - 2.0))
 turns = st.floats(0.0, 1.0)
@@ -80,7 +81,7 @@ def test_omega_rho_is_that_of_the_derivation_and_the_distance_cancels_in_its_wei
 
 @examples(100)
 @given(parameters=look_aheads(), alpha=st.floats(0.0, 3.1), beta=st.floats(0.0, math.pi), turn=turns)
-def test_at_each_position_the_worst_course_and_turn_give_the_two_shares(parameters, alpha, beta, turn):
+def test_at_each_position_the_worst_course_and_turn_give_the_two_factors(parameters, alpha, beta, turn):
     sigma = 0.5 / math.sqrt(parameters.epsilon * parameters.radius)
     distance = math.sqrt(parameters.radius / parameters.epsilon) * math.tan(0.5 * alpha)
     course = np.linspace(-math.pi, math.pi, 3601)
@@ -100,9 +101,9 @@ def test_at_each_position_the_worst_course_and_turn_give_the_two_shares(paramete
         ).max()
         for sign in (1.0, -1.0)
     )
-    speed_share, turn_share = (float(share) for share in shares(sigma, np.array(alpha), np.array(beta)))
+    speed_factor, turn_factor = (float(factor) for factor in factors(sigma, np.array(alpha), np.array(beta)))
     # Courses every 0.1 degrees miss the crest of a cosine by (0.1 degrees)^2/8 = 4e-7 of its amplitude.
-    assert worst == pytest.approx(SPEED / parameters.radius * speed_share + turn * turn_share, rel=1e-6)
+    assert worst == pytest.approx(SPEED / parameters.radius * speed_factor + turn * turn_factor, rel=1e-6)
 
 
 @examples(300)
@@ -117,12 +118,12 @@ def test_no_point_of_a_cell_exceeds_the_cells_bounds_which_close_in(sigma, alpha
     low = np.array([[alpha], [beta]])
     high = np.minimum(low + size, math.pi)
     at = low + np.array(inside)[:, None] * (high - low)
-    for share, at_most in zip(shares(sigma, *at), shares_at_most(sigma, low, high), strict=True):
+    for factor, at_most in zip(factors(sigma, *at), factors_at_most(sigma, low, high), strict=True):
         # The bounds use the same sines and cosines: roundings, amplified by at most 1/(1 - sigma) = 1000 in rho.
-        assert share[0] <= at_most[0] * (1.0 + 1e-12)
-    for share, at_most in zip(shares(sigma, *low), shares_at_most(sigma, low, low), strict=True):
-        # A root of the rounding of (1 - sigma)^-2 where the vehicle's share vanishes.
-        assert at_most[0] == pytest.approx(share[0], rel=1e-9, abs=1e-5)
+        assert factor[0] <= at_most[0] * (1.0 + 1e-12)
+    for factor, at_most in zip(factors(sigma, *low), factors_at_most(sigma, low, low), strict=True):
+        # A root of the rounding of (1 - sigma)^-2 where the vehicle's factor vanishes.
+        assert at_most[0] == pytest.approx(factor[0], rel=1e-9, abs=1e-5)
 
 
 @examples(150)
@@ -132,20 +133,22 @@ def test_no_point_of_a_cell_exceeds_the_cells_bounds_which_close_in(sigma, alpha
     direction=courses,
     course=courses,
     turn=turns,
-    share=st.floats(-1.0, 1.0),
+    factor=st.floats(-1.0, 1.0),
     speeds=st.tuples(st.floats(5.0, 40.0), st.floats(5.0, 40.0)),
     gain=st.floats(0.1, 5.0),
     steering_max=steering,
 )
 def test_no_command_exceeds_the_bound_also_at_unequal_speeds(
-    parameters, distance, direction, course, turn, share, speeds, gain, steering_max
+    parameters, distance, direction, course, turn, factor, speeds, gain, steering_max
 ):
     bound = heading_rate_bound(
         parameters, speed=max(speeds), reference_heading_rate_max=turn, steering_max=steering_max, tolerance=0.01
     )
     north, east = distance * math.cos(direction), distance * math.sin(direction)
     reference_speed, speed = speeds
-    omega = command(parameters, north, east, course, share * turn, gain, steering_max, reference_speed=reference_speed, speed=speed)
+    omega = command(
+        parameters, north, east, course, factor * turn, gain, steering_max, reference_speed=reference_speed, speed=speed
+    )
     assert abs(omega) <= bound
 
 
@@ -288,7 +291,7 @@ def test_law_24_has_no_bound():
     gain=st.floats(0.1, 5.0),
     steering_max=steering,
 )
-def test_the_adversary_commands_what_the_guidance_does(
+def test_the_worst_case_search_commands_what_the_guidance_does(
     parameters, distance, direction, reference_course, course, turn, gain, steering_max
 ):
     north, east = distance * math.cos(direction), distance * math.sin(direction)

@@ -8,8 +8,8 @@ import pytest
 from bounds_cases import LIMIT, fastest
 from gnc_cases import SPEED
 
-from gnc.analysis.adversary import tightness
 from gnc.analysis.bounds import heading_rate_bound_least
+from gnc.analysis.worst_case_search import tightness
 from gnc.errors import InfeasibleError
 from gnc.laws.delta import look_ahead
 

@@ -28,14 +28,13 @@ from gnc.analysis.cascade_system import (
     driven_rates,
     driving_rate,
     excursion_time,
-    h,
     unforced_rates,
     v_1_rate_split,
     v_1_unforced_acceleration,
     v_1_unforced_rate,
 )
 from gnc.analysis.dynamics import state_rates, v_1_rate
-from gnc.laws.cascade import cascade_law
+from gnc.laws.cascade import cascade_law, h
 from gnc.laws.delta import RelativeState, look_ahead, relative_velocity
 
 heading_rates = st.floats(-0.5, 0.5)

@@ -22,9 +22,10 @@ from scipy.integrate import simpson, solve_ivp
 
 from gnc.analysis.cascade_system import v_1_rate_split
 from gnc.analysis.dynamics import equilibrium, state_rates, v_1, v_1_rate, v_2, v_2_acceleration, v_2_rate
-from gnc.angles import wrap
-from gnc.laws.cascade import cascade_law, lyapunov_law
+from gnc.laws.cascade import cascade_law
 from gnc.laws.delta import RelativeState, distance_squared_rate, relative_velocity
+from gnc.laws.lyapunov import lyapunov_law
+from gnc.numeric import wrap
 
 K_1 = 0.001
 K_2 = 1.0 / K_1

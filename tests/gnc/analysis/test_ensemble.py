@@ -19,13 +19,15 @@ from scipy.integrate import solve_ivp
 
 from gnc.analysis.averaged_motion import averaged_settling_time
 from gnc.analysis.dynamics import state_rates, v_2
-from gnc.analysis.ensemble import DISTANCE_CONVERGED, Outcome, Tolerances, fly_ensemble
+from gnc.analysis.ensemble import fly_ensemble
 from gnc.analysis.ensemble_motion import MOTIONS, Steering, Vehicle
+from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, Outcome, Tolerances
 from gnc.analysis.turning_reference import TurningReferences
-from gnc.angles import wrap
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade import cascade_law, lyapunov_law
+from gnc.laws.cascade import cascade_law
 from gnc.laws.delta import relative_velocity
+from gnc.laws.lyapunov import lyapunov_law
+from gnc.numeric import wrap
 
 K_1, GAIN, STEERING_MAX = 0.001, 1.5, 0.4
 VEHICLE = Vehicle(

@@ -45,7 +45,7 @@ def test_its_process_noise_is_singers(time):
 
 @pytest.mark.parametrize("time", [0.5, 12.0, 60.0])
 def test_it_extrapolates_an_acceleration_that_fades(time):
-    moved = make()._moved((3.0, 5.0, 0.1), time)
+    moved = make()._predicted((3.0, 5.0, 0.1), time)
     # Rounding.
     assert moved == pytest.approx(singer(time)[0] @ [3.0, 5.0, 0.1], rel=1e-10)
 

@@ -5,7 +5,6 @@ from gnc_cases import LOOK_AHEAD, SPEED, courses, examples, moved, relative, tra
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from gnc.angles import wrap
 from gnc.errors import InfeasibleError
 from gnc.laws.delta import (
     LookAhead,
@@ -18,6 +17,7 @@ from gnc.laws.delta import (
     relative_state,
     relative_velocity,
 )
+from gnc.numeric import wrap
 
 offsets = st.floats(-500.0, 500.0)
 speeds = st.floats(5.0, 40.0)

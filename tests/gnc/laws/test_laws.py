@@ -1,4 +1,6 @@
 import math
+import pickle
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -7,11 +9,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from gnc.analysis.cascade_system import h
 from gnc.analysis.dynamics import equilibrium
-from gnc.laws.cascade import cascade_law, line_of_sight_law, lyapunov_law
+from gnc.errors import InfeasibleError
+from gnc.laws.cascade import CascadeLaw, cascade_law, h
 from gnc.laws.delta import RelativeState, relative_velocity
+from gnc.laws.line_of_sight import LineOfSightLaw, line_of_sight_law
+from gnc.laws.lyapunov import LyapunovLaw, lyapunov_law
+from gnc.laws.steering_law import STEERING_LAWS
 
+# What the laws command in the guidance is tested in test_guidance.py.
 GAIN, RATE_MAX, K_1 = 1.5, 0.4, 0.001
 
 omegas = st.floats(-1.0, 1.0)
@@ -117,3 +123,36 @@ def test_near_the_reference_the_line_of_sight_turns_arbitrarily_fast_and_z_does_
     swing = [line_of_sight_law(s[0] - s[3], s[1] - s[4], s[5], 1.0) for s in states]
     assert max(swing) - min(swing) > 3.0
     assert np.ptp([relative(s).phi for s in states]) < 0.01
+
+
+def test_the_laws_are_known_by_name_and_have_the_defaults_of_a_scenario():
+    assert STEERING_LAWS.names() == ["cascade", "line_of_sight", "lyapunov"]
+    # scenarios/schema, [guidance].
+    assert STEERING_LAWS.get("cascade")() == CascadeLaw(
+        epsilon_per_m=0.005, look_ahead_m=60.0, gain_per_s=1.5, steering_max_rad_s=0.4
+    )
+    assert STEERING_LAWS.get("lyapunov")() == LyapunovLaw(epsilon_per_m=0.005, look_ahead_m=60.0, lyapunov_gain_per_m2=0.001)
+    assert STEERING_LAWS.get("line_of_sight")() == LineOfSightLaw(gain_per_s=1.5)
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, math.inf, math.nan])
+@pytest.mark.parametrize(
+    ("law", "name"),
+    [(law, field.name) for law in (CascadeLaw, LyapunovLaw, LineOfSightLaw) for field in fields(law) if field.init],
+)
+def test_a_law_refuses_parameters_that_are_not_finite_and_above_zero(law, name, value):
+    with pytest.raises(ValueError, match=rf"{name} is .*; it must be finite and above 0; the default is "):
+        law(**{name: value})
+
+
+@pytest.mark.parametrize("law", [CascadeLaw, LyapunovLaw])
+def test_a_law_refuses_a_look_ahead_that_is_too_short(law):
+    # 1/(4 epsilon) is 50 m.
+    with pytest.raises(InfeasibleError, match=r"R is 40 m; it must exceed 1/\(4 epsilon\) = 50 m: raise R or epsilon"):
+        law(look_ahead_m=40.0)
+
+
+@pytest.mark.parametrize("law", [CascadeLaw(), LyapunovLaw(), LineOfSightLaw()])
+def test_laws_can_be_sent_to_another_process_and_changed_by_replacement(law):
+    assert pickle.loads(pickle.dumps(law)) == law
+    assert replace(law) == law

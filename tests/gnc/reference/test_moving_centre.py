@@ -29,7 +29,7 @@ def make(plume_heading=None):
     )
 
 
-def move(centre, velocity, *, acceleration=(0.0, 0.0), wind=(0.0, 0.0), time_step=TIME_STEP, further=0.0):
+def move(centre, velocity, *, acceleration=(0.0, 0.0), wind=(0.0, 0.0), time_step=TIME_STEP, additional_range=0.0):
     centre.move(
         time_step,
         vessel_north=velocity[0],
@@ -38,7 +38,7 @@ def move(centre, velocity, *, acceleration=(0.0, 0.0), wind=(0.0, 0.0), time_ste
         acceleration_east=acceleration[1],
         wind_north=wind[0],
         wind_east=wind[1],
-        further=further,
+        additional_range=additional_range,
     )
 
 
@@ -111,7 +111,7 @@ def test_its_velocity_is_the_rate_of_its_place(plume_heading, turn_rate, acceler
             acceleration=rate,
             wind=wind,
             time_step=time_step if step else 0.0,
-            further=20.0 if time > 5.0 else 0.0,
+            additional_range=20.0 if time > 5.0 else 0.0,
         )
         # In the frame of the air mass; the vessel's place by the trapezoidal rule, 1e-6 m a step.
         places.append((north + centre.x, east + centre.y))
@@ -171,7 +171,7 @@ def test_it_goes_where_it_has_to_be_when_it_must_stay_further_off():
     move(centre, (8.0, 0.0), time_step=0.0)
     near = centre.distance
     for _ in range(300):
-        move(centre, (8.0, 0.0), further=100.0)
+        move(centre, (8.0, 0.0), additional_range=100.0)
     # 150 s at 0.06/s: e^-9 of 100 m.
     assert centre.distance == pytest.approx(near + 100.0, abs=0.05)
     assert centre.in_place

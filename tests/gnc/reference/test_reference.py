@@ -2,11 +2,14 @@ import math
 
 import numpy as np
 import pytest
-from gnc_cases import SPEED, paper_oscillation
+from gnc_cases import HEADING_RATE_MAX, SPEED, paper_oscillation
 from scipy.integrate import solve_ivp
 
-from gnc.reference.orbit import offset
-from gnc.reference.oscillating import CirclingReference, ReferencePoint, ReferenceStart, start_reference
+from gnc.reference.circling import CirclingReference
+from gnc.reference.orbit import half_widths, offset
+from gnc.reference.oscillating import OscillatingReference, start_reference
+from gnc.reference.oscillation import design_oscillation
+from gnc.reference.reference import REFERENCE_SHAPES, ReferenceStart
 from gnc.unicycle import unicycle_move
 
 TIME_STEP = 0.05
@@ -17,7 +20,7 @@ COURSE = 0.7
 def make(nu, *, phase=0.0, time_step=TIME_STEP):
     oscillation = paper_oscillation(nu, roll_rate_max=math.radians(40.0))
     start = start_reference(oscillation, phase=phase, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE)
-    return oscillation, ReferencePoint(oscillation, start, phase=phase, time_step=time_step)
+    return oscillation, OscillatingReference(oscillation, start, phase=phase, time_step=time_step)
 
 
 def closed_form(oscillation, time, phase):
@@ -174,3 +177,19 @@ def test_a_circling_reference_comes_round():
     assert (reference.north, reference.east) == pytest.approx((start.north, start.east), rel=0.0, abs=1e-9)
     # The circle's diameter, 2 V_r/omega_r; a turn of 1,000 steps has a sample at its far side.
     assert farthest == pytest.approx(2.0 * SPEED / 0.15, rel=1e-9)
+
+
+def test_the_papers_shape_is_known_by_name_and_is_the_papers_oscillation_and_reference():
+    shape = REFERENCE_SHAPES.get("sinusoid")()
+    task = {"nu": 0.5, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX, "reserve": 0.1}
+    orbit = shape.design(**task, vessel_heading_rate=0.0, roll_rate_max=math.inf)
+    assert orbit == design_oscillation(**task)
+    assert orbit.half_widths() == half_widths(orbit)
+    reference = shape.reference(orbit, phase=0.4, centre_north=-214.0, centre_east=5.0, vessel_course=0.3, time_step=TIME_STEP)
+    start = start_reference(orbit, phase=0.4, centre_north=-214.0, centre_east=5.0, vessel_course=0.3)
+    alone = OscillatingReference(orbit, start, phase=0.4, time_step=TIME_STEP)
+    for _ in range(100):
+        reference.step()
+        alone.step()
+    # The same arithmetic.
+    assert (reference.north, reference.east, reference.course) == (alone.north, alone.east, alone.course)

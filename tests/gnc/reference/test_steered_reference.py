@@ -9,9 +9,10 @@ from scipy.special import j0
 
 from gnc.reference.bessel import eta_for_speed_ratio
 from gnc.reference.orbit import offset
-from gnc.reference.oscillating import ReferencePoint, start_reference
+from gnc.reference.orbit_tables import eta_for_mean_speed, unit_offset
+from gnc.reference.oscillating import OscillatingReference, start_reference
 from gnc.reference.oscillation import design_oscillation
-from gnc.reference.steered import SteeredReference, eta_for_mean_speed, unit_offset
+from gnc.reference.steered import SteeredReference
 
 TIME_STEP = 0.05
 ROLL_RATE_MAX = math.radians(40.0)
@@ -46,7 +47,7 @@ def test_with_constant_parameters_it_is_the_reference_of_the_paper(nu):
     reference = steered(nu=nu)
     oscillation = oscillation_of(reference)
     start = start_reference(oscillation, phase=0.0, centre_north=-214.0, centre_east=35.0, vessel_course=0.7)
-    paper = ReferencePoint(oscillation, start, phase=0.0, time_step=TIME_STEP)
+    paper = OscillatingReference(oscillation, start, phase=0.0, time_step=TIME_STEP)
     for _ in range(4000):
         reference.step()
         paper.step()

@@ -5,107 +5,28 @@ from collections import deque
 import numpy as np
 import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED, courses, examples, fly, guidance_parameters, make_guidance, paper_oscillation
+from guard_cases import (
+    LAGS,
+    RADIUS,
+    TIME_STEP,
+    TURN_RADIUS,
+    Hunter,
+    Steady,
+    aim_at_the_centre,
+    commands,
+    distances,
+    fly_guarded,
+    held_at_random,
+    make_guard,
+    moved,
+    random_start,
+    random_velocity,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.angles import wrap
+from gnc.numeric import wrap
 from gnc.reference.placement import PlumeAxis, distance_by_paper
-from gnc.safety.keepout_guard import KeepoutGuard
-from gnc.unicycle import lagged_move, unicycle_move
-
-RADIUS = 200.0
-TIME_STEP = 0.05
-TURN_RADIUS = SPEED / HEADING_RATE_MAX
-LAGS = pytest.mark.parametrize(("lag", "delay"), [(0.0, 0.0), (0.4, 0.0), (0.25, 0.25)])
-
-commands = st.floats(-HEADING_RATE_MAX, HEADING_RATE_MAX)
-distances = st.floats(0.0, 700.0)
-
-
-def make_guard(*, lag=0.4, delay=0.0, radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, **changes):
-    return KeepoutGuard(radius=radius, heading_rate_max=heading_rate_max, lag=lag, delay=delay, time_step=TIME_STEP, **changes)
-
-
-def moved(state, command, lag, duration, speed=SPEED):
-    """Return position in the air mass, course and heading rate after a held command: the project's own unicycle."""
-    north, east, course, heading_rate = state
-    if lag > 0.0:
-        return lagged_move(north, east, course, heading_rate, speed, command, lag, duration)
-    return (*unicycle_move(north, east, course, speed, command, duration), command)
-
-
-class Steady:
-    """A disc at constant velocity, whose velocity is known."""
-
-    def __init__(self, velocity):
-        self.velocity = self.told = velocity
-
-    def step(self, x, y, duration):
-        pass
-
-
-class Hunter:
-    """A disc that turns and speeds up towards the vehicle as hard as it may, and says its velocity with a constant error."""
-
-    def __init__(self, velocity, *, acceleration, speed_max, error):
-        self.velocity, self._acceleration, self._speed_max, self._error = velocity, acceleration, speed_max, error
-
-    @property
-    def told(self):
-        return self.velocity[0] + self._error[0], self.velocity[1] + self._error[1]
-
-    def step(self, x, y, duration):
-        distance = math.hypot(x, y)
-        faster = [v + self._acceleration * duration * to / distance for v, to in zip(self.velocity, (x, y), strict=True)]
-        if math.hypot(*faster) <= self._speed_max:
-            self.velocity = tuple(faster)
-
-
-def fly_guarded(guard, start, want, disc, *, lag, delay=0.0, duration=60.0, speed=SPEED):
-    """Return the closest approach to the disc's centre [m], and of each step whether the guard changed it and was lost."""
-    x, y, course, heading_rate = start
-    under_way = deque([heading_rate] * round(delay / TIME_STEP))
-    closest, changed, lost = math.hypot(x, y), [], []
-    pieces = 5
-    for step in range(round(duration / TIME_STEP)):
-        command = guard.limit(want(step, x, y, course), x, y, *disc.told, course, speed, heading_rate)
-        changed.append(guard.intervening)
-        lost.append(guard.lost)
-        under_way.append(command)
-        acting = under_way.popleft()
-        for _ in range(pieces):
-            piece = TIME_STEP / pieces
-            x, y, course, heading_rate = moved((x, y, course, heading_rate), acting, lag, piece, speed)
-            x, y = x - disc.velocity[0] * piece, y - disc.velocity[1] * piece
-            disc.step(x, y, piece)
-            closest = min(closest, math.hypot(x, y))
-    return closest, changed, lost
-
-
-def aim_at_the_centre(_, x, y, course, heading_rate_max=HEADING_RATE_MAX):
-    error = wrap(math.atan2(-y, -x) - course)
-    return min(max(1.5 * error, -heading_rate_max), heading_rate_max)
-
-
-def held_at_random(generator, heading_rate_max=HEADING_RATE_MAX):
-    """Full turns and anything between, each for up to four seconds."""
-    values = []
-    while len(values) < 1300:
-        turn = generator.choice([-1.0, 1.0, generator.uniform(-1.0, 1.0)]) * heading_rate_max
-        values += [float(turn)] * int(generator.integers(1, 80))
-    return lambda step, *_: values[step]
-
-
-def random_start(generator, nearest=260.0):
-    bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(nearest, 600.0)
-    course = generator.uniform(-math.pi, math.pi)
-    turn = generator.uniform(-HEADING_RATE_MAX, HEADING_RATE_MAX)
-    return distance * math.cos(bearing), distance * math.sin(bearing), course, turn
-
-
-def random_velocity(generator, speed):
-    course = generator.uniform(-math.pi, math.pi)
-    return speed * math.cos(course), speed * math.sin(course)
 
 
 @LAGS
@@ -255,77 +176,6 @@ def test_mirrored_situations_are_answered_mirrored(lag, delay):
     assert 20 < changed < 280
 
 
-def turn_by_hand(side, state, velocity, lag, delay):
-    """Return by how much a full turn keeps the radius [m], flown in small steps for two turns or until it heads straight away."""
-    x, y, course, turn = state
-    closest, piece = math.inf, 0.005
-    for i in range(round(30.0 / piece)):
-        begun = i * piece >= delay - 1e-9
-        if begun:
-            closest = min(closest, math.hypot(x, y))
-        x, y, course, turn = moved((x, y, course, turn), side * HEADING_RATE_MAX if begun else turn, lag, piece)
-        x, y = x - velocity[0] * piece, y - velocity[1] * piece
-        if begun and side * turn > 0.0 and 0.0 <= side * wrap(math.atan2(y, x) - course) < 0.05:
-            break
-    return closest - RADIUS
-
-
-@LAGS
-def test_the_clearance_is_that_of_the_better_turn_away_flown_in_small_steps(lag, delay):
-    generator = np.random.default_rng(4)
-    for _ in range(12):
-        velocity = random_velocity(generator, 0.6 * SPEED)
-        state = random_start(generator, nearest=RADIUS)
-        found = make_guard(lag=lag, delay=delay).clearance(*state[:2], *velocity, state[2], SPEED, state[3])
-        flown = max(turn_by_hand(side, state, velocity, lag, delay) for side in (1.0, -1.0))
-        # The looks are 0.125 rad apart; the closest approach between them is predicted to 0.04 m (gnc/safety/keepout_guard.py).
-        assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
-
-
-def closest_by(values, starts, velocities, lag):
-    """Return the closest approaches [m] of many vehicles under many commands: first-order lag, equation (1) by small steps."""
-    piece = 0.05
-    x, y, course, turn = (column.copy() for column in starts)
-    closest = np.hypot(x, y)
-    for command in values:
-        kept = math.exp(-piece / lag)
-        mean = command + (turn - command) * lag * (1.0 - kept) / piece
-        middle = course + 0.5 * piece * (0.5 * (turn + mean))
-        x = x + (SPEED * np.cos(middle) - velocities[0]) * piece
-        y = y + (SPEED * np.sin(middle) - velocities[1]) * piece
-        course, turn = course + mean * piece, command + (turn - command) * kept
-        closest = np.minimum(closest, np.hypot(x, y))
-    return closest
-
-
-@pytest.mark.parametrize("nu", [0.0, 0.5, 0.9])
-def test_no_bounded_command_keeps_farther_off_than_the_better_turn_away(nu):
-    # A brute-force search: 2000 commands, bang-bang with up to two switches, or held at random.
-    generator = np.random.default_rng(6)
-    steps, count = 240, 2000
-    times = np.arange(steps)[:, None]
-    met = 0
-    for _ in range(200):
-        bearing, off = generator.uniform(-math.pi, math.pi, 2)
-        distance, course = generator.uniform(205.0, 260.0), bearing + math.pi + 0.25 * off
-        start = (distance * math.cos(bearing), distance * math.sin(bearing), course, generator.uniform(-0.5, 0.5))
-        velocity = random_velocity(generator, nu * SPEED)
-        mine = make_guard().clearance(*start[:2], *velocity, start[2], SPEED, start[3])
-        if not -60.0 < mine < 15.0 or met == 5:
-            # Where it is no close thing, nothing is to be seen.
-            continue
-        met += 1
-        switches = np.sort(generator.integers(0, 160, (2, count)), axis=0)
-        sign = generator.choice([-1.0, 1.0], count)
-        bang = sign * np.where(times < switches[0], 1.0, np.where(times < switches[1], -1.0, 1.0))
-        held = np.repeat(generator.uniform(-1.2, 1.2, (steps // 20, count)), 20, axis=0).clip(-1.0, 1.0)
-        values = HEADING_RATE_MAX * np.where(np.arange(count) % 3 > 0, bang, held)
-        best = closest_by(values, [np.full(count, value) for value in start], velocity, 0.4)
-        # The search integrates in steps of 0.05 s, 0.97 m: good to a few centimetres on the way in.
-        assert np.max(best) - RADIUS <= mine + 0.1
-    assert met == 5
-
-
 def test_a_start_that_cannot_be_held_is_said_to_be_so():
     guard = make_guard()
     # Head on, 20 m off the radius, and a turn takes 38.6 m.
@@ -359,7 +209,7 @@ def test_a_vehicle_that_a_growing_radius_overtakes_flies_straight_away_from_it(w
     for _ in range(200):
         x, y, course, turn = state
         # As of a vessel that is not heard of, whose disc grows faster than the vehicle flies.
-        command = guard.limit(want, x, y, 0.0, 0.0, course, SPEED, turn, extra_radius=5000.0)
+        command = guard.limit(want, x, y, 0.0, 0.0, course, SPEED, turn, radius_inflation=5000.0)
         assert guard.lost
         state = moved(state, command, 0.4, TIME_STEP)
     x, y, course, _ = state
@@ -374,7 +224,7 @@ def test_a_radius_that_grows_is_looked_at_at_once():
     motion = (0.0, 250.0, 0.0, 0.0, 0.0, SPEED, 0.0)
     assert guard.limit(-HEADING_RATE_MAX, *motion) == -HEADING_RATE_MAX
     assert guard._free_steps > 0
-    assert guard.limit(-HEADING_RATE_MAX, *motion, extra_radius=49.99) > -HEADING_RATE_MAX
+    assert guard.limit(-HEADING_RATE_MAX, *motion, radius_inflation=49.99) > -HEADING_RATE_MAX
 
 
 def test_interventions_are_counted_once_each():

@@ -117,7 +117,7 @@ def test_gusts_on_an_orbit_vary_as_the_course_makes_them():
 
 def test_without_preview_steering_is_the_law_linearised_by_hand():
     _, flight = plan("guidance.preview=false")
-    speed, radius, gain = 19.42, flight.guidance.look_ahead.radius, flight.guidance.gain
+    speed, radius, gain = 19.42, flight.guidance.law.look_ahead_m, flight.guidance.law.gain_per_s
     found = dict(zip(STEERED_BY, steering_gains(flight.guidance, 0.0, speed), strict=True))
     # Laws (30) and (18) about a straight line, delta = rho = R: omega = -k (chi - e/R) - V chi/R, with e the reference's offset to
     # the right. Differences of 1e-5 are good to 1e-6.
@@ -177,7 +177,7 @@ def test_light_turbulence_spreads_flights_as_predicted_and_the_margin_holds_them
     hold = design_speed_hold(
         bandwidth=x8_design.bandwidths.airspeed,
         speed=flight.reference.speed,
-        look_ahead=flight.guidance.look_ahead.radius,
+        look_ahead=flight.guidance.law.look_ahead_m,
         airspeed_min=X8.envelope.airspeed_min,
         airspeed_max=X8.envelope.airspeed_max,
     )

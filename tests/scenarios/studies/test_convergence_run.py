@@ -6,7 +6,7 @@ import shutil
 import pandas as pd
 import pytest
 
-from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
+from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.build import build_reports
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.errors import InputError

@@ -16,6 +16,18 @@ _Array = npt.NDArray[np.float64]
 _REFINED = 4
 """How many of the worst samples start a refinement."""
 
+_GATHERED = 0.5
+"""Fraction of the samples that gather where commands are largest; the others cover all geometries [-]."""
+
+_GATHERED_SIGMA = 0.3
+"""How widely they gather: standard deviation of the log of distance, and of course [-, rad]."""
+
+_LOG_DISTANCES = (-7.0, 5.0)
+"""Log of the others' distances over sqrt(R/epsilon) [-]: from 0.001, near the reference, to 150, where delta outgrows d."""
+
+_LOG10_ANGLES = (-3.0, 0.0)
+"""Decimal log of the gathered samples' angles to head on [-]: from what the refinement takes over, 0.001 rad, to a right angle."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tightness:
@@ -173,12 +185,13 @@ def heading_rates(
 def _random_states(parameters: LookAhead, samples: int, generator: np.random.Generator) -> _Array:
     """Return log distance, direction of d against the reference's course, and the vehicle's course against it: three rows."""
     critical = 0.5 * math.log(parameters.radius / parameters.epsilon)
-    gathered = generator.random(samples) < 0.5
-    log_distance = critical + np.where(gathered, generator.normal(0.0, 0.3, samples), generator.uniform(-7.0, 5.0, samples))
-    # Directions gather on half a turn at every scale from 0.001 rad on.
-    nearly = 10.0 ** generator.uniform(-3.0, 0.0, samples) * generator.choice([-1.0, 1.0], samples)
+    gathered = generator.random(samples) < _GATHERED
+    near, anywhere = generator.normal(0.0, _GATHERED_SIGMA, samples), generator.uniform(*_LOG_DISTANCES, samples)
+    log_distance = critical + np.where(gathered, near, anywhere)
+    # Directions gather on half a turn at every scale.
+    nearly = 10.0 ** generator.uniform(*_LOG10_ANGLES, samples) * generator.choice([-1.0, 1.0], samples)
     direction = math.pi + np.where(gathered, nearly, generator.uniform(-math.pi, math.pi, samples))
     # Head on to the reference z points along its course, so that courses across z are courses across the reference's.
-    across = 0.5 * math.pi * generator.choice([-1.0, 1.0], samples) + generator.normal(0.0, 0.3, samples)
+    across = 0.5 * math.pi * generator.choice([-1.0, 1.0], samples) + generator.normal(0.0, _GATHERED_SIGMA, samples)
     course = np.where(gathered, across, generator.uniform(-math.pi, math.pi, samples))
     return np.stack([log_distance, direction, course])

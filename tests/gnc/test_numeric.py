@@ -5,7 +5,7 @@ from gnc_cases import examples
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from gnc.angles import wrap
+from gnc.numeric import limited, wrap
 
 # The last floating-point number below pi, and the first beyond -pi: where wrap functions go wrong.
 BELOW_HALF_TURN = math.nextafter(math.pi, 0.0)
@@ -69,3 +69,15 @@ def test_a_wrapped_angle_points_the_same_way(angle):
     # 160 turns of the rounding of 2 pi, 2.4e-16 each, and that of the sum.
     assert math.cos(wrap(angle)) == pytest.approx(math.cos(angle), rel=0.0, abs=2e-13)
     assert math.sin(wrap(angle)) == pytest.approx(math.sin(angle), rel=0.0, abs=2e-13)
+
+
+@examples(500)
+@given(value=st.floats(allow_nan=False), limit=st.floats(1e-300, 1e300))
+def test_a_limited_value_is_what_min_and_max_make_of_it(value, limit):
+    assert limited(value, limit) == min(max(value, -limit), limit)
+
+
+@pytest.mark.parametrize("limit", [0.5, math.inf])
+def test_what_is_not_a_number_is_not_made_one(limit):
+    # A command that were cut to its limit would hide that the guidance has lost count.
+    assert math.isnan(limited(math.nan, limit))

@@ -1,0 +1,175 @@
+"""How a vehicle with a lag turns away from a moving disc, and how near it comes to it: docs/keepout_guard.md."""
+
+import math
+from collections import deque
+
+_TURN = 0.125
+"""Course turned between two points of a predicted turn, at most; half of it where the lag is shorter than that takes [rad]."""
+_TURN_MAX = 2.5 * math.pi
+"""Course after which a turn away is over [rad]: once round, and what a turn the other way before it and the disc's motion add."""
+
+Motion = tuple[float, float, float, float, float, float, float]
+"""Arguments of ``KeepoutGuard.limit`` from x to heading_rate."""
+Start = tuple[float, float, float, float]
+"""x, y, course and heading rate."""
+
+
+class TurnPrediction:
+    """Turns of a vehicle whose heading rate follows its command with a lag, relative to a moving disc.
+
+    Parameters
+    ----------
+    radius, heading_rate_max, lag, delay, time_step, speed_error, acceleration : as of ``KeepoutGuard``; the delay in whole steps
+    """
+
+    __slots__ = (
+        "_acceleration", "_chord", "_delay", "_hold", "_interval", "_lag", "_points_max", "_radius", "_rate", "_speed_error",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        *,
+        radius: float,
+        heading_rate_max: float,
+        lag: float,
+        delay: float,
+        time_step: float,
+        speed_error: float,
+        acceleration: float,
+    ) -> None:
+        self._radius, self._rate = radius, heading_rate_max
+        self._lag, self._delay = lag, delay
+        self._speed_error, self._acceleration = speed_error, acceleration
+        self._hold = _held(time_step, lag)
+        interval = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
+        self._interval = _held(interval, lag)
+        self._points_max = math.ceil(_TURN_MAX / (heading_rate_max * interval))
+        half = 0.5 * heading_rate_max * interval
+        self._chord = math.sin(half) / half
+
+    def when_acting(self, motion: Motion, under_way: deque[float]) -> Motion:
+        """Return the motion when a command given now begins to act: those before it cannot be taken back.
+
+        ``under_way`` holds as many of those [rad/s] as fit into the delay, or none before the first.
+        """
+        count = under_way.maxlen
+        if not count:
+            return motion
+        x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
+        duration, turned, mean, decay = self._hold
+        turned_by, mean_by, gained_by = duration - turned, 0.5 * duration - mean, 1.0 - decay
+        begun, middles = course, 0.0
+        # Before the first call the commands under way are taken to be the turn that is flown.
+        for command in under_way or (heading_rate,) * count:
+            middles += course + mean * heading_rate + mean_by * command
+            course += turned * heading_rate + turned_by * command
+            heading_rate = decay * heading_rate + gained_by * command
+        middle, half = middles / count, 0.5 * (course - begun)
+        # One chord will do, with the sine over arc of half the course turned.
+        chord = speed * (1.0 - half * half / 6.0)
+        x += (chord * math.cos(middle) - velocity_north) * self._delay
+        y += (chord * math.sin(middle) - velocity_east) * self._delay
+        return x, y, velocity_north, velocity_east, course, speed, heading_rate
+
+    def after(self, command: float, motion: Motion) -> Start:
+        """Return where a command held for one time step leads."""
+        x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
+        duration, turned, mean, decay = self._hold
+        middle = course + mean * heading_rate + (0.5 * duration - mean) * command
+        return (
+            x + (speed * math.cos(middle) - velocity_north) * duration,
+            y + (speed * math.sin(middle) - velocity_east) * duration,
+            course + turned * heading_rate + (duration - turned) * command,
+            decay * heading_rate + (1.0 - decay) * command,
+        )
+
+    def turn_away(
+        self, side: float, start: Start, motion: Motion, time: float, radius_inflation: float, floor: float
+    ) -> tuple[float, float]:
+        """Return by how much a full turn away keeps the radius [m], and for how long [s] no command before it can change that.
+
+        It is over once the vehicle recedes and its turn makes it recede faster: by going on until it heads straight away, and
+        straight on then, it recedes for good. The search ends early below ``floor``.
+
+        Parameters
+        ----------
+        side : 1 to the right, -1 to the left
+        start : of the turn
+        motion : when the command that is judged begins to act
+        time : from now to the start [s]
+        radius_inflation, floor : [m]
+        """
+        cos, sin, sqrt = math.cos, math.sin, math.sqrt
+        x, y, course, heading_rate = start
+        _, _, velocity_north, velocity_east, _, speed, _ = motion
+        duration, turned, mean, decay = self._interval
+        turn = side * self._rate
+        ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - decay) * turn
+        chord = speed * duration * self._chord
+        north, east = velocity_north * duration, velocity_east * duration
+        error, half, lag = self._speed_error, 0.5 * self._acceleration, self._lag
+        fixed = self._radius + radius_inflation
+        least = slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
+        outward = side * (y * cos(course) - x * sin(course))
+        acting = time - self._delay
+        gain = -1.0
+        least_rate, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
+        for point in range(self._points_max):
+            if least < floor:
+                break
+            middle = course + mean * heading_rate + ahead
+            cos_m, sin_m = cos(middle), sin(middle)
+            x += chord * cos_m - north
+            y += chord * sin_m - east
+            course += turned * heading_rate + gained
+            heading_rate = decay * heading_rate + won
+            time += duration
+            acting += duration
+            fade *= decay
+            last, before, before_outward = slack, rise, outward
+            outward = side * (y * cos_m - x * sin_m)
+            slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
+            rise = slack - last
+            slack_rate = slack / (acting - lag * (1.0 - fade))
+            least_rate = slack_rate if slack_rate < least_rate else least_rate
+            if rise < 0.0:
+                if gain >= 0.0:
+                    break
+                least = slack if slack < least else least
+                continue
+            if point == 0:
+                # There is no point before; the rate at the start stands in for it.
+                before = 2.0 * duration * (_range_rate(start, motion) - error) - rise
+            if before < 0.0:
+                # The vertex of the parabola through three points.
+                least = min(least, last - (before + rise) ** 2 / (8.0 * (rise - before)))
+            # Also if it came past straight away between two points: it would have stopped there.
+            if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
+                # It is over. One point more may allow more time until the next prediction.
+                best, gain = gain, max(gain, min(least_rate, rise / duration))
+                if gain == best or outward < 0.0:
+                    break
+        return least, gain / (2.0 * speed * self._rate)
+
+
+def _range_rate(start: Start, motion: Motion) -> float:
+    """Return the rate at which the distance from the disc's centre grows [m/s]."""
+    x, y, course, _ = start
+    _, _, velocity_north, velocity_east, _, speed, _ = motion
+    return ((speed * math.cos(course) - velocity_north) * x + (speed * math.sin(course) - velocity_east) * y) / math.hypot(x, y)
+
+
+def _held(duration: float, lag: float) -> tuple[float, float, float, float]:
+    """Return what a vehicle with a lag makes of a heading rate that it has, while a command is held.
+
+    Returns
+    -------
+    duration : of the command [s]
+    turned : course, per heading rate at the start [s]; the rest of the duration is course per command
+    mean : course on the mean of the duration, per heading rate at the start [s]; the rest of its half is per command
+    decay : heading rate at the end, per heading rate at the start [-]; the rest of 1 is per command
+    """
+    if lag == 0.0:
+        return duration, 0.0, 0.0, 0.0
+    turned = -lag * math.expm1(-duration / lag)
+    return duration, turned, lag * (1.0 - turned / duration), math.exp(-duration / lag)
