@@ -9,7 +9,8 @@ import numpy.typing as npt
 import pandas as pd
 
 from reports.convergence.data import CONVERGED, REFERENCES, ConvergenceData, Law, predicted
-from reports.document.chart import Array, Chart, Line, Panel, Style
+from reports.document.chart import Chart, Line, Panel, Style
+from reports.run.columns import Array
 
 CURVE_POINTS = 200
 """Points of a cumulative curve at most."""

@@ -14,7 +14,7 @@ FAILURES_NAMED = 10
 
 
 def convergence_verdict(data: ConvergenceData) -> Verdict:
-    """Judge a study by the laws that the theory is about, if it flew any: safe if every trajectory under them converged."""
+    """Judge a study by the laws that the theory is about, if it flew any: it holds if every trajectory under them converged."""
     rows, manifest = data.proven(), data.run.manifest
     proven = data.planned > 0
     state = manifest.get("state", "unfinished")
@@ -42,7 +42,7 @@ def convergence_verdict(data: ConvergenceData) -> Verdict:
     if state != "complete":
         detail += f" The run is {state}; continue it with --resume."
     return Verdict(
-        safe=not proven or (len(rows) > 0 and not len(counter_examples)),
+        holds=not proven or (len(rows) > 0 and not len(counter_examples)),
         complete=complete,
         headline=headline,
         detail=detail,

@@ -96,14 +96,14 @@ class Verdict:
 
     Attributes
     ----------
-    safe : nothing happened that must never happen
+    holds : nothing happened that must never happen
     complete : everything that was planned was done, and is as asked
     headline, detail : in words
     failures : a line for each that is not as asked
     figures : name, value and limit of what was asked for; no limit where nothing was
     """
 
-    safe: bool
+    holds: bool
     complete: bool
     headline: str
     detail: str

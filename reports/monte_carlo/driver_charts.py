@@ -6,11 +6,11 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from reports.document.chart import Array, Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel
 from reports.document.panels import capped, level, strips
 from reports.monte_carlo.names import FIGURES, input_label, input_name
+from reports.run.columns import Array, Mask, clearance, violated
 from reports.run.run_data import RunData
-from reports.run.trials import Mask, clearance, entered
 
 SCATTER_MAX = 2000
 """Flights of a scatter at most."""
@@ -91,7 +91,7 @@ def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     measured = run.summary[run.summary["min_distance_m"].notna()]
     shown = measured.iloc[thinned(clearance(measured))]
     drawn = run.draws.set_index("flight_id").reindex(shown["flight_id"])
-    near, inside = clearance(shown), entered(shown)
+    near, inside = clearance(shown), violated(shown)
     groups = [(~inside, "flight", "blue"), (inside, "flight that entered", "vermillion")]
     caption = "Closest approach of each flight beyond r_min, over the inputs with the largest δ."
     if len(shown) < len(measured):

@@ -7,14 +7,14 @@ import pandas as pd
 
 from reports.document.blocks import Block, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel
+from reports.run.columns import clearance
 from reports.run.run_data import RunData
-from reports.run.trials import clearance
 
 _POINTS_MAX = 4000
 """Flights that are drawn, at most: an even sample of more."""
 
 
-def falsify_sections(run: RunData) -> list[Section]:
+def falsification_sections(run: RunData) -> list[Section]:
     """Return the section of a run that searched for the worst flight, and none of any other."""
     config = next(iter(run.manifest["trials"].values()))
     flown = run.summary[run.summary["min_distance_m"].notna()]

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from reports.document.chart import Array, Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel
 from reports.document.panels import histogram
 from reports.monte_carlo.names import FIGURES
+from reports.run.columns import Array, clearance, column, interval_error
 from reports.run.run_data import RunData
-from reports.run.trials import clearance, column, interval_error
 
 CURVE_POINTS = 400
 """Points of a cumulative curve at most."""

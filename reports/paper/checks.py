@@ -83,10 +83,10 @@ def paper_checks(run: RunData) -> list[Check]:
                 )
             )
     for case, name, within in (("sim2_delta", "δ law", True), ("sim2_los", "line of sight", False)):
-        wanted = [value(case, fidelity, "heading_rate_wanted_max_rad_s") for fidelity in vehicles(run)]
+        demand = [value(case, fidelity, "heading_rate_demand_max_rad_s") for fidelity in vehicles(run)]
         limit = value(case, vehicles(run)[0], "heading_rate_limit_rad_s")
         # The δ law at its largest, the line of sight at its smallest: each vehicle has to show it.
-        worst = sum(wanted) if any(math.isnan(w) for w in wanted) else max(wanted) if within else min(wanted)
+        worst = sum(demand) if any(math.isnan(w) for w in demand) else max(demand) if within else min(demand)
         holds = worst <= limit if within else worst > limit
         required = f"{'≤' if within else '>'} ω_max = {number(limit, '{:g}')} rad/s"
         checks.append(Check(f"Sim. 2, {name} asks for", number(worst, "{:.3f} rad/s"), required, _met(worst, holds)))
@@ -121,7 +121,7 @@ def paper_verdict(run: RunData) -> Verdict:
     if state != "complete":
         detail += f" The run is {state}; continue it with --resume."
     return Verdict(
-        safe=not entries and not wrong,
+        holds=not entries and not wrong,
         complete=finished and not len(unmet),
         headline=headline,
         detail=detail,

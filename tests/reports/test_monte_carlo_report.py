@@ -33,7 +33,7 @@ def run_of(rows, inputs, **changes):
     study = load_study("sea_wind", [])
     config = study.model_dump(mode="json")
     manifest = opening_manifest(study, "study", []) | {
-        "study": "sea",
+        "study": "monte_carlo",
         "trials": {"study": config},
         "trial_parameters": {"study": json.loads(json.dumps(parameters(study)))},
         "flights_planned": len(rows),
