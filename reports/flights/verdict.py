@@ -142,4 +142,4 @@ def _worst(criteria: list[Criterion], key: str) -> tuple[str, str, str] | None:
     if not known:
         return None
     worst = max(known, key=lambda criterion: criterion.fraction)
-    return f"{worst.what}, worst where it is limited", worst.worst.split(";")[0], worst.limit
+    return f"{worst.what}, worst", worst.worst.split(";")[0], worst.limit
