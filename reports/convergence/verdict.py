@@ -51,7 +51,7 @@ def convergence_verdict(data: ConvergenceData) -> Verdict:
     )
 
 
-def share(part: int, whole: int) -> str:
+def percentage(part: int, whole: int) -> str:
     """Return a part of a whole in percent, rounded down: 100 % are all."""
     return f"{math.floor(10_000.0 * part / whole) / 100.0:g} %" if whole else "none flown"
 
@@ -75,13 +75,15 @@ def _detail(data: ConvergenceData) -> str:
 
 
 def _figures(data: ConvergenceData) -> list[tuple[str, str, str]]:
-    shares, slowest = [], []
+    fractions, slowest = [], []
     for law in data.laws:
         rows = data.of(law)
-        shares.append((f"{law.name}: converged", share(len(rows) - len(failed(rows)), len(rows)), "100 %" if law.proven else ""))
+        fractions.append(
+            (f"{law.name}: converged", percentage(len(rows) - len(failed(rows)), len(rows)), "100 %" if law.proven else "")
+        )
         slowest.append((f"{law.name}: slowest to settle", number(rows["settling_time_s"].max(), "{:,.0f} s"), ""))
     farthest = ("Farthest start", number(data.rows["start_distance_m"].max(), "{:,.0f} m"), "")
-    return [*shares, farthest, *slowest, _predicted(data.proven() if data.planned else data.rows)]
+    return [*fractions, farthest, *slowest, _predicted(data.proven() if data.planned else data.rows)]
 
 
 def _predicted(rows: pd.DataFrame) -> tuple[str, str, str]:

@@ -34,7 +34,7 @@ def design_verdict(design: Record) -> Verdict:
     elif nominal:
         headline = f"Stable everywhere, but short of {asked} in {_loops(nominal)}"
     elif perturbed:
-        headline = f"Every loop has {asked} everywhere, but a perturbed aircraft falls short"
+        headline = f"Every loop has {asked} everywhere, but a perturbed aircraft does not"
     else:
         headline = f"Every loop has at least {asked} of margin at every point of the grid"
     return Verdict(

@@ -97,10 +97,10 @@ class Verdict:
     Attributes
     ----------
     holds : nothing happened that must never happen
-    complete : everything that was planned was done, and is as asked
+    complete : everything that was planned was done, and is as required
     headline, detail : in words
-    failures : a line for each that is not as asked
-    figures : name, value and limit of what was asked for; no limit where nothing was
+    failures : a line for each failure
+    figures : name, value and limit of what is judged; no limit where there is none
     """
 
     holds: bool

@@ -30,7 +30,7 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
     for trial in trials:
         blocks += [Heading(trial.title), _table(_rows(trial, every=False))]
     defaults = [[p["key"], "", _default(p), p["unit"], p["meaning"]] for p in trials[0].parameters()] if trials else []
-    return [*blocks, Heading("Every parameter, where a trial sets nothing"), _table(defaults)] if trials else []
+    return [*blocks, Heading("Every other parameter, with its default"), _table(defaults)] if trials else []
 
 
 def _table(rows: list[list[str]]) -> Table:

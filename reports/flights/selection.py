@@ -72,7 +72,7 @@ def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     """Yield a trial's flights to look at, the most important first: one of each sort, none twice."""
     rows, flown = trial.rows, trial.flown
     inside, failed = rows[violated(rows)], rows[~met(rows) & ~lost(rows) & ~violated(rows)]
-    # Of the others, those that have a time history: they are chosen for being looked at.
+    # Of the others, those that have a time history: they are chosen for their figures.
     recorded = flown[[trial.run.has_history(str(flight_id)) for flight_id in flown["flight_id"]]]
     order = np.argsort(clearance(recorded), kind="stable")
     chosen = []

@@ -93,9 +93,9 @@ def sim_2_charts(run: RunData) -> list[Chart]:
             " UAV 2 by the δ formulation. Diamonds: starts.",
         ),
         _side_by_side(
-            run, cases, _figure_7, name="fig7", labels=("Time [s]", "Heading rate asked for [rad/s]"),
-            caption="Figure 7: what each law asks for. Dashed: ±ω_max. The kinematic UAV 1 flies what it asks for, as in the paper;"
-            " the aircraft's commands are cut at ω_max.",
+            run, cases, _figure_7, name="fig7", labels=("Time [s]", "Heading-rate demand [rad/s]"),
+            caption="Figure 7: the heading-rate demand of each law. Dashed: ±ω_max. The kinematic UAV 1 flies its demand, as in the"
+            " paper; the aircraft's commands are cut at ω_max.",
         ),
         _side_by_side(
             run, cases, _distances, name="sim2distance", labels=("Time [s]", "Distance to the reference [m]"),
@@ -153,8 +153,8 @@ def coincidences(flown: Flown) -> Array:
     """Return the times at which phi_r = phi [s], linear between samples. Jumps by a turn are none."""
     gap = flown.column("phi_r_rad") - flown.column("phi_rad")
     at = np.nonzero((gap[:-1] * gap[1:] < 0.0) & (np.abs(np.diff(gap)) < math.pi))[0]
-    share = gap[at] / (gap[at] - gap[at + 1])
-    return flown.time[at] + share * (flown.time[at + 1] - flown.time[at])
+    fraction = gap[at] / (gap[at] - gap[at + 1])
+    return flown.time[at] + fraction * (flown.time[at + 1] - flown.time[at])
 
 
 Lines = Callable[[dict[str, Flown]], list[Line]]

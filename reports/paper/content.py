@@ -41,7 +41,7 @@ def paper_content(run: RunData) -> tuple[Verdict, list[Section]]:
             blocks=[
                 Heading("What each simulation sets"),
                 _case_table(run),
-                Heading("Every parameter, where a simulation sets nothing"),
+                Heading("Every other parameter"),
                 parameter_table(run),
             ],
         ),
@@ -59,8 +59,8 @@ _DEMAND, _END = "heading_rate_demand_max_rad_s", "tracking_error_end_m"
 
 _SIM_ONE = (
     "The UAV starts beside the reference and heads the other way. Look-ahead and steering are those that converge fastest while"
-    " no state whatever makes the law ask for more than ω_max (see the section on actuation bounds). That is why it turns so"
-    " gently, and strays hundreds of metres before it comes back: the price of the guarantee."
+    " the heading-rate demand of the law stays within ω_max in every state (see the section on actuation bounds). That is why it"
+    " turns so gently, and strays hundreds of metres before it comes back: the price of the guarantee."
 )
 
 _SIM_TWO = (
@@ -71,7 +71,7 @@ _SIM_TWO = (
 
 _SIM_THREE = (
     "A vessel on a straight course, the UAV from a random place behind it. In the paper the vessel has half the UAV's speed,"
-    " and the reference spends all of ω_max; then no parameters keep what the law asks for within it, and commands are cut at"
+    " and the reference spends all of ω_max; then no parameters keep the demand of the law within it, and commands are cut at"
     " ω_max."
 )
 
@@ -102,7 +102,7 @@ def _flight_table(run: RunData) -> Table:
             outcome(row),
         ])  # fmt: skip
     head = [
-        "Flight", "Settled [s]", "Distance at the end", "Asked for [rad/s]", "Interval [s]", "Crossing [m]", "Closest [m]",
+        "Flight", "Settled [s]", "Distance at the end", "Demand [rad/s]", "Interval [s]", "Crossing [m]", "Closest [m]",
         "Outcome",
     ]  # fmt: skip
     return Table(head=head, rows=rows, widths=[1.9, 0.9, 1.1, 1.1, 0.9, 1.0, 1.0, 1.6])
@@ -144,9 +144,9 @@ def _number_table(run: RunData) -> Table:
         ["Sim. 3", "η = J₀⁻¹(ν), eq. (6)", "not printed", *both("sim3", lambda row: f"{float(row['eta']):.6f} rad", "eta")],
         ["Sim. 1", "converges onto the circle: distance at the end", "→ 0", *both("sim1", end, _END)],
         ["Sim. 1", "largest rise of d in a sample with |φ| < |φ_r|", "none", *both("sim1", falls, _END)],
-        ["Sim. 2", "δ law: largest heading rate asked for", "feasible", *both("sim2_delta", omega, _DEMAND)],
+        ["Sim. 2", "δ law: largest heading-rate demand", "feasible", *both("sim2_delta", omega, _DEMAND)],
         ["Sim. 2", "δ law: distance at the end", "→ 0", *both("sim2_delta", end, _END)],
-        ["Sim. 2", "line of sight: largest heading rate asked for", "saturates", *both("sim2_los", omega, _DEMAND)],
+        ["Sim. 2", "line of sight: largest heading-rate demand", "saturates", *both("sim2_los", omega, _DEMAND)],
         ["Sim. 2", "line of sight: within 30 m for good", "fast", *both("sim2_los", near, _END)],
         ["Sim. 2", "line of sight: distance at the end", "not printed", *both("sim2_los", end, _END)],
     ]  # fmt: skip

@@ -76,7 +76,7 @@ def _tint(colour: str) -> str:
 
 def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bool) -> None:
     x_options: dict[str, Any] = {"title": {"text": panel.x_label, "standoff": 6} if show_x else None, "showticklabels": show_x}
-    # Figures of four digits and names are wide: the title stays clear of them only if it is told how far.
+    # Figures of four digits and names are wide: the title stays clear of them only at a given distance.
     y_options: dict[str, Any] = {"title": {"text": panel.y_label, "standoff": 8}}
     if panel.log_x:
         x_options["type"] = "log"

@@ -11,7 +11,7 @@ from convergence_runs import LAWS, REFERENCES, write_convergence_run
 from reports.build import build_reports
 from reports.convergence.charts import CURVE_POINTS, DISTANCE_BINS, HISTORIES_PER_LAW, HISTORY_POINTS, cumulative
 from reports.convergence.tables import FAILED_ROWS
-from reports.convergence.verdict import FAILURES_NAMED, share
+from reports.convergence.verdict import FAILURES_NAMED, percentage
 from reports.document.blocks import Table, Text
 from reports.document.chart import Chart, Line, Panel
 from reports.errors import ReportError
@@ -114,7 +114,7 @@ def test_a_study_of_which_rows_are_missing_is_not_called_complete(tmp_path):
     ("part", "whole", "text"), [(3, 3, "100 %"), (99_999, 100_000, "99.99 %"), (999_999, 1_000_000, "99.99 %"), (0, 5, "0 %")]
 )
 def test_only_all_are_a_hundred_percent(part, whole, text):
-    assert share(part, whole) == text
+    assert percentage(part, whole) == text
 
 
 def test_the_table_counts_and_orders_as_the_run_did(failed_path, failed):

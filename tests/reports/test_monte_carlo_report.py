@@ -174,7 +174,7 @@ def test_the_clearance_is_drawn_over_figures_and_words_alike(sections):
     charts = charts_of(sections["drivers"])
     (wind,), (level,) = charts["over-figures"].panels, charts["over-words"].panels
     assert wind.x_label == "Wind speed [m/s]"
-    assert lines_of(wind)["flight that entered"].y == pytest.approx([-0.5], abs=1e-9)
+    assert lines_of(wind)["flight with a keep-out violation"].y == pytest.approx([-0.5], abs=1e-9)
     assert sorted(name for _, name in level.y_names) == ["moderate", "none"]
 
 
