@@ -141,7 +141,7 @@ def _law_curves(data: ConvergenceData, law: Law, values: Callable[[pd.DataFrame]
 def cumulative(values: Array) -> tuple[Array, Array]:
     """Return some of the values in rising order, and which fraction of all is no larger.
 
-    What is not a number counts among all. The first value comes twice, with a fraction of 0, for the curve to rise from there.
+    What is not a number counts among all. The first value comes twice, first with 0, for the curve to rise from there.
     """
     known = np.sort(values[np.isfinite(values)])
     ranks = _thinned(len(known), CURVE_POINTS)

@@ -64,7 +64,7 @@ class FlightContent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlightPicker:
-    """One flight of several to look at: picked on the screen, a page each at the end in print. A report has one at most."""
+    """Flights, one at a time: picked on the screen, a page each at the end in print. A report has one at most."""
 
     flights: list[FlightContent]
 

@@ -11,7 +11,7 @@ from reports.run.run_data import RunData
 COLUMNS = (
     "time_s", "north_m", "east_m", "altitude_m", "velocity_north_mps", "velocity_east_mps", "vessel_north_m", "vessel_east_m",
 )  # fmt: skip
-"""Columns beside the flight's name. Places are in metres from the run's local origin: a run has no latitude or longitude."""
+"""Columns beside the flight's name. Positions are from the run's local origin: a run has no latitude."""
 
 
 @EXPORTERS.register("tracks_csv")

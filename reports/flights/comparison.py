@@ -48,7 +48,7 @@ def comparison_section(run: RunData, trials: list[Trial]) -> Section:
 
 
 def _pairs(rows: pd.DataFrame, compared: pd.DataFrame) -> pd.DataFrame:
-    """Return compared flights and those of the study that they are compared with, each with the name of the latter as ``base``."""
+    """Return compared flights and those of the study; ``base`` is the name of the study's flight of each pair."""
     bases = [str(row["flight_id"]).removesuffix(f"_{row['variant']}") for _, row in compared.iterrows()]
     names = [str(variant).replace("_", " ") for variant in compared["variant"]]
     study = rows[rows["flight_id"].isin(bases)]

@@ -46,7 +46,7 @@ def _table(rows: list[list[str]]) -> Table:
 
 
 def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
-    """Return what a trial sweeps and samples, and its parameters: every one, or those that differ from their defaults."""
+    """Return what a trial sweeps and samples, and every parameter or those that differ from their defaults."""
     listed = {parameter["key"]: parameter for parameter in trial.parameters()}
     rows = [["flights, seed", f"{trial.planned}, {trial.config['seed']}", "", "", "Number of flights; seed of all random numbers"]]
     if "speed_ratio" in trial.config and (trial.varies("wind") or trial.varies("vessel")):

@@ -82,7 +82,7 @@ class _View:
         return column(self._h, name)
 
     def _marks(self, place: Callable[[pd.DataFrame], tuple[Array, Array]]) -> list[Line]:
-        """Return crossings, interventions of the guard and the closest approach, where ``place`` has them in a panel."""
+        """Return crossings, the guard's interventions and the closest approach, where ``place`` has them."""
         marks: list[tuple[pd.DataFrame, str, str, Style]] = [(self._crossings, "crossing", "vermillion", "diamonds")]
         marks += [(samples, label, colour, "points") for samples, label, colour in self._guarded]
         marks += [(self._closest, "closest", "black", "diamonds")] if self._vessel else []
@@ -230,7 +230,7 @@ class _View:
         return Panel(x_label=_TIME, y_label="Height [m]", lines=[*lines, self._line(altitude)], y_range=y_range)
 
     def _mode_panel(self) -> Panel | None:
-        """Return the modes that occur, a row each, by their names if the run has them; nothing of a flight in one mode."""
+        """Return the modes that occur, a row each, by name if the run has names; None for a flight in one mode."""
         mode = self._c("mode")
         occurring = [float(m) for m in np.unique(mode[np.isfinite(mode)])]
         if len(occurring) < 2:

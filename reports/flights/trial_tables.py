@@ -134,7 +134,7 @@ def _closest_after(trial: Trial, row: "pd.Series[Any]") -> float | None:
 
 
 def failed_blocks(run: RunData) -> list[Block]:
-    """Return the flights that failed, keep-out violations first, ``FAILED_MAX`` of them at most, each with its reason."""
+    """Return the flights that failed, keep-out violations first, ``FAILED_MAX`` at most, each with its reason."""
     failed = run.summary[~run.summary["criteria_met"]]
     if not len(failed):
         return []

@@ -80,7 +80,7 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
 
 
 def _failures(trial: Trial) -> list[str]:
-    """Return what failed in a trial: by flight, of a few; else violations, then each criterion; then flights not flown yet."""
+    """Return what failed in a trial: each flight of a few, else each criterion; then flights not flown yet."""
     rows = trial.rows
     failed, missing = rows[~rows["criteria_met"]], trial.planned - len(rows)
     lines = [f"{trial.title}: {missing} of {trial.planned} not flown yet"] if missing else []
@@ -137,7 +137,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame) -> list[tuple[str, str, s
 
 
 def _worst(criteria: list[Criterion], key: str) -> tuple[str, str, str] | None:
-    """Return the worst figure of a criterion among all trials: that which takes the largest fraction of its trial's limit."""
+    """Return the worst figure of a criterion among all trials: the largest fraction of its trial's limit."""
     known = [criterion for criterion in criteria if criterion.key == key and not math.isnan(criterion.fraction)]
     if not known:
         return None

@@ -31,7 +31,7 @@ def _shown(statistics: dict[str, Any]) -> list[Block]:
 
 
 def bound_in_words(statistics: dict[str, Any]) -> str:
-    """Return the bound on the probability that a flight violates the keep-out area, with its confidence and what it assumes."""
+    """Return the bound on the probability of a keep-out violation, with its confidence and what it assumes."""
     confidence = percent(statistics["confidence"])
     measured, worst = statistics["violation"]["measured"], statistics["violation"]["pessimistic"]
     unknown = sum(found["flights"] for found in statistics["flights"]["unknown"].values())

@@ -38,7 +38,7 @@ def rows_today(rows: pd.DataFrame, manifest: Record) -> pd.DataFrame:
 
 
 def history_today(history: pd.DataFrame, config: Record, nu: float) -> pd.DataFrame:
-    """Return a time history with the columns of today: vessel and plume of a flight in calm air follow from its speed ratio."""
+    """Return a time history with the columns of today: in calm air vessel and plume follow from the speed ratio."""
     history = history.rename(columns=_COLUMNS)
     if "vessel_north_m" in history or "vessel" not in config:
         return history

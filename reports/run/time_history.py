@@ -23,7 +23,7 @@ def funnel_distance(history: pd.DataFrame, source_height: float) -> Array:
 
 
 def about_the_plume(history: pd.DataFrame, prefix: str = "") -> tuple[Array, Array]:
-    """Return metres right of the plume's axis and along it, as seen from the vessel, of the UAV or of what a prefix names."""
+    """Return metres right of and along the plume's axis, seen from the vessel, of the UAV or what a prefix names."""
     north, east = (column(history, f"{prefix}{axis}_m") - column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
     axis = column(history, "plume_axis_rad")
     return np.cos(axis) * east - np.sin(axis) * north, np.cos(axis) * north + np.sin(axis) * east

@@ -121,7 +121,7 @@ class Trial:
         return next((kind for kind, holds in kinds.items() if holds), Kind.GENERAL)
 
     def cycled(self, key: str) -> list[Any]:
-        """Return the value of a configured key for each row: the one chosen, where choices are cycled by the flight's number."""
+        """Return the value of a key for each row, where choices are cycled by the flight's number."""
         choices = next((draw["choice"] for draw in self.sampled if draw["key"] == key and draw["choice"]), None)
         if choices is None:
             return [self.setting(key)] * len(self.rows)

@@ -340,3 +340,25 @@ def test_a_flight_that_lost_its_aircraft_has_not_met_whatever_its_criteria_allow
     assert (report.verdict.holds, report.verdict.complete, report.verdict.failures) == (True, False, [])
     assert ("Flights that lost the aircraft", "1", "") in report.verdict.figures
     assert rows_of(report, "Steady")[0][-2:] == ["1", "1 of 2"]
+
+
+def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):
+    manifest = json.loads(json.dumps(run.manifest))
+    manifest["trials"]["steady"]["sweep"] = {"wind.speed_mps": [2.0, 4.0]}
+    manifest["trials"]["turns"]["sweep"] = {"turbulence.level": ["none", "light"]}
+    draws = run.draws.assign(**{"wind.speed_mps": [2.0, 4.0, 3.0, 3.0], "turbulence.level": ["none", "none", "none", "light"]})
+    report = content(replace(run, manifest=manifest, draws=draws))
+    assert [row[0] for row in blocks_of(report, Table, "trial1")[0].rows] == ["Wind speed 2 m/s", "Wind speed 4 m/s"]
+    charts = blocks_of(report, Chart, "trial1")
+    assert {panel.x_label for chart in charts for panel in chart.panels} == {"Wind speed [m/s]"}
+    (words,) = blocks_of(report, Chart, "trial2")
+    assert [name for _, name in words.panels[0].y_names] == ["none", "light"]
+
+
+def test_many_comparisons_have_a_row_for_each_variant(run):
+    rows = pd.concat([run.summary[run.summary["trial"] == "steady"]] * 20, ignore_index=True)
+    rows["flight_id"] = [f"steady_{i:05d}" for i in range(len(rows))]
+    compared = rows.assign(flight_id=rows["flight_id"] + "_no_preview", variant="no_preview")
+    report = content(replace(run, summary=pd.concat([rows, run.summary[run.summary["trial"] == "turns"]]), comparison=compared))
+    (table,) = blocks_of(report, Table, "comparison")
+    assert [row[:3] for row in table.rows] == [["as in the study", "40", "0"], ["no preview", "40", "0"]]
