@@ -49,7 +49,7 @@ def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
     """Return what a trial sweeps and samples, and every parameter or those that differ from their defaults."""
     listed = {parameter["key"]: parameter for parameter in trial.parameters()}
     rows = [["flights, seed", f"{trial.planned}, {trial.config['seed']}", "", "", "Number of flights; seed of all random numbers"]]
-    if "speed_ratio" in trial.config and (trial.varies("wind") or trial.varies("vessel")):
+    if trial.setting("speed_ratio") and (trial.varies("wind") or trial.varies("vessel")):
         low, high = trial.config["speed_ratio"]
         rows.append(["speed_ratio", f"{low:g} to {high:g}", "", "", "Samples with another speed ratio ν are sampled again"])
     inputs = {key: f"swept: {parameter_value(values)}" for key, values in trial.swept.items()}

@@ -68,9 +68,7 @@ def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(t37):
     assert [panel.x_label for panel in tracks.panels] == ["Right of the plume's axis [km]", "East [km]"]
     assert max(line.y.max() for line in tracks.panels[1].lines) == pytest.approx(100.0, abs=10.0)
     # Fitted limits have three digits, and equilibria are shown in the turn that it flies, nearest to 30 degrees.
-    assert {name: limit for name, _, limit in report.verdict.figures}[
-        "Tracking error, rms after settling, worst"
-    ] == "≤ 40.1 m"
+    assert {name: limit for name, _, limit in report.verdict.figures}["Tracking error, rms after settling, worst"] == "≤ 40.1 m"
     assert not [block for block in blocks if isinstance(block, Table) and not block.rows]
     assert "level, and at 31.6 degrees of bank" in html.read_text(encoding="utf-8")
 
