@@ -7,19 +7,17 @@ from reports.design.content import design_content
 from reports.document.blocks import Content, Section, Verdict
 from reports.document.tables import provenance_table
 from reports.errors import ReportError
-from reports.flights.sea_content import sea_content
-from reports.flights.sweep_content import sweep_content
+from reports.flights.content import flights_content
 from reports.paper.content import paper_content
 from reports.run.run_data import RunData
 
-KINDS: dict[str, Callable[[RunData], tuple[Verdict, list[Section]]]] = {
-    "flights": sweep_content,
+STUDIES: dict[str, Callable[[RunData], tuple[Verdict, list[Section]]]] = {
+    **dict.fromkeys(("flights", "trials", "monte_carlo", "falsification", "replay"), flights_content),
     "paper": paper_content,
     "convergence": convergence_content,
     "design": design_content,
-    "sea": sea_content,
 }
-"""A study's kind, as its manifest names it, and what makes the verdict and the sections of its report."""
+"""A study, as its manifest names it, and what makes the verdict and the sections of its report."""
 
 
 def content(run: RunData) -> Content:
@@ -27,12 +25,12 @@ def content(run: RunData) -> Content:
 
     Raises
     ------
-    ReportError : the manifest names a kind of study that has no report
+    ReportError : the manifest names a study that has no report
     """
     study = run.manifest.get("study", "flights")
-    if study not in KINDS:
-        raise ReportError(f"'{run.path}': study is '{study}', which has no report; those that have one: {', '.join(KINDS)}")
-    verdict, sections = KINDS[study](run)
+    if study not in STUDIES:
+        raise ReportError(f"'{run.path}': study is '{study}', which has no report; those that have one: {', '.join(STUDIES)}")
+    verdict, sections = STUDIES[study](run)
     provenance = Section(anchor="provenance", title="Provenance", blocks=[provenance_table(run)])
     return Content(
         title=run.manifest["title"],

@@ -9,7 +9,8 @@ import numpy.typing as npt
 import pandas as pd
 
 from reports.convergence.data import CONVERGED, REFERENCES, ConvergenceData, Law, predicted
-from reports.document.chart import Array, Chart, Line, Panel, Style
+from reports.document.chart import Chart, Line, Panel, Style
+from reports.run.columns import Array
 
 CURVE_POINTS = 200
 """Points of a cumulative curve at most."""
@@ -73,9 +74,9 @@ def _histories(data: ConvergenceData, law: Law, *, converged: bool) -> list[Line
 def _cumulative(data: ConvergenceData, laws: Sequence[Law]) -> Chart:
     return Chart(
         name="settling",
-        caption="Share of all trajectories that have settled, over time since their start; a curve that ends below 100 % leaves"
+        caption="Fraction of all trajectories that have settled, over time since their start; a curve that ends below 100 % leaves"
         " out those that never did.",
-        panels=_curves(data, laws, _times, "Settling time [s]", "Share settled [%]"),
+        panels=_curves(data, laws, _times, "Settling time [s]", "Settled [%]"),
         columns=len(laws),
         panel_height=PANEL_HEIGHT,
     )
@@ -91,13 +92,13 @@ def _over_predicted(data: ConvergenceData, laws: Sequence[Law]) -> list[Chart]:
         ratios: Array = _column(known, "settling_time_s") / _column(known, "settling_time_predicted_s")
         return np.maximum(ratios, RATIO_SHOWN_MIN)
 
-    panels = _curves(data, laws, ratio, "Measured over predicted [-]", "Share of trajectories [%]")
+    panels = _curves(data, laws, ratio, "Measured over predicted [-]", "Trajectories [%]")
     if not panels:
         return []
     return [
         Chart(
             name="predicted",
-            caption="Settling time measured over that predicted: share of the trajectories up to each ratio. 1 is as predicted"
+            caption="Settling time measured over that predicted: fraction of the trajectories up to each ratio. 1 is as predicted"
             " by the motion averaged over the reference's turns.",
             panels=panels,
             columns=len(panels),
@@ -131,21 +132,21 @@ def _law_curves(data: ConvergenceData, law: Law, values: Callable[[pd.DataFrame]
     lines = []
     for reference in data.references:
         name, colour = REFERENCES[reference]
-        x, share = cumulative(values(data.of(law, reference)))
+        x, fraction = cumulative(values(data.of(law, reference)))
         if len(x):
-            lines.append(Line(x=x, y=100.0 * share, label=f"{name} reference", colour=colour))
+            lines.append(Line(x=x, y=100.0 * fraction, label=f"{name} reference", colour=colour))
     return lines
 
 
 def cumulative(values: Array) -> tuple[Array, Array]:
-    """Return some of the values in rising order, and which share of all is no larger.
+    """Return some of the values in rising order, and which fraction of all is no larger.
 
-    What is not a number counts among all. The first value comes twice, with a share of 0, for the curve to rise from there.
+    What is not a number counts among all. The first value comes twice, first with 0, for the curve to rise from there.
     """
     known = np.sort(values[np.isfinite(values)])
     ranks = _thinned(len(known), CURVE_POINTS)
-    share = (ranks + 1.0) / max(1, len(values))
-    return np.append(known[:1], known[ranks]), np.append(np.zeros(len(known[:1])), share)
+    fraction = (ranks + 1.0) / max(1, len(values))
+    return np.append(known[:1], known[ranks]), np.append(np.zeros(len(known[:1])), fraction)
 
 
 def _over_distance(data: ConvergenceData, laws: Sequence[Law]) -> Chart:
@@ -168,9 +169,9 @@ def _distance_panel(data: ConvergenceData, law: Law) -> Panel:
     number = np.minimum(_column(settled, "start_distance_m") * count / farthest, count - 1.0).astype(int)
     bins = np.unique(number)
 
-    def line(name: str, share: float, label: str, colour: str, style: Style) -> Line:
+    def line(name: str, fraction: float, label: str, colour: str, style: Style) -> Line:
         values = np.maximum(_column(settled, name), TIME_SHOWN_MIN_S)
-        y = np.array([_quantile(values[number == i], share) for i in bins])
+        y = np.array([_quantile(values[number == i], fraction) for i in bins])
         return Line(x=(bins + 0.5) * farthest / count, y=y, label=label, colour=colour, style=style)
 
     return Panel(
@@ -204,9 +205,9 @@ def _around(curves: Sequence[Array]) -> tuple[float, float] | None:
     return 10.0**low, 10.0 ** max(high, low + 1)
 
 
-def _quantile(values: Array, share: float) -> float:
+def _quantile(values: Array, fraction: float) -> float:
     known = values[np.isfinite(values)]
-    return float(np.quantile(known, share)) if len(known) else math.nan
+    return float(np.quantile(known, fraction)) if len(known) else math.nan
 
 
 def _column(frame: pd.DataFrame, name: str) -> Array:

@@ -34,7 +34,7 @@ def _question(data: ConvergenceData) -> list[Block]:
     distance, phi = (data.run.manifest[key] for key in ("converged_distance_m", "converged_phi_rad"))
     band = data.run.manifest["config"]["ensemble"]["settling_band_m"]
     return [
-        Heading("What was drawn"),
+        Heading("Sampled initial states"),
         Text(
             f"{len(states):,} initial states, the same for every law: a place up to"
             f" {number(states['start_distance_m'].max(), '{:,.0f}')} m from the reference and a course, both at random, and a"

@@ -27,11 +27,11 @@ def settling_table(data: ConvergenceData) -> Table:
                     "all" if reference is None else REFERENCES[reference][0],
                     f"{len(of):,}",
                     f"{len(of) - len(failed(of)):,}",
-                    *(_time(of["settling_time_s"], share) for share in QUANTILES),
+                    *(_time(of["settling_time_s"], fraction) for fraction in QUANTILES),
                     rate(of["heading_rate_max_rad_s"]),
                 ])  # fmt: skip
     head = [
-        "Law", "Reference", "Trajectories", "Converged", *(f"{share:.0%} settled [s]".replace("%", " %") for share in QUANTILES),
+        "Law", "Reference", "Trajectories", "Converged", *(f"{100.0 * fraction:.0f} % settled [s]" for fraction in QUANTILES),
         "Largest command [rad/s]",
     ]  # fmt: skip
     return Table(head=head, rows=rows, widths=[2.0, 1.5, 1.1, 1.0, *[0.9] * len(QUANTILES), 1.2], left_columns=2)
@@ -66,9 +66,9 @@ def rate(values: "pd.Series[float]") -> str:
     return number(largest, "{:,.0f}" if largest >= 100.0 else "{:.3f}")
 
 
-def _time(times: "pd.Series[float]", share: float) -> str:
+def _time(times: "pd.Series[float]", fraction: float) -> str:
     """Return when so many of all had settled, and a dash if never."""
     if not len(times):
         return "–"
-    when = float(np.quantile(times.fillna(np.inf), share, method="higher"))
+    when = float(np.quantile(times.fillna(np.inf), fraction, method="higher"))
     return f"{when:,.0f}" if np.isfinite(when) else "–"

@@ -15,7 +15,7 @@ FAILURES_NAMED = 10
 
 
 def convergence_verdict(data: ConvergenceData) -> Verdict:
-    """Judge a study by the laws that the theory is about, if it flew any: safe if every trajectory under them converged."""
+    """Judge a study by the laws that the theory is about, if it flew any: it holds if every trajectory under them converged."""
     rows, manifest = data.proven(), data.run.manifest
     proven = data.planned > 0
     state = manifest.get("state", "unfinished")
@@ -43,7 +43,7 @@ def convergence_verdict(data: ConvergenceData) -> Verdict:
     if state != "complete":
         detail += f" The run is {state}; continue it with --resume."
     return Verdict(
-        safe=not proven or (len(rows) > 0 and not len(counter_examples)),
+        holds=not proven or (len(rows) > 0 and not len(counter_examples)),
         complete=complete,
         headline=headline,
         detail=detail,
@@ -52,7 +52,7 @@ def convergence_verdict(data: ConvergenceData) -> Verdict:
     )
 
 
-def share(part: int, whole: int) -> str:
+def percentage(part: int, whole: int) -> str:
     """Return a part of a whole in percent, rounded down: 100 % are all."""
     return f"{math.floor(10_000.0 * part / whole) / 100.0:g} %" if whole else "none flown"
 
@@ -76,13 +76,15 @@ def _detail(data: ConvergenceData) -> str:
 
 
 def _figures(data: ConvergenceData) -> list[tuple[str, str, str]]:
-    shares, slowest = [], []
+    fractions, slowest = [], []
     for law in data.laws:
         rows = data.of(law)
-        shares.append((f"{law.name}: converged", share(len(rows) - len(failed(rows)), len(rows)), "100 %" if law.proven else ""))
+        fractions.append(
+            (f"{law.name}: converged", percentage(len(rows) - len(failed(rows)), len(rows)), "100 %" if law.proven else "")
+        )
         slowest.append((f"{law.name}: slowest to settle", number(rows["settling_time_s"].max(), "{:,.0f} s"), ""))
     farthest = ("Farthest start", number(data.rows["start_distance_m"].max(), "{:,.0f} m"), "")
-    return [*shares, farthest, *slowest, _predicted(data.proven() if data.planned else data.rows)]
+    return [*fractions, farthest, *slowest, _predicted(data.proven() if data.planned else data.rows)]
 
 
 def _predicted(rows: pd.DataFrame) -> tuple[str, str, str]:

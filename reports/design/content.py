@@ -84,7 +84,7 @@ def _verification(design: Record) -> Section:
     blocks: list[Block] = []
     if design["verification"]:
         text = (
-            "The linear model's answer to a small input against that of the simulation itself: largest error as a share of the"
+            "The linear model's answer to a small input against that of the simulation itself: largest error as a fraction of the"
             " largest excursion."
         )
         blocks = [Text(text), verification_table(design)]
@@ -94,12 +94,10 @@ def _verification(design: Record) -> Section:
 def _weights(design: Record) -> Section:
     text = (
         "Gains follow from the linear models by these weights, a set for the whole grid. By Bryson's rule the weight of a quantity"
-        " is one over the square of its acceptable deviation, which is what the table lists, in SI units; a control's is a share of"
-        " its travel."
+        " is one over the square of its acceptable deviation, which is what the table lists, in SI units; a control's is a fraction"
+        " of its travel."
     )
-    return Section(
-        anchor="weights", title="What the design asks for", nav_title="Weights", blocks=[Text(text), weight_table(design)]
-    )
+    return Section(anchor="weights", title="Weights of the design", nav_title="Weights", blocks=[Text(text), weight_table(design)])
 
 
 def _elsewhere(root: Path) -> Section:

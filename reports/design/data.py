@@ -17,7 +17,7 @@ _MARGINS = ("gain_db", "phase_deg", "disk_gain_db", "disk_phase_deg")
 
 
 def complete(record: Record) -> Record:
-    """Return a design record with every field that reports ask for: one made before there was a grid over bank lacks some.
+    """Return a design record with every field that reports need: one made before there was a grid over bank lacks some.
 
     A row that says of itself that its loop is not stable has no margins, whatever distance to the critical point was measured.
     """
@@ -100,7 +100,7 @@ def down(value: float | None, places: int = 1) -> str:
     if value is None:
         return "∞"
     scale = 10.0**places
-    # The small share forgives what binary fractions lose: 5.7 stays 5.7.
+    # The small fraction forgives what binary fractions lose: 5.7 stays 5.7.
     return minus(f"{math.floor(value * scale + 1e-6) / scale:.{places}f}")
 
 
@@ -135,7 +135,7 @@ def responses_of(record: Record, command: str) -> list[Record]:
 
 
 def excess_overshoot(record: Record) -> float | None:
-    """Return how far a flown heading-rate step goes past its reference model, as a share of the step; none without a model."""
+    """Return how far a flown heading-rate step goes past its reference model, as a fraction of the step; none without a model."""
     overshoot = {row["kind"]: float(row["overshoot"]) for row in responses_of(record, "heading_rate")}
     if not {"model", "flown"} <= set(overshoot):
         return None

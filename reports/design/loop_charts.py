@@ -7,7 +7,8 @@ import numpy as np
 
 from reports.design.data import CONTROLS, Record, at_middle, loop_name, speed
 from reports.design.loop_styles import LOOP_STYLES, OTHER_LOOP
-from reports.document.chart import Array, Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel
+from reports.run.columns import Array
 
 _NICHOLS_GAIN = (-30.0, 40.0)
 """Gains that a Nichols panel shows [dB]: far above and below them a loop cannot come near the critical point."""

@@ -13,12 +13,12 @@ _BANK_COLOURS = ("black", "blue", "orange", "green", "purple", "sky", "vermillio
 """By the size of the bank, level first."""
 
 _NEAR_LIMIT = 0.4
-"""Share of a control's travel from which its limit is drawn: nearer to neutral it would only flatten the curves."""
+"""Fraction of a control's travel from which its limit is drawn: nearer to neutral it would only flatten the curves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Quantity:
-    """A quantity of an equilibrium: its field, its axis, the unit that it is drawn in, its limits."""
+    """A quantity of an equilibrium: its field, its axis, the unit that it is shown in, its limits."""
 
     key: str
     label: str

@@ -24,7 +24,7 @@ _UNSTABLE = 1e-4
 
 
 def design_verdict(design: Record) -> Verdict:
-    """Judge a design: safe if it is stable over the whole grid, complete if every margin is as required."""
+    """Judge a design: it holds if it is stable over the whole grid, and is complete if every margin is as required."""
     unstable = _unstable(design)
     nominal, perturbed = _nominal_failures(design), _perturbed_failures(design)
     required = design["required"]
@@ -34,11 +34,11 @@ def design_verdict(design: Record) -> Verdict:
     elif nominal:
         headline = f"Stable everywhere, but short of {asked} in {_loops(nominal)}"
     elif perturbed:
-        headline = f"Every loop has {asked} everywhere, but a perturbed aircraft falls short"
+        headline = f"Every loop has {asked} everywhere, but a perturbed aircraft does not"
     else:
         headline = f"Every loop has at least {asked} of margin at every point of the grid"
     return Verdict(
-        safe=not unstable,
+        holds=not unstable,
         complete=not (nominal or perturbed),
         headline=headline,
         detail=_detail(design),

@@ -64,7 +64,7 @@ class FlightContent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlightPicker:
-    """One flight of several to look at: picked on the screen, a page each at the end in print. A report has one at most."""
+    """Flights, one at a time: picked on the screen, a page each at the end in print. A report has one at most."""
 
     flights: list[FlightContent]
 
@@ -96,14 +96,14 @@ class Verdict:
 
     Attributes
     ----------
-    safe : nothing happened that must never happen
-    complete : everything that was planned was done, and is as asked
+    holds : nothing happened that must never happen
+    complete : everything that was planned was done, and is as required
     headline, detail : in words
-    failures : a line for each that is not as asked
-    figures : name, value and limit of what was asked for; no limit where nothing was
+    failures : a line for each failure
+    figures : name, value and limit of what is judged; no limit where there is none
     """
 
-    safe: bool
+    holds: bool
     complete: bool
     headline: str
     detail: str

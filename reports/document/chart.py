@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from reports.run.columns import Array
+
 Style = Literal["solid", "dash", "dot", "points", "diamonds"]
 
 COLOURS = {

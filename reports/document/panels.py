@@ -1,4 +1,4 @@
-"""Panels that figures of trials over the real sea are put together from: a marker per flight, or the flights counted."""
+"""Panels with a marker per flight, or of the flights counted."""
 
 import itertools
 import math
@@ -6,8 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from reports.document.chart import Array, Line, Panel
-from reports.run.trials import Mask
+from reports.document.chart import Line, Panel
+from reports.run.columns import Array, Mask
+
+Group = tuple[Mask, str, str]
+"""Which flights have markers of a name and a colour."""
 
 CLASS_COLOURS = ("sky", "blue", "orange", "vermillion")
 """From the least to the most."""
@@ -19,8 +22,11 @@ _SPREAD = 0.32
 _OUTLIERS = 1.6
 """Largest ordinate that is shown, over the limit or twice the median, whichever is larger."""
 
+_SPARE = 1.15
+"""Largest ordinate that is shown, over the highest marker, where none is cut."""
 
-def classes(values: Array, bounds: Sequence[float], what: str, unit: str) -> list[tuple[Mask, str, str]]:
+
+def classes(values: Array, bounds: Sequence[float], what: str, unit: str) -> list[Group]:
     """Return which values lie in each class, its name and its colour. What is not a number lies in none.
 
     Parameters
@@ -46,7 +52,7 @@ def quartiles(values: Array, step: float) -> list[float]:
     return [step * first, step * second, step * max(third, second + 1.0)]
 
 
-def points(x: Array, y: Array, groups: Sequence[tuple[Mask, str, str]]) -> list[Line]:
+def points(x: Array, y: Array, groups: Sequence[Group]) -> list[Line]:
     """Return markers in groups of a name and a colour each; none for a group without any."""
     known = np.isfinite(x) & np.isfinite(y)
     return [
@@ -56,10 +62,14 @@ def points(x: Array, y: Array, groups: Sequence[tuple[Mask, str, str]]) -> list[
     ]
 
 
-def capped(x: Array, y: Array, groups: Sequence[tuple[Mask, str, str]], limit: float) -> tuple[list[Line], float]:
+def capped(x: Array, y: Array, groups: Sequence[Group], limit: float) -> tuple[list[Line], float]:
     """Return markers as ``points`` does, those far above all others on the upper edge, and where that is."""
     known = y[np.isfinite(y)]
-    top = _OUTLIERS * max(2.0 * float(np.median(known)) if len(known) else 1.0, 0.0 if math.isnan(limit) else limit)
+    least = 0.0 if math.isnan(limit) else limit
+    highest = _SPARE * max([*known, least]) or 1.0
+    # Where most are 0, as the time of a guard that seldom intervenes, the median says nothing.
+    typical = 2.0 * float(np.median(known)) or float(np.quantile(known, 0.95)) if len(known) else 0.0
+    top = min(_OUTLIERS * max(typical, least) or highest, highest)
     beyond = y > top
     lines = points(np.where(beyond, np.nan, x), y, groups)
     if beyond.any():
@@ -107,7 +117,7 @@ def strips(
     kinds: Sequence[str],
     x_label: str,
     y_label: str,
-    groups: Sequence[tuple[Mask, str, str]],
+    groups: Sequence[Group],
     upright: Sequence[tuple[float, str]],
     *,
     named: bool,

@@ -6,6 +6,7 @@ from typing import Any
 import pandas as pd
 
 from reports.document.blocks import Table
+from reports.run.columns import lost
 from reports.run.run_data import RunData
 
 
@@ -43,9 +44,14 @@ def provenance_table(run: RunData) -> Table:
     return Table(head=["", ""], rows=rows, widths=[1.0, 4.0], left_columns=2, prose=True, print_size_pt=8.0)
 
 
+def _config(run: RunData) -> dict[str, Any]:
+    """Return the configuration of the run, or of its first trial: the vehicle is the same in all of them."""
+    return dict(next(iter(run.manifest.get("trials", {}).values()), run.manifest["config"]))
+
+
 def _vehicle(run: RunData) -> list[list[str]]:
-    """Return the rows on what flew; in all trials of one run that is the same."""
-    config = next(iter(run.manifest.get("trials", {}).values()), run.manifest["config"])
+    """Return the rows on the vehicle."""
+    config = _config(run)
     rows = []
     if run.innerloop:
         rows.append(["Aircraft", f"{run.innerloop['title']}. {run.innerloop['source']}"])
@@ -63,7 +69,7 @@ def _vehicle(run: RunData) -> list[list[str]]:
 
 def kinematic(run: RunData) -> str:
     """Return what the kinematic vehicle of a run is: equation (1), with a lag if it has one."""
-    lag = float(run.manifest["config"].get("kinematic", {}).get("heading_rate_lag_s", 0.0))
+    lag = float((_config(run).get("kinematic") or {}).get("heading_rate_lag_s", 0.0))
     return f"eq. (1) with a heading-rate lag of {lag:g} s" if lag else "eq. (1)"
 
 
@@ -79,9 +85,13 @@ def limit(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}"
 
 
-def aircraft(run: RunData) -> str:
-    """Return the name of the aircraft that flew a run, or was to."""
-    return str(run.innerloop["title"] if run.innerloop else run.manifest["config"].get("aircraft", "unknown"))
+def vehicles_flown(run: RunData) -> str:
+    """Return a sentence on the vehicle of a run."""
+    fidelity, by_equation = _config(run).get("fidelity"), f"the kinematic vehicle, {kinematic(run)}"
+    if fidelity == "kinematic":
+        return f"Flown with {by_equation}, not with an aircraft."
+    name = run.innerloop["title"] if run.innerloop else _config(run).get("aircraft", "unknown")
+    return f"Aircraft: {name}, in six degrees of freedom" + (f"; and {by_equation}." if fidelity == "both" else ".")
 
 
 def number(value: Any, pattern: str) -> str:
@@ -90,9 +100,9 @@ def number(value: Any, pattern: str) -> str:
 
 
 def outcome(row: "pd.Series[Any]") -> str:
-    """Return how a flight ended, in words."""
+    """Return how a flight ended, in words: "met" only if it kept its aircraft, whatever its criteria allow."""
     if row["criteria_met"]:
-        return "met"
+        return f"{row['mode_at_end']}, as its criteria allow" if lost(pd.DataFrame([row]))[0] else "met"
     ended, message = str(row["outcome"]).replace("_", " "), str(row["message"])
     return f"{ended}: {message}" if message else ended
 

@@ -1,4 +1,4 @@
-"""What trials ask for beside keeping out, and the worst that was measured."""
+"""The criteria of a trial beside the keep-out area, and the worst that was measured."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from reports.document.chart import Array
 from reports.document.tables import limit
-from reports.run.trials import Trial, column, interval_error
+from reports.run.columns import Array, column, interval_error
+from reports.run.trials import Trial
 
 _COMPLETED = "completed"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Asked:
+class Criterion:
     """One criterion of one trial.
 
     Attributes
@@ -24,16 +24,16 @@ class Asked:
     what : it is about
     limit : in words
     worst : what was measured at worst, in words
-    short : flights that fell short of it, or have no such figure
-    share : the worst over the limit, where both are figures; else not a number [-]
+    failed : flights that failed it, or have no such figure
+    fraction : the worst over the limit, where both are figures; else not a number [-]
     """
 
     key: str
     what: str
     limit: str
     worst: str
-    short: int
-    share: float = float("nan")
+    failed: int
+    fraction: float = float("nan")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,74 +46,90 @@ class _Measure:
     scale: float = 1.0
 
 
+def _column(name: str) -> Callable[[pd.DataFrame], Array]:
+    return lambda rows: column(rows, name)
+
+
 _MEASURES = {
     "crossing_interval_error": _Measure(
         what="Mean crossing interval off π/ω₀", values=lambda rows: np.abs(interval_error(rows)), unit="%", scale=100.0
     ),
     "tracking_error_rms_m": _Measure(
-        what="Tracking error, rms after settling", values=lambda rows: column(rows, "tracking_error_rms_m"), unit="m"
+        what="Tracking error, rms after settling", values=_column("tracking_error_rms_m"), unit="m"
+    ),
+    "airspeed_error_rms_mps": _Measure(
+        what="Airspeed error, rms after settling", values=_column("airspeed_error_rms_mps"), unit="m/s"
+    ),
+    "altitude_error_max_m": _Measure(
+        what="Altitude error, largest after settling", values=_column("altitude_error_max_m"), unit="m"
+    ),
+    "tracking_error_end_m": _Measure(
+        what="Tracking error at the end", values=_column("tracking_error_end_m"), unit="m"
     ),
     "resumes_within_periods": _Measure(
-        what="Next crossing after the last manoeuvre", values=lambda rows: column(rows, "resume_periods"), unit="periods"
+        what="Next crossing after the last manoeuvre", values=_column("resume_periods"), unit="periods"
     ),
-}
+}  # fmt: skip
+"""Criteria that are limits of a figure, in the order of the verdict's tiles."""
+
+MEASURED = tuple(_MEASURES)
 
 
-def asked(trial: Trial) -> list[Asked]:
-    """Return what a trial's configuration asks for beside keeping out, in its order."""
-    return [_asked(trial, key, value) for key, value in trial.criteria.items() if value not in (None, False, [])]
+def criteria_of(trial: Trial) -> list[Criterion]:
+    """Return the criteria of a trial's configuration beside the keep-out area, in its order."""
+    return [_criterion(trial, key, value) for key, value in trial.criteria.items() if value not in (None, False, [])]
 
 
-def _asked(trial: Trial, key: str, value: Any) -> Asked:
+def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
     if key in _MEASURES:
         return _figure(trial, key, float(value), _MEASURES[key])
     if key == "settles":
         return _settles(trial)
     if key == "modes_at_end":
         return _modes(trial, [str(mode) for mode in value])
-    return Asked(key=key, what=key.replace("_", " "), limit=str(value), worst="see the flights that fell short", short=0)
+    return Criterion(key=key, what=key.replace("_", " "), limit=str(value), worst="see the flights that failed", failed=0)
 
 
-def _figure(trial: Trial, key: str, value: float, measure: _Measure) -> Asked:
+def _figure(trial: Trial, key: str, value: float, measure: _Measure) -> Criterion:
     measured = measure.values(trial.rows)
     known = measured[np.isfinite(measured)]
     worst = float(known.max()) if len(known) else float("nan")
     missing = len(measured) - len(known)
     words = f"{measure.scale * worst:.3g} {measure.unit}" if len(known) else "none measured"
-    return Asked(
+    return Criterion(
         key=key,
         what=measure.what,
         limit=f"≤ {limit(measure.scale * value)} {measure.unit}",
         worst=words + (f"; {missing} without" if missing and len(known) else ""),
-        short=int(np.count_nonzero(~(measured <= value))),
-        share=worst / value,
+        failed=int(np.count_nonzero(~(measured <= value))),
+        fraction=worst / value,
     )
 
 
-def _settles(trial: Trial) -> Asked:
+def _settles(trial: Trial) -> Criterion:
     settled = column(trial.rows, "settling_time_s")
     done = np.isfinite(settled) & (trial.rows["outcome"] == _COMPLETED).to_numpy()
-    short = len(done) - int(np.count_nonzero(done))
-    slowest = f"slowest after {np.max(settled[done]):.0f} s" if done.any() else "none did"
-    crossings = int(trial.config["flight"]["crossings"])
-    return Asked(
+    failed = len(done) - int(np.count_nonzero(done))
+    slowest = f"slowest after {np.max(settled[done]):.0f} s" if done.any() else "no flight did"
+    crossings = int(trial.setting("flight.crossings", 0))
+    return Criterion(
         key="settles",
         what=f"Settles and flies {crossings} crossings" if crossings else "Settles",
         limit="each flight",
-        worst=slowest + (f"; {short} never" if short and done.any() else ""),
-        short=short,
+        worst=slowest + (f"; {failed} never" if failed and done.any() else ""),
+        failed=failed,
     )
 
 
-def _modes(trial: Trial, modes: list[str]) -> Asked:
-    ends = trial.rows["mode_at_end"].fillna("nothing flown")
+def _modes(trial: Trial, modes: list[str]) -> Criterion:
+    ends = trial.rows["mode_at_end"].fillna("not flown")
     others = ends[~ends.isin(modes)]
-    return Asked(
+    return Criterion(
         key="modes_at_end",
         what="Mode at the end",
         limit=" or ".join(modes),
         worst=counted(others) if len(others) else "no other",
-        short=len(others),
+        failed=len(others),
     )
 
 

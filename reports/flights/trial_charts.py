@@ -1,179 +1,166 @@
-"""Figures of trials over the real sea, by what a trial is about."""
+"""Figures of a trial, by what it is about."""
 
-import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
-from reports.document.chart import Array, Chart, Line, Panel, circle
-from reports.document.panels import capped, classes, histogram, level, points, quartiles, strips
-from reports.run.trials import Kind, Mask, Trial, clearance, column, entered, interval_error
+from reports.document.chart import Chart, Line, Panel, circle
+from reports.document.panels import Group, capped, classes, histogram, points, quartiles, strips
+from reports.flights.names import fault_name, manoeuvre_name
+from reports.flights.panels_over import CLEARANCE, PanelsOver, by_violation
+from reports.monte_carlo.names import input_label
+from reports.run.columns import Array, clearance, column, total
+from reports.run.trials import Kind, Trial
 
-_NU = "Speed ratio ν [-]"
-_CLEARANCE = "Distance kept beyond r_min [m]"
-_WIND_BOUNDS = (2.5, 5.0, 7.5)
+_Figure = tuple[Array, str, list[tuple[float, str]]]
+"""Values of the flights, the label of their axis, and values to be marked, by name."""
+
+_NOTICEABLE = 1e-3
+"""Smallest error of the vessel's position that is shown [m]."""
+
 _R_MIN = (0.0, "r_min")
+_TRACKING = ("tracking_error_rms_m", "Tracking error, rms [m]")
 
 
 def trial_charts(trial: Trial) -> list[Chart]:
     """Return the figures of a trial, of the flights that have something to show."""
     makers = {
+        Kind.SWEEP: [_sweep],
         Kind.FAULTS: [_faults],
-        Kind.TOGETHER: [_keeping_out, _estimates],
         Kind.MANOEUVRES: [_manoeuvres],
-        Kind.TURBULENCE: [_turbulence],
-        Kind.CROSSINGS: [_crossings],
-        Kind.APPROACH: [_starts, _settling],
-        Kind.OTHER: [_keeping_out, _estimates],
+        Kind.APPROACH: [_starts, _distances],
+        Kind.GENERAL: [_distances, _errors],
     }
-    charts = [maker(trial) for maker in makers[trial.kind]] if len(trial.flown) else []
-    return [chart for chart in charts if chart is not None]
+    charts = [chart for maker in makers[trial.kind] for chart in maker(trial)] if len(trial.flown) else []
+    return [chart for chart in charts if chart.panels]
 
 
-def _chart(trial: Trial, name: str, caption: str, panels: list[Panel | None], height: float) -> Chart | None:
-    """Return a chart of the panels that show anything, two beside each other, or None."""
+def _chart(trial: Trial, name: str, caption: str, panels: Sequence[Panel | None], height: float, columns: int = 2) -> Chart:
+    """Return a chart of the panels that show anything."""
     shown = [panel for panel in panels if panel is not None and any(len(line.x) for line in panel.lines)]
-    if not shown:
-        return None
-    columns = min(2, len(shown))
+    columns = max(1, min(columns, len(shown)))
     return Chart(name=f"{trial.name}-{name}", caption=caption, panels=shown, columns=columns, panel_height=height)
 
 
-def _every(trial: Trial) -> list[tuple[Mask, str, str]]:
-    """Return the flights that kept out and those that did not, as groups of markers."""
-    inside = entered(trial.flown)
-    return [(~inside, "flight", "blue"), (inside, "flight that entered", "vermillion")]
+def _sweep(trial: Trial) -> list[Chart]:
+    return [chart for i, key in enumerate(trial.swept, start=1) for chart in _over_key(trial, key, f"{key.rsplit('.', 1)[-1]}{i}")]
 
 
-def _limit(trial: Trial, key: str) -> float:
-    value = trial.criteria.get(key)
-    return math.nan if value is None else float(value)
-
-
-def _crossings(trial: Trial) -> Chart | None:
-    rows = trial.flown
-    nu, wind = column(rows, "nu"), column(rows, "wind_speed_mps")
-    groups = classes(wind, _WIND_BOUNDS, "wind", "m/s")
-    limit = 100.0 * _limit(trial, "crossing_interval_error")
-    lines = [*points(nu, 100.0 * interval_error(rows), groups), level(nu, limit, "criterion"), level(nu, -limit, "criterion")]
-    intervals = Panel(x_label=_NU, y_label="Mean interval against π/ω₀ [%]", lines=lines)
-    return _chart(
-        trial,
-        "crossings",
-        "Left: mean time between plume crossings against half the reference's period, a marker per flight. Right: how well each"
-        " flight knew the wind, rms after settling.",
-        [intervals, _wind_error(trial, groups)],
-        0.4,
-    )
-
-
-def _wind_error(trial: Trial, groups: list[tuple[Mask, str, str]]) -> Panel:
-    rows = trial.flown
-    lines, top = capped(column(rows, "nu"), column(rows, "wind_error_rms_mps"), groups, math.nan)
-    return Panel(x_label=_NU, y_label="Error of the wind estimate, rms [m/s]", lines=lines, y_range=(0.0, top))
-
-
-def _tracking(trial: Trial) -> Panel:
-    rows = trial.flown
-    nu, limit = column(rows, "nu"), _limit(trial, "tracking_error_rms_m")
-    lines, top = capped(nu, column(rows, "tracking_error_rms_m"), _every(trial), limit)
-    limits = [] if math.isnan(limit) else [level(nu, limit, "criterion")]
-    return Panel(x_label=_NU, y_label="Tracking error, rms [m]", lines=[*lines, *limits], y_range=(0.0, top))
+def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
+    name = name.replace("_", "")
+    values = trial.input(key).reindex(trial.flown["flight_id"])
+    if not pd.api.types.is_numeric_dtype(values):
+        words = [str(value).replace("_", " ") for value in values]
+        figures: list[_Figure] = [
+            (clearance(trial.flown), CLEARANCE, [_R_MIN]),
+            (column(trial.flown, _TRACKING[0]), _TRACKING[1], []),
+        ]
+        caption = "Closest approach of the whole flight, and tracking error after settling."
+        return [_strips(trial, name, caption, words, input_label(key), figures)]
+    over = PanelsOver(trial, key, by_violation(trial))
+    bank = "Largest commanded heading rate against ω_max, largest bank, and settling time."
+    if trial.setting("fidelity") == "kinematic":
+        bank += " The kinematic vehicle has no bank: shown is that of a coordinated turn."
+    return [
+        _chart(
+            trial, f"{name}-interval",
+            "Time between plume crossings against half the reference's period, π/ω₀. Bars are one standard deviation.",
+            [over.interval(), over.interval_error()], 0.4,
+        ),
+        _chart(
+            trial, f"{name}-distance",
+            "Distances from the funnel: of the crossings after settling, and the closest approach of the whole flight.",
+            [over.distances()], 0.42,
+        ),
+        _chart(
+            trial, f"{name}-errors", "Errors after settling: distance to the reference; airspeed and altitude off their commands.",
+            [
+                over.figure(*_TRACKING),
+                over.figure("airspeed_error_rms_mps", "Airspeed error, rms [m/s]"),
+                over.figure("altitude_error_max_m", "Altitude error, max [m]"),
+            ],
+            0.32, columns=3,
+        ),
+        _chart(
+            trial, f"{name}-command", bank,
+            [
+                over.command(),
+                over.figure("bank_max_deg", "Largest bank [deg]"),
+                over.figure("settling_time_s", "Settling time [s]"),
+            ],
+            0.32, columns=3,
+        ),
+    ]  # fmt: skip
 
 
 def _spread(trial: Trial) -> Panel | None:
-    rows = trial.flown
-    predicted, measured = column(rows, "spread_predicted_m"), column(rows, "spread_m")
-    if not np.nanmax(predicted, initial=0.0) > 0.0:
+    predicted, measured = column(trial.flown, "spread_predicted_m"), column(trial.flown, "spread_m")
+    most = float(np.nanmax(predicted, initial=0.0))
+    if not most > 0.0:
         return None
-    lines, top = capped(predicted, measured, _every(trial), float(np.nanmax(predicted)))
-    ends = np.array([0.0, min(top, 1.05 * float(np.nanmax(predicted)))])
+    lines, top = capped(predicted, measured, by_violation(trial), most)
+    ends = np.array([0.0, min(top, 1.05 * most)])
     same = Line(x=ends, y=ends, label="as predicted", colour="black", style="dot")
     return Panel(
-        x_label="Predicted spread [m]", y_label="Measured spread towards the vessel [m]", lines=[*lines, same], y_range=(0.0, top)
+        x_label="Predicted deviation [m]", y_label="Deviation towards the vessel [m]", lines=[*lines, same], y_range=(0.0, top)
     )
 
 
-def _margin(trial: Trial) -> Panel:
-    rows = trial.flown
-    planned = column(rows, "keepout_margin_m")
-    all_alike = float(np.ptp(planned)) < 1e-6
-    x, x_label = (column(rows, "nu"), _NU) if all_alike else (planned, "Planned margin [m]")
-    lines = [*points(x, clearance(rows), _every(trial)), level(x, 0.0, "r_min", "black")]
-    if all_alike:
-        lines.append(level(x, float(planned[0]), "planned margin", "green"))
+def _distances(trial: Trial) -> list[Chart]:
+    counted = histogram([(clearance(trial.flown), "all flights", "blue")], CLEARANCE, [_R_MIN])
+    if trial.kind is Kind.APPROACH:
+        other = histogram([(column(trial.flown, "settling_time_s"), "", "blue")], "Settling time [s]")
+        caption = "Closest approach of each flight from its first second, beyond r_min, and settling time, of those that settled."
     else:
-        ends = np.array([float(planned.min()), float(planned.max())])
-        lines.append(Line(x=ends, y=ends, label="planned margin", colour="green", style="dash"))
-    return Panel(x_label=x_label, y_label=_CLEARANCE, lines=lines)
+        other = PanelsOver(trial, "nu", by_violation(trial)).margin()
+        caption = "Closest approach of each flight from its first second, beyond r_min: counted, and against the planned margin."
+    return [_chart(trial, "distances", caption, [counted, other], 0.36)]
 
 
-def _turbulence(trial: Trial) -> Chart | None:
-    return _chart(
-        trial,
-        "turbulence",
-        "A marker per flight. What of the planned margin was left at the closest approach, from the first second; the tracking"
-        " error after settling; the spread of that error towards the vessel against the one that the margin was planned for,"
-        " where one was; and how well the wind was known.",
-        [_margin(trial), _tracking(trial), _spread(trial), _wind_error(trial, _every(trial))],
-        0.38,
-    )
-
-
-def _keeping_out(trial: Trial) -> Chart | None:
-    counted = histogram([(clearance(trial.flown), "all flights", "blue")], _CLEARANCE, [_R_MIN])
-    return _chart(
-        trial,
-        "keepingout",
-        "Closest approach of each flight from its first second, beyond r_min: counted, and against the margin that was planned.",
-        [counted, _margin(trial)],
-        0.38,
-    )
-
-
-def _estimates(trial: Trial) -> Chart | None:
-    rows = trial.flown
+def _errors(trial: Trial) -> list[Chart]:
+    rows, over = trial.flown, PanelsOver(trial, "nu", by_violation(trial))
+    largest, typical = column(rows, "vessel_error_max_m"), column(rows, "vessel_error_rms_m")
     vessel = None
-    if trial.reported:
-        largest = (column(rows, "vessel_error_max_m"), "largest of the flight", "orange")
-        typical = (column(rows, "vessel_error_rms_m"), "rms after settling", "blue")
-        vessel = histogram([largest, typical], "Error of the vessel's place [m]")
-    nu, guard = column(rows, "nu"), column(rows, "guard_time_s")
-    lines, top = capped(nu, guard, _every(trial), float(np.quantile(guard, 0.95)) + 1.0)
-    guarding = Panel(x_label=_NU, y_label="Guard changes commands for [s]", lines=lines, y_range=(-0.03 * top, top))
-    return _chart(
-        trial,
-        "estimates",
-        "How well the UAV knew the vessel's place (if by reports) and the wind, how well it tracked its reference, and for how"
-        " long the keep-out guard changed its commands. A marker per flight.",
-        [vessel, _wind_error(trial, _every(trial)), _tracking(trial), guarding],
-        0.36,
+    if np.nanmax(largest, initial=0.0) > _NOTICEABLE:
+        series = [(largest, "largest of the flight", "orange"), (typical, "rms after settling", "blue")]
+        vessel = histogram(series, "Error of the vessel's position [m]")
+    panels = [
+        over.interval_error() if trial.criteria.get("crossing_interval_error") else None,
+        over.figure(*_TRACKING),
+        _spread(trial),
+        over.figure("wind_error_rms_mps", "Error of the wind estimate, rms [m/s]"),
+        vessel,
+        over.figure("guard_time_s", "Guard changes commands for [s]") if total(rows, "guard_time_s") else None,
+    ]
+    caption = (
+        "A marker per flight. Crossing intervals and errors are those after settling: of the tracking, of its part towards the"
+        " vessel against the one that the margin was planned for, and of the estimates of wind and vessel."
     )
+    return [_chart(trial, "errors", caption, panels, 0.34)]
 
 
-def _starts(trial: Trial) -> Chart | None:
+def _starts(trial: Trial) -> list[Chart]:
     rows = trial.flown
     distance, aspect = column(rows, "start_distance_m"), np.radians(column(rows, "start_aspect_deg"))
+    if not np.isfinite(distance).any():
+        return []
     right, along = distance * np.sin(aspect), distance * np.cos(aspect)
     settling, guard = column(rows, "settling_time_s"), column(rows, "guard_time_s")
-    bounds = quartiles(settling, 10.0)
-    never = (np.isnan(settling), "never settled", "black")
-    guarded = [
+    never: Group = (np.isnan(settling), "never settled", "black")
+    guarded: list[Group] = [
         (guard == 0.0, "no guard", "grey"),
         ((guard > 0.0) & (guard <= 5.0), "guard for up to 5 s", "green"),
         (guard > 5.0, "guard for longer", "purple"),
     ]
-    return _chart(
-        trial,
-        "starts",
-        "Where flights began, seen from the vessel with its plume trailing up the page; coloured by how long they took to settle"
-        " (left), and by how long the keep-out guard changed commands (right).",
-        [
-            _places(trial, right, along, [*classes(settling, bounds, "settled", "s"), never]),
-            _places(trial, right, along, guarded),
-        ],
-        0.48,
+    caption = (
+        "Where flights began, seen from the vessel with its plume up the page; coloured by how long they took to settle (left),"
+        " and by how long the keep-out guard changed commands (right)."
     )
+    settled = classes(settling, quartiles(settling, 10.0), "settled", "s")
+    panels = [_places(trial, right, along, [*settled, never]), _places(trial, right, along, guarded)]
+    return [_chart(trial, "starts", caption, panels, 0.48)]
 
 
 def _places(trial: Trial, right: Array, along: Array, groups: list[Any]) -> Panel:
@@ -193,75 +180,32 @@ def _places(trial: Trial, right: Array, along: Array, groups: list[Any]) -> Pane
     )
 
 
-def _settling(trial: Trial) -> Chart | None:
-    rows = trial.flown
-    return _chart(
-        trial,
-        "settling",
-        "Settling time, of the flights that settled, and closest approach of each flight from its first second.",
-        [
-            histogram([(column(rows, "settling_time_s"), "", "blue")], "Settling time [s]"),
-            histogram([(clearance(rows), "", "blue")], _CLEARANCE, [_R_MIN]),
-        ],
-        0.34,
-    )
-
-
-def _manoeuvres(trial: Trial) -> Chart | None:
-    rows = trial.flown
+def _manoeuvres(trial: Trial) -> list[Chart]:
     flown = trial.rows["min_distance_m"].notna()
-    kinds = [manoeuvre_name(value) for value, shown in zip(trial.dealt("vessel.manoeuvres"), flown, strict=True) if shown]
-    limit, periods = _limit(trial, "resumes_within_periods"), column(rows, "resume_periods")
-    known = bool(np.isfinite(periods).any())
-    resumed = "Next crossing after the manoeuvre [periods]"
-    groups = _every(trial)
-    criterion = [] if math.isnan(limit) else [(limit, "criterion")]
-    return _chart(
-        trial,
-        "manoeuvres",
+    kinds = [manoeuvre_name(value or []) for value, shown in zip(trial.cycled("vessel.manoeuvres"), flown, strict=True) if shown]
+    limit = trial.criteria.get("resumes_within_periods")
+    criterion = [] if limit is None else [(float(limit), "criterion")]
+    resumed = (column(trial.flown, "resume_periods"), "Next crossing after the manoeuvre [periods]", criterion)
+    kept = (clearance(trial.flown), CLEARANCE, [_R_MIN])
+    caption = (
         "By what the vessel did: time from the end of its last manoeuvre to the next crossing, in periods of the oscillation, and"
-        " closest approach of the whole flight.",
-        [
-            strips(periods, kinds, resumed, "Manoeuvre [-]", groups, criterion, named=True) if known else None,
-            strips(clearance(rows), kinds, _CLEARANCE, "Manoeuvre [-]", groups, [_R_MIN], named=not known),
-        ],
-        0.2 + 0.03 * len(set(kinds)),
+        " closest approach of the whole flight."
     )
+    return [_strips(trial, "manoeuvres", caption, kinds, "Manoeuvre [-]", [resumed, kept])]
 
 
-def manoeuvre_name(manoeuvres: list[dict[str, Any]]) -> str:
-    """Return what a vessel does, in a few words."""
-    return ", then ".join(_one_manoeuvre(manoeuvre) for manoeuvre in manoeuvres) or "none"
+def _faults(trial: Trial) -> list[Chart]:
+    kept = (clearance(trial.flown), CLEARANCE, [_R_MIN])
+    end = (column(trial.flown, "end_distance_m"), "Distance at the end [m]", [(trial.radius, "r_min")])
+    caption = "By the fault: closest approach of the whole flight, and distance from the vessel at the end."
+    return [_strips(trial, "faults", caption, [fault_name(kind) for kind in trial.flown["fault"]], "Fault [-]", [kept, end])]
 
 
-def _one_manoeuvre(manoeuvre: dict[str, Any]) -> str:
-    parts = []
-    turn, speed = float(manoeuvre.get("turn_deg", 0.0)), manoeuvre.get("speed_mps")
-    if turn:
-        rate = f" at {float(manoeuvre['turn_rate_deg_s']):g}°/s" if "turn_rate_deg_s" in manoeuvre else ""
-        parts.append(f"{abs(turn):g}° to {'starboard' if turn > 0.0 else 'port'}{rate}")
-    if speed is not None:
-        parts.append("stops" if speed == 0.0 else f"to {float(speed):g} m/s")
-    return " and ".join(parts) or "holds on"
-
-
-def _faults(trial: Trial) -> Chart | None:
-    rows = trial.flown
-    kinds = [fault_name(kind) for kind in rows["fault"]]
-    groups = _every(trial)
-    radius = [(trial.radius, "r_min")]
-    return _chart(
-        trial,
-        "faults",
-        "By what failed: closest approach of the whole flight, and distance from the vessel at the end.",
-        [
-            strips(clearance(rows), kinds, _CLEARANCE, "Fault [-]", groups, [_R_MIN], named=True),
-            strips(column(rows, "end_distance_m"), kinds, "Distance at the end [m]", "Fault [-]", groups, radius, named=False),
-        ],
-        0.2 + 0.03 * len(set(kinds)),
-    )
-
-
-def fault_name(kind: object) -> str:
-    """Return what a fault is called."""
-    return str(kind).replace("_", " ")
+def _strips(trial: Trial, name: str, caption: str, kinds: list[str], y_label: str, figures: list[_Figure]) -> Chart:
+    """Return panels beside each other with a row of markers per kind, of which the first names the rows."""
+    known = [figure for figure in figures if np.isfinite(figure[0]).any()]
+    panels = [
+        strips(values, kinds, x_label, y_label, by_violation(trial), marks, named=i == 0)
+        for i, (values, x_label, marks) in enumerate(known)
+    ]
+    return _chart(trial, name, caption, panels, 0.2 + 0.03 * len(set(kinds)))

@@ -1,27 +1,69 @@
-"""Tables of trials over the real sea."""
+"""Tables of trials and of their flights."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from common.run_layout import SUMMARY
-from reports.document.blocks import Block, Heading, Table, Text
-from reports.document.chart import Array
-from reports.document.tables import number, outcome, parameter_value
-from reports.flights.criteria import asked, counted
-from reports.flights.trial_charts import fault_name, manoeuvre_name
+from reports.document.blocks import Block, Table, Text
+from reports.document.tables import number, outcome
+from reports.flights.criteria import counted, criteria_of
+from reports.flights.names import fault_name
+from reports.run.columns import clearance, column, lost, met, total, violated
 from reports.run.run_data import RunData
-from reports.run.trials import Trial, clearance, column, entered, total
+from reports.run.time_history import funnel_distance
+from reports.run.trials import Trial
 
-UNMET_MAX = 40
-"""Flights that fell short and are listed."""
+FAILED_MAX = 40
+"""Failed flights that are listed."""
 
 _NOTHING = "–"
 
+Columns = tuple[tuple[str, str, str], ...]
+
+_FLIGHT_COLUMNS = (
+    ("Keep-out violations", "keepout_violations", "{:.0f}"),
+    ("Closest [m]", "min_distance_m", "{:.1f}"),
+    ("Crossings", "crossing_count", "{:.0f}"),
+    ("Interval [s]", "crossing_interval_mean_s", "{:.2f}"),
+    ("π/ω₀ [s]", "crossing_interval_predicted_s", "{:.2f}"),
+    ("Crossing, min [m]", "crossing_distance_min_m", "{:.1f}"),
+    ("Settled [s]", "settling_time_s", "{:.0f}"),
+    ("Tracking rms [m]", "tracking_error_rms_m", "{:.2f}"),
+)
+
+
+OSCILLATION_COLUMNS = (
+    ("η = J₀⁻¹(ν) (6) [rad]", "eta", "{:.4f}"),
+    ("ω₀ (8) [rad/s]", "omega_0_rad_s", "{:.4f}"),
+    ("π/ω₀ [s]", "crossing_interval_predicted_s", "{:.3f}"),
+    ("r_CO (10) [m]", "r_co_m", "{:.2f}"),
+)
+
+
+def flight_table(
+    rows: pd.DataFrame, head: str, name: Callable[["pd.Series[Any]"], str], columns: Columns = _FLIGHT_COLUMNS
+) -> Table:
+    """Return a row per flight, and its outcome in words.
+
+    Parameters
+    ----------
+    rows : of the flights
+    head, name : of the first column, and what it says of a flight
+    columns : title, name and pattern of the others
+    """
+    cells = [
+        [name(row), *(number(row.get(key), pattern) for _, key, pattern in columns), outcome(row)] for _, row in rows.iterrows()
+    ]
+    longest = max((len(row[0]) for row in cells), default=0)
+    widths = [min(2.2, max(1.0, 0.12 * longest)), *[1.05] * len(columns), 2.2]
+    return Table(head=[head, *(title for title, _, _ in columns), "Outcome"], rows=cells, widths=widths, breakable=True)
+
 
 def trial_table(trials: list[Trial]) -> Table:
-    """Return a row per trial: how many were flown, whether they kept out, and how they ended."""
+    """Return a row per trial: its flights, how they kept the keep-out area, and how they ended."""
     rows = []
     for trial in trials:
         flown = trial.flown
@@ -34,28 +76,32 @@ def trial_table(trials: list[Trial]) -> Table:
             number(np.min(clearance(flown)) if len(flown) else None, "{:+.1f}"),
             f"{guarded}",
             f"{int(np.count_nonzero(np.isfinite(column(flown, 'settling_time_s'))))}",
-            counted(flown["mode_at_end"]) or _NOTHING,
-            f"{int(trial.rows['criteria_met'].sum())} of {trial.planned}",
+            counted(flown["mode_at_end"]) if "mode_at_end" in flown else _NOTHING,
+            f"{int(np.count_nonzero(lost(trial.rows)))}",
+            f"{int(np.count_nonzero(met(trial.rows)))} of {trial.planned}",
         ])  # fmt: skip
     head = [
-        "Trial", "Flights", "Entries", "Closest [m]", "beyond r_min [m]", "With guard", "Settled", "Mode at the end", "Met",
+        "Trial", "Flights", "Keep-out violations", "Closest [m]", "beyond r_min [m]", "With guard", "Settled", "Mode at the end",
+        "Aircraft lost", "Met",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[2.2, 0.8, 0.8, 0.9, 0.9, 0.8, 0.8, 1.7, 1.1])
+    return Table(head=head, rows=rows, widths=[2.2, 0.8, 1.0, 0.9, 0.9, 0.8, 0.8, 1.5, 0.8, 1.1])
 
 
 def criteria_table(trials: list[Trial]) -> Table:
     """Return a row per criterion of each trial: its limit, as configured, and the worst that was measured."""
     rows = []
     for trial in trials:
-        listed = asked(trial)
-        rows += [[trial.title, a.what, a.limit, a.worst, f"{a.short}"] for a in listed]
-        rows += [] if listed else [[trial.title, "Nothing but to keep out, at a heading rate of ω_max at most", "", "", _NOTHING]]
-    head = ["Trial", "Asked for", "Limit", "Worst measured", "Fell short"]
-    return Table(head=head, rows=rows, widths=[1.7, 2.5, 1.2, 1.7, 0.7], left_columns=4)
+        listed = criteria_of(trial)
+        rows += [[trial.title, c.what, c.limit, c.worst, f"{c.failed}"] for c in listed]
+        rows += [] if listed else [[trial.title, "None, but no keep-out violation and commands within ω_max", "", "", _NOTHING]]
+    head, widths = ["Trial", "Criterion", "Limit", "Worst measured", "Failed"], [1.7, 2.5, 1.2, 1.7, 0.7]
+    if len(trials) == 1:
+        return Table(head=head[1:], rows=[row[1:] for row in rows], widths=widths[1:], left_columns=3)
+    return Table(head=head, rows=rows, widths=widths, left_columns=4)
 
 
 def fault_table(trial: Trial) -> Table:
-    """Return a row per kind of fault: what became of the flights, and how close they came from the fault on."""
+    """Return a row per kind of fault: how the flights ended, and how close they came from the fault on."""
     flown = trial.flown
     after = {str(row["flight_id"]): _closest_after(trial, row) for _, row in flown.iterrows()}
     rows = []
@@ -69,10 +115,14 @@ def fault_table(trial: Trial) -> Table:
             number(float(column(members, "min_distance_m").min()), "{:.1f}"),
             number(min(known, default=None), "{:.1f}") + (f" (of {len(known)})" if known and len(known) < len(closest) else ""),
             f"{column(members, 'end_distance_m').min():.0f} to {column(members, 'end_distance_m').max():.0f}",
+            f"{int(np.count_nonzero(lost(members)))}",
             counted(members["mode_at_end"]),
         ])  # fmt: skip
-    head = ["Fault", "Flights", "Entries", "Closest [m]", "Closest after the fault [m]", "At the end [m]", "Mode at the end"]
-    return Table(head=head, rows=rows, widths=[1.5, 0.7, 0.7, 0.9, 1.3, 1.2, 2.2])
+    head = [
+        "Fault", "Flights", "Keep-out violations", "Closest [m]", "Closest after the fault [m]", "At the end [m]",
+        "Aircraft lost", "Mode at the end",
+    ]  # fmt: skip
+    return Table(head=head, rows=rows, widths=[1.5, 0.7, 1.0, 0.9, 1.2, 1.2, 0.8, 2.0])
 
 
 def _closest_after(trial: Trial, row: "pd.Series[Any]") -> float | None:
@@ -84,19 +134,12 @@ def _closest_after(trial: Trial, row: "pd.Series[Any]") -> float | None:
     return float(funnel_distance(after, trial.source_height).min()) if len(after) else None
 
 
-def funnel_distance(history: pd.DataFrame, source_height: float) -> Array:
-    """Return the distance from the funnel's mouth at every sample [m]."""
-    north, east = (column(history, f"{axis}_m") - column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
-    distance: Array = np.sqrt(north**2 + east**2 + (column(history, "altitude_m") - source_height) ** 2)
-    return distance
-
-
-def unmet_blocks(run: RunData) -> list[Block]:
-    """Return the flights that fell short, entries first, so many of them at most, each with its reason."""
-    unmet = run.summary[~run.summary["criteria_met"]]
-    if not len(unmet):
+def failed_blocks(run: RunData) -> list[Block]:
+    """Return the flights that failed, keep-out violations first, ``FAILED_MAX`` at most, each with its reason."""
+    failed = run.summary[~run.summary["criteria_met"]]
+    if not len(failed):
         return []
-    order = np.lexsort((np.arange(len(unmet)), -np.nan_to_num(column(unmet, "keepout_depth_m")), ~entered(unmet)))
+    order = np.lexsort((np.arange(len(failed)), -np.nan_to_num(column(failed, "keepout_depth_m")), ~violated(failed)))
     rows = [
         [
             str(row["flight_id"]),
@@ -105,77 +148,10 @@ def unmet_blocks(run: RunData) -> list[Block]:
             number(row["min_distance_m"], "{:.1f}"),
             outcome(row),
         ]
-        for _, row in unmet.iloc[order[:UNMET_MAX]].iterrows()
+        for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()
     ]
-    head = ["Flight", "ν [-]", "Entries", "Closest [m]", "How it ended, and what it fell short of"]
-    table = Table(head=head, rows=rows, widths=[2.4, 0.5, 0.6, 0.8, 4.2], prose=True, left_columns=5, breakable=True)
-    more = len(unmet) - len(rows)
-    text = f"{len(unmet)} flights fell short; those that entered the keep-out area come first."
+    head = ["Flight", "ν [-]", "Keep-out violations", "Closest [m]", "How it ended, and the criteria that it failed"]
+    table = Table(head=head, rows=rows, widths=[2.4, 0.5, 0.9, 0.8, 4.0], prose=True, left_columns=5, breakable=True)
+    more = len(failed) - len(rows)
+    text = f"{len(failed)} {'flights' if len(failed) > 1 else 'flight'} failed; those with keep-out violations come first."
     return [Text(text + (f" The first {len(rows)} are listed, {more} more are in {SUMMARY}." if more else "")), table]
-
-
-def parameter_blocks(trials: list[Trial]) -> list[Block]:
-    """Return what each trial sets and draws, and all parameters with the values that they have otherwise."""
-    blocks: list[Block] = []
-    for trial in trials:
-        blocks += [Heading(trial.title), _set_table(trial)]
-    return [*blocks, Heading("Every parameter, where a trial sets nothing"), _default_table(trials[0])] if trials else []
-
-
-def _set_table(trial: Trial) -> Table:
-    """Return what a trial draws for each flight, and the parameters that it sets to other than their defaults."""
-    config = trial.config
-    listed = {parameter["key"]: parameter for parameter in trial.parameters()}
-    rows = [["flights, seed", f"{trial.planned}, {config['seed']}", "", "", "Number of flights; seed of all that is drawn"]]
-    if trial.draws("wind") or trial.draws("vessel"):
-        low, high = config["speed_ratio"]
-        rows.append(["speed_ratio", f"{low:g} to {high:g}", "", "", "Draws with another speed ratio ν are drawn again"])
-    for draw in config["draws"]:
-        about = listed.get(draw["key"], {})
-        rows.append([draw["key"], _drawn(draw), _default(about), about.get("unit", ""), about.get("meaning", "")])
-    drawn = {draw["key"] for draw in config["draws"]}
-    rows += [
-        [key, _value(p["value"]), _default(p), p["unit"], p["meaning"]]
-        for key, p in listed.items()
-        if key not in drawn and ("default" not in p or p["value"] != p["default"])
-    ]
-    head = ["Parameter", "Value", "Default", "Unit", "Meaning"]
-    return Table(head=head, rows=rows, widths=[2.9, 2.1, 1.1, 0.5, 2.9], left_columns=5, prose=True, breakable=True)
-
-
-def _default_table(trial: Trial) -> Table:
-    rows = [[p["key"], _default(p), p["unit"], p["meaning"]] for p in trial.parameters()]
-    head = ["Parameter", "Default", "Unit", "Meaning"]
-    return Table(head=head, rows=rows, widths=[3.1, 1.2, 0.7, 3.9], left_columns=4, prose=True, breakable=True)
-
-
-def _drawn(draw: dict[str, Any]) -> str:
-    if draw["uniform"] is not None:
-        low, high = draw["uniform"]
-        return f"drawn from {low:g} to {high:g}"
-    if draw["choice"] is not None:
-        choices = [_value(choice) for choice in draw["choice"]]
-        if draw["weights"] is None:
-            return "in turn: " + "; ".join(choices)
-        whole = sum(draw["weights"])
-        return "; ".join(f"{100.0 * w / whole:.0f} % {choice}" for w, choice in zip(draw["weights"], choices, strict=True))
-    if draw["normal"] is not None:
-        mean, sigma = draw["normal"]
-        what = f"normal, mean {mean:g}, deviation {sigma:g}"
-    else:
-        shape, scale = draw["weibull"]
-        what = f"Weibull, shape {shape:g}, scale {scale:g}"
-    return f"{what}, from {draw['within'][0]:g} to {draw['within'][1]:g}" if draw["within"] else what
-
-
-def _default(parameter: dict[str, Any]) -> str:
-    return _value(parameter["default"]) if "default" in parameter else ""
-
-
-def _value(value: Any) -> str:
-    """Return a value in words; a list of sections can only be manoeuvres, one of figures only a range."""
-    if isinstance(value, list) and (not value or isinstance(value[0], dict)):
-        return manoeuvre_name(value)
-    if isinstance(value, list) and isinstance(value[0], float):
-        return " to ".join(f"{bound:g}" for bound in value)
-    return parameter_value(value)

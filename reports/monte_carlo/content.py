@@ -1,4 +1,4 @@
-"""What a report shows of a Monte Carlo study, before all else: how sure it is of what, how flights are spread, what drives them."""
+"""What a report shows of a Monte Carlo study: the bound on a keep-out violation, distributions and sensitivity."""
 
 from typing import Any
 
@@ -15,9 +15,9 @@ def monte_carlo_sections(run: RunData) -> list[Section]:
     if statistics is None:
         return []
     return [
-        Section(anchor="study", title="What the study shows", nav_title="Study", blocks=_shown(statistics)),
-        Section(anchor="spread", title="How the flights are spread", nav_title="Spread", blocks=_spread(run, statistics)),
-        Section(anchor="drivers", title="What drives the figures", nav_title="Drivers", blocks=_drivers(run, statistics)),
+        Section(anchor="study", title="Probability of a keep-out violation", nav_title="Probability", blocks=_shown(statistics)),
+        Section(anchor="spread", title="Distributions", nav_title="Distributions", blocks=_spread(run, statistics)),
+        Section(anchor="drivers", title="Sensitivity", nav_title="Sensitivity", blocks=_drivers(run, statistics)),
     ]
 
 
@@ -31,30 +31,30 @@ def _shown(statistics: dict[str, Any]) -> list[Block]:
 
 
 def bound_in_words(statistics: dict[str, Any]) -> str:
-    """Return the bound on the probability that a flight enters the keep-out area, with its confidence and what it assumes."""
+    """Return the bound on the probability of a keep-out violation, with its confidence and what it assumes."""
     confidence = percent(statistics["confidence"])
     measured, worst = statistics["violation"]["measured"], statistics["violation"]["pessimistic"]
     unknown = sum(found["flights"] for found in statistics["flights"]["unknown"].values())
     if not measured["flights"]:
-        return "No flight was measured: nothing is known of the probability that a flight enters the keep-out area."
+        return "No flight was measured, so that no bound on the probability of a keep-out violation is known."
     words = (
-        f"With {confidence} confidence a flight of this study enters the keep-out area with a probability of at most"
+        f"With {confidence} confidence a flight of this study violates the keep-out area with a probability of at most"
         f" {percent(measured['upper'])}, about one flight in {round(1.0 / measured['upper']):,}: {measured['events']:,} of"
         f" {measured['flights']:,} flights did (one-sided bound of Clopper and Pearson)."
     )
     if unknown:
         words += (
             f" {unknown:,} {'flight is' if unknown == 1 else 'flights are'} of unknown end, without a measurement or out of"
-            f" control; with each of them as an entry the bound is {percent(worst['upper'])}."
+            f" control; with each of them as a violation the bound is {percent(worst['upper'])}."
         )
     if statistics["look_number"] is not None:
         words += (
-            f" The study was looked at up to {statistics['look_number']} times, to stop once it knew enough: for all looks together"
-            f" to hold with {confidence}, bounds and intervals are made with {percent(statistics['interval_confidence'])}."
+            f" The study was evaluated up to {statistics['look_number']} times, to stop once it knew enough: for all evaluations"
+            f" together to hold with {confidence}, bounds and intervals are made with {percent(statistics['interval_confidence'])}."
         )
     return words + (
-        " The bound is on flights drawn as these were, in this simulation; it says nothing of what the simulation leaves out. It is"
-        " that of independent flights, and is kept for inputs from a low-discrepancy design, where it is too high as a rule."
+        " The bound is on flights sampled as these were, in this simulation; it says nothing of what the simulation leaves out. It"
+        " is that of independent flights, and is kept for inputs from a low-discrepancy design, where it is too high as a rule."
     )
 
 
@@ -70,8 +70,8 @@ def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
 def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
     text = (
         "Borgonovo's δ says how much the distribution of a figure changes once an input is known: 0 not at all, 1 completely."
-        " The first-order index S₁ is the share of the figure's variance that the input explains by itself. Of a finite number of"
-        " flights neither is 0 for an input that does nothing: the noise floor is the largest index of some that do nothing, and"
+        " The first-order index S₁ is the fraction of the figure's variance that the input explains by itself. Of a finite number"
+        " of flights neither is 0 for an input that does nothing: the noise floor is the largest index of some that do nothing, and"
         f" what matters has an interval (at {percent(statistics['confidence'])}) above it."
     )
     return [

@@ -6,11 +6,11 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from reports.document.chart import Array, Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel
 from reports.document.panels import capped, level, strips
 from reports.monte_carlo.names import FIGURES, input_label, input_name
+from reports.run.columns import Array, Mask, clearance, violated
 from reports.run.run_data import RunData
-from reports.run.trials import Mask, clearance, entered
 
 SCATTER_MAX = 2000
 """Flights of a scatter at most."""
@@ -22,7 +22,7 @@ INPUTS_MAX = 12
 """Inputs that have bars."""
 
 SCATTERED = 4
-"""Inputs that the clearance is drawn over."""
+"""Inputs that the clearance is shown over."""
 
 _CLEARANCE = FIGURES["clearance_m"].label
 
@@ -90,15 +90,15 @@ def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     keys = [index["key"] for index in statistics["sensitivity"]["clearance_m"]["inputs"][:SCATTERED]]
     measured = run.summary[run.summary["min_distance_m"].notna()]
     shown = measured.iloc[thinned(clearance(measured))]
-    drawn = run.draws.set_index("flight_id").reindex(shown["flight_id"])
-    near, inside = clearance(shown), entered(shown)
-    groups = [(~inside, "flight", "blue"), (inside, "flight that entered", "vermillion")]
+    sampled = run.draws.set_index("flight_id").reindex(shown["flight_id"])
+    near, inside = clearance(shown), violated(shown)
+    groups = [(~inside, "flight", "blue"), (inside, "flight with a keep-out violation", "vermillion")]
     caption = "Closest approach of each flight beyond r_min, over the inputs with the largest δ."
     if len(shown) < len(measured):
-        caption += f" {len(shown):,} of {len(measured):,} flights are drawn, the {NEAREST} nearest among them."
-    figures = [_scatter(drawn[key], near, groups) for key in keys if pd.api.types.is_numeric_dtype(drawn[key])]
+        caption += f" {len(shown):,} of {len(measured):,} flights are shown, the {NEAREST} nearest among them."
+    figures = [_scatter(sampled[key], near, groups) for key in keys if pd.api.types.is_numeric_dtype(sampled[key])]
     # Words beside an axis are wide: below each other, not beside, these panels have room for them.
-    words = [_strips(drawn[key], near, groups) for key in keys if not pd.api.types.is_numeric_dtype(drawn[key])]
+    words = [_strips(sampled[key], near, groups) for key in keys if not pd.api.types.is_numeric_dtype(sampled[key])]
     charts = [
         Chart(name="over-figures", caption=caption, panels=figures, columns=min(2, len(figures)), panel_height=0.36),
         Chart(name="over-words", caption=caption, panels=words, panel_height=0.3),

@@ -7,25 +7,25 @@ import pandas as pd
 
 from reports.document.blocks import Block, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel
+from reports.run.columns import clearance
 from reports.run.run_data import RunData
-from reports.run.trials import clearance
 
 _POINTS_MAX = 4000
-"""Flights that are drawn, at most: an even sample of more."""
+"""Flights that are shown, at most: an even sample of more."""
 
 
-def falsify_sections(run: RunData) -> list[Section]:
+def falsification_sections(run: RunData) -> list[Section]:
     """Return the section of a run that searched for the worst flight, and none of any other."""
     config = next(iter(run.manifest["trials"].values()))
     flown = run.summary[run.summary["min_distance_m"].notna()]
-    if "search" not in config or not len(flown):
+    if not config.get("search") or not len(flown):
         return []
     blocks: list[Block] = [
         Text(_in_words(config, flown)),
         search_chart(flown, int(config["search"]["population"])),
         worst_table(flown, int(config["search"]["kept"])),
     ]
-    return [Section(anchor="search", title="The search for the worst flight", nav_title="Search", blocks=blocks)]
+    return [Section(anchor="search", title="Worst-case search", nav_title="Search", blocks=blocks)]
 
 
 def _in_words(config: dict[str, Any], flown: pd.DataFrame) -> str:
@@ -38,9 +38,9 @@ def _in_words(config: dict[str, Any], flown: pd.DataFrame) -> str:
     )
     return (
         f"Differential evolution over {len(config['draws'])} inputs within their declared ranges: up to {search['population']}"
-        f" flights a generation, {search['generations']} generations after a Sobol sequence. {found} A search finds what is there"
-        " to be found within its flights; it proves no bound. The worst flights are in the directory worst/, as scenario files that"
-        " fly again identically."
+        f" flights a generation, {search['generations']} generations after a Sobol sequence. {found} A search finds the worst"
+        " flight within its budget and proves no bound. The worst flights are in the directory worst/, as scenario files that"
+        " replay them identically."
     )
 
 

@@ -54,6 +54,11 @@ def input_name(key: str) -> str:
     return bare.replace(".", " ").replace("_", " ").capitalize()
 
 
+def input_unit(key: str) -> str:
+    """Return the unit that a key names."""
+    return next((unit for suffix, unit in _UNITS.items() if key.endswith(suffix)), "-")
+
+
 def input_label(key: str) -> str:
     """Return what an axis says of an input."""
-    return f"{input_name(key)} [{next((unit for suffix, unit in _UNITS.items() if key.endswith(suffix)), '-')}]"
+    return f"{input_name(key)} [{input_unit(key)}]"

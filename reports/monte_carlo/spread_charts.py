@@ -4,20 +4,20 @@ from typing import Any
 
 import numpy as np
 
-from reports.document.chart import Array, Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel
 from reports.document.panels import histogram
 from reports.monte_carlo.names import FIGURES
+from reports.run.columns import Array, clearance, column, interval_error
 from reports.run.run_data import RunData
-from reports.run.trials import clearance, column, interval_error
 
 CURVE_POINTS = 400
 """Points of a cumulative curve at most."""
 
 _SHOWN = 0.005
-"""Share of flights at an end that go into the outermost bars of a histogram."""
+"""Fraction of flights at an end that go into the outermost bars of a histogram."""
 
 _NEARER = 0.9
-"""Share of flights that the curve of the nearest goes up to."""
+"""Fraction of flights that the curve of the nearest goes up to."""
 
 _CLEARANCE = FIGURES["clearance_m"].label
 
@@ -32,7 +32,7 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     kept = Chart(
         name="clearance",
         caption="Closest approach of each flight beyond r_min. Left: flights counted, the farthest half per cent in the last bar."
-        " Right: share of flights that came as near or nearer, with the intervals of its quantiles; the scale is logarithmic to"
+        " Right: fraction of flights that came as near or nearer, with the intervals of its quantiles; the scale is logarithmic to"
         " show the few nearest.",
         panels=[counted_near, _tail(near, statistics)],
         columns=2,
@@ -58,7 +58,7 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
 
 
 def _within(values: Array, lowest: float = _SHOWN) -> Array:
-    """Return known values, a share of the ``lowest`` and ``_SHOWN`` of the highest moved to where the others end."""
+    """Return known values, a fraction of the ``lowest`` and ``_SHOWN`` of the highest moved to where the others end."""
     known = values[np.isfinite(values)]
     return np.clip(known, *np.quantile(known, [lowest, 1.0 - _SHOWN])) if len(known) else known
 
@@ -73,20 +73,20 @@ def _counted(key: str, values: Array, quantiles: list[dict[str, Any]]) -> Panel 
 
 
 def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
-    x, share = cumulative(near)
+    x, fraction = cumulative(near)
     every = statistics["figures"]["clearance_m"]["quantiles"]
     quantiles = [q for q in every if q["probability"] <= 0.5 and None not in (q["low"], q["high"])]
     gap = np.nan
     ends = np.array([end for q in quantiles for end in (q["low"], q["high"], gap)])
     heights = np.array([height for q in quantiles for height in (100.0 * q["probability"], 100.0 * q["probability"], gap)])
-    least = 100.0 * float(share[0])
+    least = 100.0 * float(fraction[0])
     far = float(np.quantile(near[np.isfinite(near)], _NEARER))
     nearest = min(0.0, float(x[0]))
     return Panel(
         x_label=_CLEARANCE,
         y_label="Flights as near or nearer [%]",
         lines=[
-            Line(x=x, y=100.0 * share, label="flights", colour="blue"),
+            Line(x=x, y=100.0 * fraction, label="flights", colour="blue"),
             Line(x=ends, y=heights, label="interval of a quantile", colour="black"),
             Line(x=np.zeros(2), y=np.array([0.7 * least, 100.0]), label="r_min", colour="vermillion", style="dash"),
         ],
@@ -97,7 +97,7 @@ def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
 
 
 def cumulative(values: Array) -> tuple[Array, Array]:
-    """Return values in rising order, all of the lowest and ever fewer of the others, and which share of all known is no larger."""
+    """Return rising values, all of the lowest and ever fewer of the others, and the fraction of all known up to each."""
     known = np.sort(values[np.isfinite(values)])
     ranks = np.unique(np.geomspace(1.0, len(known), CURVE_POINTS).round().astype(np.int64))
     return known[ranks - 1], ranks / len(known)

@@ -10,25 +10,32 @@ Record = dict[str, Any]
 
 
 def violation_table(statistics: Record) -> Table:
-    """Return how many flights entered the keep-out area, and within what their probability is."""
+    """Return how many flights violated the keep-out area, and the interval of that probability."""
     level = percent(statistics["interval_confidence"])
-    shares = [("Flights with a measurement", "measured"), ("All, those of unknown end counted as entries", "pessimistic")]
+    counted = [("Flights with a measurement", "measured"), ("All, those of unknown end counted as violations", "pessimistic")]
     return Table(
-        head=["Counted", "Flights", "Entered", "Share", f"Probability, two-sided at {level}", f"At most, one-sided at {level}"],
-        rows=[_share(name, statistics["violation"][key]) for name, key in shares],
+        head=[
+            "Counted",
+            "Flights",
+            "Violations",
+            "Fraction",
+            f"Probability, two-sided at {level}",
+            f"At most, one-sided at {level}",
+        ],
+        rows=[_fraction(name, statistics["violation"][key]) for name, key in counted],
         widths=[2.4, 0.7, 0.7, 0.8, 1.9, 1.5],
     )
 
 
-def _share(name: str, share: Record) -> list[str]:
-    known = share["share"] is not None
+def _fraction(name: str, found: Record) -> list[str]:
+    known = found["share"] is not None
     return [
         name,
-        f"{share['flights']:,}",
-        f"{share['events']:,}",
-        percent(share["share"]) if known else "–",
-        f"{percent(share['low'])} to {percent(share['high'])}",
-        percent(share["upper"]),
+        f"{found['flights']:,}",
+        f"{found['events']:,}",
+        percent(found["share"]) if known else "–",
+        f"{percent(found['low'])} to {percent(found['high'])}",
+        percent(found["upper"]),
     ]
 
 
@@ -79,7 +86,7 @@ def left_out_rows(sensitivity: Record) -> list[str]:
     return [*lines, *(f"{input_name(key)} has no index: {why}." for key, why in sorted(reasons))]
 
 
-def percent(share: float) -> str:
-    """Return a share in per cent, to three digits, and to four where it is nearly all. No line breaks before the sign."""
-    digits = 3 if share < 0.99 else 4
-    return f"{100.0 * share:.{digits}g}\N{NO-BREAK SPACE}%"
+def percent(fraction: float) -> str:
+    """Return a fraction in per cent, to three digits, and to four where it is nearly all. No line breaks before the sign."""
+    digits = 3 if fraction < 0.99 else 4
+    return f"{100.0 * fraction:.{digits}g}\N{NO-BREAK SPACE}%"

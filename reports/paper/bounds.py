@@ -13,7 +13,7 @@ def bounds_section(record: dict[str, Any]) -> Section:
     """Return the section on a record of bounds: how tight they are, and what a guarantee costs."""
     return Section(
         anchor="bounds",
-        title="Actuation bounds: what the law can ask for, over all states",
+        title="Actuation bounds: the largest demand of the law, over all states",
         nav_title="Bounds",
         blocks=[
             Text(_BOUND.format(samples=record["samples"])),
@@ -35,7 +35,7 @@ _BOUND = (
 )
 
 _COST = (
-    "On the reference itself the law asks for ω_r plus what h and V/R add, so a reference that spends all of ω_max, as the"
+    "On the reference itself the law demands ω_r plus what h and V/R add, so a reference that spends all of ω_max, as the"
     " paper's Simulation 3 does, leaves no ε, R and h that keep commands within ω_max. A reserve buys them. The parameters below"
     " converge fastest among those that keep every command within ω_max; the price is a longer look-ahead, hence slower"
     " convergence, and a longer crossing interval. The catalog's Simulation 3 and sweep do not pay it: their commands are cut at"
@@ -99,7 +99,7 @@ def _cost_chart(rows: list[dict[str, Any]]) -> Chart:
     x_label = "Reserve of ω_max left to feedback [%]"
     return Chart(
         name="boundcost",
-        caption=f"What it costs that no state can make the law ask for more than ω_max, at ν = {rows[0]['nu']:g}.",
+        caption=f"What it costs that the demand of the law stays within ω_max in every state, at ν = {rows[0]['nu']:g}.",
         panels=[
             Panel(
                 x_label=x_label,

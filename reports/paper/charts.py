@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from reports.document.chart import Array, Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel
 from reports.document.tables import kinematic
+from reports.run.columns import Array
 from reports.run.run_data import RunData
-from reports.run.time_history import thinned, tracking_error
+from reports.run.time_history import funnel_distance, thinned, tracking_error
 
 VEHICLES = ("kinematic", "six_dof")
 """Fidelities, in the order of panels and columns."""
@@ -92,9 +93,9 @@ def sim_2_charts(run: RunData) -> list[Chart]:
             " UAV 2 by the δ formulation. Diamonds: starts.",
         ),
         _side_by_side(
-            run, cases, _figure_7, name="fig7", labels=("Time [s]", "Heading rate asked for [rad/s]"),
-            caption="Figure 7: what each law asks for. Dashed: ±ω_max. The kinematic UAV 1 flies what it asks for, as in the paper;"
-            " the aircraft's commands are cut at ω_max.",
+            run, cases, _figure_7, name="fig7", labels=("Time [s]", "Heading-rate demand [rad/s]"),
+            caption="Figure 7: the heading-rate demand of each law. Dashed: ±ω_max. The kinematic UAV 1 flies its demand, as in the"
+            " paper; the aircraft's commands are cut at ω_max.",
         ),
         _side_by_side(
             run, cases, _distances, name="sim2distance", labels=("Time [s]", "Distance to the reference [m]"),
@@ -109,18 +110,15 @@ def sim_3_charts(run: RunData) -> list[Chart]:
     flights = run.summary[run.summary["flight_id"].astype(str).str.startswith("sim3_")]
     if flights["nu"].isna().any():
         return []
-    speed = float(run.manifest["config"]["guidance"]["airspeed_mps"])
-    course = math.radians(run.manifest["config"]["vessel"]["course_deg"])
     source_height = float(run.manifest["config"]["plume"]["source_height_m"])
 
     def figure_8(flights: dict[str, Flown]) -> list[Line]:
         flown = flights["sim3"]
-        way = float(flown.row["nu"]) * speed * flown.time
         times = run.crossings_of(str(flown.row["flight_id"]))["time_s"].to_numpy(dtype=np.float64)
         times = times[times <= flown.time[-1]]
         east, north = (np.interp(times, flown.time, flown.column(name)) for name in ("east_m", "north_m"))
         return [
-            Line(x=way * math.sin(course), y=way * math.cos(course), label="vessel", colour="black"),
+            Line(x=flown.column("vessel_east_m"), y=flown.column("vessel_north_m"), label="vessel", colour="black"),
             Line(x=flown.column("reference_east_m"), y=flown.column("reference_north_m"), label="reference", colour="orange"),
             Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour="blue"),
             _diamonds(east, north, "plume crossing"),
@@ -128,13 +126,10 @@ def sim_3_charts(run: RunData) -> list[Chart]:
 
     def figure_9(flights: dict[str, Flown]) -> list[Line]:
         flown = flights["sim3"]
-        way = float(flown.row["nu"]) * speed * flown.time
-        ahead = flown.column("north_m") - way * math.cos(course), flown.column("east_m") - way * math.sin(course)
-        distance = np.sqrt(ahead[0] ** 2 + ahead[1] ** 2 + (flown.column("altitude_m") - source_height) ** 2)
         crossings = run.crossings_of(str(flown.row["flight_id"]))
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
-            Line(x=flown.time, y=distance, label="UAV", colour="blue"),
+            Line(x=flown.time, y=funnel_distance(flown.history, source_height), label="UAV", colour="blue"),
             _diamonds(
                 crossings["time_s"].to_numpy(dtype=np.float64), crossings["distance_m"].to_numpy(dtype=np.float64), "plume crossing"
             ),
@@ -158,8 +153,8 @@ def coincidences(flown: Flown) -> Array:
     """Return the times at which phi_r = phi [s], linear between samples. Jumps by a turn are none."""
     gap = flown.column("phi_r_rad") - flown.column("phi_rad")
     at = np.nonzero((gap[:-1] * gap[1:] < 0.0) & (np.abs(np.diff(gap)) < math.pi))[0]
-    share = gap[at] / (gap[at] - gap[at + 1])
-    return flown.time[at] + share * (flown.time[at + 1] - flown.time[at])
+    fraction = gap[at] / (gap[at] - gap[at + 1])
+    return flown.time[at] + fraction * (flown.time[at + 1] - flown.time[at])
 
 
 Lines = Callable[[dict[str, Flown]], list[Line]]
@@ -257,7 +252,7 @@ def _figure_6(flights: dict[str, Flown]) -> list[Line]:
 
 def _figure_7(flights: dict[str, Flown]) -> list[Line]:
     commands = [
-        Line(x=flown.time, y=flown.column("heading_rate_wanted_rad_s"), label=_UAVS[case][0], colour=_UAVS[case][1])
+        Line(x=flown.time, y=flown.column("heading_rate_demand_rad_s"), label=_UAVS[case][0], colour=_UAVS[case][1])
         for case, flown in flights.items()
     ]
     first = next(iter(flights.values()))

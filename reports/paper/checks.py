@@ -14,7 +14,7 @@ from reports.run.run_data import RunData
 INTERVAL_PRINTED, DISTANCE_PRINTED = 9.5, 214.0
 """What section V of the paper publishes of Simulation 3 [s, m]."""
 
-SHARES = {"kinematic": 0.005, "six_dof": 0.02}
+TOLERANCES = {"kinematic": 0.005, "six_dof": 0.02}
 """How close each vehicle has to come to what is published."""
 
 END_DISTANCE_MAX = 0.1
@@ -54,7 +54,7 @@ def paper_checks(run: RunData) -> list[Check]:
 
     checks = []
     for fidelity in vehicles(run):
-        share, name = SHARES[fidelity], _SHORT[fidelity]
+        tolerance, name = TOLERANCES[fidelity], _SHORT[fidelity]
         for what, key, printed, unit in (
             ("interval", "crossing_interval_mean_s", INTERVAL_PRINTED, "s"),
             ("distance", "crossing_distance_mean_m", DISTANCE_PRINTED, "m"),
@@ -64,12 +64,12 @@ def paper_checks(run: RunData) -> list[Check]:
                 Check(
                     f"Sim. 3 {what}, {name}",
                     number(found, "{:.3f} s" if unit == "s" else "{:.2f} m"),
-                    f"{printed:g} {unit} ± {100.0 * share:g} %",
-                    _met(found, abs(found / printed - 1.0) <= share),
+                    f"{printed:g} {unit} ± {100.0 * tolerance:g} %",
+                    _met(found, abs(found / printed - 1.0) <= tolerance),
                 )
             )
-    entries = sum(value("sim3", fidelity, "keepout_violations") for fidelity in vehicles(run))
-    checks.append(Check("Sim. 3, entries into the keep-out area", number(entries, "{:.0f}"), "0", _met(entries, entries == 0)))
+    violations = sum(value("sim3", fidelity, "keepout_violations") for fidelity in vehicles(run))
+    checks.append(Check("Sim. 3, keep-out violations", number(violations, "{:.0f}"), "0", _met(violations, violations == 0)))
     for case, name in (("sim1", "Sim. 1"), ("sim2_delta", "Sim. 2")):
         if "kinematic" in vehicles(run):
             end = value(case, "kinematic", "tracking_error_end_m")
@@ -83,13 +83,13 @@ def paper_checks(run: RunData) -> list[Check]:
                 )
             )
     for case, name, within in (("sim2_delta", "δ law", True), ("sim2_los", "line of sight", False)):
-        wanted = [value(case, fidelity, "heading_rate_wanted_max_rad_s") for fidelity in vehicles(run)]
+        demand = [value(case, fidelity, "heading_rate_demand_max_rad_s") for fidelity in vehicles(run)]
         limit = value(case, vehicles(run)[0], "heading_rate_limit_rad_s")
         # The δ law at its largest, the line of sight at its smallest: each vehicle has to show it.
-        worst = sum(wanted) if any(math.isnan(w) for w in wanted) else max(wanted) if within else min(wanted)
+        worst = sum(demand) if any(math.isnan(w) for w in demand) else max(demand) if within else min(demand)
         holds = worst <= limit if within else worst > limit
         required = f"{'≤' if within else '>'} ω_max = {number(limit, '{:g}')} rad/s"
-        checks.append(Check(f"Sim. 2, {name} asks for", number(worst, "{:.3f} rad/s"), required, _met(worst, holds)))
+        checks.append(Check(f"Sim. 2, demand of the {name}", number(worst, "{:.3f} rad/s"), required, _met(worst, holds)))
     return checks
 
 
@@ -101,10 +101,10 @@ def paper_verdict(run: RunData) -> Verdict:
     unmet = summary[~summary["criteria_met"]]
     wrong = [check for check in checks if check.met is False]
     missing = [check for check in checks if check.met is None]
-    entries = int(summary["keepout_violations"].fillna(0).sum())
+    violations = int(summary["keepout_violations"].fillna(0).sum())
     finished = state == "complete" and len(summary) == planned and not missing
-    if entries:
-        headline = f"Simulation 3 entered the keep-out area {entries} times"
+    if violations:
+        headline = f"{violations} keep-out violations in Simulation 3"
     elif wrong:
         headline = f"Not reproduced: {len(wrong)} of {len(checks)} statements do not hold"
     elif state == "complete" and len(missing) == len(checks):
@@ -112,7 +112,7 @@ def paper_verdict(run: RunData) -> Verdict:
     elif not finished:
         headline = f"Unfinished: {len(checks) - len(missing)} of {len(checks)} statements could be tested, and hold"
     elif len(unmet):
-        headline = f"The paper's statements hold, but {len(unmet)} of {planned} flights fell short of a criterion"
+        headline = f"The paper's statements hold, but {len(unmet)} of {planned} flights failed a criterion"
     elif len(vehicles(run)) > 1:
         headline = "Reproduced: the paper's numbers, and what it says of Simulations 1 to 3, on both vehicles"
     else:
@@ -121,7 +121,7 @@ def paper_verdict(run: RunData) -> Verdict:
     if state != "complete":
         detail += f" The run is {state}; continue it with --resume."
     return Verdict(
-        safe=not entries and not wrong,
+        holds=not violations and not wrong,
         complete=finished and not len(unmet),
         headline=headline,
         detail=detail,

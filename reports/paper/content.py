@@ -11,7 +11,7 @@ from common.run_layout import BOUNDS
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
 from reports.document.tables import length, number, outcome, parameter_table
-from reports.flights.flight_charts import flight_charts
+from reports.flights.single_flight import flight_charts
 from reports.paper.bounds import bounds_section
 from reports.paper.charts import VEHICLES, find_flight, sim_1_charts, sim_2_charts, sim_3_charts, vehicle_name
 from reports.paper.checks import DISTANCE_PRINTED, INTERVAL_PRINTED, paper_verdict, rows_by_id
@@ -42,7 +42,7 @@ def paper_content(run: RunData) -> tuple[Verdict, list[Section]]:
             blocks=[
                 Heading("What each simulation sets"),
                 _case_table(run),
-                Heading("Every parameter, where a simulation sets nothing"),
+                Heading("Every other parameter"),
                 parameter_table(run),
             ],
         ),
@@ -56,12 +56,12 @@ _NUMBERS = (
     " gains nor starts: what can be compared are the numbers and statements of its section V."
 )
 
-_WANTED, _END = "heading_rate_wanted_max_rad_s", "tracking_error_end_m"
+_DEMAND, _END = "heading_rate_demand_max_rad_s", "tracking_error_end_m"
 
 _SIM_ONE = (
     "The UAV starts beside the reference and heads the other way. Look-ahead and steering are those that converge fastest while"
-    " no state whatever makes the law ask for more than ω_max (see the section on actuation bounds). That is why it turns so"
-    " gently, and strays hundreds of metres before it comes back: the price of the guarantee."
+    " the heading-rate demand of the law stays within ω_max in every state (see the section on actuation bounds). That is why it"
+    " turns so gently, and strays hundreds of metres before it comes back: the price of the guarantee."
 )
 
 _SIM_TWO = (
@@ -72,7 +72,7 @@ _SIM_TWO = (
 
 _SIM_THREE = (
     "A vessel on a straight course, the UAV from a random place behind it. In the paper the vessel has half the UAV's speed,"
-    " and the reference spends all of ω_max; then no parameters keep what the law asks for within it, and commands are cut at"
+    " and the reference spends all of ω_max; then no parameters keep the demand of the law within it, and commands are cut at"
     " ω_max."
 )
 
@@ -96,14 +96,14 @@ def _flight_table(run: RunData) -> Table:
             flight_id,
             number(row["settling_time_s"], "{:.1f}"),
             "–" if pd.isna(end) else length(float(end)),
-            number(row[_WANTED], "{:.3f}"),
+            number(row[_DEMAND], "{:.3f}"),
             number(row["crossing_interval_mean_s"], "{:.3f}"),
             number(row["crossing_distance_mean_m"], "{:.2f}"),
             number(row["min_distance_m"], "{:.1f}"),
             outcome(row),
         ])  # fmt: skip
     head = [
-        "Flight", "Settled [s]", "Distance at the end", "Asked for [rad/s]", "Interval [s]", "Crossing [m]", "Closest [m]",
+        "Flight", "Settled [s]", "Distance at the end", "Demand [rad/s]", "Interval [s]", "Crossing [m]", "Closest [m]",
         "Outcome",
     ]  # fmt: skip
     return Table(head=head, rows=rows, widths=[1.9, 0.9, 1.1, 1.1, 0.9, 1.0, 1.0, 1.6])
@@ -121,8 +121,8 @@ def _number_table(run: RunData) -> Table:
         return lambda row: f"{number(row[key], pattern)} ({100.0 * (float(row[key]) / printed - 1.0):+.2f} %)"
 
     def omega(row: "pd.Series[Any]") -> str:
-        wanted, limit = float(row[_WANTED]), float(row["heading_rate_limit_rad_s"])
-        return f"{wanted:.3f} rad/s ({'within' if wanted <= limit else 'exceeds'} {limit:g})"
+        demand, limit = float(row[_DEMAND]), float(row["heading_rate_limit_rad_s"])
+        return f"{demand:.3f} rad/s ({'within' if demand <= limit else 'exceeds'} {limit:g})"
 
     def end(row: "pd.Series[Any]") -> str:
         return f"{length(float(row[_END]))} after {float(row['duration_s']):.0f} s"
@@ -145,9 +145,9 @@ def _number_table(run: RunData) -> Table:
         ["Sim. 3", "η = J₀⁻¹(ν), eq. (6)", "not printed", *both("sim3", lambda row: f"{float(row['eta']):.6f} rad", "eta")],
         ["Sim. 1", "converges onto the circle: distance at the end", "→ 0", *both("sim1", end, _END)],
         ["Sim. 1", "largest rise of d in a sample with |φ| < |φ_r|", "none", *both("sim1", falls, _END)],
-        ["Sim. 2", "δ law: largest heading rate asked for", "feasible", *both("sim2_delta", omega, _WANTED)],
+        ["Sim. 2", "δ law: largest heading-rate demand", "feasible", *both("sim2_delta", omega, _DEMAND)],
         ["Sim. 2", "δ law: distance at the end", "→ 0", *both("sim2_delta", end, _END)],
-        ["Sim. 2", "line of sight: largest heading rate asked for", "saturates", *both("sim2_los", omega, _WANTED)],
+        ["Sim. 2", "line of sight: largest heading-rate demand", "saturates", *both("sim2_los", omega, _DEMAND)],
         ["Sim. 2", "line of sight: within 30 m for good", "fast", *both("sim2_los", near, _END)],
         ["Sim. 2", "line of sight: distance at the end", "not printed", *both("sim2_los", end, _END)],
     ]  # fmt: skip
@@ -188,6 +188,7 @@ def _flights(run: RunData) -> FlightPicker:
     elsewhere = {
         case["name"] for case in run.manifest["config"]["cases"] if _is_elsewhere({**case["set"], **case["set_kinematic"]})
     }
+    source_height = float(run.manifest["config"]["plume"]["source_height_m"])
     flights = []
     for flight_id, row in rows_by_id(run).items():
         fidelity = str(row["fidelity"])
@@ -200,7 +201,7 @@ def _flights(run: RunData) -> FlightPicker:
                 flight_id=flight_id,
                 label=f"{name} · {vehicle_name(run, fidelity)}",
                 title=f"{name}: {vehicle_name(run, fidelity)}",
-                charts=flight_charts(run, row),
+                charts=flight_charts(run, row, source_height),
             )
         )
     return FlightPicker(flights=flights)

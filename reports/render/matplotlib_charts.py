@@ -4,6 +4,7 @@ from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 from reports.document.chart import COLOURS, FILL_OPACITY, Chart, Line, Panel
 
@@ -12,6 +13,9 @@ WIDTH_INCHES = 7.0
 
 _LEGEND_CHARACTERS = 105
 """What fits beside each other in a legend line of the figure's width."""
+
+_DECADES = 1e3
+"""Ratio of the ends of a logarithmic axis from which it marks powers of ten alone."""
 
 _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
@@ -58,6 +62,9 @@ def draw(chart: Chart) -> Figure:
             _dress(ax, panel, last_row=i + chart.columns >= len(chart.panels) or not chart.share_x)
         for ax in axes.flat[len(chart.panels) :]:
             ax.set_axis_off()
+        for ax in axes.flat[max(0, len(chart.panels) - chart.columns) : len(chart.panels)]:
+            # The last of a column may not be in the last row, where figures are written beside a shared axis.
+            ax.tick_params(labelbottom=True)
         if len(handles) > 1:
             columns = max(1, min(len(handles), _LEGEND_CHARACTERS // (max(len(label) for label in handles) + 6)))
             figure.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=columns, fontsize=7.5)
@@ -84,6 +91,9 @@ def _dress(ax: Any, panel: Panel, *, last_row: bool) -> None:
         ax.set_xscale("log")
     if panel.log_y:
         ax.set_yscale("log")
+        if panel.y_range and panel.y_range[1] > _DECADES * panel.y_range[0]:
+            # Ticks between powers of ten would crowd the axis, and take most of the time to draw it.
+            ax.yaxis.set_minor_locator(NullLocator())
     for note in panel.notes:
         ax.text(note.x, note.y, note.text, color=COLOURS["grey"], fontsize=7.0, ha=note.align, va="center", clip_on=True)
     if panel.y_names:

@@ -44,7 +44,7 @@ def draw(chart: Chart) -> go.Figure:
         for line in panel.lines:
             figure.add_trace(_trace(line, show=line.label not in seen), row=row, col=column)
             seen.add(line.label)
-        _dress(figure, panel, row, column, show_x=not chart.share_x or row == chart.rows)
+        _dress(figure, panel, row, column, show_x=not chart.share_x or i + chart.columns >= len(chart.panels))
     figure.update_layout(
         height=height,
         margin={"l": 70, "r": 20, "t": _TOP, "b": _BOTTOM},
@@ -75,8 +75,8 @@ def _tint(colour: str) -> str:
 
 
 def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bool) -> None:
-    x_options: dict[str, Any] = {"title": {"text": panel.x_label, "standoff": 6} if show_x else None}
-    # Figures of four digits and names are wide: the title stays clear of them only if it is told how far.
+    x_options: dict[str, Any] = {"title": {"text": panel.x_label, "standoff": 6} if show_x else None, "showticklabels": show_x}
+    # Figures of four digits and names are wide: the title stays clear of them only at a given distance.
     y_options: dict[str, Any] = {"title": {"text": panel.y_label, "standoff": 8}}
     if panel.log_x:
         x_options["type"] = "log"

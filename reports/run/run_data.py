@@ -19,6 +19,7 @@ from common.run_layout import (
     trajectory_path,
 )
 from reports.errors import ReportError
+from reports.run.earlier_runs import history_today, manifest_today, rows_today
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +35,7 @@ class RunData:
     crossings : a row per crossing
     innerloop : the autopilot's design record, or none if the run ended before
     statistics : what a Monte Carlo study shows and how sure that is, or none of any other run
-    draws : the inputs of each flight of a Monte Carlo study
+    draws : of each flight, what was swept or sampled
     """
 
     path: Path
@@ -49,7 +50,11 @@ class RunData:
     def history(self, flight_id: str) -> pd.DataFrame | None:
         """Return a flight's time history, or None if it has none."""
         path = self.path / time_history_path(flight_id)
-        return pd.read_parquet(path) if path.is_file() else None
+        if not path.is_file():
+            return None
+        ratios = [frame.loc[frame["flight_id"] == flight_id, "nu"] for frame in (self.summary, self.comparison) if "nu" in frame]
+        nu = next((float(found.iloc[0]) for found in ratios if len(found)), float("nan"))
+        return history_today(pd.read_parquet(path), self.manifest["config"], nu)
 
     def has_history(self, flight_id: str) -> bool:
         """Return whether a flight has a time history."""
@@ -82,12 +87,13 @@ def read_run(path: Path) -> RunData:
         raise ReportError(f"'{path}': {MANIFEST} is not that of a run; run the scenario again in another --out")
     if manifest.get("study") != "design" and not (path / SUMMARY).is_file():
         raise ReportError(f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume")
+    manifest = manifest_today(manifest)
     try:
         return RunData(
             path=path,
             manifest=manifest,
-            summary=_table(path / SUMMARY),
-            comparison=_table(path / COMPARISON),
+            summary=rows_today(_table(path / SUMMARY), manifest),
+            comparison=rows_today(_table(path / COMPARISON), manifest),
             crossings=_table(path / CROSSINGS, columns=["flight_id", "time_s", "distance_m"]),
             innerloop=_record(path / DESIGN_RECORD),
             statistics=_record(path / STATISTICS),

@@ -5,14 +5,28 @@ import math
 import numpy as np
 import pandas as pd
 
-from reports.document.chart import Array
+from reports.run.columns import Array, column
 
 
 def tracking_error(history: pd.DataFrame) -> Array:
     """Return the distance to the reference at every sample [m]."""
-    north, east = (history[f"reference_{axis}"] - history[axis] for axis in ("north_m", "east_m"))
-    error: Array = np.hypot(north.to_numpy(dtype=np.float64), east.to_numpy(dtype=np.float64))
+    north, east = (column(history, f"reference_{axis}") - column(history, axis) for axis in ("north_m", "east_m"))
+    error: Array = np.hypot(north, east)
     return error
+
+
+def funnel_distance(history: pd.DataFrame, source_height: float) -> Array:
+    """Return the distance from the funnel's mouth at every sample [m]; not a number without a vessel."""
+    north, east = (column(history, f"{axis}_m") - column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
+    distance: Array = np.sqrt(north**2 + east**2 + (column(history, "altitude_m") - source_height) ** 2)
+    return distance
+
+
+def about_the_plume(history: pd.DataFrame, prefix: str = "") -> tuple[Array, Array]:
+    """Return metres right of and along the plume's axis, seen from the vessel, of the UAV or what a prefix names."""
+    north, east = (column(history, f"{prefix}{axis}_m") - column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
+    axis = column(history, "plume_axis_rad")
+    return np.cos(axis) * east - np.sin(axis) * north, np.cos(axis) * north + np.sin(axis) * east
 
 
 def thinned(history: pd.DataFrame, points_max: int) -> pd.DataFrame:

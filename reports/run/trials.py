@@ -1,40 +1,36 @@
-"""The trials of a run over the real sea, and what each of them is about."""
+"""The trials of a run, and what each of them is about."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
 import pandas as pd
 
-from reports.document.chart import Array
+from reports.run.columns import measured
 from reports.run.run_data import RunData
 
-Mask = npt.NDArray[np.bool_]
 Parameters = dict[str, Any]
 
 
 class Kind(Enum):
     """What a trial is about: that decides what its section shows."""
 
+    SWEEP = "sweep"
     FAULTS = "faults"
-    TOGETHER = "turbulence with reports, sensors or manoeuvres"
     MANOEUVRES = "manoeuvres"
-    TURBULENCE = "turbulence"
-    CROSSINGS = "crossings"
     APPROACH = "approach"
-    OTHER = "other"
+    GENERAL = "general"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trial:
-    """One trial of a run.
+    """One trial of a run: flights of one scenario.
 
     Attributes
     ----------
     run : as read from disk
-    key : what its flights are called by
+    key : its name in the run
     name : for anchors and figures, unique in the report; letters and figures
     config : its whole configuration
     rows : a row per flight that is done
@@ -64,62 +60,80 @@ class Trial:
     @property
     def flown(self) -> pd.DataFrame:
         """Flights of which anything was measured."""
-        return self.rows[self.rows["min_distance_m"].notna()]
+        return measured(self.rows)
 
     @property
     def radius(self) -> float:
         """Largest r_min of its flights [m]."""
         radii = self.rows["keepout_radius_m"].dropna()
-        return float(radii.max()) if len(radii) else float(self.config["keepout"]["radius_m"])
+        return float(radii.max()) if len(radii) else float(self.setting("keepout.radius_m"))
 
     @property
     def source_height(self) -> float:
         """Height of the funnel, from where distances count [m]."""
-        return float(self.config["plume"]["source_height_m"])
+        return float(self.setting("plume.source_height_m"))
+
+    def setting(self, key: str, default: Any = None) -> Any:
+        """Return the configured value of a dotted key, or a default where its section or itself is not set."""
+        value: Any = self.config
+        for part in key.split("."):
+            value = value.get(part) if isinstance(value, Mapping) else None
+        return default if value is None else value
 
     def parameters(self) -> list[Parameters]:
         """Return every parameter with value, unit, meaning and, if the run knows it, default."""
         return list(self.run.manifest["trial_parameters"][self.key])
 
-    def draws(self, key: str) -> bool:
+    @property
+    def swept(self) -> dict[str, list[Any]]:
+        """Return the values of every key that the trial sweeps, in their order."""
+        sweep = self.setting("sweep", {})
+        return {key: list(values) for key, values in _leaves(sweep).items() if isinstance(values, list) and len(values) > 1}
+
+    @property
+    def sampled(self) -> list[dict[str, Any]]:
+        """Return how each key is sampled in which flights differ at random or in turn."""
+        return list(self.setting("draws", []))
+
+    def input(self, key: str) -> "pd.Series[Any]":
+        """Return the value of a swept or sampled key in each flight."""
+        draws = self.run.draws
+        if key in draws:
+            return draws.set_index("flight_id")[key].reindex(self.rows["flight_id"])
+        return self.rows[key].set_axis(self.rows["flight_id"])
+
+    def varies(self, key: str) -> bool:
         """Return whether flights differ in ``key``, or in anything below it."""
-        return any(draw["key"] == key or draw["key"].startswith(f"{key}.") for draw in self.config["draws"])
+        keys = [*self.swept, *(draw["key"] for draw in self.sampled)]
+        return any(varied == key or varied.startswith(f"{key}.") for varied in keys)
 
     @property
     def kind(self) -> Kind:
-        """What it is about, by what it holds and what it asks for; its name says nothing."""
-        config = self.config
-        turbulent = config["turbulence"]["level"] != "none" or config["turbulence"]["gusts"] > 0 or self.draws("turbulence")
-        moving = bool(config["vessel"]["manoeuvres"]) or self.draws("vessel.manoeuvres")
+        """What it is about, by what it holds and its criteria; its name says nothing."""
+        turbulent = self.setting("turbulence.level", "none") != "none" or self.setting("turbulence.gusts", 0) > 0
+        calm = not (turbulent or self.varies("turbulence"))
         kinds = {
-            Kind.FAULTS: config["fault"]["kind"] != "none" or self.draws("fault.kind"),
-            Kind.TOGETHER: turbulent and (moving or self.errs),
-            Kind.MANOEUVRES: moving,
-            Kind.TURBULENCE: turbulent,
-            Kind.CROSSINGS: config["criteria"].get("crossing_interval_error") is not None,
-            Kind.APPROACH: config["criteria"].get("settles", False),
+            Kind.SWEEP: bool(self.swept),
+            Kind.FAULTS: self.setting("fault.kind", "none") != "none" or self.varies("fault.kind"),
+            Kind.MANOEUVRES: calm and (bool(self.setting("vessel.manoeuvres", [])) or self.varies("vessel.manoeuvres")),
+            Kind.APPROACH: calm and self.criteria.get("settles", False) and not self.criteria.get("crossing_interval_error"),
         }
-        return next((kind for kind, holds in kinds.items() if holds), Kind.OTHER)
+        return next((kind for kind, holds in kinds.items() if holds), Kind.GENERAL)
 
-    @property
-    def reported(self) -> bool:
-        """Whether the vessel is known by its reports alone, not exactly."""
-        return bool(self.config["reports"]["interval_s"][1] > 0.0) or self.draws("reports")
-
-    @property
-    def errs(self) -> bool:
-        """Whether reports or sensors are less than perfect."""
-        return self.reported or any(self.config["sensors"].values()) or self.draws("sensors")
-
-    def dealt(self, key: str) -> list[Any]:
-        """Return the value of a configured key for each row: as drawn, where it is dealt in turn by the flight's number."""
-        choices = next((draw["choice"] for draw in self.config["draws"] if draw["key"] == key and draw["choice"]), None)
+    def cycled(self, key: str) -> list[Any]:
+        """Return the value of a key for each row, where choices are cycled by the flight's number."""
+        choices = next((draw["choice"] for draw in self.sampled if draw["key"] == key and draw["choice"]), None)
         if choices is None:
-            value: Any = self.config
-            for part in key.split("."):
-                value = value[part]
-            choices = [value]
+            return [self.setting(key)] * len(self.rows)
         return [choices[int(flight_id.rsplit("_", 1)[1]) % len(choices)] for flight_id in self.rows["flight_id"]]
+
+
+def _leaves(tree: Mapping[str, Any], before: str = "") -> dict[str, Any]:
+    """Return the values of nested mappings by their dotted keys."""
+    leaves: dict[str, Any] = {}
+    for key, value in tree.items():
+        leaves |= _leaves(value, f"{before}{key}.") if isinstance(value, Mapping) else {f"{before}{key}": value}
+    return leaves
 
 
 def read_trials(run: RunData) -> list[Trial]:
@@ -133,30 +147,3 @@ def read_trials(run: RunData) -> list[Trial]:
         Trial(run=run, key=key, name=f"trial{i}", config=config, rows=run.summary[run.summary["trial"] == key])
         for i, (key, config) in enumerate(run.manifest["trials"].items(), start=1)
     ]
-
-
-def column(rows: pd.DataFrame, name: str) -> Array:
-    """Return a column as figures; nothing but "not a number" where the run has no such column."""
-    return rows[name].to_numpy(dtype=np.float64) if name in rows else np.full(len(rows), np.nan)
-
-
-def total(rows: pd.DataFrame, name: str) -> int:
-    """Return the sum of a column of counts."""
-    return int(np.nansum(column(rows, name)))
-
-
-def clearance(rows: pd.DataFrame) -> Array:
-    """Return how far from the keep-out area each flight stayed at its closest, negative if it entered [m]."""
-    return column(rows, "min_distance_m") - column(rows, "keepout_radius_m")
-
-
-def entered(rows: pd.DataFrame) -> Mask:
-    """Return which flights entered the keep-out area, as truth values."""
-    inside: Mask = column(rows, "keepout_violations") > 0.0
-    return inside
-
-
-def interval_error(rows: pd.DataFrame) -> Array:
-    """Return the mean crossing interval's relative difference from pi/omega_0 [-]."""
-    ratio: Array = column(rows, "crossing_interval_mean_s") / column(rows, "crossing_interval_predicted_s") - 1.0
-    return ratio

@@ -33,9 +33,9 @@ def test_the_line_of_sight_has_no_bound(directory):
     assert comparison.loc["nu_0.50_no_preview", "heading_rate_bound_rad_s"] > 0.0
 
 
-def test_the_report_says_what_the_law_asked_for_and_with_which_look_ahead(directory):
+def test_the_report_says_the_laws_largest_demand_and_with_which_look_ahead(directory):
     html, _ = build_reports(directory)
     text = html.read_text(encoding="utf-8")
-    assert "The law asks for, over ω_max, worst" in text
+    assert "Heading-rate demand over ω_max, worst" in text
     assert "R as searched" in text
     assert "kinematic vehicle, eq. (1), not with an aircraft" in text

@@ -216,7 +216,7 @@ def test_what_is_not_the_papers_is_not_called_reproduced(override, headline, tmp
     assert not result.all_met
     report = content(read_run(tmp_path / "run"))
     assert report.verdict.headline == headline
-    assert not (report.verdict.complete and report.verdict.safe)
+    assert not (report.verdict.complete and report.verdict.holds)
     # Nothing in its tables is "not a number".
     cells = [
         cell

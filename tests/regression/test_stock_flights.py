@@ -59,16 +59,16 @@ def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(t37):
     blocks = [block for section in report.sections for block in section.blocks]
     charts = {block.name: block for block in blocks if isinstance(block, Chart)}
     # Half of what a comparison's panel could show is there to be seen, after settling and within the settling band.
-    for line in charts["comparison"].panels[0].lines:
-        (_, last), (_, top) = charts["comparison"].panels[0].x_range, charts["comparison"].panels[0].y_range
+    for line in charts["trial1-comparison"].panels[0].lines:
+        (_, last), (_, top) = charts["trial1-comparison"].panels[0].x_range, charts["trial1-comparison"].panels[0].y_range
         assert line.x[-1] > 0.9 * last
         assert (line.y <= top).all()
     # 30 crossings every 65 s at 76 m/s: a hundred kilometres.
     tracks = next(block for block in blocks if isinstance(block, FlightPicker)).flights[1].charts[0]
-    assert [panel.x_label for panel in tracks.panels] == ["East [km]", "Right of the vessel [km]"]
-    assert max(line.y.max() for line in tracks.panels[0].lines) == pytest.approx(100.0, abs=10.0)
+    assert [panel.x_label for panel in tracks.panels] == ["Right of the plume's axis [km]", "East [km]"]
+    assert max(line.y.max() for line in tracks.panels[1].lines) == pytest.approx(100.0, abs=10.0)
     # Fitted limits have three digits, and equilibria are shown in the turn that it flies, nearest to 30 degrees.
-    assert {name: limit for name, _, limit in report.verdict.figures}["Tracking error rms, worst"] == "≤ 40.1 m"
+    assert {name: limit for name, _, limit in report.verdict.figures}["Tracking error, rms after settling, worst"] == "≤ 40.1 m"
     assert not [block for block in blocks if isinstance(block, Table) and not block.rows]
     assert "level, and at 31.6 degrees of bank" in html.read_text(encoding="utf-8")
 

@@ -22,7 +22,7 @@ def a_report(blocks):
         title="Title",
         description="Description.",
         changes="",
-        verdict=Verdict(safe=True, complete=True, headline="Good", detail="", failures=[], figures=[("Tile", "1", "")]),
+        verdict=Verdict(holds=True, complete=True, headline="Good", detail="", failures=[], figures=[("Tile", "1", "")]),
         sections=[
             Section(anchor="first", title="The first section", nav_title="First", blocks=blocks),
             Section(anchor="second", title="Second section", blocks=[Text("Second text.")]),

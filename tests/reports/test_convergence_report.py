@@ -11,7 +11,7 @@ from convergence_runs import LAWS, REFERENCES, write_convergence_run
 from reports.build import build_reports
 from reports.convergence.charts import CURVE_POINTS, DISTANCE_BINS, HISTORIES_PER_LAW, HISTORY_POINTS, cumulative
 from reports.convergence.tables import FAILED_ROWS
-from reports.convergence.verdict import FAILURES_NAMED, share
+from reports.convergence.verdict import FAILURES_NAMED, percentage
 from reports.document.blocks import Table, Text
 from reports.document.chart import Chart, Line, Panel
 from reports.errors import ReportError
@@ -57,7 +57,7 @@ def charts_of(report):
 
 
 def test_a_study_in_which_all_converged_says_so(converged):
-    assert converged.verdict.safe
+    assert converged.verdict.holds
     assert converged.verdict.complete
     # Two laws that the theory is about.
     assert converged.verdict.headline == f"All {2 * TRAJECTORIES:,} trajectories converged"
@@ -68,7 +68,7 @@ def test_a_study_in_which_all_converged_says_so(converged):
 
 
 def test_counter_examples_are_named_with_their_reasons(failed):
-    assert not failed.verdict.safe
+    assert not failed.verdict.holds
     assert failed.verdict.headline == f"3 of {2 * TRAJECTORIES:,} trajectories did not converge"
     assert [line.split(": ")[:2] for line in failed.verdict.failures] == [
         ["Law (24), trajectory 3", "time up"],
@@ -83,7 +83,7 @@ def test_counter_examples_are_named_with_their_reasons(failed):
 
 def test_cut_commands_have_no_part_in_the_verdict_but_are_shown(tmp_path):
     report = small(tmp_path, cut_failures=4)
-    assert report.verdict.safe
+    assert report.verdict.holds
     assert report.verdict.complete
     assert "26 of 30 converged" in report.verdict.detail
     # 26 of 30, rounded down.
@@ -100,7 +100,7 @@ def test_the_verdict_names_the_first_counter_examples_and_counts_the_others(tmp_
 
 def test_an_unfinished_study_is_not_called_complete(tmp_path):
     report = small(tmp_path, state="interrupted", planned=100)
-    assert report.verdict.safe
+    assert report.verdict.holds
     assert not report.verdict.complete
     assert report.verdict.headline == "All 60 trajectories so far converged; 200 are planned"
     assert "continue it with --resume" in report.verdict.detail
@@ -114,7 +114,7 @@ def test_a_study_of_which_rows_are_missing_is_not_called_complete(tmp_path):
     ("part", "whole", "text"), [(3, 3, "100 %"), (99_999, 100_000, "99.99 %"), (999_999, 1_000_000, "99.99 %"), (0, 5, "0 %")]
 )
 def test_only_all_are_a_hundred_percent(part, whole, text):
-    assert share(part, whole) == text
+    assert percentage(part, whole) == text
 
 
 def test_the_table_counts_and_orders_as_the_run_did(failed_path, failed):

@@ -91,7 +91,7 @@ def test_axes_have_units_and_every_curve_is_drawn_on_screen_and_in_print(report)
 
 def test_a_design_with_every_margin_is_called_good(report):
     verdict = report.verdict
-    assert (verdict.safe, verdict.complete, verdict.failures) == (True, True, [])
+    assert (verdict.holds, verdict.complete, verdict.failures) == (True, True, [])
     assert verdict.headline == "Every loop has at least 6 dB and 45° of margin at every point of the grid"
     assert "45 points of the grid over airspeed and bank and at 20 points between them" in verdict.detail
     assert "1 of 45 equilibria are at a limit" in verdict.detail

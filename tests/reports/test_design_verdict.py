@@ -17,7 +17,7 @@ def changed(**rows):
 
 def test_one_margin_too_small_is_named_and_never_rounded_up_to_what_is_required():
     verdict = design_verdict(changed(margins={"gain_db": 5.96}))
-    assert verdict.safe
+    assert verdict.holds
     assert not verdict.complete
     assert verdict.headline == "Stable everywhere, but short of 6 dB and 45° in elevator"
     # 45 grid points and 20 between.
@@ -34,14 +34,14 @@ def test_a_point_between_those_of_the_grid_counts_as_much():
 
 def test_a_perturbed_aircraft_that_falls_short_is_named():
     verdict = design_verdict(changed(robustness={"phase_deg": 29.0}))
-    assert verdict.safe
+    assert verdict.holds
     assert not verdict.complete
     assert verdict.failures == ["mass +20 %: phase margin 29.0 deg of heading rate at 45 m/s, −33°, required 30 deg"]
 
 
 def test_an_unstable_point_is_worse_than_any_margin():
     verdict = design_verdict(changed(poles={"closed_loop": [[0.02, 0.0], [-1.0, 0.0]]}))
-    assert not verdict.safe
+    assert not verdict.holds
     assert verdict.headline == "Unstable at 1 of 65 points"
     assert verdict.failures[0] == "unstable at 45 m/s, −33°"
 
@@ -52,7 +52,7 @@ def test_a_point_that_says_it_is_unstable_has_no_margin_whatever_was_measured():
     design["margins"][between]["stable"] = False
     design["robustness"][0]["stable"] = False
     verdict = design_verdict(complete(design))
-    assert not verdict.safe
+    assert not verdict.holds
     assert verdict.failures == [
         "unstable at 47.5 m/s, −30°",
         "elevator: gain margin 0.0 dB at 47.5 m/s, −30°, required 6 dB; short at 1 of 65 points",
@@ -62,7 +62,7 @@ def test_a_point_that_says_it_is_unstable_has_no_margin_whatever_was_measured():
 
 
 def test_a_pole_at_the_origin_but_for_rounding_is_not_unstable():
-    assert design_verdict(changed(poles={"closed_loop": [[1e-12, 0.0]]})).safe
+    assert design_verdict(changed(poles={"closed_loop": [[1e-12, 0.0]]})).holds
 
 
 @pytest.mark.parametrize(("value", "text"), [(5.99, "5.9"), (5.7, "5.7"), (6.0, "6.0"), (-0.3, "−0.3"), (None, "∞")])

@@ -33,7 +33,7 @@ def run_of(rows, inputs, **changes):
     study = load_study("sea_wind", [])
     config = study.model_dump(mode="json")
     manifest = initial_manifest(study, "study", []) | {
-        "study": "sea",
+        "study": "monte_carlo",
         "trials": {"study": config},
         "trial_parameters": {"study": json.loads(json.dumps(parameters(study)))},
         "flights_planned": len(rows),
@@ -174,7 +174,7 @@ def test_the_clearance_is_drawn_over_figures_and_words_alike(sections):
     charts = charts_of(sections["drivers"])
     (wind,), (level,) = charts["over-figures"].panels, charts["over-words"].panels
     assert wind.x_label == "Wind speed [m/s]"
-    assert lines_of(wind)["flight that entered"].y == pytest.approx([-0.5], abs=1e-9)
+    assert lines_of(wind)["flight with a keep-out violation"].y == pytest.approx([-0.5], abs=1e-9)
     assert sorted(name for _, name in level.y_names) == ["moderate", "none"]
 
 

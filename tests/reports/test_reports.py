@@ -11,12 +11,11 @@ import pytest
 from design_runs import record
 
 from reports.build import build_reports
+from reports.document.axes import in_kilometres
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart, Line, Panel
 from reports.document.tables import limit
 from reports.errors import ReportError
-from reports.flights.flight_charts import in_kilometres
-from reports.flights.sweep_verdict import verdict
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
@@ -77,14 +76,16 @@ def test_both_reports_are_built_from_disk_alone(copy):
 
 def test_the_sweep_shows_everything_in_its_place(report):
     assert [section.anchor for section in report.sections] == [
-        "sweep", "comparison", "flights", "innerloop", "parameters", "provenance",
+        "trials", "trial1", "comparison", "failed", "flights", "innerloop", "parameters", "provenance",
     ]  # fmt: skip
     names = {section.anchor: [c.name for c in blocks_of(report, Chart, section.anchor)] for section in report.sections}
-    assert names["sweep"] == ["interval", "distance", "tracking", "command"]
-    assert names["comparison"] == ["comparison"]
+    assert names["trial1"] == [f"trial1-nu1-{what}" for what in ("interval", "distance", "errors", "command")]
+    assert names["comparison"] == ["trial1-comparison"]
     assert names["innerloop"] == ["responses", "margins", "loops", "poles"]
     tables = {section.anchor: len(blocks_of(report, Table, section.anchor)) for section in report.sections}
-    assert tables == {"sweep": 1, "comparison": 1, "flights": 0, "innerloop": 3, "parameters": 2, "provenance": 1}
+    assert tables == {
+        "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "innerloop": 3, "parameters": 2, "provenance": 1,
+    }  # fmt: skip
     assert all([chart.name for chart in flight.charts] == ["tracks", "histories"] for flight in flights_of(report)[:2])
 
 
@@ -119,21 +120,21 @@ def test_no_curve_is_empty_or_not_a_number_where_there_is_data(report):
             assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)
 
 
-def test_a_safe_run_is_called_safe_and_an_unsafe_one_is_not(run_path, copy):
-    assert verdict(read_run(run_path)).safe
+def test_a_violation_is_in_the_headline(report, copy):
+    assert report.verdict.holds
     summary = pd.read_csv(copy / "summary.csv")
     summary.loc[0, "keepout_violations"] = 1
     summary.to_csv(copy / "summary.csv", index=False)
-    judged = verdict(read_run(copy))
-    assert not judged.safe
-    assert "Not safe: 1 entries" in judged.headline
+    judged = content(read_run(copy)).verdict
+    assert not judged.holds
+    assert judged.headline == "Keep-out violations in 1 of 2 flights, 1 in all"
 
 
 def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
-    (table,) = blocks_of(report, Table, "sweep")
+    (table,) = blocks_of(report, Table, "trial1")
     assert "must be below 1" in table.rows[2][-1]
     assert not report.verdict.complete
-    assert report.verdict.headline.endswith("but 1 of 3 fell short")
+    assert report.verdict.headline.endswith("; of 3, 1 failed a criterion")
     assert "must be below 1" in report.verdict.failures[0]
     assert "must be below 1" in flights_of(report)[2].title
     assert flights_of(report)[2].charts == []
@@ -148,7 +149,7 @@ def test_every_key_of_the_configuration_is_among_the_parameters(run_path, report
             for key in values:
                 assert f"{section}.{key}" in listed
     for row in parameters.rows:
-        assert row[3], row[0]
+        assert row[-1], row[0]
 
 
 def test_an_interrupted_run_can_be_reported_on(copy):

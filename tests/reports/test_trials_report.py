@@ -1,4 +1,4 @@
-"""Reports of trials over the real sea: of a small kinematic run, flown once for this file, and of what can become of one."""
+"""Reports of several trials: of a small kinematic run, flown once for this file, and of what can become of one."""
 
 import json
 import math
@@ -13,10 +13,10 @@ import pytest
 from reports.build import build_reports
 from reports.document.blocks import FlightPicker, Table, Text
 from reports.document.chart import Chart, Line, Panel
-from reports.flights.sea_content import PICKED_MAX, picked_flights
-from reports.flights.single_flight import sea_flight_charts
+from reports.flights.selection import PICKED_MAX, picked_flights
+from reports.flights.single_flight import flight_charts
 from reports.flights.trial_charts import trial_charts
-from reports.flights.trial_tables import UNMET_MAX
+from reports.flights.trial_tables import FAILED_MAX
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
@@ -62,7 +62,7 @@ settles = false
 
 @pytest.fixture(scope="module")
 def run_path(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("sea_reports")
+    folder = tmp_path_factory.mktemp("trials")
     for name, text in (("steady", STEADY), ("turns", TURNS)):
         (folder / f"{name}.toml").write_text(text, encoding="utf-8")
     study = SeaTrial(title="Small", trials=[str(folder / "steady.toml"), str(folder / "turns.toml")])
@@ -104,9 +104,9 @@ def rows_of(report, title):
     return [row[1:] for table in blocks_of(report, Table, "trials") for row in table.rows if row[0] == title]
 
 
-def test_a_run_over_the_sea_is_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
+def test_trials_are_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
     # Drawing takes nearly all of this test's time: one flight tells whether they are.
-    monkeypatch.setattr("reports.flights.sea_content.PICKED_MAX", 1)
+    monkeypatch.setattr("reports.flights.selection.PICKED_MAX", 1)
     html, pdf = build_reports(shutil.copytree(run_path, tmp_path / "copy"))
     text = html.read_text(encoding="utf-8")
     assert pdf.read_bytes().startswith(b"%PDF")
@@ -120,7 +120,7 @@ def test_a_run_over_the_sea_is_reported_on_screen_and_in_print(run_path, report,
     assert dict(blocks_of(report, Table, "provenance")[0].rows)["Seed"] == "each trial's own"
 
 
-def test_every_axis_of_the_sea_reads_quantity_and_unit_and_every_chart_shows_something(report):
+def test_every_axis_of_trials_reads_quantity_and_unit_and_every_chart_shows_something(report):
     names = [chart.name for chart in charts_of(report) if chart.name not in ("tracks", "histories")]
     assert len(set(names)) == len(names)
     for chart in charts_of(report):
@@ -130,23 +130,24 @@ def test_every_axis_of_the_sea_reads_quantity_and_unit_and_every_chart_shows_som
                 assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)
 
 
-def test_flights_without_an_entry_are_safe_and_one_entry_makes_the_whole_run_unsafe(run):
-    assert content(run).verdict.safe
+def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
+    assert content(run).verdict.headline.startswith("No keep-out violation in 4 flights (")
+    assert content(run).verdict.holds
     judged = content(with_values(run, 3, keepout_violations=2, keepout_depth_m=1.5, min_distance_m=198.5, criteria_met=False))
-    assert not judged.verdict.safe
-    assert judged.verdict.headline == "Not safe: 1 of 4 flights entered the keep-out area, 2 times in all"
+    assert not judged.verdict.holds
+    assert judged.verdict.headline == "Keep-out violations in 1 of 4 flights, 2 in all"
     assert ("Closest approach", "198.5 m", "≥ 200 m") in judged.verdict.figures
-    assert "Turns: 1 of 2 fell short (1 entered the keep-out area, by up to 1.5 m)" in judged.verdict.failures
+    assert judged.verdict.failures == ["turns_00001: completed; "]
     (picker,) = blocks_of(judged, FlightPicker, "flights")
-    assert "deepest entry" in next(flight.title for flight in picker.flights if flight.flight_id == "turns_00001")
-    # Entries into the keep-out area and the closest approach, from r_min too, are in the trial's row.
+    assert "deepest keep-out violation" in next(flight.title for flight in picker.flights if flight.flight_id == "turns_00001")
+    # Keep-out violations and the closest approach, from r_min too, are in the trial's row.
     assert rows_of(judged, "Turns")[0][1:4] == ["2", "198.5", "-1.5"]
 
 
-def test_nothing_flown_is_not_safe(run):
+def test_of_nothing_flown_nothing_is_claimed(run):
     empty = replace(run, summary=run.summary.assign(min_distance_m=math.nan, criteria_met=False))
     verdict = content(empty).verdict
-    assert (verdict.safe, verdict.headline) == (False, "Nothing was flown")
+    assert (verdict.holds, verdict.headline) == (False, "Nothing was flown")
 
 
 def with_criterion(run, trial, key, value):
@@ -159,7 +160,7 @@ def test_the_limits_shown_are_those_of_the_manifest(run, report):
     # 0.0321 stands in the scenario above.
     asked = {row[0]: row for row in rows_of(report, "Steady")[1:]}
     assert asked["Mean crossing interval off π/ω₀"][1] == "≤ 3.21 %"
-    # Far below what any flight can show, so that both fall short.
+    # Far below what any flight can show, so that both fail.
     other = content(with_criterion(run, "steady", "crossing_interval_error", 1e-6))
     row = next(row for row in rows_of(other, "Steady")[1:] if row[0].startswith("Mean"))
     assert row[1] == "≤ 0.0001 %"
@@ -174,7 +175,7 @@ def test_the_worst_measured_value_of_a_criterion_is_that_of_the_summary(run, rep
     assert float(shown.removesuffix(" %")) == pytest.approx(100.0 * worst, rel=5e-3)
 
 
-def test_a_criterion_without_a_figure_counts_as_missed(run):
+def test_a_criterion_without_a_figure_counts_as_failed(run):
     steady = read_trials(with_values(run, 0, crossing_interval_mean_s=math.nan))[0]
     row = next(row for row in rows_of(content(steady.run), "Steady")[1:] if row[0].startswith("Mean"))
     assert row[2].endswith("; 1 without")
@@ -183,7 +184,7 @@ def test_a_criterion_without_a_figure_counts_as_missed(run):
 
 def test_a_criterion_that_the_report_does_not_know_is_shown_all_the_same(run):
     rows = rows_of(content(with_criterion(run, "turns", "loops_per_hour", 7)), "Turns")
-    assert ["loops per hour", "7", "see the flights that fell short", "0"] in rows
+    assert ["loops per hour", "7", "see the flights that failed", "0"] in rows
 
 
 def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(run_path, tmp_path):
@@ -192,7 +193,7 @@ def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(run_p
     bare = read_run(path)
     shown = [str(row["flight_id"]) for _, row, _ in picked_flights(read_trials(bare))]
     assert sorted(shown) == ["steady_00001", "turns_00000", "turns_00001"]
-    # A flight that entered is shown whatever is left of it; the page says that it has no time history.
+    # A flight with a violation is shown whatever is left of it; the page says that it has no time history.
     deep = content(with_values(bare, 0, keepout_violations=1, keepout_depth_m=0.5, criteria_met=False))
     (picker,) = blocks_of(deep, FlightPicker, "flights")
     assert (picker.flights[0].flight_id, picker.flights[0].charts) == ("steady_00000", [])
@@ -205,14 +206,14 @@ def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run
     summary[summary["trial"] == "steady"].to_csv(path / "summary.csv", index=False)
     report = content(read_run(path))
     assert not report.verdict.complete
-    assert "Turns: 2 of 2 fell short (2 not flown yet)" in report.verdict.failures
+    assert "Turns: 2 of 2 not flown yet" in report.verdict.failures
     assert [section.anchor for section in report.sections if section.anchor in ("trial1", "trial2", "flights")] == ["trial1"]
 
 
 def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
     for trial in read_trials(run):
         for _, row in trial.rows.iterrows():
-            tracks = sea_flight_charts(trial, row)[0]
+            tracks = flight_charts(run, row, trial.source_height)[0]
             lines = {line.label: line for line in tracks.panels[0].lines}
             uav, closest = lines["UAV"], lines["closest"]
             # The summary's bearing from the plume's axis counts clockwise, so that it is positive to the right of the axis.
@@ -226,7 +227,7 @@ def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
 def test_flights_cross_the_axis_where_the_trial_found_crossings(run):
     trial = read_trials(run)[0]
     row = trial.rows.iloc[0]
-    tracks, histories = sea_flight_charts(trial, row)
+    tracks, histories = flight_charts(run, row, trial.source_height)
     uav = next(line for line in tracks.panels[0].lines if line.label == "UAV")
     time = next(line for line in histories.panels[0].lines if line.label == "flown").x
     crossings = run.crossings_of(str(row["flight_id"]))
@@ -257,13 +258,13 @@ def test_manoeuvres_are_named_as_the_vessel_was_seen_to_turn(run):
 @pytest.mark.parametrize(
     ("name", "kind"),
     [
-        ("sea_wind", Kind.CROSSINGS),
-        ("sea_turbulence_light", Kind.TURBULENCE),
-        ("sea_turbulence_severe", Kind.TURBULENCE),
+        ("sea_wind", Kind.GENERAL),
+        ("sea_turbulence_light", Kind.GENERAL),
         ("sea_manoeuvres", Kind.MANOEUVRES),
         ("sea_approach", Kind.APPROACH),
-        ("sea_together", Kind.TOGETHER),
+        ("sea_together", Kind.GENERAL),
         ("sea_faults", Kind.FAULTS),
+        ("sweep_nu", Kind.SWEEP),
     ],
 )
 def test_a_trial_is_known_by_what_it_holds_not_by_its_name(run, name, kind):
@@ -271,7 +272,7 @@ def test_a_trial_is_known_by_what_it_holds_not_by_its_name(run, name, kind):
     assert Trial(run=run, key="any", name="trial1", config=config, rows=run.summary).kind is kind
 
 
-@pytest.mark.parametrize("kind", list(Kind))
+@pytest.mark.parametrize("kind", [kind for kind in Kind if kind is not Kind.SWEEP])
 def test_every_kind_of_trial_has_figures_of_any_run(run, kind, monkeypatch):
     monkeypatch.setattr(Trial, "kind", kind)
     for trial in read_trials(run):
@@ -281,15 +282,15 @@ def test_every_kind_of_trial_has_figures_of_any_run(run, kind, monkeypatch):
         assert all(len(line.x) for chart in charts for panel in chart.panels for line in panel.lines)
 
 
-def test_a_long_list_of_flights_that_fell_short_is_cut_and_says_so(run):
-    count = UNMET_MAX + 7
+def test_a_long_list_of_failed_flights_is_cut_and_says_so(run):
+    count = FAILED_MAX + 7
     row = run.summary.iloc[[0]].assign(criteria_met=False)
     many = replace(run, summary=pd.concat([row] * count, ignore_index=True))
     report = content(many)
-    (table,) = blocks_of(report, Table, "unmet")
-    (text,) = blocks_of(report, Text, "unmet")
-    assert len(table.rows) == UNMET_MAX
-    assert f"{count} flights fell short" in text.text
+    (table,) = blocks_of(report, Table, "failed")
+    (text,) = blocks_of(report, Text, "failed")
+    assert len(table.rows) == FAILED_MAX
+    assert f"{count} flights failed" in text.text
     assert "7 more are in summary.csv" in text.text
 
 
@@ -300,12 +301,12 @@ def test_no_more_flights_are_shown_than_stated_and_every_trial_has_its_share(run
     assert {trial.key for trial, _, _ in picked} == {trial.key for trial in trials}
 
 
-def test_parameters_say_what_a_trial_sets_and_draws_and_nothing_else(report):
+def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
     *tables, defaults = blocks_of(report, Table, "parameters")
     steady, turns = ({row[0]: row[1:3] for row in table.rows} for table in tables)
-    assert steady["wind.speed_mps"] == ["drawn from 2 to 4", "0"]
+    assert steady["wind.speed_mps"] == ["uniform from 2 to 4", "0"]
     assert steady["criteria.crossing_interval_error"] == ["0.0321", "not set"]
-    assert turns["vessel.manoeuvres"] == ["in turn: 20° to starboard at 0.5°/s; 10° to port at 0.5°/s", "none"]
+    assert turns["vessel.manoeuvres"] == ["cycled: 20° to starboard at 0.5°/s; 10° to port at 0.5°/s", "none"]
     assert turns["reports.interval_s"] == ["2 to 10", "0 to 0"]
     assert set(steady) == {
         "flights, seed", "speed_ratio", "wind.speed_mps", "flight.crossings", "criteria.crossing_interval_error",
@@ -330,3 +331,34 @@ def test_an_ordinate_of_names_is_marked_alike_on_screen_and_in_print():
     assert [(tick, text.get_text()) for tick, text in zip(printed.get_yticks(), printed.get_yticklabels(), strict=True)] == names
     screen = plotly_charts.draw(chart).layout.yaxis
     assert list(zip(screen.tickvals, screen.ticktext, strict=True)) == names
+
+
+def test_a_flight_that_lost_its_aircraft_has_not_met_whatever_its_criteria_allow(run):
+    report = content(with_values(run, 1, mode_at_end="ditched"))
+    # Three of four kept it: nothing that must never happen did, but not everything is as it should be.
+    assert report.verdict.headline.endswith("; of 4, 1 lost the aircraft, as their criteria allow")
+    assert (report.verdict.holds, report.verdict.complete, report.verdict.failures) == (True, False, [])
+    assert ("Flights that lost the aircraft", "1", "") in report.verdict.figures
+    assert rows_of(report, "Steady")[0][-2:] == ["1", "1 of 2"]
+
+
+def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):
+    manifest = json.loads(json.dumps(run.manifest))
+    manifest["trials"]["steady"]["sweep"] = {"wind.speed_mps": [2.0, 4.0]}
+    manifest["trials"]["turns"]["sweep"] = {"turbulence.level": ["none", "light"]}
+    draws = run.draws.assign(**{"wind.speed_mps": [2.0, 4.0, 3.0, 3.0], "turbulence.level": ["none", "none", "none", "light"]})
+    report = content(replace(run, manifest=manifest, draws=draws))
+    assert [row[0] for row in blocks_of(report, Table, "trial1")[0].rows] == ["Wind speed 2 m/s", "Wind speed 4 m/s"]
+    charts = blocks_of(report, Chart, "trial1")
+    assert {panel.x_label for chart in charts for panel in chart.panels} == {"Wind speed [m/s]"}
+    (words,) = blocks_of(report, Chart, "trial2")
+    assert [name for _, name in words.panels[0].y_names] == ["none", "light"]
+
+
+def test_many_comparisons_have_a_row_for_each_variant(run):
+    rows = pd.concat([run.summary[run.summary["trial"] == "steady"]] * 20, ignore_index=True)
+    rows["flight_id"] = [f"steady_{i:05d}" for i in range(len(rows))]
+    compared = rows.assign(flight_id=rows["flight_id"] + "_no_preview", variant="no_preview")
+    report = content(replace(run, summary=pd.concat([rows, run.summary[run.summary["trial"] == "turns"]]), comparison=compared))
+    (table,) = blocks_of(report, Table, "comparison")
+    assert [row[:3] for row in table.rows] == [["as in the study", "40", "0"], ["no preview", "40", "0"]]

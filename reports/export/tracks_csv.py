@@ -1,0 +1,34 @@
+"""Flight tracks as a table of text, for other programs to read."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from reports.errors import ReportError
+from reports.export.exporter import EXPORTERS
+from reports.run.run_data import RunData
+
+COLUMNS = (
+    "time_s", "north_m", "east_m", "altitude_m", "velocity_north_mps", "velocity_east_mps", "vessel_north_m", "vessel_east_m",
+)  # fmt: skip
+"""Columns beside the flight's name. Positions are from the run's local origin: a run has no latitude."""
+
+
+@EXPORTERS.register("tracks_csv")
+class TracksCsv:
+    """A row per recorded sample of each flight that has a time history."""
+
+    suffix = ".tracks.csv"
+
+    def write(self, run: RunData, path: Path) -> None:
+        """Write one flight after the other, with a single head."""
+        flight_ids = [str(flight_id) for rows in (run.summary, run.comparison) for flight_id in rows["flight_id"]]
+        recorded = [flight_id for flight_id in flight_ids if run.has_history(flight_id)]
+        if not recorded:
+            raise ReportError(f"'{run.path}' has no time histories of flights, which tracks are made of")
+        with path.open("w", encoding="utf-8", newline="") as file:
+            for number, flight_id in enumerate(recorded):
+                history = run.history(flight_id)
+                rows = pd.DataFrame() if history is None else history.reindex(columns=list(COLUMNS))
+                rows.insert(0, "flight_id", flight_id)
+                rows.to_csv(file, index=False, header=number == 0, float_format="%.3f")

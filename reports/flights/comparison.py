@@ -1,0 +1,118 @@
+"""Comparisons: the same flights from the same starts, with a part changed."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from reports.document.blocks import Block, Section, Table, Text
+from reports.document.chart import Chart, Line, Panel
+from reports.document.tables import number
+from reports.flights.names import flight_name
+from reports.flights.trial_tables import flight_table
+from reports.run.columns import clearance, column, largest, measured, met, total
+from reports.run.run_data import RunData
+from reports.run.time_history import tracking_error
+from reports.run.trials import Trial
+
+_SHOWN_TURNS = 45.5
+"""How much of a flight a panel shows after settling, over the time to turn by one radian at omega_max [-]."""
+
+_SHOWN_BANDS = 1.2
+"""Largest distance that a panel shows, over the settling band [-]."""
+
+_FLIGHTS_MAX = 4
+"""Flights that have a panel with their comparisons."""
+
+_ROWS_MAX = 60
+"""Flights that are listed one by one; of more there is a row for each variant."""
+
+_COLOURS = ("vermillion", "orange", "sky", "purple", "green", "grey")
+
+_STUDY = "as in the study"
+
+
+def comparison_section(run: RunData, trials: list[Trial]) -> Section:
+    """Return the section on the comparisons of a run, or one without blocks if it has none."""
+    blocks: list[Block] = []
+    for trial in trials:
+        compared = run.comparison[run.comparison["trial"] == trial.key] if len(run.comparison) else run.comparison
+        if len(compared):
+            pairs = _pairs(trial.rows, compared)
+            chart = _chart(trial, pairs)
+            blocks += [*([chart] if chart else []), _table(trial, pairs)]
+    text = Text("The same flights, from the same starts, with parts changed. They have no part in the verdict.")
+    return Section(
+        anchor="comparison", title="What each part is worth", nav_title="Comparison", blocks=[text, *blocks] if blocks else []
+    )
+
+
+def _pairs(rows: pd.DataFrame, compared: pd.DataFrame) -> pd.DataFrame:
+    """Return compared flights and those of the study; ``base`` is the name of the study's flight of each pair."""
+    bases = [str(row["flight_id"]).removesuffix(f"_{row['variant']}") for _, row in compared.iterrows()]
+    names = [str(variant).replace("_", " ") for variant in compared["variant"]]
+    study = rows[rows["flight_id"].isin(bases)]
+    study = study.assign(base=study["flight_id"], variant=_STUDY)
+    return pd.concat([study, compared.assign(base=bases, variant=names)]).sort_values("base", kind="stable")
+
+
+def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
+    """Return the tracking error of a few flights and of their comparisons over time since settling, or None."""
+    # The same part of the flight for a fast aircraft, which turns slowly, as for a slow one.
+    turn = 1.0 / float(pairs["heading_rate_limit_rad_s"].max())
+    shown = float(f"{_SHOWN_TURNS * turn:.2g}")
+    band = _SHOWN_BANDS * float(trial.setting("flight.settling_band_m"))
+    variants = [variant for variant in dict.fromkeys(pairs["variant"]) if variant != _STUDY]
+    colours = {variant: _COLOURS[i % len(_COLOURS)] for i, variant in enumerate(variants)} | {_STUDY: "blue"}
+    panels: list[Panel] = []
+    for _, flights in pairs.groupby("base", sort=False):
+        # The study's own flight lies over the others.
+        ordered = flights.sort_values("variant", key=lambda names: names == _STUDY, kind="stable")
+        lines = [line for _, row in ordered.iterrows() for line in _error_line(trial.run, row, colours[row["variant"]], shown)]
+        if lines and len(panels) < _FLIGHTS_MAX:
+            panels.append(
+                Panel(
+                    x_label="Time since settling [s]",
+                    y_label="Tracking error [m]",
+                    lines=lines,
+                    title=flight_name(trial, flights.iloc[0].replace({"flight_id": flights["base"].iloc[0]})),
+                    x_range=(0.0, shown),
+                    y_range=(0.0, band),
+                )
+            )
+    caption = "Distance to the reference from settling on, of flights of the study and with parts changed."
+    name = f"{trial.name}-comparison"
+    return Chart(name=name, caption=caption, panels=panels, panel_height=0.34) if panels else None
+
+
+def _error_line(run: RunData, row: "pd.Series[Any]", colour: str, duration: float) -> list[Line]:
+    history = run.history(str(row["flight_id"]))
+    if history is None or pd.isna(row["settling_time_s"]):
+        return []
+    settled = history[history["time_s"] >= row["settling_time_s"]]
+    time = settled["time_s"].to_numpy() - float(row["settling_time_s"])
+    shown = time <= duration
+    return [Line(x=time[shown], y=tracking_error(settled)[shown], label=str(row["variant"]), colour=colour)]
+
+
+def _table(trial: Trial, pairs: pd.DataFrame) -> Table:
+    """Return a row per flight; if they are too many, one per variant."""
+    if len(pairs) <= _ROWS_MAX:
+        names = {base: flight_name(trial, row) for base, row in trial.rows.set_index("flight_id", drop=False).iterrows()}
+        return flight_table(pairs, "Variant, flight", lambda row: f"{row['variant']}, {names.get(row['base'], row['base'])}")
+    rows = []
+    for variant, flights in pairs.groupby("variant", sort=False):
+        flown = measured(flights)
+        rows.append([
+            str(variant),
+            f"{len(flights)}",
+            f"{total(flown, 'keepout_violations')}",
+            number(np.min(clearance(flown)) if len(flown) else None, "{:+.1f}"),
+            number(flown["tracking_error_rms_m"].median(), "{:.2f}"),
+            number(largest(column(flown, "tracking_error_rms_m")), "{:.2f}"),
+            f"{int(np.count_nonzero(met(flights)))}",
+        ])  # fmt: skip
+    head = [
+        "Variant", "Flights", "Keep-out violations", "Closest beyond r_min [m]", "Tracking rms, median [m]", "largest [m]", "Met",
+    ]  # fmt: skip
+    return Table(head=head, rows=rows, widths=[2.2, 0.8, 1.0, 1.2, 1.2, 1.0, 0.8])

@@ -1,0 +1,59 @@
+"""The report of flights: its sections are by what the run has."""
+
+from reports.design.section import innerloop_section
+from reports.document.blocks import Block, Heading, Section, Text, Verdict
+from reports.flights.comparison import comparison_section
+from reports.flights.criteria import criteria_of
+from reports.flights.names import flight_name
+from reports.flights.parameter_tables import parameter_blocks
+from reports.flights.selection import flight_section
+from reports.flights.trial_charts import trial_charts
+from reports.flights.trial_tables import criteria_table, failed_blocks, fault_table, flight_table, trial_table
+from reports.flights.verdict import flight_verdict
+from reports.monte_carlo.content import monte_carlo_sections
+from reports.monte_carlo.falsification import falsification_sections
+from reports.run.run_data import RunData
+from reports.run.trials import Kind, Trial, read_trials
+
+_LISTED_MAX = 12
+"""Flights of a run's only trial that are all listed; of a sweep they are, however many."""
+
+
+def flights_content(run: RunData) -> tuple[Verdict, list[Section]]:
+    """Return the verdict and the sections of the report of flights."""
+    trials = read_trials(run)
+    sections = [
+        *monte_carlo_sections(run),
+        *falsification_sections(run),
+        _overview(trials),
+        *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
+        comparison_section(run, trials),
+        Section(anchor="failed", title="Failed flights", nav_title="Failed", blocks=failed_blocks(run)),
+        flight_section(trials),
+        *([innerloop_section(run.innerloop)] if run.innerloop else []),
+        Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
+    ]
+    return flight_verdict(run, trials), sections
+
+
+def _overview(trials: list[Trial]) -> Section:
+    criteria: list[Block] = [Heading("Criteria beside the keep-out area, and the worst measured values"), criteria_table(trials)]
+    if len(trials) == 1:
+        shown = criteria[1:] if criteria_of(trials[0]) else []
+        return Section(anchor="trials", title="Criteria and the worst measured values", nav_title="Criteria", blocks=shown)
+    return Section(anchor="trials", title="Trials", blocks=[trial_table(trials), *criteria])
+
+
+def _trial(trial: Trial, *, only: bool) -> Section:
+    table: list[Block] = []
+    if trial.kind is Kind.FAULTS and len(trial.flown):
+        table.append(fault_table(trial))
+    if trial.swept or (only and len(trial.rows) <= _LISTED_MAX):
+        head = "ν" if list(trial.swept) == ["nu"] else "Flight"
+        table.append(flight_table(trial.rows, head, lambda row: flight_name(trial, row).removeprefix("ν = ")))
+    # The head of the report says what an only trial is.
+    text: list[Block] = [] if only else [Text(str(trial.config["description"]))]
+    title = trial.title if not only else "Over the speed ratio" if list(trial.swept) == ["nu"] else "Flights"
+    charts = trial_charts(trial)
+    blocks = [*text, *charts, *table] if trial.swept else [*text, *table, *charts]
+    return Section(anchor=trial.name, title=title, nav_title="Speed ratio" if title.startswith("Over") else "", blocks=blocks)

@@ -1,0 +1,46 @@
+"""What flights, swept keys, faults and manoeuvres are called."""
+
+import re
+from typing import Any
+
+import pandas as pd
+
+from reports.monte_carlo.names import input_name, input_unit
+from reports.run.trials import Trial
+
+
+def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
+    """Return what a flight is called: by what was swept, or by its number, or by its name."""
+    flight_id = str(row["flight_id"])
+    if trial.swept:
+        return ", ".join(_swept(key, trial.input(key)[flight_id]) for key in trial.swept)
+    counted = re.search(r"_(\d+)$", flight_id)
+    return f"Flight {int(counted[1])}" if counted else flight_id
+
+
+def _swept(key: str, value: Any) -> str:
+    if key == "nu":
+        return f"ν = {value:.2f}"
+    unit = input_unit(key)
+    return f"{input_name(key)} {value:.4g}{'' if unit == '-' else f' {unit}'}" if isinstance(value, float) else str(value)
+
+
+def fault_name(kind: object) -> str:
+    """Return what a fault is called."""
+    return str(kind).replace("_", " ")
+
+
+def manoeuvre_name(manoeuvres: list[dict[str, Any]]) -> str:
+    """Return what a vessel does, in a few words."""
+    return ", then ".join(_one_manoeuvre(manoeuvre) for manoeuvre in manoeuvres) or "none"
+
+
+def _one_manoeuvre(manoeuvre: dict[str, Any]) -> str:
+    parts = []
+    turn, speed = float(manoeuvre.get("turn_deg", 0.0)), manoeuvre.get("speed_mps")
+    if turn:
+        rate = f" at {float(manoeuvre['turn_rate_deg_s']):g}°/s" if "turn_rate_deg_s" in manoeuvre else ""
+        parts.append(f"{abs(turn):g}° to {'starboard' if turn > 0.0 else 'port'}{rate}")
+    if speed is not None:
+        parts.append("stops" if speed == 0.0 else f"to {float(speed):g} m/s")
+    return " and ".join(parts) or "keeps course and speed"

@@ -1,0 +1,102 @@
+"""Panels of a trial's flights over a key that they differ in: the speed ratio, or any that was swept."""
+
+import math
+
+import numpy as np
+
+from reports.document.chart import Line, Panel, Style
+from reports.document.panels import Group, capped, level, points
+from reports.monte_carlo.names import input_label
+from reports.run.columns import clearance, column, interval_error, violated
+from reports.run.trials import Trial
+
+CLEARANCE = "Distance kept beyond r_min [m]"
+
+
+def by_violation(trial: Trial) -> list[Group]:
+    """Return the flights without a keep-out violation and those with one, as groups of markers."""
+    inside = violated(trial.flown)
+    return [(~inside, "flight", "blue"), (inside, "flight with a keep-out violation", "vermillion")]
+
+
+class PanelsOver:
+    """Panels over one key, of the flights that were flown; each is None if no flight has its figure.
+
+    Parameters
+    ----------
+    trial, key : whose flights, and over what; a key of figures
+    groups : in which markers are coloured
+    """
+
+    def __init__(self, trial: Trial, key: str, groups: list[Group]) -> None:
+        self._trial, self._groups, self._rows = trial, groups, trial.flown
+        self._x = trial.input(key).reindex(self._rows["flight_id"]).to_numpy(dtype=np.float64)
+        self._label = "Speed ratio ν [-]" if key == "nu" else input_label(key)
+
+    def figure(self, name: str, y_label: str) -> Panel | None:
+        """Return a panel of any figure, its criterion if it has one, and those far above all others at its edge."""
+        y, limit = column(self._rows, name), self.limit(name)
+        lines, top = capped(self._x, y, self._groups, limit)
+        criterion = [] if math.isnan(limit) else [level(self._x, limit, "criterion")]
+        return self._panel(y_label, [*lines, *criterion], y_range=(-0.03 * top, top))
+
+    def interval_error(self) -> Panel | None:
+        """Return the mean crossing interval against its prediction."""
+        limit = 100.0 * self.limit("crossing_interval_error")
+        criterion = [] if math.isnan(limit) else [level(self._x, side * limit, "criterion") for side in (1.0, -1.0)]
+        return self._panel(
+            "Mean interval against π/ω₀ [%]", [*points(self._x, 100.0 * interval_error(self._rows), self._groups), *criterion]
+        )
+
+    def interval(self) -> Panel | None:
+        """Return the crossing interval, with bars of one standard deviation, and its prediction."""
+        flown = self._points("crossing_interval_mean_s", "flight", "blue", error="crossing_interval_std_s")
+        predicted = self._curve("crossing_interval_predicted_s", "predicted, π/ω₀", "black", "solid")
+        return self._panel("Crossing interval [s]", [predicted, flown])
+
+    def distances(self) -> Panel | None:
+        """Return the distances of the crossings and the closest approach."""
+        lines = [
+            self._curve("keepout_radius_m", "keep-out radius r_min", "vermillion", "solid"),
+            self._curve("r_co_m", "centre of oscillation r_CO", "grey"),
+            self._points("crossing_distance_mean_m", "crossings, mean", "blue"),
+            self._points("crossing_distance_min_m", "crossings, closest", "sky", "diamonds"),
+            self._points("min_distance_m", "closest approach, whole flight", "green"),
+        ]
+        return self._panel("Distance from the funnel [m]", lines)
+
+    def command(self) -> Panel | None:
+        """Return the largest commanded heading rate, and its limit."""
+        command = self._points("heading_rate_command_max_rad_s", "largest command", "orange")
+        return self._panel("Heading rate [rad/s]", [command, self._curve("heading_rate_limit_rad_s", "ω_max", "vermillion")])
+
+    def margin(self) -> Panel | None:
+        """Return what of the planned margin was left, over the margin if flights differ in it."""
+        planned, kept = column(self._rows, "keepout_margin_m"), clearance(self._rows)
+        if not np.isfinite(planned).any():
+            return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), level(self._x, 0.0, "r_min", "black")])
+        if float(np.ptp(planned)) < 1e-6:
+            levels = [level(self._x, 0.0, "r_min", "black"), level(self._x, float(planned[0]), "planned margin", "green")]
+            return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), *levels])
+        ends = np.array([float(planned.min()), float(planned.max())])
+        levels = [level(planned, 0.0, "r_min", "black"), Line(x=ends, y=ends, label="planned margin", colour="green", style="dash")]
+        return Panel(x_label="Planned margin [m]", y_label=CLEARANCE, lines=[*points(planned, kept, self._groups), *levels])
+
+    def limit(self, key: str) -> float:
+        """Return the limit of a criterion, or not a number."""
+        value = self._trial.criteria.get(key)
+        return math.nan if value is None else float(value)
+
+    def _points(self, name: str, label: str, colour: str, style: Style = "points", error: str = "") -> Line:
+        bars = column(self._rows, error) if error else None
+        return Line(x=self._x, y=column(self._rows, name), label=label, colour=colour, style=style, error=bars)
+
+    def _curve(self, name: str, label: str, colour: str, style: Style = "dash") -> Line:
+        """Return a curve to compare with."""
+        order = np.argsort(self._x, kind="stable")
+        return Line(x=self._x[order], y=column(self._rows, name)[order], label=label, colour=colour, style=style)
+
+    def _panel(self, y_label: str, lines: list[Line], y_range: tuple[float, float] | None = None) -> Panel | None:
+        known = [line for line in lines if np.isfinite(line.y).any()]
+        shown = any(line.style in ("points", "diamonds") for line in known)
+        return Panel(x_label=self._label, y_label=y_label, lines=known, y_range=y_range) if shown else None

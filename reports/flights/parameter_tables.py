@@ -1,0 +1,128 @@
+"""Tables of parameters: what trials set, sweep and sample, what follows from it, and the defaults."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from reports.document.blocks import Block, Heading, Table
+from reports.document.tables import parameter_value
+from reports.flights.names import flight_name, manoeuvre_name
+from reports.flights.trial_tables import OSCILLATION_COLUMNS, flight_table
+from reports.run.columns import column
+from reports.run.run_data import RunData
+from reports.run.trials import Parameters, Trial
+
+_HEAD = ["Parameter", "Value", "Default", "Unit", "Meaning and equation"]
+_WIDTHS = [2.9, 2.1, 1.1, 0.5, 2.9]
+
+
+def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
+    """Return every parameter of a run's only trial; of several, what each sets, and the others with their defaults."""
+    blocks: list[Block] = []
+    if len(trials) == 1 and trials[0].swept and len(trials[0].flown):
+        blocks += [
+            Heading("The reference's oscillation; equation numbers are the paper's"),
+            flight_table(trials[0].flown, "Flight", partial(flight_name, trials[0]), OSCILLATION_COLUMNS),
+        ]
+    if len(trials) == 1:
+        return [*blocks, Heading("Every parameter"), _table(_rows(trials[0], every=True) + _derived(run, trials[0]))]
+    for trial in trials:
+        blocks += [Heading(trial.title), _table(_rows(trial, every=False))]
+    defaults = [[p["key"], "", _default(p), p["unit"], p["meaning"]] for p in trials[0].parameters()] if trials else []
+    return [*blocks, Heading("Every other parameter, with its default"), _table(defaults)] if trials else []
+
+
+def _table(rows: list[list[str]]) -> Table:
+    shown = [i for i in range(len(_HEAD)) if i in (0, 4) or any(row[i] for row in rows)]
+    return Table(
+        head=[_HEAD[i] for i in shown],
+        rows=[[row[i] for i in shown] for row in rows],
+        widths=[_WIDTHS[i] for i in shown],
+        left_columns=len(shown),
+        prose=True,
+        breakable=True,
+    )
+
+
+def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
+    """Return what a trial sweeps and samples, and every parameter or those that differ from their defaults."""
+    listed = {parameter["key"]: parameter for parameter in trial.parameters()}
+    rows = [["flights, seed", f"{trial.planned}, {trial.config['seed']}", "", "", "Number of flights; seed of all random numbers"]]
+    if trial.setting("speed_ratio") and (trial.varies("wind") or trial.varies("vessel")):
+        low, high = trial.config["speed_ratio"]
+        rows.append(["speed_ratio", f"{low:g} to {high:g}", "", "", "Samples with another speed ratio ν are sampled again"])
+    inputs = {key: f"swept: {parameter_value(values)}" for key, values in trial.swept.items()}
+    inputs |= {sample["key"]: _distribution(sample) for sample in trial.sampled}
+    for key, words in inputs.items():
+        about = listed.get(key, {"meaning": "Speed ratio ν of the vessel and the UAV" if key == "nu" else ""})
+        rows.append([key, words, _default(about), about.get("unit", ""), about["meaning"]])
+    return rows + [
+        [key, _value(p["value"], key), _default(p), p["unit"], p["meaning"]]
+        for key, p in listed.items()
+        if key not in inputs and (every or "default" not in p or p["value"] != p["default"])
+    ]
+
+
+def _distribution(sample: dict[str, Any]) -> str:
+    """Return how a key is sampled, in words."""
+    if sample["uniform"] is not None:
+        low, high = sample["uniform"]
+        return f"uniform from {low:g} to {high:g}"
+    if sample["choice"] is not None:
+        choices = [_value(choice) for choice in sample["choice"]]
+        if sample["weights"] is None:
+            return "cycled: " + "; ".join(choices)
+        whole = sum(sample["weights"])
+        return "; ".join(f"{100.0 * w / whole:.0f} % {choice}" for w, choice in zip(sample["weights"], choices, strict=True))
+    if sample["normal"] is not None:
+        mean, sigma = sample["normal"]
+        words = f"normal, mean {mean:g}, deviation {sigma:g}"
+    else:
+        shape, scale = sample["weibull"]
+        words = f"Weibull, shape {shape:g}, scale {scale:g}"
+    return f"{words}, from {sample['within'][0]:g} to {sample['within'][1]:g}" if sample["within"] else words
+
+
+def _default(parameter: Parameters) -> str:
+    return _value(parameter["default"], str(parameter["key"])) if "default" in parameter else ""
+
+
+def _value(value: Any, key: str = "") -> str:
+    """Return a value in words; a list of sections can only be manoeuvres, one of two figures only a range."""
+    if isinstance(value, list) and (isinstance(value[0], dict) if value else key.endswith("manoeuvres")):
+        return manoeuvre_name(value)
+    if isinstance(value, list) and len(value) == 2 and all(isinstance(bound, float) for bound in value):
+        return " to ".join(f"{bound:g}" for bound in value)
+    return parameter_value(value, key)
+
+
+def _derived(run: RunData, trial: Trial) -> list[list[str]]:
+    """Return rows for what follows from the parameters."""
+    limit = "Largest heading-rate command: g tan(bank)/V_r, or as given."
+    derived = [("ω_max", "heading_rate_limit_rad_s", "{:.4f}", "rad/s", limit)]
+    if trial.setting("guidance.tuning") == "bounded":
+        where = "Over the flights; docs/actuation_bounds.md."
+        derived += [
+            ("ε as searched", "epsilon_per_m", "{:.5f}", "1/m", where),
+            ("R as searched", "look_ahead_m", "{:.1f}", "m", where),
+            ("steering_max as searched", "steering_max_rad_s", "{:.4f}", "rad/s", where),
+            ("bound on the heading-rate demand", "heading_rate_bound_rad_s", "{:.5f}", "rad/s", where),
+        ]
+    rows = [[name, _range(trial, key, pattern), "", unit, meaning] for name, key, pattern, unit, meaning in derived]
+    if run.manifest.get("guidance_lag_s") is not None:
+        meaning = (
+            "Lag of the heading rate behind its command (measured of an aircraft, given of a kinematic vehicle) and half a step of"
+            " the guidance: the preview's lead."
+        )
+        rows.append(["guidance lag", f"{run.manifest['guidance_lag_s']:.3f}", "", "s", meaning])
+    return rows
+
+
+def _range(trial: Trial, key: str, pattern: str) -> str:
+    """Return the least and the largest value, or the only one."""
+    known = column(trial.rows, key)
+    if not np.isfinite(known).any():
+        return "–"
+    ends = [pattern.format(np.nanmin(known)), pattern.format(np.nanmax(known))]
+    return ends[0] if ends[0] == ends[1] else " to ".join(ends)

@@ -1,0 +1,90 @@
+"""Which flights of a run are shown one by one."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from reports.document.blocks import Block, FlightContent, FlightPicker, Section, Text
+from reports.document.tables import number, outcome
+from reports.flights.names import flight_name
+from reports.flights.single_flight import flight_charts
+from reports.run.columns import clearance, column, lost, met, violated
+from reports.run.trials import Trial
+
+PICKED_MAX = 12
+"""Flights that are shown one by one, of trials that are not swept."""
+
+SWEPT_MAX = 24
+"""Flights of a sweep that are all shown one by one; of longer ones some are."""
+
+_VIOLATION, _FAILED = "deepest keep-out violation", "failed a criterion"
+
+
+def flight_section(trials: list[Trial]) -> Section:
+    """Return the section of single flights."""
+    swept = len(trials) == 1 and bool(trials[0].swept) and len(trials[0].rows) <= SWEPT_MAX
+    if swept:
+        flights = [_content(trials[0], row, outcome(row)) for _, row in trials[0].rows.iterrows()]
+        text = "Every flight of the sweep."
+    else:
+        flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked_flights(trials)]
+        text = (
+            f"{len(flights)} flights: of each trial those with the deepest keep-out violation and with a failed criterion, if there"
+            " are such, the closest approach, and the one whose closest approach is the median."
+        )
+    blocks: list[Block] = [Text(f"{text} In print each has a page at the end."), FlightPicker(flights=flights)]
+    return Section(anchor="flights", title="Single flights", nav_title="Flights", blocks=blocks if flights else [])
+
+
+def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
+    several = len(trial.run.manifest["trials"]) > 1
+    name = f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
+    known = [("", "min_distance_m", "{:.1f} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", "{:.1f} m/s")]
+    shown = [item for item in known if item[1] not in trial.swept and not pd.isna(row.get(item[1]))]
+    world = ", ".join(f"{words}{number(row[key], pattern)}" for words, key, pattern in shown)
+    return FlightContent(
+        flight_id=str(row["flight_id"]),
+        label=f"{name} · {state.split(':', maxsplit=1)[0]}",
+        title=f"{name}: {state} ({world or 'not flown'})",
+        charts=flight_charts(trial.run, row, trial.source_height),
+    )
+
+
+def _state(row: "pd.Series[Any]", why: str) -> str:
+    return why if row["criteria_met"] or why in (_VIOLATION, _FAILED) else f"{why}, {_FAILED}"
+
+
+def picked_flights(trials: list[Trial]) -> list[tuple[Trial, "pd.Series[Any]", str]]:
+    """Return the flights to be shown, at most ``PICKED_MAX``, in the trials' order, and why each of them is.
+
+    Every trial has its most important flight before any has its second, and so on.
+    """
+    candidates = [list(_candidates(trial)) for trial in trials]
+    deep = max((len(flights) for flights in candidates), default=0)
+    turns = [(i, k) for k in range(deep) for i, flights in enumerate(candidates) if k < len(flights)]
+    chosen = sorted(turns[:PICKED_MAX])
+    return [(trials[i], *candidates[i][k]) for i, k in chosen]
+
+
+def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
+    """Yield a trial's flights to look at, the most important first: one of each sort, none twice."""
+    rows, flown = trial.rows, trial.flown
+    inside, failed = rows[violated(rows)], rows[~met(rows) & ~lost(rows) & ~violated(rows)]
+    # Of the others, those that have a time history: they are chosen for their figures.
+    recorded = flown[[trial.run.has_history(str(flight_id)) for flight_id in flown["flight_id"]]]
+    order = np.argsort(clearance(recorded), kind="stable")
+    chosen = []
+    if len(inside):
+        chosen.append((inside.iloc[int(np.argmax(column(inside, "keepout_depth_m")))], _VIOLATION))
+    if len(failed):
+        chosen.append((failed.iloc[0], _FAILED))
+    if len(recorded):
+        chosen.append((recorded.iloc[int(order[0])], "closest approach"))
+        chosen.append((recorded.iloc[int(order[len(order) // 2])], "median of closest approaches"))
+    seen = set()
+    for row, why in chosen:
+        if row["flight_id"] not in seen:
+            seen.add(row["flight_id"])
+            yield row, why

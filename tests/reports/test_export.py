@@ -1,0 +1,84 @@
+"""Exporters: the project's own, and one that a user adds in a file."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from common.registry import PluginError
+from reports.build import export_run
+from reports.errors import ReportError
+from reports.export import EXPORTERS
+
+OWN = """
+from pathlib import Path
+
+
+class FlightList:
+    suffix = ".flights.txt"
+
+    def write(self, run, path):
+        path.write_text("\\n".join(run.summary["flight_id"]), encoding="utf-8")
+
+
+class Unfit:
+    suffix = ".txt"
+"""
+
+
+@pytest.fixture
+def run_path(tmp_path):
+    """Return a run of two flights, of which one has a time history."""
+    path = tmp_path / "run"
+    (path / "flights").mkdir(parents=True)
+    config = {"vessel": {"course_deg": 90.0}, "guidance": {"airspeed_mps": 20.0}, "plume": {"heading_deg": 180.0}}
+    manifest = {"study": "flights", "name": "small", "config": config, "flights_planned": 2}
+    (path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    pd.DataFrame({"flight_id": ["nu_0.50", "nu_1.00"], "nu": [0.5, 1.0]}).to_csv(path / "summary.csv", index=False)
+    time = np.arange(3.0)
+    flown = {"time_s": time, "north_m": 7.0 * time, "east_m": 0.0 * time, "altitude_m": 60.0 + time}
+    pd.DataFrame(flown).to_parquet(path / "flights" / "nu_0.50.parquet")
+    return path
+
+
+def test_tracks_are_exported_with_the_vessel_that_was_flown_about(run_path):
+    path = export_run(run_path, "tracks_csv")
+    assert path == run_path / "export" / "small.tracks.csv"
+    tracks = pd.read_csv(path)
+    assert list(tracks["flight_id"]) == ["nu_0.50"] * 3
+    assert list(tracks["north_m"]) == [0.0, 7.0, 14.0]
+    # East at half of 20 m/s, for this run is of calm air; nothing is known of velocities, and they stay empty.
+    assert list(tracks["vessel_east_m"]) == [0.0, 10.0, 20.0]
+    assert tracks["velocity_north_mps"].isna().all()
+
+
+def test_a_user_adds_an_exporter_in_a_file_of_one_class(run_path, tmp_path):
+    (tmp_path / "mine.py").write_text(OWN, encoding="utf-8")
+    path = export_run(run_path, f"{tmp_path / 'mine.py'}:FlightList")
+    assert path.name == "small.flights.txt"
+    assert path.read_text(encoding="utf-8").split() == ["nu_0.50", "nu_1.00"]
+    with pytest.raises(PluginError, match=r"has no method write\(\)"):
+        export_run(run_path, f"{tmp_path / 'mine.py'}:Unfit")
+
+
+def test_a_run_without_time_histories_has_no_tracks(run_path):
+    (run_path / "flights" / "nu_0.50.parquet").unlink()
+    with pytest.raises(ReportError, match="has no time histories of flights"):
+        export_run(run_path, "tracks_csv")
+    assert list((run_path / "export").iterdir()) == []
+
+
+def test_the_command_exports_and_names_what_it_knows(run_path):
+    def build(*words):
+        return subprocess.run(
+            [sys.executable, "-m", "reports.build", str(run_path), *words], capture_output=True, text=True, check=False
+        )
+
+    assert build("--export", "tracks_csv").stdout == f"export: {run_path / 'export' / 'small.tracks.csv'}\n"
+    refused = build("--export", "track_csv")
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("error: unknown exporter 'track_csv'; did you mean 'tracks_csv'?")
+    assert "tracks_csv" in EXPORTERS.names()
