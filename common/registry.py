@@ -9,6 +9,7 @@ import pkgutil
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import FunctionType
 from typing import Any, Generic, TypeVar
 
 from common.spelling import did_you_mean
@@ -33,7 +34,7 @@ class Registry(Generic[Part]):
     ----------
     kind : of the parts, as in "steering_law"
     folder : package whose modules register the project's own parts when they are imported
-    methods : that every part has to have: those of its Protocol
+    methods : that every part has to have, unless it is a function that makes one: those of its Protocol
     """
 
     def __init__(self, kind: str, *, folder: str, methods: Sequence[str] = ()) -> None:
@@ -69,8 +70,11 @@ class Registry(Generic[Part]):
         """
         if is_file_part(name):
             return self._checked(name, part_in_file(name))
-        if name in (known := self._known()):
-            return known[name]
+        if name not in self._parts and name.isidentifier() and importlib.util.find_spec(f"{self._folder}.{name}"):
+            # A file of its name comes first: the others may take long to import.
+            importlib.import_module(f"{self._folder}.{name}")
+        if name in self._parts or name in self._known():
+            return self._parts[name]
         if (found := self._entry_points().get(name)) is not None:
             try:
                 return self._checked(name, found.load())
@@ -92,14 +96,19 @@ class Registry(Generic[Part]):
         return self._parts
 
     def _entry_points(self) -> dict[str, importlib.metadata.EntryPoint]:
-        return {point.name: point for point in importlib.metadata.entry_points(group=f"{ENTRY_POINTS}.{self.kind}")}
+        return announced(self.kind)
 
     def _checked(self, name: str, part: Any) -> Part:
-        for method in self._methods:
+        for method in () if isinstance(part, FunctionType) else self._methods:
             if not callable(getattr(part, method, None)):
                 raise PluginError(f"{self.words} '{name}' has no method {method}(); see the Protocol in {self._folder}")
         found: Part = part
         return found
+
+
+def announced(kind: str) -> dict[str, importlib.metadata.EntryPoint]:
+    """Return the parts of a kind that installed packages announce as entry points, by name."""
+    return {point.name: point for point in importlib.metadata.entry_points(group=f"{ENTRY_POINTS}.{kind}")}
 
 
 def is_file_part(name: str) -> bool:

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 
+from common.registry import announced, is_file_part
+from common.run_layout import MANIFEST
 from reports.convergence.content import convergence_content
 from reports.design.content import design_content
 from reports.document.blocks import Content, Section, Verdict
@@ -12,12 +14,15 @@ from reports.paper.content import paper_content
 from reports.run.run_data import RunData
 
 STUDIES: dict[str, Callable[[RunData], tuple[Verdict, list[Section]]]] = {
-    **dict.fromkeys(("flights", "trials", "monte_carlo", "falsification", "replay"), flights_content),
+    **dict.fromkeys(("flights", "trials", "monte_carlo", "falsify"), flights_content),
     "paper": paper_content,
     "convergence": convergence_content,
     "design": design_content,
 }
 """A study, as its manifest names it, and what makes the verdict and the sections of its report."""
+
+FLIGHT_ENTRIES = ("title", "trials", "trial_parameters", "modes")
+"""What reports on flights need of a manifest."""
 
 
 def content(run: RunData) -> Content:
@@ -25,12 +30,20 @@ def content(run: RunData) -> Content:
 
     Raises
     ------
-    ReportError : the manifest names a study that has no report
+    ReportError : the manifest names a study that has no report, or is of another version
     """
     study = run.manifest.get("study", "flights")
-    if study not in STUDIES:
-        raise ReportError(f"'{run.path}': study is '{study}', which has no report; those that have one: {', '.join(STUDIES)}")
-    verdict, sections = STUDIES[study](run)
+    if not isinstance(study, str) or not (study in STUDIES or is_file_part(study) or study in announced("study")):
+        raise ReportError(f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(STUDIES)}")
+    # Studies of flights that others add have the report of any flights.
+    made = STUDIES.get(study, flights_content)
+    needed = FLIGHT_ENTRIES if made in (flights_content, paper_content) else ()
+    if missing := [entry for entry in needed if entry not in run.manifest]:
+        raise ReportError(
+            f"'{run.path}' was flown by another version: its {MANIFEST} has no '{missing[0]}'; report on it with that version, or"
+            " run the scenario again in another --out"
+        )
+    verdict, sections = made(run)
     provenance = Section(anchor="provenance", title="Provenance", blocks=[provenance_table(run)])
     return Content(
         title=run.manifest["title"],

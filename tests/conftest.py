@@ -9,6 +9,7 @@ import contextlib
 import functools
 import os
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 # Tests run in two processes; threads under each of their small matrices would only be in the way. Before numpy is imported.
@@ -19,7 +20,6 @@ from hypothesis import settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     from aircraft.simulation.fdm import Fdm
     from innerloop.designs.cache import Designed
@@ -39,6 +39,10 @@ def cache_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     home = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache"
     home.mkdir(exist_ok=True)
     with pytest.MonkeyPatch.context() as patch:
+        # Matplotlib's list of fonts is in the same directory, and takes seconds to make again.
+        fonts = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "matplotlib"
+        if "MPLCONFIGDIR" not in os.environ:
+            patch.setenv("MPLCONFIGDIR", str(fonts))
         patch.setenv("XDG_CACHE_HOME", str(home))
         yield home
 

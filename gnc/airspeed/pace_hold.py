@@ -4,9 +4,11 @@ An autopilot that holds airspeed follows every gust along its path. Here it is a
 speed over the mean air lacks; gusts drop out of the sum, and the airspeed varies with them instead.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from gnc.errors import InfeasibleError
+from gnc.estimation.own_motion import OwnMotion
 
 _CRITICAL = 0.25
 """Of a first-order loop's bandwidth, the gain of a position loop about it that has two equal poles: none faster, no overshoot."""
@@ -65,10 +67,34 @@ def airspeed_to_hold(hold: SpeedHold, *, along: float, reference_speed: float, s
     speed : horizontal, over the mean air [m/s]
     airspeed : as measured, against the gusty air [m/s]
     """
-    wanted = airspeed + reference_speed + hold.gain * along - speed
-    if wanted > hold.airspeed_max:
+    demand = airspeed + reference_speed + hold.gain * along - speed
+    if demand > hold.airspeed_max:
         return hold.airspeed_max
-    return hold.airspeed_min if wanted < hold.airspeed_min else wanted
+    return hold.airspeed_min if demand < hold.airspeed_min else demand
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PaceHold:
+    """Keeps pace with the reference by the speed over the mean air.
+
+    Attributes
+    ----------
+    speed : V_r [m/s]
+    hold : parameters of the law
+    """
+
+    speed: float
+    hold: SpeedHold
+
+    def command(self, along: float, own: OwnMotion, guarding: bool, /) -> float:  # noqa: ARG002 - of the Protocol
+        """Return the airspeed to command [m/s], also while the keep-out guard turns the vehicle away.
+
+        Parameters
+        ----------
+        along : how far the reference is ahead, along its course [m]
+        own : the vehicle's motion
+        """
+        return airspeed_to_hold(self.hold, along=along, reference_speed=self.speed, speed=own.speed, airspeed=own.airspeed)
 
 
 def air_turn(heading_rate: float, *, speed: float, airspeed: float) -> float:

@@ -46,14 +46,14 @@ class TurningReferences:
         self.frequency: Array = np.array(frequency, dtype=float)
         self.phase: Array = np.array(phase, dtype=float)
         shape = (len(self.amplitude), *self.course.shape)
-        for name, values, wanted in (
+        for name, values, expected in (
             ("rate", self.rate, shape[1:]),
             ("amplitude", self.amplitude, shape),
             ("frequency", self.frequency, shape),
             ("phase", self.phase, shape),
         ):
-            if values.shape != wanted:
-                raise InfeasibleError(f"{name} of the references has shape {values.shape}; with these courses it must be {wanted}")
+            if values.shape != expected:
+                raise InfeasibleError(f"{name} of the references has shape {values.shape}; for these courses it is {expected}")
         if not all(np.isfinite(values).all() for values in (self.course, self.rate, self.amplitude, self.frequency, self.phase)):
             raise InfeasibleError("a reference's course, rate, amplitude, frequency or phase is not finite; give numbers")
         if not (self.frequency > 0.0).all():

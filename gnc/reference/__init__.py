@@ -1,21 +1,8 @@
-"""The point to be tracked: shapes of its orbit, where the orbit lies in the plume, and its motion."""
+"""The point to be tracked: shapes of its orbit, where the orbit lies in the plume, and its motion.
 
-from gnc.reference.circling import CirclingReference
-from gnc.reference.oscillating import OscillatingReference, Sinusoid
-from gnc.reference.oscillation import Oscillation, design_oscillation
+The shapes and references themselves stand in files of their own: they need scipy, which takes long to import.
+"""
+
 from gnc.reference.reference import REFERENCE_SHAPES, Orbit, Reference, ReferenceShape, ReferenceStart
-from gnc.reference.steered import SteeredReference
 
-__all__ = [
-    "REFERENCE_SHAPES",
-    "CirclingReference",
-    "Orbit",
-    "OscillatingReference",
-    "Oscillation",
-    "Reference",
-    "ReferenceShape",
-    "ReferenceStart",
-    "Sinusoid",
-    "SteeredReference",
-    "design_oscillation",
-]
+__all__ = ["REFERENCE_SHAPES", "Orbit", "Reference", "ReferenceShape", "ReferenceStart"]

@@ -75,7 +75,7 @@ def examine(name: str, altitude: float) -> Discovered:
         design = designed(spec, altitude).design
     except AircraftError as error:
         return Discovered(name=name, title=title, flies=False, text=_reason(name, str(error)))
-    except Exception as error:  # noqa: BLE001 - one aircraft that nobody foresaw does not end the list
+    except Exception as error:  # noqa: BLE001 - an unforeseen failure of one aircraft does not end the list
         return Discovered(name=name, title=title, flies=False, text=f"{type(error).__name__}: {error}")
     envelope = design.schedule.envelope
     nominal = [check for check in design.checks if check.case == NOMINAL]

@@ -1,1 +1,1 @@
-"""How sure, how bad, what drives it."""
+"""Report on a Monte Carlo study or a search: bounds, quantiles, sensitivity."""

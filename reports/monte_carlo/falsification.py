@@ -18,7 +18,7 @@ def falsification_sections(run: RunData) -> list[Section]:
     """Return the section of a run that searched for the worst flight, and none of any other."""
     config = next(iter(run.manifest["trials"].values()))
     flown = run.summary[run.summary["min_distance_m"].notna()]
-    if not config.get("search") or not len(flown):
+    if config.get("study") != "falsify" or not len(flown):
         return []
     blocks: list[Block] = [
         Text(_in_words(config, flown)),

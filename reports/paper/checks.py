@@ -98,7 +98,7 @@ def paper_verdict(run: RunData) -> Verdict:
     checks, summary = paper_checks(run), run.summary
     planned = int(run.manifest["flights_planned"])
     state = str(run.manifest.get("state", "unfinished"))
-    unmet = summary[~summary["criteria_met"]]
+    failed = summary[~summary["criteria_met"]]
     wrong = [check for check in checks if check.met is False]
     missing = [check for check in checks if check.met is None]
     violations = int(summary["keepout_violations"].fillna(0).sum())
@@ -108,11 +108,11 @@ def paper_verdict(run: RunData) -> Verdict:
     elif wrong:
         headline = f"Not reproduced: {len(wrong)} of {len(checks)} statements do not hold"
     elif state == "complete" and len(missing) == len(checks):
-        headline = f"{planned - len(unmet)} of {planned} flights met their criteria; none is one of the paper's simulations"
+        headline = f"{planned - len(failed)} of {planned} flights met their criteria; none is one of the paper's simulations"
     elif not finished:
         headline = f"Unfinished: {len(checks) - len(missing)} of {len(checks)} statements could be tested, and hold"
-    elif len(unmet):
-        headline = f"The paper's statements hold, but {len(unmet)} of {planned} flights failed a criterion"
+    elif len(failed):
+        headline = f"The paper's statements hold, but {len(failed)} of {planned} flights failed a criterion"
     elif len(vehicles(run)) > 1:
         headline = "Reproduced: the paper's numbers, and what it says of Simulations 1 to 3, on both vehicles"
     else:
@@ -122,12 +122,12 @@ def paper_verdict(run: RunData) -> Verdict:
         detail += f" The run is {state}; continue it with --resume."
     return Verdict(
         holds=not violations and not wrong,
-        complete=finished and not len(unmet),
+        complete=finished and not len(failed),
         headline=headline,
         detail=detail,
         failures=[
             *(f"{check.name}: {check.value}, required {check.required}" for check in wrong),
-            *(f"{row['flight_id']}: {str(row['outcome']).replace('_', ' ')}, {row['message']}" for _, row in unmet.iterrows()),
+            *(f"{row['flight_id']}: {str(row['outcome']).replace('_', ' ')}, {row['message']}" for _, row in failed.iterrows()),
         ],
         figures=[(check.name, check.value, check.required) for check in checks if check.met is not None],
     )

@@ -19,7 +19,6 @@ from common.run_layout import (
     trajectory_path,
 )
 from reports.errors import ReportError
-from reports.run.earlier_runs import history_today, manifest_today, rows_today
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,11 +49,7 @@ class RunData:
     def history(self, flight_id: str) -> pd.DataFrame | None:
         """Return a flight's time history, or None if it has none."""
         path = self.path / time_history_path(flight_id)
-        if not path.is_file():
-            return None
-        ratios = [frame.loc[frame["flight_id"] == flight_id, "nu"] for frame in (self.summary, self.comparison) if "nu" in frame]
-        nu = next((float(found.iloc[0]) for found in ratios if len(found)), float("nan"))
-        return history_today(pd.read_parquet(path), self.manifest["config"], nu)
+        return pd.read_parquet(path) if path.is_file() else None
 
     def has_history(self, flight_id: str) -> bool:
         """Return whether a flight has a time history."""
@@ -87,13 +82,12 @@ def read_run(path: Path) -> RunData:
         raise ReportError(f"'{path}': {MANIFEST} is not that of a run; run the scenario again in another --out")
     if manifest.get("study") != "design" and not (path / SUMMARY).is_file():
         raise ReportError(f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume")
-    manifest = manifest_today(manifest)
     try:
         return RunData(
             path=path,
             manifest=manifest,
-            summary=rows_today(_table(path / SUMMARY), manifest),
-            comparison=rows_today(_table(path / COMPARISON), manifest),
+            summary=_table(path / SUMMARY),
+            comparison=_table(path / COMPARISON),
             crossings=_table(path / CROSSINGS, columns=["flight_id", "time_s", "distance_m"]),
             innerloop=_record(path / DESIGN_RECORD),
             statistics=_record(path / STATISTICS),

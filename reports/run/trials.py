@@ -50,7 +50,7 @@ class Trial:
     @property
     def planned(self) -> int:
         """Number of flights once the run is complete."""
-        return int(self.config["flights"])
+        return int(self.run.manifest.get("trial_flights", {}).get(self.key, self.config["flights"]))
 
     @property
     def criteria(self) -> dict[str, Any]:

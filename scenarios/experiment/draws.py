@@ -1,4 +1,4 @@
-"""From a trial to its flights: each with the keys that are drawn for it, from the trial's seed and the flight's number alone."""
+"""Random variables: the sample of each flight, from the trial's seed and the flight's number alone."""
 
 import math
 import zlib
@@ -9,9 +9,10 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from scenarios.errors import InputError
+from scenarios.schema.experiment import DrawConfig
 from scenarios.schema.load import with_values
-from scenarios.schema.sea_config import Draw, SeaScenario
-from scenarios.world.weather import vessel_track
+from scenarios.schema.scenario import Scenario
+from scenarios.world.world import apparent_wind, vessel_of
 
 _TRIES = 1000
 
@@ -20,24 +21,22 @@ _ALMOST_ALL = 1.0 - 1e-15
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DrawnFlight:
+class SampledFlight:
     """One flight of a trial.
 
     Attributes
     ----------
-    scenario : with what was drawn set
+    scenario : with its samples set
     seed : of its start, air and noise
-    nu : speed ratio at the start [-]
-    values : what was drawn, by key
+    values : the samples, by key
     """
 
-    scenario: SeaScenario
+    scenario: Scenario
     seed: int
-    nu: float
     values: dict[str, object]
 
 
-def drawn_flight(trial: str, scenario: SeaScenario, number: int, point: Sequence[float] = ()) -> DrawnFlight:
+def sampled_flight(trial: str, scenario: Scenario, number: int, point: Sequence[float] = ()) -> SampledFlight:
     """Return one flight of a trial.
 
     Parameters
@@ -45,49 +44,48 @@ def drawn_flight(trial: str, scenario: SeaScenario, number: int, point: Sequence
     trial : its name
     scenario : the trial
     number : of the flight, from 0
-    point : where each key is to be in its distribution, from 0 to 1, in the order of the draws; at random if it is empty. Where
-        that has no speed ratio within ``scenario.speed_ratio``, the flight is drawn again at random.
+    point : position of each random variable in its distribution, from 0 to 1, in their order; at random if it is empty. Where
+        that has no speed ratio within ``scenario.speed_ratio``, the flight is sampled again at random.
 
     Raises
     ------
-    InputError : a drawn key does not exist or is out of range, or no draw has a speed ratio within ``scenario.speed_ratio``
+    InputError : a sampled key does not exist or is out of range, or no sample has a speed ratio within ``scenario.speed_ratio``
     """
     sequence = np.random.SeedSequence([scenario.seed, zlib.crc32(trial.encode()), number])
     low, high = scenario.speed_ratio
     for values in _tried(scenario.draws, np.random.default_rng(sequence), number, point):
-        flight = with_values(scenario, values) if values else scenario
-        least, most, nu = _speed_ratios(flight)
+        flight = with_values(scenario, values)
+        least, most = speed_ratios(flight)
         if low <= least and most <= high:
             seed = int(sequence.generate_state(1)[0]) if flight.flight_seed is None else flight.flight_seed
-            return DrawnFlight(scenario=flight, seed=seed, nu=nu, values=values)
+            return SampledFlight(scenario=flight, seed=seed, values=values)
     raise InputError(
-        f"trial '{trial}': {_TRIES} draws had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
-        f" {most:.3f}: widen speed_ratio, or draw other winds and vessel speeds"
+        f"trial '{trial}': {_TRIES} samples had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
+        f" {most:.3f}: widen speed_ratio, or sample other winds and vessel speeds"
     )
 
 
-def speed_ratio_excess(scenario: SeaScenario, point: Sequence[float]) -> float:
-    """Return how far outside ``scenario.speed_ratio`` the flight at a point gets; such flights are drawn again [-].
+def speed_ratio_excess(scenario: Scenario, point: Sequence[float]) -> float:
+    """Return how far outside ``scenario.speed_ratio`` the flight at a point gets; such flights are sampled again [-].
 
     Parameters
     ----------
     scenario : a trial
-    point : as of ``drawn_flight``
+    point : as of ``sampled_flight``
     """
     flight = with_values(scenario, _values_at(scenario.draws, point))
-    (low, high), (least, most, _) = scenario.speed_ratio, _speed_ratios(flight)
+    (low, high), (least, most) = scenario.speed_ratio, speed_ratios(flight)
     return max(0.0, low - least, most - high)
 
 
-def _speed_ratios(flight: SeaScenario) -> tuple[float, float, float]:
-    """Return a flight's least and greatest speed ratio, and that at its start [-]."""
-    track, speed = vessel_track(flight), flight.guidance.airspeed_mps
-    least, most = track.apparent_wind_range
-    return least / speed, most / speed, track.apparent_wind_at_start / speed
+def speed_ratios(flight: Scenario) -> tuple[float, float]:
+    """Return a flight's least and greatest speed ratio [-]."""
+    wind, speed = apparent_wind(flight, vessel_of(flight)), flight.guidance.airspeed_mps
+    return wind.least / speed, wind.greatest / speed
 
 
-def value_at(draw: Draw, share: float) -> object:
-    """Return the value of a drawn key that the given share of its distribution, from 0 to 1, lies below."""
+def value_at(draw: DrawConfig, share: float) -> object:
+    """Return the quantile of a random variable for a probability from 0 to 1."""
     if draw.uniform is not None:
         low, high = draw.uniform
         return low + (high - low) * share
@@ -106,11 +104,11 @@ def value_at(draw: Draw, share: float) -> object:
     return min(max(value, draw.within[0]), draw.within[1]) if draw.within else value
 
 
-def _values_at(draws: Sequence[Draw], point: Sequence[float]) -> dict[str, object]:
+def _values_at(draws: Sequence[DrawConfig], point: Sequence[float]) -> dict[str, object]:
     return {draw.key: value_at(draw, share) for draw, share in zip(draws, point, strict=True)}
 
 
-def _share_below(draw: Draw, limit: float) -> float:
+def _share_below(draw: DrawConfig, limit: float) -> float:
     """Return the share of a normal or Weibull distribution that lies below a limit."""
     if draw.normal is not None:
         mean, sigma = draw.normal
@@ -120,30 +118,30 @@ def _share_below(draw: Draw, limit: float) -> float:
 
 
 def _tried(
-    draws: Sequence[Draw], generator: np.random.Generator, number: int, point: Sequence[float]
+    draws: Sequence[DrawConfig], generator: np.random.Generator, number: int, point: Sequence[float]
 ) -> Iterator[dict[str, object]]:
     """Yield what to try for a flight, one after the other."""
     if point:
         yield _values_at(draws, point)
     for _ in range(_TRIES):
         values: dict[str, object] = {}
-        dealt = number
+        remainder = number
         for draw in draws:
             if draw.choice is None or draw.weights is not None or point:
                 values[draw.key] = value_at(draw, float(generator.random()))
             else:
-                # Several choices are dealt like the digits of a number: every combination comes equally often.
-                dealt, i = divmod(dealt, len(draw.choice))
+                # Several choices are taken like the digits of a number: every combination comes equally often.
+                remainder, i = divmod(remainder, len(draw.choice))
                 values[draw.key] = draw.choice[i]
         yield values
 
 
-def check_draws(trial: str, scenario: SeaScenario) -> None:
-    """Check every choice, and both ends of what is drawn between limits, before anything is flown.
+def check_draws(trial: str, scenario: Scenario) -> None:
+    """Check every choice, and both ends of each range, before any flight.
 
     Raises
     ------
-    InputError : as of ``drawn_flight``
+    InputError : as of ``sampled_flight``
     """
     for draw in scenario.draws:
         if draw.within is not None and not _share_below(draw, draw.within[0]) < _share_below(draw, draw.within[1]):
@@ -159,4 +157,4 @@ def check_draws(trial: str, scenario: SeaScenario) -> None:
                     for draw in scenario.draws
                 },
             )
-    drawn_flight(trial, scenario, 0)
+    sampled_flight(trial, scenario, 0)

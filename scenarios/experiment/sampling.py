@@ -1,4 +1,4 @@
-"""Points that spread evenly over the unit cube of what is drawn, one per flight."""
+"""Points that spread evenly over the unit cube of the random variables, one per flight."""
 
 import functools
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ class Points:
     Parameters
     ----------
     sampling : ``sobol``, scrambled; ``latin_hypercube`` of as many strata as there are flights; ``random`` for no points at all
-    dimension : number of keys that are drawn
+    dimension : number of keys that are sampled
     flights, seed : of the study
     """
 

@@ -1,13 +1,22 @@
-"""Flights as scenario files: what anyone can fly again, change, and pass on."""
+"""Flights as scenario files, which anyone can fly, change, and pass on."""
 
-from scenarios.experiment.draws import DrawnFlight
-from scenarios.schema.sea_config import SeaScenario
+from scenarios.experiment.requests import FlightRequest
+from scenarios.schema.effect import unused
+from scenarios.schema.experiment import SweepConfig
 
 
-def scenario_file(drawn: DrawnFlight, *, title: str) -> bytes:
-    """Return a scenario of the real sea that flies a drawn flight again, to the last bit."""
+def scenario_file(request: FlightRequest, *, title: str) -> bytes:
+    """Return a scenario that replays a flight, to the last bit."""
     import tomli_w
 
-    document = drawn.scenario.model_dump(mode="json", exclude_none=True, include=set(SeaScenario.model_fields))
-    document |= {"study": "sea", "title": title, "flights": 1, "draws": [], "flight_seed": drawn.seed, "speed_ratio": [0.0, 1e9]}
-    return tomli_w.dumps(document).encode()
+    document = request.scenario.model_dump(mode="json", exclude_none=True)
+    alone = request.scenario.model_copy(update={"draws": (), "sweep": SweepConfig()})
+    for section, values in document.items():
+        if isinstance(values, dict):
+            document[section] = {key: value for key, value in values.items() if not unused(alone, f"{section}.{key}")}
+    for experiment in ("sampling", "statistics", "search", "comparison", "sweep", "cases", "draws"):
+        document.pop(experiment)
+    # The random variables have their values, and nothing is sampled again.
+    document.pop("speed_ratio")
+    one = {"study": "flights", "title": title, "flights": 1, "flight_seed": request.seed}
+    return tomli_w.dumps(document | one).encode()

@@ -2,7 +2,7 @@
 
 In axes along and across the reference's course, which turn at omega_r, the error e from aircraft to reference obeys
 e_along' = -dV + omega_r e_right and e_right' = -V dchi - omega_r e_along. The steering law is linearised as it is flown, by
-differences on ``Guidance`` itself, preview included; the loop is closed frequency by frequency, with the hold of the commands and
+differences on ``Tracker`` itself, preview included; the loop is closed frequency by frequency, with the hold of the commands and
 the step by which the last one is late.
 """
 
@@ -14,7 +14,7 @@ import numpy.typing as npt
 from gnc.airspeed.pace_hold import SpeedHold, air_turn
 from gnc.reference.circling import CirclingReference
 from gnc.reference.reference import ReferenceStart
-from gnc.tracker import Guidance, GuidanceParameters
+from gnc.tracker import Tracker, TrackingParameters
 from innerloop.analysis.gust_response import GUSTS, gust_loop
 from innerloop.law.control_law import COMMANDS
 from innerloop.synthesis.schedule import Schedule
@@ -37,7 +37,7 @@ Complex = npt.NDArray[np.complex128]
 
 
 def tracking_response(
-    schedule: Schedule, index: int, bank_index: int, guidance: GuidanceParameters, hold: SpeedHold, speed: float, frequencies: Array
+    schedule: Schedule, index: int, bank_index: int, guidance: TrackingParameters, hold: SpeedHold, speed: float, frequencies: Array
 ) -> Complex:
     """Return the response of ``RESPONSES`` to ``GUSTS`` over frequency, shape (frequencies, 3, 6).
 
@@ -78,7 +78,7 @@ def tracking_response(
     return np.concatenate([found[:, :2], commands[:, 1, :1, None] * found[:, 2:3]], axis=1)
 
 
-def steering_gains(guidance: GuidanceParameters, turn: float, speed: float) -> Array:
+def steering_gains(guidance: TrackingParameters, turn: float, speed: float) -> Array:
     """Return the commanded turn [rad/s] per unit of each of ``STEERED_BY``, on a reference that turns at ``turn`` [rad/s].
 
     Parameters
@@ -93,11 +93,11 @@ def steering_gains(guidance: GuidanceParameters, turn: float, speed: float) -> A
 
     def command(along: float, right: float, course: float, over: float, air: float, rate: float, last: float) -> float:
         reference = CirclingReference(start, speed=speed, heading_rate=turn, time_step=guidance.time_step)
-        steered = Guidance(parameters, reference)
+        steered = Tracker(parameters, reference)
         steered.heading_rate_command = turn + last
         faster, airspeed = speed + over, speed + air
-        steered.step(-along, -right, course, faster, air_turn(turn + rate, speed=airspeed, airspeed=faster))
-        return air_turn(steered.heading_rate_command, speed=faster, airspeed=airspeed)
+        turned = steered.step(-along, -right, course, faster, air_turn(turn + rate, speed=airspeed, airspeed=faster))
+        return air_turn(turned, speed=faster, airspeed=airspeed)
 
     steps = _STEP * np.eye(len(STEERED_BY))
     return np.array([(command(*step) - command(*(-step))) / (2.0 * _STEP) for step in steps])

@@ -6,7 +6,7 @@ by Rice's formula (S. O. Rice, "Mathematical Analysis of Random Noise", 1944) ho
 Of the linear loop this is an upper bound: the orbit touches the keep-out area only where it comes closest, and is taken to be there
 all the time, at its largest bank, with its error in the worst direction.
 
-Gusts beyond what the aircraft's airspeeds can make up carry it along as long as they last. A Gaussian process near a high peak
+Gusts that exceed the range of the aircraft's airspeeds carry it along as long as they last. A Gaussian process near a high peak
 L is L (1 - (nu t)^2/2), where nu is the ratio of its rate's deviation to its own; what of it exceeds a limit adds up to a distance
 in closed form, and that is added to the margin, with the peak that is passed as often as touches are allowed.
 
@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from gnc.airspeed.pace_hold import SpeedHold
 from gnc.reference.reference import Orbit
-from gnc.tracker import GuidanceParameters
+from gnc.tracker import TrackingParameters
 from innerloop.analysis.dryden import GustStatistics, dryden_filters
 from innerloop.synthesis.schedule import Schedule
 from scenarios.margin.gusts_on_orbit import gusts_on_orbit
@@ -62,11 +62,33 @@ class Spread:
     airspeed_limit: float
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpreadTable:
+    """Predicted spread of the tracking error.
+
+    Attributes
+    ----------
+    speed_ratios : nu, ascending [-]
+    spreads : at each of them
+    """
+
+    speed_ratios: tuple[float, ...]
+    spreads: tuple[Spread, ...]
+
+    def at(self, nu: float) -> Spread:
+        """Return the spread at the nearest speed ratio."""
+        return min(zip(self.speed_ratios, self.spreads, strict=True), key=lambda entry: abs(entry[0] - nu))[1]
+
+
+CALM_AIR_SPREAD = Spread(along=0.0, across=0.0, radial=0.0, radial_rate=0.0, airspeed=0.0, airspeed_rate=0.0, airspeed_limit=1.0)
+"""The spread in air that does not move."""
+
+
 def tracking_spread(
     schedule: Schedule,
     turbulence: GustStatistics,
     oscillation: Orbit,
-    guidance: GuidanceParameters,
+    guidance: TrackingParameters,
     hold: SpeedHold,
     *,
     span: float,

@@ -1,165 +1,227 @@
-"""From a flight's record to its row in the summary."""
+"""From the record of a flight to its row in the summary."""
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from common.numeric import rms
-from scenarios.engine.task import Row
+from gnc.mission.mode import Mode
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import keepout_figures
-from scenarios.planning.planner import FlightPlan, Mission
-from scenarios.schema.config import Criteria
-from scenarios.simulation.closed_loop import COLUMNS, FlightRecord
-from scenarios.world.steady_vessel import Vessel
+from scenarios.planning.flight_plan import FlightPlan
+from scenarios.simulation.record import FlightRecord
 
 Array = npt.NDArray[np.float64]
-
-SUMMARY_COLUMNS = (
-    "flight_id", "outcome", "message", "criteria_met", "aircraft", "fidelity", "seed", "nu", "plume_heading_deg",
-    "plume_elevation_deg", "eta", "omega_0_rad_s", "oscillation_limit", "r_co_m", "keepout_radius_m", "keepout_violations",
-    "keepout_time_s", "keepout_depth_m", "min_distance_m", "crossing_count", "crossing_interval_mean_s", "crossing_interval_std_s",
-    "crossing_interval_predicted_s", "crossing_distance_mean_m", "crossing_distance_min_m", "crossing_angle_mean_deg",
-    "settling_time_s", "tracking_error_rms_m", "tracking_error_max_m", "tracking_error_end_m", "airspeed_error_rms_mps",
-    "airspeed_error_max_mps", "airspeed_trim_rms_mps", "altitude_error_rms_m", "altitude_error_max_m",
-    "heading_rate_error_rms_rad_s", "heading_rate_wanted_max_rad_s", "heading_rate_command_max_rad_s",
-    "heading_rate_limit_rad_s", "heading_rate_bound_rad_s", "heading_rate_flown_max_rad_s", "epsilon_per_m", "look_ahead_m",
-    "steering_max_rad_s", "speed_max_mps", "bank_max_deg", "saturation_fraction", "guard_interventions", "guard_time_s",
-    "duration_s", "wall_time_s",
-)  # fmt: skip
-"""Columns of ``summary.csv``, in order. A figure that a flight does not have is empty."""
-
-
-def column(history: Array, name: str) -> Array:
-    """Return one column of a flight's time history."""
-    return history[:, COLUMNS.index(name)]
-
-
-def relative_motion(vessel: Vessel, history: Array) -> tuple[Array, Array]:
-    """Return position and velocity from the plume's origin, each shape (n, 3): north, east, up [m, m/s]."""
-    time = column(history, "time_s")
-    v_north, v_east = vessel.velocity_ned
-    position = np.column_stack([
-        column(history, "north_m") - v_north * time,
-        column(history, "east_m") - v_east * time,
-        column(history, "altitude_m") - vessel.source_height,
-    ])  # fmt: skip
-    velocity = np.column_stack([
-        column(history, "velocity_north_mps") - v_north,
-        column(history, "velocity_east_mps") - v_east,
-        column(history, "climb_rate_mps"),
-    ])  # fmt: skip
-    return position, velocity
-
-
-def settling_index(distance: Array, band: float) -> int | None:
-    """Return the first sample from which ``distance`` stays below ``band``, or None."""
-    outside = np.nonzero(distance >= band)[0]
-    first = int(outside[-1]) + 1 if len(outside) else 0
-    return first if first < len(distance) else None
+Row = dict[str, Any]
 
 
 def plan_row(plan: FlightPlan) -> Row:
     """Return the part of a row that is known once the flight is planned."""
+    law = plan.guidance.tracking.law
     row: Row = {
         "heading_rate_limit_rad_s": plan.heading_rate_max,
         "heading_rate_bound_rad_s": plan.steering.bound if math.isfinite(plan.steering.bound) else math.nan,
         "epsilon_per_m": plan.steering.look_ahead.epsilon,
         "look_ahead_m": plan.steering.look_ahead.radius,
-        "steering_max_rad_s": plan.steering.steering_max,
+        "steering_max_rad_s": getattr(law, "steering_max_rad_s", plan.steering.steering_max),
     }
-    mission = plan.mission
-    if mission is None:
+    if plan.oscillation is None or plan.world is None:
         return row
-    return row | {
-        "nu": mission.nu,
-        "plume_heading_deg": math.degrees(mission.vessel.plume_heading),
-        "plume_elevation_deg": math.degrees(mission.vessel.plume_elevation),
-        "eta": mission.oscillation.eta,
-        "omega_0_rad_s": mission.oscillation.omega_0,
-        "oscillation_limit": mission.oscillation.limit,
-        "r_co_m": mission.centre_distance,
-        "keepout_radius_m": mission.keepout_radius,
-        "crossing_interval_predicted_s": mission.oscillation.crossing_interval,
+    world, start = plan.world, plan.start
+    axis = world.plume.axis(0.0)
+    wind, speed = plan.apparent_wind, plan.guidance.speed
+    row |= {
+        "nu": plan.nu,
+        "nu_min": wind.least / speed if wind else plan.nu,
+        "nu_max": wind.greatest / speed if wind else plan.nu,
+        "plume_heading_deg": math.degrees(axis - world.vessel.course(0.0)),
+        "plume_elevation_deg": math.degrees(world.elevation),
+        "start_distance_m": math.hypot(start.north, start.east),
+        "start_aspect_deg": math.degrees(math.remainder(math.atan2(start.east, start.north) - axis, 2.0 * math.pi)),
+        "fault_time_s": world.fault.begins if world.fault.kind != "none" else math.nan,
+        "eta": plan.oscillation.eta,
+        "omega_0_rad_s": plan.oscillation.omega_0,
+        "oscillation_limit": plan.oscillation.limit,
+        "r_co_m": plan.centre_distance,
+        "keepout_radius_m": plan.keepout_radius,
+        "crossing_interval_predicted_s": plan.oscillation.crossing_interval,
+        "manoeuvre_end_s": world.vessel.manoeuvres_end,
     }
+    if plan.margin is not None:
+        row |= {"keepout_margin_m": plan.margin.total, "spread_predicted_m": plan.margin.tracking_sigma}
+    return row
 
 
 def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Crossing]]:
     """Measure a flight.
 
-    Keep-out and heading-rate commands count from the first second; tracking, airspeed, altitude and crossings from settling.
+    Keep-out, guard and limits count from the first second; tracking, airspeed and crossings from settling.
 
     Returns
     -------
     row : the measured part of the flight's row
     crossings : of the settled flight
     """
-    history = record.history
-    time = column(history, "time_s")
+    column = record.column
+    time, altitude = column("time_s"), column("altitude_m")
+    airspeed = column("airspeed_mps")
     to_reference = np.hypot(
-        column(history, "reference_north_m") - column(history, "north_m"),
-        column(history, "reference_east_m") - column(history, "east_m"),
+        column("reference_north_m") - column("north_m"),
+        column("reference_east_m") - column("east_m"),
     )
     row: Row = {
         "outcome": record.outcome.value,
         "message": record.message,
+        "modes": ", ".join(_modes(record)),
+        "mode_at_end": record.mode,
         "tracking_error_end_m": float(to_reference[-1]),
-        "heading_rate_wanted_max_rad_s": record.heading_rate_wanted_max,
+        "heading_rate_demand_max_rad_s": record.heading_rate_demand_max,
         "heading_rate_command_max_rad_s": record.heading_rate_command_max,
-        "heading_rate_flown_max_rad_s": float(np.max(np.abs(column(history, "heading_rate_rad_s")))),
-        "speed_max_mps": float(np.max(np.hypot(column(history, "velocity_north_mps"), column(history, "velocity_east_mps")))),
-        "bank_max_deg": math.degrees(float(np.max(np.abs(column(history, "roll_rad"))))),
+        "heading_rate_flown_max_rad_s": float(np.max(np.abs(column("heading_rate_rad_s")))),
+        "speed_max_mps": float(np.max(np.hypot(column("velocity_north_mps"), column("velocity_east_mps")))),
+        "airspeed_min_mps": float(np.min(airspeed)),
+        "airspeed_max_mps": float(np.max(airspeed)),
+        "altitude_min_m": float(np.min(altitude)),
+        "bank_max_deg": math.degrees(float(np.max(np.abs(column("roll_rad"))))),
         "saturation_fraction": record.saturation_fraction,
         "duration_s": float(time[-1]),
     }
-    first = settling_index(to_reference, plan.settling_band)
-    settled = slice(first, None) if first is not None and first <= len(time) - 2 else None
-    if settled is not None:
-        row |= _settled_figures(plan, history[settled], to_reference[settled])
-    if plan.mission is None:
+    settled = time >= record.settled_at
+    if np.count_nonzero(settled) < 2:
+        settled = np.zeros_like(settled)
+    else:
+        row |= _tracking_figures(plan, record, settled, to_reference[settled])
+    row["settling_time_s"] = record.settled_at
+    if plan.world is None:
         return row, []
-    if plan.mission.guard:
-        row |= {"guard_interventions": record.guard_interventions, "guard_time_s": record.guard_time}
-    figures, crossings = _mission_figures(plan.mission, history, settled)
-    return row | figures, crossings
+    position, velocity = _in_vessel_frame(record, plan.source_height)
+    row |= _keepout_figures(plan, record, position)
+    if not settled.any():
+        return row, []
+    row |= _estimation_figures(plan, record, settled, position)
+    crossings = _crossings(plan, record, settled, position, velocity)
+    return row | _crossing_figures(plan, record, crossings), crossings
 
 
-def _settled_figures(plan: FlightPlan, history: Array, to_reference: Array) -> Row:
-    """Measure what a flight does once it has settled."""
-    airspeed_error = column(history, "airspeed_mps") - column(history, "airspeed_command_mps")
-    altitude_error = column(history, "altitude_m") - plan.altitude
-    heading_rate_error = column(history, "heading_rate_rad_s") - column(history, "reference_heading_rate_rad_s")
+def rms(values: Array) -> float:
+    """Return the root of the mean square."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _in_vessel_frame(record: FlightRecord, source_height: float) -> tuple[Array, Array]:
+    """Return position and velocity from the plume's origin, each shape (n, 3): north, east, up [m, m/s]."""
+    column = record.column
+    position = [column(f"{axis}_m") - column(f"vessel_{axis}_m") for axis in ("north", "east")]
+    velocity = [column(f"velocity_{axis}_mps") - column(f"vessel_velocity_{axis}_mps") for axis in ("north", "east")]
+    return (
+        np.column_stack([*position, column("altitude_m") - source_height]),
+        np.column_stack([*velocity, column("climb_rate_mps")]),
+    )
+
+
+def _modes(record: FlightRecord) -> list[str]:
+    """Return the modes that a flight went through, each once, in the order of their first time."""
+    names = [mode.value for mode in Mode]
+    return [names[int(number)] for number in dict.fromkeys(record.column("mode").tolist())]
+
+
+def _tracking_figures(plan: FlightPlan, record: FlightRecord, settled: npt.NDArray[np.bool_], to_reference: Array) -> Row:
+    """Measure what a flight does once it has settled, with a vessel or without."""
+    column = record.column
+    airspeed_error = (column("airspeed_mps") - column("airspeed_command_mps"))[settled]
+    commanded = column("altitude_command_m")
+    # A vehicle with a fault is commanded to sink: that is no error of its altitude.
+    held = settled & (commanded > 0.0)
+    altitude_error = (column("altitude_m") - commanded)[held if held.any() else settled]
+    heading_rate_error = (column("heading_rate_rad_s") - column("reference_heading_rate_rad_s"))[settled]
     return {
-        "settling_time_s": float(column(history, "time_s")[0]),
         "tracking_error_rms_m": rms(to_reference),
         "tracking_error_max_m": float(np.max(to_reference)),
         "airspeed_error_rms_mps": rms(airspeed_error),
         "airspeed_error_max_mps": float(np.max(np.abs(airspeed_error))),
-        "airspeed_trim_rms_mps": rms(column(history, "airspeed_command_mps") - plan.reference.speed),
+        "airspeed_trim_rms_mps": rms(column("airspeed_command_mps")[settled] - plan.guidance.speed),
         "altitude_error_rms_m": rms(altitude_error),
         "altitude_error_max_m": float(np.max(np.abs(altitude_error))),
         "heading_rate_error_rms_rad_s": rms(heading_rate_error),
     }
 
 
-def _mission_figures(mission: Mission, history: Array, settled: slice | None) -> tuple[Row, list[Crossing]]:
-    """Measure the keep-out area over the whole flight, and the crossings once it has settled."""
-    time = column(history, "time_s")
-    position, velocity = relative_motion(mission.vessel, history)
-    keepout = keepout_figures(time, position, mission.keepout_radius)
+def _keepout_figures(plan: FlightPlan, record: FlightRecord, position: Array) -> Row:
+    """Measure the keep-out area and its guard over the whole flight."""
+    keepout = keepout_figures(record.column("time_s"), position, plan.keepout_radius)
     row: Row = {
         "keepout_violations": keepout.violations,
         "keepout_time_s": keepout.time_inside,
         "keepout_depth_m": keepout.depth,
         "min_distance_m": keepout.distance_min,
+        "end_distance_m": float(np.linalg.norm(position[-1])),
+        "vessel_error_max_m": float(np.max(_vessel_error(record))),
     }
-    if settled is None:
-        return row, []
-    crossings = find_crossings(
-        time[settled], position[settled], velocity[settled], mission.vessel.plume_direction_ned, mission.vessel.plume_elevation
+    if plan.guidance.guard is not None:
+        sample = plan.log_interval * plan.time_step
+        row |= {
+            "guard_interventions": len(record.interventions),
+            "guard_time_s": record.guard_time,
+            "guard_lost_s": sample * float(np.count_nonzero(record.column("guard") > 1.0)),
+        }
+    return row
+
+
+def _vessel_error(record: FlightRecord) -> Array:
+    """Return how far the vessel is from where the guidance takes it to be [m]."""
+    column = record.column
+    return np.hypot(*(column(f"vessel_seen_{axis}_m") - column(f"vessel_{axis}_m") for axis in ("north", "east")))
+
+
+def _estimation_figures(plan: FlightPlan, record: FlightRecord, settled: npt.NDArray[np.bool_], position: Array) -> Row:
+    """Measure what the guidance knows, and how far the UAV strays towards the vessel, once the flight has settled."""
+
+    def column(name: str) -> Array:
+        return record.column(name)[settled]
+
+    weather = plan.world.weather if plan.world else None
+    distance = np.hypot(position[settled, 0], position[settled, 1])
+    to_north, to_east = (column(f"reference_{axis}_m") - column(f"{axis}_m") for axis in ("north", "east"))
+    towards = (to_north * position[settled, 0] + to_east * position[settled, 1]) / distance
+    row: Row = {
+        "spread_m": float(np.std(towards)),
+        "vessel_error_rms_m": rms(_vessel_error(record)[settled]),
+        "centre_error_rms_m": rms(column("centre_error_m")),
+        "guard_after_settling_s": plan.log_interval * plan.time_step * float(np.count_nonzero(column("guard") > 0.0)),
+    }
+    if weather is not None:
+        wind = np.hypot(column("wind_north_mps") - weather.wind_north, column("wind_east_mps") - weather.wind_east)
+        row["wind_error_rms_mps"] = rms(wind)
+    return row
+
+
+def _crossings(
+    plan: FlightPlan, record: FlightRecord, settled: npt.NDArray[np.bool_], position: Array, velocity: Array
+) -> list[Crossing]:
+    """Find crossings of an axis that may turn, in the frame that turns with it."""
+    time, axis = record.column("time_s")[settled], np.unwrap(record.column("plume_axis_rad")[settled])
+    position, velocity = position[settled], velocity[settled]
+    elevation = plan.world.elevation if plan.world else 0.0
+    if axis[0] == axis[-1] and not np.any(axis - axis[0]):
+        return find_crossings(time, position, velocity, (math.cos(axis[0]), math.sin(axis[0])), elevation)
+    rate = np.gradient(axis, time)
+    cos_a, sin_a = np.cos(axis), np.sin(axis)
+    along = cos_a * position[:, 0] + sin_a * position[:, 1]
+    across = cos_a * position[:, 1] - sin_a * position[:, 0]
+    along_rate = cos_a * velocity[:, 0] + sin_a * velocity[:, 1] + rate * across
+    across_rate = cos_a * velocity[:, 1] - sin_a * velocity[:, 0] - rate * along
+    return find_crossings(
+        time,
+        np.column_stack([along, across, position[:, 2]]),
+        np.column_stack([along_rate, across_rate, velocity[:, 2]]),
+        (1.0, 0.0),
+        elevation,
     )
-    row["crossing_count"] = len(crossings)
+
+
+def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Crossing]) -> Row:
+    row: Row = {"crossing_count": len(crossings)}
     if crossings:
         distances = [crossing.distance for crossing in crossings]
         row |= {
@@ -169,63 +231,30 @@ def _mission_figures(mission: Mission, history: Array, settled: slice | None) ->
         }
     if len(crossings) > 1:
         intervals = np.diff([crossing.time for crossing in crossings])
-        row |= {
-            "crossing_interval_mean_s": float(np.mean(intervals)),
-            "crossing_interval_std_s": float(np.std(intervals)),
-        }
-    return row, crossings
+        row |= {"crossing_interval_mean_s": float(np.mean(intervals)), "crossing_interval_std_s": float(np.std(intervals))}
+        wind = plan.apparent_wind
+        if wind is not None and wind.greatest > wind.least:
+            row["crossing_interval_predicted_s"] = _predicted_interval(plan, record, crossings[0].time, crossings[-1].time)
+    manoeuvres_end = plan.world.vessel.manoeuvres_end if plan.world else math.nan
+    after = [crossing.time for crossing in crossings if crossing.time >= manoeuvres_end]
+    if after:
+        row["resume_time_s"] = after[0] - manoeuvres_end
+        row["resume_periods"] = row["resume_time_s"] / plan.period(float(record.column("speed_ratio")[-1]))
+    return row
 
 
-def unmet_criteria(row: Row, criteria: Criteria) -> list[str]:
-    """Return what a completed flight's row fails, each as a short sentence; empty when all is met."""
-    omega_max, wanted = row["heading_rate_limit_rad_s"], row["heading_rate_wanted_max_rad_s"]
-    limit = omega_max * (1.0 + 1e-12)
-    checks = []
-    if "keepout_violations" in row:
-        checks += _mission_checks(row, criteria)
-    if criteria.settles:
-        checks += [
-            _at_most("rms tracking error", row.get("tracking_error_rms_m"), criteria.tracking_error_rms_m, "m"),
-            _at_most("rms airspeed error", row.get("airspeed_error_rms_mps"), criteria.airspeed_error_rms_mps, "m/s"),
-            _at_most("largest altitude error", row.get("altitude_error_max_m"), criteria.altitude_error_max_m, "m"),
-        ]
-    if criteria.tracking_error_end_m is not None:
-        checks.append(_at_most("tracking error at the end", row.get("tracking_error_end_m"), criteria.tracking_error_end_m, "m"))
-    if criteria.law_beyond_heading_rate_max:
-        checks.append((wanted > omega_max, f"the law asked for {wanted:.4f} rad/s, within omega_max = {omega_max:.4f}"))
-    else:
-        command = row["heading_rate_command_max_rad_s"]
-        checks.append((command <= limit, f"commanded {command:.4f} rad/s, above omega_max = {omega_max:.4f}"))
-    if criteria.law_within_heading_rate_max:
-        checks.append((wanted <= limit, f"the law asked for {wanted:.4f} rad/s, above omega_max = {omega_max:.4f}"))
-    return [message for met, message in checks if not met]
+def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, last: float) -> float:
+    """Return the mean of pi/omega_0 over a vessel's changes of course and speed, from its first crossing to its last [s].
 
-
-def _mission_checks(row: Row, criteria: Criteria) -> list[tuple[bool, str]]:
-    interval, predicted = row.get("crossing_interval_mean_s", math.nan), row["crossing_interval_predicted_s"]
-    checks = [
-        (row["keepout_violations"] == 0, f"entered the keep-out area {row['keepout_violations']} times"),
-        (
-            row.get("crossing_distance_min_m", -math.inf) >= row["keepout_radius_m"],
-            f"crossed at {row.get('crossing_distance_min_m', math.nan):.2f} m, inside {row['keepout_radius_m']:g} m",
-        ),
-        (
-            abs(interval / predicted - 1.0) <= criteria.crossing_interval_error,
-            f"mean crossing interval {interval:.3f} s against {predicted:.3f} s",
-        ),
+    Where omega_0 changes with time, crossings come at the rate omega_0/pi: their number between two times is its integral.
+    """
+    time = np.linspace(first, last, max(2, math.ceil(last - first)))
+    wind = plan.world.weather.wind if plan.world else (0.0, 0.0)
+    through_air = [
+        np.interp(time, record.column("time_s"), record.column(f"vessel_velocity_{axis}_mps")) - of_air
+        for axis, of_air in zip(("north", "east"), wind, strict=True)
     ]
-    for name, key, unit, limits in (
-        ("interval", "crossing_interval_mean_s", "s", criteria.crossing_interval_s),
-        ("distance", "crossing_distance_mean_m", "m", criteria.crossing_distance_m),
-    ):
-        if limits is not None:
-            value = row.get(key, math.nan)
-            message = f"mean crossing {name} {value:.3f} {unit} outside {limits[0]:g} to {limits[1]:g} {unit}"
-            checks.append((limits[0] <= value <= limits[1], message))
-    return checks
-
-
-def _at_most(name: str, value: float | None, limit: float, unit: str) -> tuple[bool, str]:
-    if value is None:
-        return False, f"{name} is unknown: the flight never settled"
-    return value <= limit, f"{name} {value:.2f} {unit} above {limit:g} {unit}"
+    ratio = np.hypot(*through_air) / plan.guidance.speed
+    steps = np.linspace(0.0, plan.speed_ratio_max, len(plan.periods))
+    crossing_rate = 2.0 / np.interp(ratio, steps, plan.periods)
+    return float((last - first) / np.trapezoid(crossing_rate, time))

@@ -1,22 +1,40 @@
 """A flight's time history: its record, and the relative state of the delta formulation that follows from it."""
 
+import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
-from gnc.laws.delta import RelativeState, relative_state
-from scenarios.planning.planner import FlightPlan
-from scenarios.simulation.closed_loop import COLUMNS, FlightRecord
+from gnc.laws.delta import LookAhead
+from scenarios.planning.flight_plan import FlightPlan
+from scenarios.simulation.record import RELATIVE_COLUMNS, FlightRecord
 
-RELATIVE_COLUMNS = ("delta_m", "rho_m", "phi_r_rad", "phi_rad")
-"""The states of equation (19), in its order."""
+Array = npt.NDArray[np.float64]
 
 
 def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
     """Return a row per sample; columns are those of the record and ``RELATIVE_COLUMNS``."""
-    history = pd.DataFrame(record.every_step, columns=list(COLUMNS))
-    motion = history[["reference_north_m", "north_m", "reference_east_m", "east_m", "reference_course_rad", "course_rad"]]
-    states: list[RelativeState] = [
-        relative_state(plan.steering.look_ahead, to_north - north, to_east - east, reference_course, course)
-        for to_north, north, to_east, east, reference_course, course in motion.itertuples(index=False, name=None)
-    ]
-    history[list(RELATIVE_COLUMNS)] = states
-    return history
+    history = pd.DataFrame(record.every_step, columns=list(record.columns))
+
+    def column(name: str) -> Array:
+        return np.asarray(history[name], dtype=np.float64)
+
+    to_north, to_east = (column(f"reference_{axis}_m") - column(f"{axis}_m") for axis in ("north", "east"))
+    through_air = [column(f"velocity_{axis}_mps") - column(f"wind_{axis}_mps") for axis in ("north", "east")]
+    course = np.arctan2(through_air[1], through_air[0])
+    states = relative_states(plan.steering.look_ahead, to_north, to_east, column("reference_course_rad"), course)
+    return history.assign(**dict(zip(RELATIVE_COLUMNS, states, strict=True)))
+
+
+def relative_states(
+    look_ahead: LookAhead, to_north: Array, to_east: Array, reference_course: Array, course: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Return delta, rho [m], phi_r and phi [rad] of many samples at once; parameters as of ``gnc.laws.delta.relative_state``."""
+    delta = look_ahead.epsilon * (to_north**2 + to_east**2) + look_ahead.radius
+    z_north, z_east = to_north + delta * np.cos(reference_course), to_east + delta * np.sin(reference_course)
+    z_course = np.arctan2(z_east, z_north)
+    return delta, np.hypot(z_north, z_east), _wrapped(reference_course - z_course), _wrapped(course - z_course)
+
+
+def _wrapped(angle: Array) -> Array:
+    """Return angles between -pi and pi [rad]."""
+    return np.asarray(angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi)), dtype=np.float64)

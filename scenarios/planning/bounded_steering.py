@@ -1,14 +1,15 @@
 """The look-ahead and the steering of a flight: given, or searched so that no state asks for more than omega_max."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from typing import Any
 
 from gnc.analysis.bounds import BoundedSteering, fastest_within, heading_rate_bound
 from gnc.errors import InfeasibleError
 from gnc.laws.delta import LookAhead, look_ahead
 from gnc.laws.steering_law import STEERING_LAWS, SteeringLaw
-from scenarios.schema.config import Guidance, Scenario
+from scenarios.schema.guidance import GuidanceConfig
+from scenarios.schema.scenario import Scenario
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,11 +28,24 @@ class Steering:
     bound: float
 
 
-def steering_law(guidance: Guidance, **searched: float) -> SteeringLaw:
+def steering_law(guidance: GuidanceConfig, **searched: float) -> SteeringLaw:
     """Return the steering law of a scenario, its parameters as given or, where they were searched, as found."""
+    given = guidance.model_extra or {}
     law: Any = STEERING_LAWS.get(guidance.law)
-    made: SteeringLaw = law(**{of.name: searched.get(of.name, getattr(guidance, of.name)) for of in fields(law) if of.init})
+    values = {
+        name: searched.get(name, getattr(guidance, name, given.get(name, default))) for name, default in guidance.law_keys.items()
+    }
+    try:
+        made: SteeringLaw = law(**values)
+    except ValueError as error:
+        raise InfeasibleError(f"guidance of law '{guidance.law}': {error}") from None
     return made
+
+
+def given_steering(guidance: GuidanceConfig) -> Steering:
+    """Return the steering that a scenario gives, without a bound."""
+    parameters = look_ahead(guidance.epsilon_per_m, guidance.look_ahead_m)
+    return Steering(look_ahead=parameters, steering_max=guidance.steering_max_rad_s, bound=math.inf)
 
 
 def plan_steering(scenario: Scenario, heading_rate_max: float, reference_heading_rate: float) -> Steering:
@@ -51,14 +65,16 @@ def plan_steering(scenario: Scenario, heading_rate_max: float, reference_heading
     if g.tuning == "bounded":
         found = search_steering(scenario, heading_rate_max, reference_heading_rate)
         return Steering(look_ahead=found.look_ahead, steering_max=found.steering_max, bound=found.bound)
-    parameters = look_ahead(g.epsilon_per_m, g.look_ahead_m)
+    given = given_steering(g)
+    if g.law != "cascade":
+        return given
     bound = heading_rate_bound(
-        parameters,
+        given.look_ahead,
         speed=speed,
         reference_heading_rate_max=reference_heading_rate,
         steering_max=g.steering_max_rad_s,
     )
-    return Steering(look_ahead=parameters, steering_max=g.steering_max_rad_s, bound=bound if g.law == "cascade" else math.inf)
+    return replace(given, bound=bound)
 
 
 def search_steering(scenario: Scenario, heading_rate_max: float, reference_heading_rate: float) -> BoundedSteering:

@@ -5,15 +5,15 @@ import math
 from aircraft.spec import Envelope
 from gnc.reference.oscillation import bank_for_heading_rate, heading_rate_for_bank
 from scenarios.errors import InputError
-from scenarios.schema.config import Guidance
+from scenarios.schema.guidance import GuidanceConfig
 
 
-def omega_max(guidance: Guidance) -> float:
+def omega_max(guidance: GuidanceConfig) -> float:
     """Return omega_max, the largest heading rate that the guidance may command [rad/s]."""
     return guidance.heading_rate_max_rad_s or heading_rate_for_bank(math.radians(guidance.bank_deg), guidance.airspeed_mps)
 
 
-def check_flyable(guidance: Guidance, title: str, envelope: Envelope) -> None:
+def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> None:
     """Raise an InputError for an airspeed or a bank that the aircraft called ``title`` cannot fly."""
     airspeed = guidance.airspeed_mps
     if not envelope.airspeed_min <= airspeed <= envelope.airspeed_max:

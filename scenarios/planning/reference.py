@@ -1,41 +1,76 @@
-"""The oscillations of the reference point that a scenario's guidance asks for."""
+"""The reference that a scenario asks for: its oscillations over the speed ratio, or a circle."""
 
 import functools
 import math
 
 import numpy as np
 
-from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape
+from gnc.errors import InfeasibleError
+from gnc.reference.circling import CirclingReference
+from gnc.reference.joining import JoinedOrbit
+from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, ReferenceStart
 from scenarios.planning.limits import omega_max
-from scenarios.schema.config import Guidance
+from scenarios.schema.guidance import GuidanceConfig, ReferenceConfig
+from scenarios.schema.scenario import Scenario
 
 RATIO_STEPS = 48
 """Steps of nu at which orbits are tabled."""
 
 
-def shape_of_reference() -> ReferenceShape:
-    """Return the shape of the reference's orbit."""
-    return REFERENCE_SHAPES.get("sinusoid")()
+def shape_of(reference: ReferenceConfig) -> ReferenceShape:
+    """Return the shape of a reference's orbit.
+
+    Raises
+    ------
+    PluginError : there is no such shape
+    """
+    return REFERENCE_SHAPES.get(reference.shape)()
 
 
-def oscillation_at(guidance: Guidance, nu: float) -> Orbit:
+def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: float) -> Orbit:
     """Return the reference's oscillation at a speed ratio, or raise an InfeasibleError."""
-    return shape_of_reference().design(
+    return shape_of(reference).design(
         nu=nu,
         speed=guidance.airspeed_mps,
+        vessel_heading_rate=0.0,
         heading_rate_max=omega_max(guidance),
         reserve=guidance.reserve,
-        vessel_heading_rate=0.0,
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
 
 
 @functools.lru_cache(maxsize=8)
-def orbits(guidance: Guidance, speed_ratio_max: float) -> tuple[tuple[float, ...], tuple[tuple[float, float], ...]]:
+def orbits(
+    guidance: GuidanceConfig, reference: ReferenceConfig, speed_ratio_max: float
+) -> tuple[tuple[float, ...], tuple[tuple[float, float], ...]]:
     """Return periods [s] and half-widths along and across the course [m] at equal steps of nu from 0 to ``speed_ratio_max``.
 
     Remembered: the flights of a trial share them.
     """
     ratios = np.linspace(0.0, speed_ratio_max, RATIO_STEPS + 1).tolist()
-    oscillations = [oscillation_at(guidance, ratio) for ratio in ratios]
+    oscillations = [oscillation_at(guidance, reference, ratio) for ratio in ratios]
     return tuple(o.period for o in oscillations), tuple(o.half_widths() for o in oscillations)
+
+
+def joined_orbit(scenario: Scenario, orbit: Orbit, course: float) -> JoinedOrbit:
+    """Return an orbit beside a vessel on a course [rad], of which a reference can be taken at any phase."""
+    shape, time_step = shape_of(scenario.reference), 1.0 / scenario.guidance.rate_hz
+    return JoinedOrbit(shape=shape, orbit=orbit, vessel_course=course, time_step=time_step)
+
+
+def circle(scenario: Scenario) -> CirclingReference:
+    """Return the reference that circles from the origin, to the right.
+
+    Raises
+    ------
+    InfeasibleError : the circle is tighter than omega_max allows
+    """
+    speed, radius = scenario.guidance.airspeed_mps, scenario.reference.radius_m
+    least = speed / omega_max(scenario.guidance)
+    if radius < least:
+        raise InfeasibleError(
+            f"reference.radius_m is {radius:g} m; at {speed:g} m/s and omega_max = {speed / least:.3f} rad/s it must be at least"
+            f" {least:.1f} m: widen the circle or raise omega_max"
+        )
+    start = ReferenceStart(north=0.0, east=0.0, course=0.0)
+    return CirclingReference(start, speed=speed, heading_rate=speed / radius, time_step=1.0 / scenario.guidance.rate_hz)

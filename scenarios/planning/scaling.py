@@ -11,12 +11,13 @@ from dataclasses import dataclass
 
 from aircraft.spec import Envelope
 from gnc.reference.oscillation import heading_rate_for_bank
-from scenarios.schema.config import Guidance
-from scenarios.schema.load import Flown, with_values
+from scenarios.schema.guidance import GuidanceConfig
+from scenarios.schema.load import with_values
+from scenarios.schema.scenario import Scenario
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Units:
+class ScaleFactors:
     """How many times larger an aircraft's units are than those of the defaults [-]."""
 
     length: float
@@ -28,7 +29,7 @@ class Units:
         return self.length / self.time
 
 
-_FITTED: dict[str, Callable[[Units], float]] = {
+_SCALED: dict[str, Callable[[ScaleFactors], float]] = {
     "guidance.roll_rate_max_deg_s": lambda unit: 1.0 / unit.time,
     "guidance.tracking_allowance_m": lambda unit: unit.length,
     "guidance.bound_speed_margin_mps": lambda unit: unit.speed,
@@ -50,11 +51,11 @@ _FITTED: dict[str, Callable[[Units], float]] = {
     "criteria.airspeed_error_rms_mps": lambda unit: unit.speed,
     "criteria.altitude_error_max_m": lambda unit: unit.speed,
 }
-"""Keys that are fitted, and by what their defaults are multiplied. Altitude follows pitch at a given speed, not the turn."""
+"""Keys that are scaled, and by what their defaults are multiplied. Altitude follows pitch at a given speed, not the turn."""
 
 
-def fitted(scenario: Flown, envelope: Envelope) -> Flown:
-    """Return the scenario with every key that it does not set itself fitted to an aircraft.
+def scaled(scenario: Scenario, envelope: Envelope) -> Scenario:
+    """Return the scenario with every key that it does not set itself scaled to an aircraft.
 
     Parameters
     ----------
@@ -63,14 +64,14 @@ def fitted(scenario: Flown, envelope: Envelope) -> Flown:
 
     Raises
     ------
-    InputError : a fitted value is out of range
+    InputError : a scaled value is out of range
     """
     unit = units(envelope)
     values: dict[str, object] = {
         "guidance.airspeed_mps": envelope.airspeed,
         "guidance.bank_deg": math.degrees(envelope.bank),
     }
-    for key, factor in _FITTED.items():
+    for key, factor in _SCALED.items():
         section, name = key.split(".")
         default = getattr(getattr(scenario, section, None), name, None)
         if default is None:
@@ -79,15 +80,15 @@ def fitted(scenario: Flown, envelope: Envelope) -> Flown:
     return with_values(scenario, {key: value for key, value in values.items() if not _is_set(scenario, key)})
 
 
-def units(envelope: Envelope) -> Units:
+def units(envelope: Envelope) -> ScaleFactors:
     """Return an aircraft's units over those of the defaults."""
-    default = Guidance()
+    default = GuidanceConfig()
     default_rate = heading_rate_for_bank(math.radians(default.bank_deg), default.airspeed_mps)
     rate = heading_rate_for_bank(envelope.bank, envelope.airspeed)
     time = default_rate / rate
-    return Units(time=time, length=envelope.airspeed / default.airspeed_mps * time)
+    return ScaleFactors(time=time, length=envelope.airspeed / default.airspeed_mps * time)
 
 
-def _is_set(scenario: Flown, key: str) -> bool:
+def _is_set(scenario: Scenario, key: str) -> bool:
     section, name = key.split(".")
     return name in getattr(scenario, section).model_fields_set

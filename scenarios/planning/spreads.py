@@ -1,4 +1,7 @@
-"""The spread of the tracking error that turbulence will cause in a trial's flights."""
+"""The spread of the tracking error that turbulence will cause in a study's flights."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.simulation.fdm import Fdm
@@ -6,33 +9,70 @@ from aircraft.spec import AircraftSpec
 from aircraft.units import METRES_PER_FOOT
 from innerloop.analysis.dryden import low_altitude_turbulence
 from innerloop.designs.cache import Designed
-from scenarios.margin.keepout_margin import SpreadTable
-from scenarios.margin.tracking_spread import tracking_spread
+from scenarios.errors import InputError
+from scenarios.margin.tracking_spread import SpreadTable, tracking_spread
+from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.reference import oscillation_at
-from scenarios.planning.sea_parameters import speed_hold, tracking_parameters
-from scenarios.schema.sea_config import SeaScenario
-from scenarios.vehicles.sea_airframe import Airframe
+from scenarios.schema.scenario import Scenario
+from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 SPREAD_RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Speed ratios at which the spread is predicted [-]; it hardly depends on them."""
 
-
-def predicted_spreads(scenario: SeaScenario, found: Designed | None, airframe: Airframe) -> dict[str, SpreadTable]:
-    """Return the predicted spread at each level of turbulence that flights of a trial may have; none for a kinematic vehicle."""
-    if found is None or scenario.fidelity == "kinematic":
-        return {}
-    drawn = next((draw.choice for draw in scenario.draws if draw.key == "turbulence.level" and draw.choice), None)
-    levels = [str(level) for level in drawn or (scenario.turbulence.level,) if level != "none"]
-    return {level: _spread_table(scenario, found, airframe, level) for level in levels}
+Key = tuple[str, str]
+"""Level of turbulence, and the guidance in it."""
 
 
-def _spread_table(scenario: SeaScenario, found: Designed, airframe: Airframe, level: str) -> SpreadTable:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PredictedSpreads:
+    """The predicted spread of each kind of flight in turbulence.
+
+    Attributes
+    ----------
+    tables : by level of turbulence and guidance
+    """
+
+    tables: Mapping[Key, SpreadTable] = field(default_factory=dict)
+
+    def __call__(self, scenario: Scenario) -> SpreadTable | None:
+        """Return the spread of a scenario's flights; none in calm air and for a kinematic vehicle.
+
+        Raises
+        ------
+        InputError : it was not predicted
+        """
+        if scenario.turbulence.level == "none" or scenario.fidelity == "kinematic":
+            return None
+        if (key := _key(scenario)) not in self.tables:
+            raise InputError(
+                "guidance is sampled from a continuous distribution in turbulence, where each value takes a margin of its own;"
+                " give it a choice of values instead"
+            )
+        return self.tables[key]
+
+
+def predicted_spreads(scenarios: Iterable[Scenario], found: Designed | None, setup: VehicleSetup | None) -> PredictedSpreads:
+    """Return the predicted spread of each of some scenarios that has turbulence; of none without an aircraft."""
+    if found is None or setup is None:
+        return PredictedSpreads()
+    kinds = {
+        _key(scenario): scenario
+        for scenario in scenarios
+        if scenario.turbulence.level != "none" and scenario.fidelity != "kinematic"
+    }
+    return PredictedSpreads(tables={key: _spread_table(scenario, found, setup) for key, scenario in kinds.items()})
+
+
+def _key(scenario: Scenario) -> Key:
+    return scenario.turbulence.level, scenario.guidance.model_dump_json()
+
+
+def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> SpreadTable:
     schedule = found.design.schedule
-    air = low_altitude_turbulence(scenario.plume.source_height_m, TURBULENCE[level].wind_at_20ft)
-    guidance, hold, span = tracking_parameters(scenario, airframe), speed_hold(scenario, airframe), _wing_span(schedule.spec)
-    spreads = [
-        tracking_spread(schedule, air, oscillation_at(scenario.guidance, nu), guidance, hold, span=span) for nu in SPREAD_RATIOS
-    ]
+    air = low_altitude_turbulence(scenario.plume.source_height_m, TURBULENCE[scenario.turbulence.level].wind_at_20ft)
+    tracking, hold, span = tracking_parameters(scenario, setup), speed_hold(scenario, setup), _wing_span(schedule.spec)
+    orbits = [oscillation_at(scenario.guidance, scenario.reference, nu) for nu in SPREAD_RATIOS]
+    spreads = [tracking_spread(schedule, air, orbit, tracking, hold, span=span) for orbit in orbits]
     return SpreadTable(speed_ratios=SPREAD_RATIOS, spreads=tuple(spreads))
 
 

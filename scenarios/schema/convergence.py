@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from scenarios.schema.config import Positive, Section
+from scenarios.schema.section import Positive, Section
 
 LawName = Literal["lyapunov", "cascade", "cascade_cut"]
 
@@ -15,7 +15,7 @@ class Ensemble(Section):
     trajectories: Annotated[int, Field(ge=1, le=10_000_000)] = 10_000
     """Initial states, each flown with every law; a third each about a circling, an oscillating and a randomly turning reference."""
     distance_max_m: Annotated[float, Field(gt=0.0, le=100_000.0)] = 5000.0
-    """Farthest start from the reference, drawn evenly over the disc [m]."""
+    """Farthest start from the reference, sampled evenly over the disc [m]."""
     time_max_s: Annotated[float, Field(gt=0.0, le=1_000_000.0)] = 20_000.0
     """Given up and kept as a counter-example after this time, or later where the averaged motion predicts slow convergence [s]."""
     settling_band_m: Positive = 5.0

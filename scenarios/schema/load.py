@@ -1,5 +1,6 @@
 """Find a scenario file, apply overrides and check it; everything that is wrong with it is one line."""
 
+import json
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -8,31 +9,39 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from common.registry import announced, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.spelling import did_you_mean
 from scenarios.errors import InputError
-from scenarios.schema.config import Scenario
 from scenarios.schema.convergence import ConvergenceScenario
+from scenarios.schema.effect import refuse_unused
+from scenarios.schema.experiment import TrialList
 from scenarios.schema.keys import suggestion
-from scenarios.schema.monte_carlo_config import FalsifyScenario, MonteCarloScenario
-from scenarios.schema.overrides import Document, apply_override, merged, parse_override, set_value
-from scenarios.schema.sea_config import SeaScenario, SeaTrial
+from scenarios.schema.overrides import Document, apply_override, given_keys, merged, parse_override, set_value
+from scenarios.schema.parts import with_absolute_files
+from scenarios.schema.scenario import Scenario
 
-Flown = TypeVar("Flown", Scenario, SeaScenario)
-Study = TypeVar("Study", Scenario, ConvergenceScenario, SeaScenario, SeaTrial, MonteCarloScenario, FalsifyScenario)
+Study = TypeVar("Study", Scenario, ConvergenceScenario, TrialList)
 
-AnyStudy = Scenario | ConvergenceScenario | SeaScenario | SeaTrial | MonteCarloScenario | FalsifyScenario
+AnyStudy = Scenario | ConvergenceScenario | TrialList
 
 KINDS: dict[str, type[Any]] = {
     "flights": Scenario,
     "paper": Scenario,
     "convergence": ConvergenceScenario,
-    "sea": SeaScenario,
-    "sea_trial": SeaTrial,
-    "monte_carlo": MonteCarloScenario,
-    "falsify": FalsifyScenario,
+    "trials": TrialList,
+    "monte_carlo": Scenario,
+    "falsify": Scenario,
 }
 """What a file may say of ``study``, and the scenario that it then holds."""
+
+FORMER_WORDS = {"sea": "flights", "sea_trial": "trials"}
+"""What files made for earlier versions say of ``study``."""
+
+OPERATIONAL = "operational"
+"""The base that scenarios extend which name none, and are studies of a vessel that is followed."""
+
+_OPERATIONAL_STUDIES = ("sea", "monte_carlo", "falsify")
 
 CATALOG = Path(__file__).parents[1] / "catalog"
 
@@ -48,33 +57,27 @@ def is_flight(name: str) -> bool:
     return path.parent.name == FLIGHTS and (path.parents[1] / MANIFEST).is_file()
 
 
-def load_scenario(name: str, overrides: Sequence[str] = ()) -> Scenario:
-    """Read a scenario of flights, as ``load_study`` does.
-
-    Raises
-    ------
-    InputError : as there, or the file is a study of another kind
-    """
-    study = load_study(name, overrides)
-    if not isinstance(study, Scenario):
-        raise InputError(f"'{name}' is a study of {study.study}; give a scenario of flights")
-    return study
-
-
-def load_study(name: str, overrides: Sequence[str] = ()) -> AnyStudy:
+def load_study(name: str, overrides: Sequence[str] = (), *, refusing: bool = True) -> AnyStudy:
     """Read a study by catalog name or file path.
 
     Parameters
     ----------
     name : name in the catalog, or path of a TOML file
-    overrides : ``key=value`` with dotted keys and TOML values, e.g. ``guidance.preview=false``
+    overrides : ``key=value`` with dotted keys and TOML values, e.g. ``guidance.preview=false``; a part's file, FILE.py:NAME, is
+        relative to the current directory, in a scenario file to that file
+    refusing : whether keys of the file and of overrides are refused where no part of the flights uses them
 
     Raises
     ------
-    InputError : no such scenario, unreadable TOML, an unknown key, or a value out of range
+    InputError : no such scenario, unreadable TOML, an unknown key, a value out of range, or a key without effect
     """
     document = load_document(name, overrides)
     scenario: AnyStudy = checked(document, _kind(document))
+    if refusing and isinstance(scenario, Scenario):
+        # Keys of the file have to act in what the file alone says: an override may well put one of them aside.
+        path = scenario_path(name)
+        refuse_unused(checked(_read(path), Scenario), given_keys(_own(path)[0]))
+        refuse_unused(scenario, {parse_override(override)[0] for override in overrides})
     return scenario
 
 
@@ -86,18 +89,23 @@ def load_document(name: str, overrides: Sequence[str] = ()) -> Document:
     InputError : no such scenario, unreadable TOML, or an override that cannot be applied
     """
     document = _read(scenario_path(name))
-    if document.get("study") == "sea_trial":
-        own = [override for override in overrides if override.partition("=")[0].strip() in SeaTrial.model_fields]
+    if document.get("study") == "trials":
+        own = [override for override in overrides if override.partition("=")[0].strip() in TrialList.model_fields]
         for_trials = [override for override in overrides if override not in own]
         given = document.get("set", [])
         if for_trials and isinstance(given, list):
             document["set"] = [*given, *for_trials]
         overrides = own
-    parsed = [parse_override(override) for override in overrides]
+    parsed = [(key, with_absolute_files(value, Path())) for key, value in map(parse_override, overrides)]
     kind = _kind(document | {key: value for key, value in parsed if key == "study"})
     for key, value in parsed:
         apply_override(document, key, value, kind)
     return document
+
+
+def bases() -> dict[str, Path]:
+    """Return the bases that scenarios may extend, by name."""
+    return {path.stem: path for path in sorted((CATALOG / "bases").glob("*.toml"))}
 
 
 def scenario_path(name: str, folder: Path | None = None) -> Path:
@@ -126,32 +134,54 @@ def _read(path: Path, extended_by: tuple[Path, ...] = ()) -> Document:
     if path.resolve() in [other.resolve() for other in extended_by]:
         circle = " -> ".join(other.name for other in (*extended_by, path))
         raise InputError(f"{extended_by[-1]}: extends goes in a circle: {circle}; remove one of them")
-    try:
-        # An editor may have put a byte order mark before the text.
-        document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not valid TOML: {error}; fix the file") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}; check the path and its permissions") from None
-    if "extends" not in document:
+    document, base = _own(path)
+    if base is None:
         return document
-    base = document.pop("extends")
-    if not isinstance(base, str):
-        raise InputError(f"{path}: extends is {base!r}; give one catalog name or one path of a TOML file")
     try:
-        base_path = scenario_path(base, path.parent)
+        base_path = bases().get(base) or scenario_path(base, path.parent)
     except InputError as error:
         raise InputError(f"{path}: extends: {error}") from None
     return merged(_read(base_path, (*extended_by, path)), document)
 
 
+def _own(path: Path) -> tuple[Document, str | None]:
+    """Return the document in a file alone, and the name of the scenario that it extends, if any."""
+    try:
+        # An editor may have put a byte order mark before the text.
+        document: Document = with_absolute_files(tomllib.loads(path.read_text(encoding="utf-8-sig")), path.parent)
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not valid TOML: {error}; fix the file") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}; check the path and its permissions") from None
+    if isinstance(given := document.get("set"), list):
+        document["set"] = [_with_absolute_file(override, path.parent) for override in given]
+    study = document.get("study")
+    base = document.pop("extends", OPERATIONAL if study in _OPERATIONAL_STUDIES else None)
+    if isinstance(study, str):
+        document["study"] = FORMER_WORDS.get(study, study)
+    if not (base is None or isinstance(base, str)):
+        raise InputError(f"{path}: extends is {base!r}; give one catalog name or one path of a TOML file")
+    return document, base
+
+
+def _with_absolute_file(override: object, folder: Path) -> object:
+    """Return an override of a list of trials in which the files of parts have absolute paths."""
+    if not isinstance(override, str) or "=" not in override:
+        return override
+    key, value = parse_override(override)
+    absolute = with_absolute_files(value, folder)
+    # Names and lists of names are written in JSON as in TOML.
+    return override if absolute == value else f"{key}={json.dumps(absolute)}"
+
+
 def _kind(document: Document) -> type[Any]:
     """Return the schema of a document."""
     study = document.get("study", "flights")
-    if not isinstance(study, str) or study not in KINDS:
-        guess = did_you_mean(str(study), KINDS)
-        raise InputError(f"study is {study!r}{guess or ';'} it must be one of {', '.join(KINDS)}")
-    return KINDS[study]
+    if not isinstance(study, str):
+        raise InputError(f"study is {study!r}; it must be one of {', '.join(KINDS)}")
+    if study in KINDS or is_file_part(study) or study in announced("study"):
+        return KINDS.get(study, Scenario)
+    raise InputError(f"study is {study!r}{did_you_mean(study, KINDS) or ';'} it must be one of {', '.join(KINDS)}, or FILE.py:NAME")
 
 
 def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:
@@ -166,12 +196,14 @@ def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:
         raise InputError(f"{_explain(key, first['type'], first['msg'], first.get('input'), kind)}{others}") from None
 
 
-def with_values(scenario: Flown, values: Mapping[str, object]) -> Flown:
+def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
     """Return the scenario with dotted keys set to new values, checked again."""
+    if not values:
+        return scenario
     document = scenario.model_dump()
     for key, value in values.items():
-        set_value(document, key, value, type(scenario))
-    return checked(document, type(scenario))
+        set_value(document, key, value, Scenario)
+    return checked(document, Scenario)
 
 
 def _explain(key: str, error_type: str, message: str, value: object, kind: type[BaseModel]) -> str:
@@ -185,7 +217,7 @@ def _explain(key: str, error_type: str, message: str, value: object, kind: type[
     text = message.removeprefix("Value error, ")
     where = f"{key}: " if key else ""
     if error_type == "value_error":
-        return f"{where}{text}"
+        return text if text.startswith("unknown key") else f"{where}{text}"
     remedy = f"; {text[0].lower()}{text[1:]}"
     if error_type == "tuple_type":
         remedy = "; give a list in brackets, as in [0.5] or [400, 800]"

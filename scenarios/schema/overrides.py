@@ -49,12 +49,18 @@ def apply_override(document: Document, key: str, value: object, kind: type[BaseM
     ------
     InputError : as of ``set_value``
     """
+    given = document.get("cases")
+    cases = [case for case in given if isinstance(case, dict)] if isinstance(given, list) else []
+    tables = [case[name] for case in cases for name in ("set", "set_kinematic") if isinstance(case.get(name), dict)]
+    setting = [values for values in tables if key in values]
+    if setting and key.startswith("sweep."):
+        # Cases have a speed ratio each, and no sweep beside them.
+        for values in setting:
+            values[key] = value
+        return
     set_value(document, key, value, kind)
-    cases = document.get("cases", [])
-    for case in cases if isinstance(cases, list) else []:
-        for values in (case.get("set"), case.get("set_kinematic")) if isinstance(case, dict) else ():
-            if isinstance(values, dict):
-                values.pop(key, None)
+    for values in setting:
+        del values[key]
     draws = document.get("draws", [])
     if key != "draws" and isinstance(draws, list):
         document["draws"] = [draw for draw in draws if not (isinstance(draw, dict) and draw.get("key") == key)]

@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-INTERVENTION_COLUMNS = ("flight_id", "trial", "time_s", "duration_s", "distance_min_m", "lost")
-
 
 class Intervention(NamedTuple):
     """A stretch of guidance steps in each of which the guard changed the command.

@@ -3,12 +3,15 @@
 import io
 
 import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
 
 from common.run_layout import time_history_path
 from scenarios.engine.task import Row, Task
+from scenarios.simulation.record import MEANINGS, unit_of
 
 
-def keeps_history(task: Task, *, planned: int, wanted: int, row: Row) -> bool:
+def keeps_history(task: Task, *, planned: int, kept: int, row: Row) -> bool:
     """Return whether the time history of a flight is kept.
 
     Of all flights an even sample is, and every one that did not meet its criteria.
@@ -16,23 +19,32 @@ def keeps_history(task: Task, *, planned: int, wanted: int, row: Row) -> bool:
     Parameters
     ----------
     task : the flight's
-    planned, wanted : number of flights, and of time histories to be kept of them
+    planned, kept : number of flights, and of time histories to keep of them
     row : of the flight in the summary
     """
-    sampled = (task.number + 1) * wanted // planned > task.number * wanted // planned
+    sampled = (task.number + 1) * kept // planned > task.number * kept // planned
     return sampled or task.recorded or task.every_step or not row["criteria_met"]
 
 
-def history_files(task: Task, history: pd.DataFrame | None, *, planned: int, wanted: int, row: Row) -> dict[str, bytes]:
+def history_files(task: Task, history: pd.DataFrame | None, *, planned: int, kept: int, row: Row) -> dict[str, bytes]:
     """Return the time history of a flight as a Parquet file, by its path, if there is one and it is kept.
 
     Parameters
     ----------
     history : of the flight, if it has one
-    task, planned, wanted, row : as of ``keeps_history``
+    task, planned, kept, row : as of ``keeps_history``
     """
-    if history is None or not keeps_history(task, planned=planned, wanted=wanted, row=row):
+    if history is None or not keeps_history(task, planned=planned, kept=kept, row=row):
         return {}
+    return {time_history_path(row["flight_id"]): as_parquet(history)}
+
+
+def as_parquet(history: pd.DataFrame) -> bytes:
+    """Return a time history as a Parquet file; unit and meaning of each column are in the metadata of its field."""
+    table = pa.Table.from_pandas(history, preserve_index=False)
+    described = [
+        field.with_metadata({"unit": unit_of(field.name), "meaning": MEANINGS.get(field.name, "")}) for field in table.schema
+    ]
     buffer = io.BytesIO()
-    history.to_parquet(buffer, index=False)
-    return {time_history_path(row["flight_id"]): buffer.getvalue()}
+    pq.write_table(table.cast(pa.schema(described, metadata=table.schema.metadata)), buffer)
+    return buffer.getvalue()

@@ -123,7 +123,7 @@ def sensitivity_indices(inputs: pd.DataFrame, figure: Array, *, confidence: floa
 def _unusable(values: "pd.Series[float]") -> str:
     """Return why an input has no index; empty if it has one."""
     if values.isna().any():
-        return "not drawn for every flight"
+        return "not sampled for every flight"
     return "the same in every flight" if values.nunique() < 2 else ""
 
 

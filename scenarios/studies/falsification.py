@@ -1,7 +1,7 @@
-"""A search for the flight over the real sea that comes closest to the vessel, within the declared ranges."""
+"""A search for the flight that comes closest to the vessel, within the declared ranges."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,10 +14,11 @@ from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, StudySummary
 from scenarios.engine.task import Row, Task
-from scenarios.experiment.draws import drawn_flight, speed_ratio_excess
+from scenarios.experiment.draws import speed_ratio_excess
 from scenarios.experiment.scenario_file import scenario_file
-from scenarios.schema.monte_carlo_config import FalsifyScenario
-from scenarios.studies.sea_study import SeaStudy
+from scenarios.schema.scenario import Scenario
+from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.study import study
 
 UNFLOWN = 1e6
 """Clearance of a flight that has none, because it was not flown [m]: no optimum, and finite, as the search needs it."""
@@ -25,22 +26,25 @@ UNFLOWN = 1e6
 Array = npt.NDArray[np.float64]
 
 
-class FalsifyStudy(SeaStudy):
-    """Generations of flights, each drawn from the worst of those before by differential evolution.
+@study("falsify")
+class FalsificationStudy(FlightStudy):
+    """Generations of flights, each from the worst of those before by differential evolution.
 
     Parameters
     ----------
-    scenario, name : what to search, and what it is called
-    overrides : how the scenario differs from the one of that name, for the record
+    scenario, name : the scenario, and its name
+    trials : the same by its name
+    overrides : overrides that were applied, recorded in the manifest
 
     Raises
     ------
-    InputError : an unknown aircraft or fault, a key that cannot be drawn, or nothing that is drawn
+    InputError : as of ``FlightStudy``
     """
 
-    def __init__(self, scenario: FalsifyScenario, name: str, *, overrides: Sequence[str] = ()) -> None:
+    def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
         flights = scenario.search.population * (scenario.search.generations + 1)
-        super().__init__(scenario.model_copy(update={"flights": flights}), name, overrides=overrides)
+        searched = {trial: of.model_copy(update={"flights": flights}) for trial, of in trials.items()}
+        super().__init__(scenario.model_copy(update={"flights": flights}), name, searched, overrides=overrides)
         self._search, self._seed = scenario.search, scenario.seed
         self._tasks: list[Task] = []
 
@@ -94,10 +98,11 @@ class FalsifyStudy(SeaStudy):
         flown = [(_clearance(row), number, row) for number, row in journal.numbered(SUMMARY)]
         worst = sorted(flown, key=lambda entry: entry[:2])[: self._search.kept]
         ((trial, scenario),) = self.trials.items()
+        experiment = self.experiments[trial]
         for rank, (clearance, number, row) in enumerate(worst, start=1):
-            drawn = drawn_flight(trial, scenario, number, self._tasks[number].point)
+            request = experiment.request(number, self._tasks[number].point)
             title = f"{scenario.title}: number {rank}, {clearance:.2f} m from the keep-out area"
-            run.write_bytes(f"{WORST}/{rank:02d}_{row['flight_id']}.toml", scenario_file(drawn, title=title))
+            run.write_bytes(f"{WORST}/{rank:02d}_{row['flight_id']}.toml", scenario_file(request, title=title))
         fly(self.unrecorded([number for _, number, _ in worst], run, journal))
 
     def summary(self, journal: Journal) -> StudySummary:

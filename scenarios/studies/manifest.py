@@ -3,14 +3,18 @@
 import hashlib
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel
 from pydantic_core import to_jsonable_python
 
 from common.provenance import provenance
+from common.registry import file_hash, is_file_part
 from scenarios.engine.fingerprint import fingerprint
+from scenarios.schema.effect import unused
+from scenarios.schema.parts import part_names
+from scenarios.schema.scenario import Scenario
 
 
 def initial_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -> dict[str, Any]:
@@ -35,14 +39,21 @@ def initial_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -
     }
 
 
-def config_hash(*scenarios: BaseModel) -> str:
-    """Return a hash of the scenarios."""
-    text = "\n".join(json.dumps(scenario.model_dump(mode="json"), sort_keys=True) for scenario in scenarios)
+def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
+    """Return a hash of each file that scenarios take parts from, by the part: a resumed run and a replay have to find the same."""
+    names = dict.fromkeys(name for scenario in scenarios for _, name in part_names(scenario))
+    return {name: file_hash(name) for name in names if is_file_part(name)}
+
+
+def config_hash(*scenarios: BaseModel, files: Mapping[str, str] | None = None, names: Sequence[str] = ()) -> str:
+    """Return a hash of scenarios, of their names where seeds depend on them, and of the files that they take parts from."""
+    documents: list[object] = [scenario.model_dump(mode="json") for scenario in scenarios]
+    text = "\n".join(json.dumps(document, sort_keys=True) for document in [*documents, *([files] if files else []), *names])
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
-    """Return every key of the scenario's sections with value, default if any, meaning and unit."""
+    """Return every key of the scenario's sections that acts, with value, default if any, meaning and unit."""
     listed = []
     for section_name in type(scenario).model_fields:
         section = getattr(scenario, section_name)
@@ -54,7 +65,12 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
             parameter = {"key": f"{section_name}.{key}", "value": values[key], "unit": unit, "meaning": meaning}
             if not field.is_required():
                 parameter["default"] = to_jsonable_python(field.get_default(call_default_factory=True))
-            listed.append(parameter)
+            if not (isinstance(scenario, Scenario) and unused(scenario, parameter["key"])):
+                listed.append(parameter)
+        listed += [
+            {"key": f"{section_name}.{key}", "value": value, "unit": "", "meaning": "Of the steering law"}
+            for key, value in (section.model_extra or {}).items()
+        ]
     return listed
 
 

@@ -1,6 +1,6 @@
-"""Monte Carlo over the real sea: how often, how much, what it depends on, and how sure that is."""
+"""Monte Carlo: how often, how much, what it depends on, and how sure that is."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import pandas as pd
@@ -10,39 +10,49 @@ from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Row, Task
+from scenarios.errors import InputError
 from scenarios.experiment.sampling import Points
-from scenarios.schema.monte_carlo_config import MonteCarloScenario
+from scenarios.schema.scenario import Scenario
 from scenarios.statistics.estimates import COLUMNS, study_statistics
 from scenarios.statistics.stopping import looks, tight_enough
-from scenarios.studies.sea_study import SeaStudy
+from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.study import study
 
 
-class MonteCarloStudy(SeaStudy):
-    """Flights that are drawn from declared distributions, until they are all flown or an interval is as tight as was asked for.
+@study("monte_carlo")
+class MonteCarloStudy(FlightStudy):
+    """Flights sampled from declared distributions, until all are flown or every interval is as narrow as the scenario demands.
 
     Parameters
     ----------
-    scenario, name : what to fly, and what it is called
-    overrides : how the scenario differs from the one of that name, for the record
+    scenario, name : the scenario, and its name
+    trials : the same by its name
+    overrides : overrides that were applied, recorded in the manifest
 
     Raises
     ------
-    InputError : an unknown aircraft or fault, or a key that cannot be drawn
+    InputError : as of ``FlightStudy``; or a study of several points that is to stop by itself
     """
 
-    def __init__(self, scenario: MonteCarloScenario, name: str, *, overrides: Sequence[str] = ()) -> None:
-        super().__init__(scenario, name, overrides=overrides)
+    def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
+        super().__init__(scenario, name, trials, overrides=overrides)
         self._scenario = scenario
+        ((_, self._experiment),) = self.experiments.items()
+        if scenario.statistics.stops and self.planned > scenario.flights:
+            raise InputError(
+                "statistics stops the study, which has several points (sweep, cases, fidelity); leave out"
+                " statistics.violation_upper and statistics.distance_quantile_width_m, or give each point a run of its own"
+            )
         self._points = Points(scenario.sampling, dimension=len(scenario.draws), flights=scenario.flights, seed=scenario.seed)
         self._looks, self._stopped = 0, False
 
     def task(self, number: int) -> Task:
         """Return the task of a flight, at its point."""
-        return Task(number=number, point=self._points.at(number))
+        return Task(number=number, point=self._points.at(self._experiment.index(number)))
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Have flights flown up to one look after the other, until one shows what was asked for."""
-        first = 0
+        """Fly up to one look after the other, until one shows what was asked for; then the comparisons."""
+        first, study = 0, self.planned
         stops = self._scenario.statistics.stops
         for flights in looks(self.planned) if stops else [self.planned]:
             self._looks += 1
@@ -52,6 +62,7 @@ class MonteCarloStudy(SeaStudy):
                 self._stopped = flights < self.planned
                 self.flights = dict.fromkeys(self.flights, flights)
                 break
+        fly(self.task(number) for number in range(study, self._experiment.flights))
         fly(self.representative_flights(run, journal))
 
     def _tight(self, journal: Journal, flights: int) -> bool:
@@ -84,7 +95,7 @@ class MonteCarloStudy(SeaStudy):
         if not self._stopped:
             return found
         asked = self._scenario.flights
-        line = f"stopped after {self.planned} of {asked} flights: what was asked for is as tight as that"
+        line = f"stopped after {self.planned} of {asked} flights: the intervals are as narrow as demanded"
         return replace(found, lines=[*found.lines, line])
 
 

@@ -8,13 +8,14 @@ import numpy as np
 from gnc.analysis.worst_case_search import tightness
 from gnc.errors import InfeasibleError
 from scenarios.engine.task import Row
-from scenarios.flights import FlightRequest
+from scenarios.experiment.requests import FlightRequest
 from scenarios.planning.bounded_steering import farthest_start, largest_speed, search_steering
 from scenarios.planning.limits import omega_max
 from scenarios.planning.planner import plan_flight
-from scenarios.planning.reference import oscillation_at
-from scenarios.schema.config import Guidance
+from scenarios.planning.reference import circle, oscillation_at
+from scenarios.schema.guidance import GuidanceConfig
 from scenarios.schema.load import with_values
+from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 SEARCH_STATES = 1_000_000
 """Random states of each search for the largest command. 10,000 find the same twelve digits for the default look-ahead;
@@ -25,7 +26,7 @@ RESERVE_MAX_PERCENT, RESERVE_STEP_PERCENT = 60, 5
 
 RESERVES = (
     0.0,
-    float(Guidance.model_fields["reserve"].default),
+    float(GuidanceConfig.model_fields["reserve"].default),
     *(percent / 100 for percent in range(RESERVE_STEP_PERCENT, RESERVE_MAX_PERCENT + 1, RESERVE_STEP_PERCENT)),
 )
 """Fractions of omega_max that the reference leaves unused: none, as in the paper, the default, and a grid [-]."""
@@ -47,7 +48,7 @@ def bounds_record(requests: list[FlightRequest], seed: int) -> dict[str, Any]:
     guaranteed : for the last flight with a vessel a row per reserve: the parameters that converge fastest while no
         state demands more than omega_max, or why there are none
     """
-    missions = [request for request in requests if not math.isnan(request.nu)]
+    missions = [request for request in requests if not request.scenario.circles]
     last = missions[-1].scenario if missions else None
     return {
         "samples": SEARCH_STATES,
@@ -68,13 +69,13 @@ def _flown(requests: list[FlightRequest], generator: np.random.Generator) -> lis
     for request in requests:
         settings = request.scenario
         try:
-            plan = plan_flight(settings, flight_id=request.flight_id, nu=request.nu, seed=request.seed, lag=0.0)
+            plan = plan_flight(settings, flight_id=request.flight_id, seed=request.seed, setup=kinematic_setup(settings))
         except InfeasibleError:
             continue
         if not math.isfinite(plan.steering.bound):
             continue
         steering, gain, speed = plan.steering, settings.guidance.gain_per_s, largest_speed(settings)
-        turn = plan.mission.oscillation.amplitude if plan.mission else abs(plan.reference.heading_rate)
+        turn = plan.oscillation.amplitude if plan.oscillation else abs(circle(settings).heading_rate)
         key = (speed, turn, *steering.look_ahead, gain, steering.steering_max)
         if key in rows:
             rows[key]["flights"].append(request.flight_id)
@@ -104,10 +105,10 @@ def _flown(requests: list[FlightRequest], generator: np.random.Generator) -> lis
 
 
 def _guaranteed(request: FlightRequest, reserve: float) -> Row:
-    row: Row = {"nu": request.nu, "reserve": reserve}
+    row: Row = {"nu": request.scenario.nu_over_ground, "reserve": reserve}
     try:
         scenario = with_values(request.scenario, {"guidance.reserve": reserve})
-        oscillation = oscillation_at(scenario.guidance, request.nu)
+        oscillation = oscillation_at(scenario.guidance, scenario.reference, request.scenario.nu_over_ground)
         row["crossing_interval_s"] = oscillation.crossing_interval
         found = search_steering(scenario, omega_max(scenario.guidance), oscillation.amplitude)
     except InfeasibleError as error:

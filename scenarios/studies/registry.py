@@ -3,13 +3,15 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from common.registry import PluginError
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Progress, RunResult, Study, fly_study
-from scenarios.schema.config import Scenario
+from scenarios.errors import InputError
 from scenarios.schema.convergence import ConvergenceScenario
+from scenarios.schema.experiment import TrialList
 from scenarios.schema.load import AnyStudy
-from scenarios.schema.monte_carlo_config import FalsifyScenario, MonteCarloScenario
+from scenarios.studies.study import STUDIES
 
 
 def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> Study:
@@ -24,25 +26,19 @@ def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> St
     ------
     InputError : the scenario cannot be flown
     """
-    if isinstance(scenario, Scenario):
-        from scenarios.studies.sweep_study import SweepStudy
+    if isinstance(scenario, TrialList):
+        from scenarios.studies.trials import TrialStudy
 
-        return SweepStudy(scenario, name, overrides=overrides)
+        return TrialStudy(scenario, name, overrides=overrides)
     if isinstance(scenario, ConvergenceScenario):
         from scenarios.studies.convergence.study import ConvergenceStudy
 
         return ConvergenceStudy(scenario, name, overrides=overrides)
-    if isinstance(scenario, MonteCarloScenario):
-        from scenarios.studies.monte_carlo import MonteCarloStudy
-
-        return MonteCarloStudy(scenario, name, overrides=overrides)
-    if isinstance(scenario, FalsifyScenario):
-        from scenarios.studies.falsification import FalsifyStudy
-
-        return FalsifyStudy(scenario, name, overrides=overrides)
-    from scenarios.studies.sea_study import SeaStudy
-
-    return SeaStudy(scenario, name, overrides=overrides)
+    try:
+        made = STUDIES.get(scenario.study)
+    except PluginError as error:
+        raise InputError(str(error)) from None
+    return made(scenario, name, {name: scenario}, overrides=overrides)
 
 
 def run_study(

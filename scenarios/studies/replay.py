@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from common.registry import file_of
 from common.run_layout import COMPARISON, HISTORY_SUFFIX, JOURNAL, MANIFEST, SUMMARY
 from scenarios.engine.fingerprint import differences
 from scenarios.engine.journal import Journal
@@ -11,10 +12,9 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, Study, StudySummary
 from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
-from scenarios.flights import STUDY
-from scenarios.schema.config import Scenario
+from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import checked
-from scenarios.schema.sea_config import SeaScenario
+from scenarios.schema.scenario import Scenario
 from scenarios.studies.registry import study_of
 
 _TABLES = (SUMMARY, COMPARISON)
@@ -79,26 +79,25 @@ class Replay:
 
         The trial comes from the manifest, scaled to its aircraft, and not from the catalog, which may have changed.
         """
-        if "trials" in manifest:
-            trial = self._row["trial"]
-            first = next(i for i, name in enumerate(manifest["trials"]) if name == trial)
-            before = sum(scenario["flights"] for scenario in list(manifest["trials"].values())[:first])
-            self._task = Task(number=self._task.number - before, point=self._task.point)
-            config = {key: value for key, value in manifest["trials"][trial].items() if key in SeaScenario.model_fields}
-            return study_of(checked(config | {"study": "sea"}, SeaScenario), trial)
-        if manifest.get("study") in ("flights", "paper"):
-            return study_of(checked(manifest["config"], Scenario), str(manifest["name"]))
-        raise InputError(f"'{self._from}' is a study of {manifest.get('study')}; only single flights can be replayed")
+        if "trials" not in manifest:
+            raise InputError(f"'{self._from}' is a study of {manifest.get('study')}; only single flights can be replayed")
+        trial, task = self._row["trial"], self._task
+        study = study_of(checked({**manifest["trials"][trial], "study": "flights"}, Scenario), trial)
+        _check_plugins(manifest.get("plugins", {}), study.initial_manifest()["plugins"])
+        before = 0
+        for name, config in manifest["trials"].items():
+            if name == trial:
+                break
+            before += Experiment(name, checked({**config, "study": "flights"}, Scenario)).flights
+        self._task = Task(number=task.number - before, point=task.point)
+        return study
 
     def initial_manifest(self) -> dict[str, Any]:
         """Return the manifest as written before the flight."""
         manifest = self._study.initial_manifest()
         replayed: dict[str, Any] = {"title": f"{manifest['title']}: replay of {self._flight_id}", "replayed": self._flight_id}
-        if "trials" in manifest:
-            replayed["trials"] = {trial: config | {"flights": 1} for trial, config in manifest["trials"].items()}
-        else:
-            replayed["variants"] = {self._flight_id: STUDY}
-        return manifest | replayed | {"config_hash": self.config_hash, "flights_planned": 1}
+        one = {"trial_flights": {self._row["trial"]: 1}, "flights_planned": 1}
+        return manifest | replayed | one | {"config_hash": self.config_hash}
 
     def work(self, run: RunDirectory) -> Work:
         """Return the work of the original study."""
@@ -138,3 +137,9 @@ class Replay:
         """Return a possible reason."""
         changed = differences(self._original_fingerprint)
         return f"the original was flown with a different {', '.join(changed)}" if changed else "software and source are unchanged"
+
+
+def _check_plugins(then: dict[str, str], now: dict[str, str]) -> None:
+    for name, digest in now.items():
+        if then.get(name) != digest:
+            raise InputError(f"'{file_of(name)}' has changed since the run; replay it with the file as it was then")

@@ -1,1 +1,1 @@
-"""What flies, its sensors and its payload."""
+"""The vehicles, their sensors and their payload."""

@@ -13,7 +13,7 @@ _NONE = (math.nan,) * (len(SAMPLE_COLUMNS) - 4)
 class KinematicVehicle:
     """A vehicle that flies the commanded airspeed at once and turns at the commanded heading rate, at once or with a lag.
 
-    It keeps its altitude, whatever it is told, and drifts with a steady wind. Its bank is that of a coordinated turn, for
+    It takes a commanded altitude at once, and drifts with a steady wind. Its bank is that of a coordinated turn, for
     comparison only: nothing bounds it.
 
     Parameters
@@ -80,7 +80,8 @@ class KinematicVehicle:
         self._east += self._wind_east * self._time_step
 
     def command_altitude(self, altitude: float, /) -> None:
-        """Do nothing: equation (1) has no altitude."""
+        """Take an altitude [m] at once: equation (1) has none of its own."""
+        self._altitude = altitude
 
     def servo_error(self) -> float:
         """Return 0: equation (1) has no servos."""

@@ -1,11 +1,11 @@
-"""What the UAV's sensors say: the truth, and errors that are drawn for a whole flight at once."""
+"""What the sensors of the UAV measure: the truth, with errors that are sampled for a whole flight at once."""
 
 import math
 
 import numpy as np
 from scipy.signal import lfilter
 
-from scenarios.schema.sea_config import Sensors
+from scenarios.schema.equipment import SensorsConfig
 
 NAVIGATION_TIME = 60.0
 """Time constant with which the error of satellite navigation wanders [s]."""
@@ -29,7 +29,7 @@ class SensorErrors:
     airspeed_bias : of this flight [m/s]
     """
 
-    def __init__(self, sensors: Sensors, *, steps: int, time_step: float, generator: np.random.Generator) -> None:
+    def __init__(self, sensors: SensorsConfig, *, steps: int, time_step: float, generator: np.random.Generator) -> None:
         self.airspeed_bias = float(generator.uniform(-1.0, 1.0)) * sensors.airspeed_bias_mps
         heading_bias = math.radians(float(generator.uniform(-1.0, 1.0)) * sensors.heading_bias_deg)
         white = generator.standard_normal((6, steps))

@@ -1,4 +1,4 @@
-"""What flies in the closed loop, seen from the guidance: six degrees of freedom in JSBSim, or the paper's kinematics."""
+"""The vehicle in the closed loop, as the guidance sees it: six degrees of freedom in JSBSim, or the paper's kinematics."""
 
 from typing import Protocol
 

@@ -5,37 +5,37 @@ import math
 import numpy as np
 
 from gnc.estimation.vessel_filter import VesselReport
-from scenarios.schema.sea_config import Reports
-from scenarios.world.vessel import VesselTrack
+from scenarios.schema.equipment import VesselReportsConfig
+from scenarios.world.vessel import VesselTruth
 
 
-def heard_reports(
-    reports: Reports,
-    track: VesselTrack,
+def received_reports(
+    reports: VesselReportsConfig,
+    vessel: VesselTruth,
     *,
     duration: float,
-    silence: tuple[float, float],
+    outage: tuple[float, float],
     generator: np.random.Generator,
 ) -> list[tuple[float, VesselReport]]:
-    """Return the reports that are heard, with the time at which each is [s], in order of hearing.
+    """Return the reports that are received, with the time at which each is [s], in the order in which they are received.
 
     The first one, at time 0, always is: a flight begins with a vessel that is known.
 
     Parameters
     ----------
     reports : how they come; exact knowledge needs none of this
-    track : the vessel's
+    vessel : its motion
     duration : of the flight [s]
-    silence : nothing is heard between these times [s]
+    outage : nothing is received between these times [s]
     generator : of the random numbers
     """
-    heard = []
+    received = []
     time = 0.0
     while time <= duration:
         late = float(generator.uniform(0.0, reports.latency_max_s)) if time > 0.0 else 0.0
         missed = bool(generator.random() < reports.missing)
         errors = generator.standard_normal(4)
-        north, east, v_north, v_east = track.motion(time)
+        north, east, v_north, v_east = vessel.motion(time)
         report = VesselReport(
             time=time,
             north=north + reports.position_sigma_m * float(errors[0]),
@@ -43,12 +43,12 @@ def heard_reports(
             velocity_north=v_north + reports.velocity_sigma_mps * float(errors[2]),
             velocity_east=v_east + reports.velocity_sigma_mps * float(errors[3]),
         )
-        if time == 0.0 or not (missed or silence[0] <= time + late < silence[1]):
-            heard.append((time + late, report))
+        if time == 0.0 or not (missed or outage[0] <= time + late < outage[1]):
+            received.append((time + late, report))
         time += float(generator.uniform(*reports.interval_s))
-    return sorted(heard, key=lambda entry: entry[0])
+    return sorted(received, key=lambda entry: entry[0])
 
 
-def never() -> tuple[float, float]:
-    """Return a silence that never comes [s]."""
+def no_outage() -> tuple[float, float]:
+    """Return an outage that never begins [s]."""
     return math.inf, math.inf

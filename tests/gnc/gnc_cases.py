@@ -12,15 +12,20 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
+from gnc.airspeed.along_track import AlongTrackTrim
+from gnc.compose import compose
 from gnc.laws.cascade import CascadeLaw
 from gnc.laws.delta import look_ahead, relative_state, relative_velocity
+from gnc.mission.direct_tracking import DirectParameters
+from gnc.parameters import GuidanceParameters
 from gnc.reference.oscillating import OscillatingReference, start_reference
 from gnc.reference.oscillation import design_oscillation
-from gnc.tracker import Guidance, GuidanceParameters
+from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move, unicycle_rates
 
 SPEED = 19.42
 HEADING_RATE_MAX = 0.503
+TIME_STEP = 0.05
 LOOK_AHEAD = look_ahead(0.005, 60.0)
 
 courses = st.floats(-math.pi, math.pi)
@@ -99,54 +104,70 @@ def delta_steering(law, reference_heading_rate, parameters=LOOK_AHEAD):
     return steer
 
 
-def guidance_parameters(**changes):
+def tracking_parameters(**changes):
+    """Return how the paper's vehicle tracks; it answers at once."""
+    defaults = {"law": CascadeLaw(), "heading_rate_max": HEADING_RATE_MAX, "time_step": TIME_STEP, "lag": 0.0}
+    return TrackingParameters(**(defaults | changes))
+
+
+def make_reference(oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0.0):
+    start = start_reference(oscillation, phase=phase, centre_north=centre[0], centre_east=centre[1], vessel_course=vessel_course)
+    return OscillatingReference(oscillation, start, phase=phase, time_step=TIME_STEP)
+
+
+def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=0.0, **tracking):
+    """Return the guidance of the paper's flights: beside a vessel that is known exactly, at a velocity [m/s], in still air.
+
+    A reference by itself is tracked from the first step on; ``DirectParameters`` may say otherwise.
+    """
     return GuidanceParameters(
-        **(
-            {
-                "law": CascadeLaw(),
-                "heading_rate_max": HEADING_RATE_MAX,
-                "time_step": 0.05,
-                "lag": 0.0,
-                "airspeed_gain": 0.0,
-                "airspeed_trim_max": 1.0,
-            }
-            | changes
-        )
+        speed=SPEED,
+        altitude=60.0,
+        tracking=tracking_parameters(**tracking),
+        airspeed_law=AlongTrackTrim(speed=SPEED, gain=airspeed_gain, change_max=1.0),
+        navigation=None,
+        vessel=vessel,
+        guard=guard,
+        mission=reference if isinstance(reference, DirectParameters) else DirectParameters(reference=reference),
+        health=None,
     )
 
 
-def make_guidance(parameters, oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0.0, guard=None):
-    start = start_reference(oscillation, phase=phase, centre_north=centre[0], centre_east=centre[1], vessel_course=vessel_course)
-    reference = OscillatingReference(oscillation, start, phase=phase, time_step=parameters.time_step)
-    return Guidance(parameters, reference, guard=guard)
+def make_guidance(reference, **how):
+    """Return the paper's guidance; ``how`` as of ``paper_parameters``."""
+    return compose(paper_parameters(reference, **how))
+
+
+def motion(north, east, course, speed=SPEED, heading_rate=0.0):
+    """Return a motion as the guidance takes it: velocities instead of course and speed."""
+    return north, east, speed * math.cos(course), speed * math.sin(course), heading_rate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KinematicFlight:
-    """Histories, one entry per guidance step: position, commanded heading rate, distance to the reference."""
+    """Histories, one entry per guidance step: position, commanded heading rate, distances to the reference and to the vessel."""
 
     north: np.ndarray
     east: np.ndarray
     command: np.ndarray
     distance: np.ndarray
+    to_vessel: np.ndarray
 
 
-def fly(guidance, start, *, duration, delay=0.0, time_step=0.05, vessel=(0.0, 0.0)):
-    """Fly a unicycle that answers the guidance's heading rate exactly, ``delay`` seconds late.
-
-    The vessel, the keep-out disc's centre, is at the origin at first and has a velocity [m/s].
-    """
+def fly(guidance, start, *, duration, delay=0.0):
+    """Fly a unicycle that answers the guidance's heading rate exactly, ``delay`` seconds late."""
     north, east, course = start
-    pending = deque([0.0] * round(delay / time_step))
+    pending = deque([0.0] * round(delay / TIME_STEP))
     rate = 0.0
     rows = []
-    for step in range(round(duration / time_step)):
-        distance = math.hypot(guidance.reference.north - north, guidance.reference.east - east)
-        disc = (vessel[0] * step * time_step, vessel[1] * step * time_step, *vessel)
-        guidance.step(north, east, course, SPEED, rate, disc)
-        rows.append((north, east, guidance.heading_rate_command, distance))
-        pending.append(guidance.heading_rate_command)
+    for step in range(round(duration / TIME_STEP)):
+        reference, target = guidance.mission.tracker.reference, guidance.target
+        distance = math.hypot(reference.north - north, reference.east - east)
+        guidance.step(step * TIME_STEP, motion(north, east, course, SPEED, rate))
+        command = guidance.heading_rate_command
+        rows.append((north, east, command, distance, math.hypot(north - target.north, east - target.east)))
+        pending.append(command)
         rate = pending.popleft()
-        north, east, course = unicycle_move(north, east, course, SPEED, rate, time_step)
+        north, east, course = unicycle_move(north, east, course, SPEED, rate, TIME_STEP)
     columns = np.array(rows).T
-    return KinematicFlight(north=columns[0], east=columns[1], command=columns[2], distance=columns[3])
+    return KinematicFlight(**dict(zip(("north", "east", "command", "distance", "to_vessel"), columns, strict=True)))

@@ -61,7 +61,7 @@ def test_its_controls_stay_off_their_stops(run):
 
 def test_the_guard_keeps_it_out_where_the_law_would_fly_in(tmp_path):
     # The X8's start at nu = 0.15 (test_flights), in the Aerosonde's units, about a keep-out area that is as much larger.
-    words = ["keepout.radius_m=331.44", "flight.crossings=2", "criteria.crossing_interval_error=0.1"]
+    words = ["guidance.approach=false", "keepout.radius_m=331.44", "flight.crossings=2", "criteria.crossing_interval_error=0.1"]
     without = fly_study(tmp_path / "without", "aerosonde", *words, "guidance.keepout_guard=false", nus=(0.15,)).rows[0.15]
     guarded = fly_study(tmp_path / "guarded", "aerosonde", *words, nus=(0.15,)).rows[0.15]
     assert without["keepout_violations"] > 0

@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 from reports.build import build_reports
-from scenarios.schema.load import load_scenario
+from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
 
@@ -13,7 +13,7 @@ def directory(tmp_path_factory):
     # README, "Bounds", on the kinematic vehicle and at two speed ratios; comparisons are flown too, line of sight among them.
     path = tmp_path_factory.mktemp("guaranteed") / "run"
     overrides = ["fidelity=kinematic", "sweep.nu=[0.5, 0.7]", "guidance.tuning=bounded", "guidance.reserve=0.4"]
-    scenario = load_scenario("sweep_nu", overrides)
+    scenario = load_study("sweep_nu", overrides)
     result = run_study(scenario, "sweep_nu", path, overrides=overrides)
     assert result.all_met
     return path
@@ -21,7 +21,7 @@ def directory(tmp_path_factory):
 
 def test_no_command_is_cut_and_none_exceeds_the_bound(directory):
     for _, row in pd.read_csv(directory / "summary.csv").iterrows():
-        assert row["heading_rate_wanted_max_rad_s"] <= row["heading_rate_bound_rad_s"] <= row["heading_rate_limit_rad_s"]
+        assert row["heading_rate_demand_max_rad_s"] <= row["heading_rate_bound_rad_s"] <= row["heading_rate_limit_rad_s"]
         assert row["saturation_fraction"] == 0.0
         # The look-ahead is the searched one, not the default of 60 m.
         assert row["look_ahead_m"] > 100.0

@@ -15,7 +15,7 @@ from reports.build import build_reports
 from reports.document.blocks import Table
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.schema.load import load_scenario
+from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
@@ -25,7 +25,7 @@ BOTH = pytest.mark.parametrize("fidelity", ["kinematic", "six_dof"])
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory):
     path = tmp_path_factory.mktemp("paper") / "run"
-    result = run_study(load_scenario("paper"), "paper", path)
+    result = run_study(load_study("paper"), "paper", path)
     assert result.planned == result.summary.done == len(rows_of(path)) == 8
     return path
 
@@ -109,9 +109,9 @@ def test_sim_1_has_saddle_points_where_phi_and_phi_r_vanish_together(history):
 def test_sim_2_the_delta_law_stays_within_omega_max_and_the_line_of_sight_does_not(rows, fidelity):
     # Figure 7. What the laws ask for, before any limit.
     delta, line_of_sight = rows[f"sim2_delta_{fidelity}"], rows[f"sim2_los_{fidelity}"]
-    assert delta["heading_rate_wanted_max_rad_s"] <= 0.503
-    assert delta["heading_rate_wanted_max_rad_s"] <= delta["heading_rate_bound_rad_s"] <= 0.503
-    assert line_of_sight["heading_rate_wanted_max_rad_s"] > 2.0 * 0.503
+    assert delta["heading_rate_demand_max_rad_s"] <= 0.503
+    assert delta["heading_rate_demand_max_rad_s"] <= delta["heading_rate_bound_rad_s"] <= 0.503
+    assert line_of_sight["heading_rate_demand_max_rad_s"] > 2.0 * 0.503
 
 
 def test_the_bound_covers_every_speed_that_was_flown(rows, directory):
@@ -184,7 +184,7 @@ def test_saddle_points_are_marked_where_the_relative_courses_meet(directory):
 
 
 def test_the_kinematic_half_flies_alone(tmp_path):
-    scenario = load_scenario("paper", ["fidelity=kinematic"])
+    scenario = load_study("paper", ["fidelity=kinematic"])
     result = run_study(scenario, "paper", tmp_path / "run")
     assert [row["flight_id"] for row in rows_of(tmp_path / "run")] == [
         "sim1_kinematic",
@@ -211,7 +211,7 @@ def test_the_kinematic_half_flies_alone(tmp_path):
 )
 def test_what_is_not_the_papers_is_not_called_reproduced(override, headline, tmp_path):
     # An override has its way in every case, also where the case sets that key; report and exit status then agree.
-    scenario = load_scenario("paper", ["fidelity=kinematic", "flight.crossings=10", override])
+    scenario = load_study("paper", ["fidelity=kinematic", "flight.crossings=10", override])
     result = run_study(scenario, "paper", tmp_path / "run")
     assert not result.all_met
     report = content(read_run(tmp_path / "run"))

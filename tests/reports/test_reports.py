@@ -19,7 +19,8 @@ from reports.errors import ReportError
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
-from scenarios.schema.load import load_scenario
+from scenarios.schema.effect import unused
+from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
 # Three crossings are too few for the study's own criteria.
@@ -30,7 +31,7 @@ OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0
 @pytest.fixture(scope="module")
 def run_path(tmp_path_factory):
     path = tmp_path_factory.mktemp("reports") / "run"
-    scenario = load_scenario("sweep_nu", OVERRIDES)
+    scenario = load_study("sweep_nu", OVERRIDES)
     run_study(scenario, "sweep_nu", path)
     return path
 
@@ -140,14 +141,14 @@ def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
     assert flights_of(report)[2].charts == []
 
 
-def test_every_key_of_the_configuration_is_among_the_parameters(run_path, report):
+def test_every_key_that_acts_is_among_the_parameters(run_path, report):
     config = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))["config"]
     _, parameters = blocks_of(report, Table, "parameters")
-    listed = {row[0] for row in parameters.rows}
+    listed, scenario = {row[0] for row in parameters.rows}, load_study("sweep_nu", OVERRIDES)
     for section, values in config.items():
         if isinstance(values, dict) and section not in ("sweep", "comparison"):
             for key in values:
-                assert f"{section}.{key}" in listed
+                assert (f"{section}.{key}" in listed) == (not unused(scenario, f"{section}.{key}")), key
     for row in parameters.rows:
         assert row[-1], row[0]
 
@@ -231,6 +232,12 @@ def with_study(path, study):
     (path / "manifest.json").write_text(json.dumps({**manifest, "study": study}), encoding="utf-8")
 
 
+def without(path, entry):
+    manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
+    del manifest[entry]
+    (path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+
+
 def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, report):
     manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
     titles = []
@@ -249,7 +256,9 @@ def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, rep
         (lambda path: (path / "manifest.json").write_text("{}", encoding="utf-8"), "not that of a run"),
         (lambda path: (path / "manifest.json").write_text("[1]", encoding="utf-8"), "not that of a run"),
         (lambda path: with_study(path, "opera"), "study is 'opera', which has no report; those that have one: flights"),
-        (lambda path: with_study(path, ["flights"]), "is damaged"),
+        (lambda path: with_study(path, ["flights"]), "study is \\['flights'\\], which has no report"),
+        (lambda path: with_study(path, "sea_trial"), "study is 'sea_trial', which has no report"),
+        (lambda path: without(path, "trials"), "another version: its manifest.json has no 'trials'"),
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
         (lambda path: (path / "summary.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),
         (lambda path: (path / "crossings.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),

@@ -1,10 +1,11 @@
-"""A trial over the real sea for tests of what is about the flights: kinematic, in some wind, over in seconds."""
+"""A trial for tests of what is around the flights: kinematic, in some wind, over in seconds."""
 
 
 def short_trial(*, flights, duration, histories=200, spread=10.0):
     """Return a scenario file; ``duration`` in s, ``spread`` of the starts in deg."""
     return f"""
-study = "sea"
+extends = "operational"
+study = "flights"
 title = "short"
 fidelity = "kinematic"
 flights = {flights}

@@ -11,8 +11,8 @@ from gnc_cases import (
     SPEED,
     examples,
     fly,
-    guidance_parameters,
     make_guidance,
+    make_reference,
     paper_oscillation,
 )
 from hypothesis import given
@@ -174,23 +174,20 @@ def test_the_estimate_is_poor_where_the_reference_turns_slower_than_the_look_ahe
 def test_the_guidance_flies_its_preview_without_a_command_above_the_bound():
     oscillation = paper_oscillation(0.5, reserve=0.3)
     found = fastest(0.3, limit=HEADING_RATE_MAX)
-    parameters = guidance_parameters(
-        law=CascadeLaw(
-            epsilon_per_m=found.look_ahead.epsilon,
-            look_ahead_m=found.look_ahead.radius,
-            gain_per_s=found.gain,
-            steering_max_rad_s=found.steering_max,
-        ),
-        lag=0.5,
-        # Not to be cut at omega_max: the law itself keeps it.
-        heading_rate_max=10.0,
+    law = CascadeLaw(
+        epsilon_per_m=found.look_ahead.epsilon,
+        look_ahead_m=found.look_ahead.radius,
+        gain_per_s=found.gain,
+        steering_max_rad_s=found.steering_max,
     )
     for start in ((-400.0, 300.0, 3.0), (100.0, -50.0, -1.6), (0.0, 0.0, -1.5)):
-        flight = fly(make_guidance(parameters, oscillation), start, duration=120.0, delay=0.5)
+        # Not to be cut at omega_max: the law itself keeps it.
+        guidance = make_guidance(make_reference(oscillation), law=law, lag=0.5, heading_rate_max=10.0)
+        flight = fly(guidance, start, duration=120.0, delay=0.5)
         assert np.abs(flight.command).max() <= found.bound <= HEADING_RATE_MAX
     # As flown, the command would pass omega_max ...
-    parameters = guidance_parameters(heading_rate_max=10.0)
-    flight = fly(make_guidance(parameters, paper_oscillation(0.5)), (0.0, 0.0, 0.0), duration=60.0)
+    guidance = make_guidance(make_reference(paper_oscillation(0.5)), heading_rate_max=10.0)
+    flight = fly(guidance, (0.0, 0.0, 0.0), duration=60.0)
     assert np.abs(flight.command).max() > HEADING_RATE_MAX
     # ... and the bound says how far it may.
     assert np.abs(flight.command).max() <= heading_rate_bound(

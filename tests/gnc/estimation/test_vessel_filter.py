@@ -83,7 +83,7 @@ def test_it_starts_from_the_first_report():
     motion = vessel.at(0.0)
     assert (motion.north, motion.east, motion.velocity_north, motion.velocity_east) == FIRST[1:]
     assert motion.sigma == POSITION
-    # A straight line until something else is heard.
+    # A straight line until something else is reported.
     assert (vessel.at(10.0).north, vessel.at(10.0).east) == pytest.approx((150.0, -20.0), abs=1e-12)
 
 
@@ -112,7 +112,7 @@ def test_a_late_report_counts_for_when_it_was_true():
 
 def test_exact_reports_give_exact_states_and_find_the_acceleration():
     vessel = make(position_sigma=0.0, velocity_sigma=0.0)
-    # 6 m/s, speeding up northward by 0.1 m/s^2, heard every half a second, as with exact knowledge.
+    # 6 m/s, speeding up northward by 0.1 m/s^2, reported every half a second, as with exact knowledge.
     for step in range(200):
         time = 0.5 * step
         vessel.report(VesselReport(time, 6.0 * time + 0.05 * time**2, 0.0, 6.0 + 0.1 * time, 0.0))
@@ -143,16 +143,16 @@ def test_it_knows_how_wrong_it_is_about_the_manoeuvres_that_it_reckons_with():
         vessel = make()
         time = 0.0
 
-        def heard(truth, time, vessel=vessel):
+        def report(truth, time, vessel=vessel):
             noise = np.array([[POSITION], [VELOCITY]]) * rng.standard_normal((2, 2))
             place, velocity = truth[:2] + noise
             vessel.report(VesselReport(time, place[0], place[1], velocity[0], velocity[1]))
 
-        heard(truth, time)
+        report(truth, time)
         for gap, (transition, root) in zip(gaps, models, strict=True):
             time += gap
             truth = transition @ truth + root @ rng.standard_normal((3, 2))
-            heard(truth, time)
+            report(truth, time)
         error = np.array([vessel._north, vessel._east]).T - truth
         normalised.append(np.sum(error * np.linalg.solve(matrix(vessel._covariance), error)))
     # Six degrees of freedom a flight, independent flights; the limits hold for all but one set of seeds in 500.

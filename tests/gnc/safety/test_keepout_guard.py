@@ -4,7 +4,7 @@ from collections import deque
 
 import numpy as np
 import pytest
-from gnc_cases import HEADING_RATE_MAX, SPEED, courses, examples, fly, guidance_parameters, make_guidance, paper_oscillation
+from gnc_cases import HEADING_RATE_MAX, SPEED, courses, examples, fly, make_guidance, make_reference, paper_oscillation
 from guard_cases import (
     LAGS,
     RADIUS,
@@ -208,7 +208,7 @@ def test_a_vehicle_that_a_growing_radius_overtakes_flies_straight_away_from_it(w
     guard, state = make_guard(), (0.0, 210.0, 1.0, 0.0)
     for _ in range(200):
         x, y, course, turn = state
-        # As of a vessel that is not heard of, whose disc grows faster than the vehicle flies.
+        # As of a vessel that does not report, whose disc grows faster than the vehicle flies.
         command = guard.limit(want, x, y, 0.0, 0.0, course, SPEED, turn, radius_inflation=5000.0)
         assert guard.lost
         state = moved(state, command, 0.4, TIME_STEP)
@@ -248,10 +248,11 @@ def test_it_stays_with_the_side_that_was_safe():
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.6, 0.9])
 def test_on_the_settled_orbit_it_never_intervenes(nu):
-    # The orbit stays 1 m off r_min, of which the guard keeps 0.75 m (scenarios/planning/planner.py).
+    # The orbit stays 1 m off r_min, of which the guard keeps 0.75 m (scenarios/planning/tracking_flight.py).
     oscillation = paper_oscillation(nu, reserve=0.015)
     centre = (-distance_by_paper(oscillation, PlumeAxis(heading=math.pi), RADIUS + 1.0), 0.0)
-    guidance = make_guidance(guidance_parameters(), oscillation, centre=centre, guard=make_guard(lag=0.0, radius=RADIUS + 0.75))
-    reference = guidance.reference
-    fly(guidance, (reference.north, reference.east, reference.course), duration=120.0, vessel=(nu * SPEED, 0.0))
+    reference = make_reference(oscillation, centre=centre)
+    guidance = make_guidance(reference, vessel=(nu * SPEED, 0.0))
+    guidance.guard = make_guard(lag=0.0, radius=RADIUS + 0.75)
+    fly(guidance, (reference.north, reference.east, reference.course), duration=120.0)
     assert guidance.guard.interventions == 0

@@ -10,7 +10,7 @@ from aircraft.fleet.x8 import X8
 from aircraft.units import METRES_PER_FOOT
 from gnc.airspeed.pace_hold import SpeedHold, air_turn, airspeed_to_hold, design_speed_hold
 from gnc.reference.oscillation import Oscillation
-from gnc.tracker import Guidance
+from gnc.tracker import Tracker
 from innerloop.analysis.dryden import dryden_filters, low_altitude_turbulence
 from innerloop.analysis.gust_response import GUSTS
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -26,8 +26,9 @@ from scenarios.margin.tracking_spread import (
     tracking_spread,
 )
 from scenarios.planning.planner import plan_flight
-from scenarios.schema.load import load_scenario, with_values
+from scenarios.schema.load import load_study, with_values
 from scenarios.vehicles.jsbsim import JsbsimVehicle
+from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 MIDDLE = 2
 LIGHT = low_altitude_turbulence(60.0, 7.717)  # 15 knots at 20 ft
@@ -35,9 +36,12 @@ SPREAD = Spread(along=0.4, across=0.3, radial=0.5, radial_rate=0.35, airspeed=1.
 HOLD = SpeedHold(gain=0.3, airspeed_min=15.0, airspeed_max=25.0)
 
 
-def plan(*overrides, lag=0.4):
-    scenario = load_scenario("sweep_nu", ["guidance.keepout_guard=false", *overrides])
-    return scenario, plan_flight(scenario, flight_id="x", nu=0.5, seed=1, lag=lag)
+def plan(**guidance):
+    """Return the plan of a flight at nu = 0.5 of a vehicle with a lag of 0.4 s, half a step of the guidance among them."""
+    values = {"vessel.speed_ratio": 0.5, "guidance.keepout_guard": False}
+    scenario = with_values(load_study("sweep_nu"), values | {f"guidance.{key}": value for key, value in guidance.items()})
+    setup = replace(kinematic_setup(scenario), lag=0.375)
+    return plan_flight(scenario, flight_id="x", seed=1, setup=setup)
 
 
 def test_a_gaussian_process_goes_above_a_level_as_often_as_rice_says():
@@ -116,9 +120,9 @@ def test_gusts_on_an_orbit_vary_as_the_course_makes_them():
 
 
 def test_without_preview_steering_is_the_law_linearised_by_hand():
-    _, flight = plan("guidance.preview=false")
-    speed, radius, gain = 19.42, flight.guidance.law.look_ahead_m, flight.guidance.law.gain_per_s
-    found = dict(zip(STEERED_BY, steering_gains(flight.guidance, 0.0, speed), strict=True))
+    tracking = plan(preview=False).guidance.tracking
+    speed, radius, gain = 19.42, tracking.law.look_ahead_m, tracking.law.gain_per_s
+    found = dict(zip(STEERED_BY, steering_gains(tracking, 0.0, speed), strict=True))
     # Laws (30) and (18) about a straight line, delta = rho = R: omega = -k (chi - e/R) - V chi/R, with e the reference's offset to
     # the right. Differences of 1e-5 are good to 1e-6.
     assert found["right"] == pytest.approx(gain / radius, rel=1e-5)
@@ -128,9 +132,9 @@ def test_without_preview_steering_is_the_law_linearised_by_hand():
 
 
 def test_a_slow_gust_is_given_as_airspeed_and_leaves_no_error(x8_schedule):
-    _, flight = plan()
+    tracking = plan().guidance.tracking
     slow = np.array([1e-4])
-    response = np.abs(tracking_response(x8_schedule, MIDDLE, LEVEL_GAINS, flight.guidance, HOLD, 19.42, slow))[0]
+    response = np.abs(tracking_response(x8_schedule, MIDDLE, LEVEL_GAINS, tracking, HOLD, 19.42, slow))[0]
     along = GUSTS.index("gust_along")
     # At 1e-4 rad/s an airspeed loop of 1 rad/s lacks no more than 1e-3 of the gust, and a gain of 0.3 makes that 3.3 mm.
     assert response[RESPONSES.index("pace"), along] == pytest.approx(1.0, rel=1e-3)
@@ -140,29 +144,28 @@ def test_a_slow_gust_is_given_as_airspeed_and_leaves_no_error(x8_schedule):
 def fly_in_turbulence(root, start, flight, hold, seed):
     """Errors along and across [m], settled, at 20 Hz, of a flight that starts on its reference."""
     aircraft = AutopilotedAircraft(X8, root)
-    reference = flight.reference
+    tracker = Tracker(flight.guidance.tracking, flight.guidance.mission.reference)
+    reference = tracker.reference
     vehicle = JsbsimVehicle(
         aircraft, start, X8.envelope, north=reference.north, east=reference.east, altitude=60.0, course=reference.course,
-        time_step=flight.guidance.time_step,
+        time_step=flight.time_step,
     )  # fmt: skip
     milspec = "atmosphere/turbulence/milspec"
     aircraft.fdm.write("atmosphere/randomseed", seed)
     aircraft.fdm.write("atmosphere/turb-type", 4)
     aircraft.fdm.write(f"{milspec}/windspeed_at_20ft_AGL-fps", 10.0 * LIGHT.vertical / METRES_PER_FOOT)
     aircraft.fdm.write(f"{milspec}/severity", 3)
-    guidance = Guidance(flight.guidance, reference)
-    reference = guidance.reference
     errors = []
-    for _ in range(round(300.0 / flight.guidance.time_step)):
+    for _ in range(round(300.0 / flight.time_step)):
         north, east, v_north, v_east, rate = vehicle.motion()
         speed, airspeed, course = math.hypot(v_north, v_east), vehicle.sample()[1], math.atan2(v_east, v_north)
         to_north, to_east = reference.north - north, reference.east - east
         cos, sin = math.cos(reference.course), math.sin(reference.course)
         along, across = to_north * cos + to_east * sin, to_east * cos - to_north * sin
         errors.append((along, across))
-        guidance.step(north, east, course, speed, air_turn(rate, speed=airspeed, airspeed=speed))
+        command = tracker.step(north, east, course, speed, air_turn(rate, speed=airspeed, airspeed=speed))
         vehicle.advance(
-            air_turn(guidance.heading_rate_command, speed=speed, airspeed=airspeed),
+            air_turn(command, speed=speed, airspeed=airspeed),
             airspeed_to_hold(hold, along=along, reference_speed=reference.speed, speed=speed, airspeed=airspeed),
         )
     return np.array(errors[600:])  # 30 s: three of the slowest gusts' times, to grow from smooth air
@@ -171,17 +174,16 @@ def fly_in_turbulence(root, start, flight, hold, seed):
 def test_light_turbulence_spreads_flights_as_predicted_and_the_margin_holds_them(x8_design, x8_root):
     schedule = x8_design.schedule
     start = schedule.level(MIDDLE)  # of 20 m/s, near enough to be settled after 30 s
-    scenario = load_scenario("sweep_nu", ["guidance.keepout_guard=false"])
     # A reserve that leaves no command at its limit, which the linear model does not have.
-    flight = plan_flight(with_values(scenario, {"guidance.reserve": 0.15}), flight_id="x", nu=0.5, seed=1, lag=0.4)
+    flight = plan(reserve=0.15)
     hold = design_speed_hold(
         bandwidth=x8_design.bandwidths.airspeed,
-        speed=flight.reference.speed,
-        look_ahead=flight.guidance.law.look_ahead_m,
+        speed=flight.guidance.speed,
+        look_ahead=flight.guidance.tracking.law.look_ahead_m,
         airspeed_min=X8.envelope.airspeed_min,
         airspeed_max=X8.envelope.airspeed_max,
     )
-    spread = tracking_spread(schedule, LIGHT, flight.mission.oscillation, flight.guidance, hold, span=2.1)
+    spread = tracking_spread(schedule, LIGHT, flight.oscillation, flight.guidance.tracking, hold, span=2.1)
     errors = np.vstack([fly_in_turbulence(x8_root, start, flight, hold, seed) for seed in range(1, 5)])
     along, across = np.sqrt(np.mean(errors**2, axis=0))
     # 18 minutes of errors that last 5 s are 200 independent ones: 5 % of their deviation, 15 % three times over. Thirty flights

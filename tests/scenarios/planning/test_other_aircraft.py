@@ -15,7 +15,7 @@ from innerloop.designs.designer import DesignError
 from reports.build import build_reports
 from scenarios.errors import InputError
 from scenarios.run import command
-from scenarios.schema.load import load_scenario
+from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
@@ -26,7 +26,7 @@ LOOSE = ["criteria.crossing_interval_error=0.1", "criteria.tracking_error_rms_m=
 
 
 def run(path, *overrides, name="sweep_nu"):
-    return run_study(load_scenario(name, [*SHORT, *overrides]), name, path)
+    return run_study(load_study(name, [*SHORT, *overrides]), name, path)
 
 
 def exit_status(path, *overrides):
@@ -43,7 +43,7 @@ def refuse(monkeypatch):
         def designed(*_):
             raise error
 
-        monkeypatch.setattr("scenarios.vehicles.six_dof.designed", designed)
+        monkeypatch.setattr("scenarios.vehicles.vehicle_setup.designed", designed)
 
     return refuse
 
@@ -51,7 +51,7 @@ def refuse(monkeypatch):
 @pytest.mark.parametrize("name", ["737", "787-8", "c172x"])
 def test_an_aircraft_is_named_as_its_model_is_whatever_toml_makes_of_it(name):
     # 737 is an integer in TOML, and 787-8 is not TOML at all.
-    scenario = load_scenario("sweep_nu", [f"aircraft={name}"])
+    scenario = load_study("sweep_nu", [f"aircraft={name}"])
     assert scenario.aircraft == name
     assert find_spec(scenario.aircraft).model == name
 
@@ -95,7 +95,7 @@ def test_flights_that_were_refused_are_done_and_are_not_tried_again(refuse, tmp_
     run(tmp_path / "run")
     told = []
     again = run_study(
-        load_scenario("sweep_nu", SHORT), "x", tmp_path / "run", resume=True, progress=lambda *report: told.append(report)
+        load_study("sweep_nu", SHORT), "sweep_nu", tmp_path / "run", resume=True, progress=lambda *report: told.append(report)
     )
     assert again.summary.done == 1
     assert [row["outcome"] for row in rows_of(tmp_path / "run")] == ["trim_failed"]
@@ -124,7 +124,7 @@ def test_the_kinematic_vehicle_alone_needs_no_design(refuse, tmp_path):
 
 def test_aircraft_that_differ_from_flight_to_flight_are_refused(tmp_path):
     variants = 'comparison={ nu = [0.5], variants = [{ name = "other", set = { aircraft = "aerosonde" } }] }'
-    scenario = load_scenario("sweep_nu", ["sweep.nu=[0.5]", variants])
+    scenario = load_study("sweep_nu", ["sweep.nu=[0.5]", variants])
     with pytest.raises(InputError, match="flights differ in aircraft"):
         run_study(scenario, "x", tmp_path / "run")
 
@@ -135,8 +135,8 @@ def test_the_range_of_airspeeds_is_named_where_it_is_left(tmp_path):
     assert not (tmp_path / "run").exists()
 
 
-def test_no_test_touches_the_users_own_designs(session_cache):
-    assert cache_directory().is_relative_to(session_cache)
+def test_no_test_touches_the_users_own_designs(cache_home):
+    assert cache_directory().is_relative_to(cache_home)
 
 
 def test_the_reports_of_a_refused_aircraft_name_it(refuse, tmp_path):

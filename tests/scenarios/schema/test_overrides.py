@@ -7,7 +7,7 @@ from scenarios.errors import InputError
 from scenarios.schema.keys import known_keys
 from scenarios.schema.load import load_document, load_study
 from scenarios.schema.overrides import given_keys, merged, set_value
-from scenarios.schema.sea_config import SeaScenario
+from scenarios.schema.scenario import Scenario
 
 
 def write(folder, name, text):
@@ -33,7 +33,7 @@ def refusal(name, *overrides):
         ("wind.direction=3", "unknown key 'wind.direction'; known in wind are speed_mps, from_deg"),
         ("vessel.manoeuvres=[{at_s=1, turn_dg=3}]", "did you mean 'vessel.manoeuvres.0.turn_deg'?"),
         ("turbulence.level=sever", "turbulence.level: value is 'sever'; did you mean 'severe'? it must be 'none', 'light'"),
-        ("guidance.law=lyapunow", "guidance.law: value is 'lyapunow'; did you mean 'lyapunov'?"),
+        ("guidance.law=lyapunow", "guidance.law: unknown steering law 'lyapunow'; did you mean 'lyapunov'? known are cascade"),
         ("study=monte_karlo", "study is 'monte_karlo'; did you mean 'monte_carlo'? it must be one of"),
         ("extends=sim3", "extends stands in a scenario file"),
     ],
@@ -69,12 +69,12 @@ def test_an_entry_of_a_list_that_does_not_exist_is_an_unknown_key():
 
 
 def test_a_file_with_a_byte_order_mark_is_read(tmp_path):
-    path = write(tmp_path, "marked.toml", '\ufeffstudy = "sea"\ntitle = "marked"\n')
+    path = write(tmp_path, "marked.toml", '\ufeffstudy = "flights"\ntitle = "marked"\n')
     assert load_study(path).title == "marked"
 
 
 def test_known_keys_go_through_sections_and_lists_of_sections():
-    keys = known_keys(SeaScenario)
+    keys = known_keys(Scenario)
     assert {"wind", "wind.speed_mps", "vessel.manoeuvres", "vessel.manoeuvres.0.at_s", "draws.0.key"} <= set(keys)
     assert len(keys) == len(set(keys))
 
@@ -89,7 +89,7 @@ def test_a_file_extends_a_scenario_of_the_catalog(tmp_path):
 
 def test_a_chain_of_files_is_resolved_relative_to_each_file(tmp_path):
     (tmp_path / "bases").mkdir()
-    write(tmp_path / "bases", "first.toml", 'study = "sea"\ntitle = "first"\n[wind]\nspeed_mps = 3.0\nfrom_deg = 10.0\n')
+    write(tmp_path / "bases", "first.toml", 'study = "flights"\ntitle = "first"\n[wind]\nspeed_mps = 3.0\nfrom_deg = 10.0\n')
     write(tmp_path / "bases", "second.toml", 'extends = "first.toml"\n[wind]\nspeed_mps = 4.0\n')
     path = write(tmp_path, "third.toml", 'extends = "bases/second.toml"\ntitle = "third"\n[vessel]\nspeed_mps = 5.0\n')
     third = load_study(path)
@@ -98,7 +98,7 @@ def test_a_chain_of_files_is_resolved_relative_to_each_file(tmp_path):
 
 
 def test_overrides_come_after_what_a_file_extends(tmp_path):
-    write(tmp_path, "base.toml", 'study = "sea"\ntitle = "base"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n')
+    write(tmp_path, "base.toml", 'study = "flights"\ntitle = "base"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n')
     path = write(tmp_path, "own.toml", 'extends = "base.toml"\n')
     assert len(load_study(path).draws) == 1
     own = load_study(path, ["wind.speed_mps=2"])
@@ -129,7 +129,7 @@ def test_what_cannot_be_extended_is_refused_in_one_line(tmp_path, extends, words
 
 
 def test_given_keys_are_those_of_the_file_its_base_and_the_overrides(tmp_path):
-    write(tmp_path, "base.toml", 'study = "sea"\ntitle = "base"\n[wind]\nspeed_mps = 3.0\n[sensors]\n')
+    write(tmp_path, "base.toml", 'study = "flights"\ntitle = "base"\n[wind]\nspeed_mps = 3.0\n[sensors]\n')
     path = write(tmp_path, "own.toml", 'extends = "base.toml"\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 5.0]\n')
     document = load_document(path, ["guidance.preview=false"])
     assert given_keys(document) == {"study", "title", "wind.speed_mps", "sensors", "draws", "guidance.preview"}

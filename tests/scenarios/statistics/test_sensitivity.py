@@ -61,7 +61,7 @@ def test_the_names_of_categories_and_the_order_of_flights_given_do_not_matter_to
     inputs, figure = words_and_noise()
     renamed = inputs.replace({"turbulence.level": {"light": "zephyr", "severe": "gale"}})
     backwards = sensitivity_indices(renamed.iloc[::-1], figure[::-1], confidence=0.95, seed=2)
-    # As close to 1/2 as in the first test: only what is drawn by lot differs.
+    # As close to 1/2 as in the first test: only what is sampled at random differs.
     assert backwards.inputs[0].delta == pytest.approx(0.5, abs=0.03)
 
 
@@ -98,7 +98,7 @@ def test_inputs_that_say_nothing_are_left_out_with_the_reason_and_the_others_sta
     left = sensitivity_indices(inputs, figure, confidence=0.95, seed=1)
     assert left.left_out == {
         "keepout.radius_m": "the same in every flight",
-        "reports.missing": "not drawn for every flight",
+        "reports.missing": "not sampled for every flight",
     }
     assert [index.key for index in left.inputs] == [index.key for index in found.inputs]
 

@@ -34,7 +34,7 @@ def test_all_looks_together_spend_what_the_confidence_leaves_and_no_more():
     assert spent == pytest.approx(0.05 * (1.0 - 1.0 / 2001.0), rel=1e-9)
 
 
-def stopped_wrongly(confidences, *, probability, wanted, seed=20261121, studies=20_000):
+def stopped_wrongly(confidences, *, probability, asked, seed=20261121, studies=20_000):
     """Return the share of simulated studies whose bound, at the look that they stop at, lies below the true probability."""
     numbers = looks(8192)
     generator = np.random.default_rng(seed)
@@ -44,7 +44,7 @@ def stopped_wrongly(confidences, *, probability, wanted, seed=20261121, studies=
     for i, (number, confidence) in enumerate(zip(numbers, confidences, strict=True)):
         table = np.array([upper_bound(e, number, confidence) for e in range(int(events[:, i].max()) + 1)])
         bounds[:, i] = table[events[:, i]]
-    stops = bounds <= wanted
+    stops = bounds <= asked
     stops[:, -1] = True
     bound = bounds[np.arange(studies), np.argmax(stops, axis=1)]
     return float(np.mean(bound < probability))
@@ -52,16 +52,16 @@ def stopped_wrongly(confidences, *, probability, wanted, seed=20261121, studies=
 
 def test_the_bound_at_the_stop_holds_as_often_as_stated_and_would_not_if_alpha_were_not_spent():
     # Just above what is asked for, so that every study that stops early is wrong.
-    probability, wanted, confidence = 0.0205, 0.02, 0.95
+    probability, asked, confidence = 0.0205, 0.02, 0.95
     numbers = range(1, len(looks(8192)) + 1)
-    spent = stopped_wrongly([confidence_at(k, confidence) for k in numbers], probability=probability, wanted=wanted)
-    naive = stopped_wrongly([confidence] * len(numbers), probability=probability, wanted=wanted)
+    spent = stopped_wrongly([confidence_at(k, confidence) for k in numbers], probability=probability, asked=asked)
+    naive = stopped_wrongly([confidence] * len(numbers), probability=probability, asked=asked)
     # A share of 20,000 has a deviation of at most 0.0025: three of them on either side.
     assert spent <= 0.05 + 0.0075
     assert naive > 0.05 + 0.0075
 
 
-def test_a_study_stops_once_violations_are_bounded_as_wanted():
+def test_a_study_stops_once_violations_are_bounded_as_asked():
     rows = rows_with(np.full(512, 210.0))
     bound = upper_bound(0, 512, confidence_at(2, 0.95))
     assert tight_enough(rows, look_number=2, confidence=0.95, violation_upper=bound)
@@ -81,13 +81,13 @@ def test_flights_that_may_have_entered_do_not_let_a_study_stop(distance, outcome
     assert tight_enough(rows, look_number=1, confidence=0.95, violation_upper=upper_bound(1, 512, confidence_at(1, 0.95)))
 
 
-def test_a_study_stops_once_a_quantile_of_the_closest_approach_is_known_as_well_as_wanted():
+def test_a_study_stops_once_a_quantile_of_the_closest_approach_is_known_as_well_as_asked():
     # Evenly spread over 100 m: the median of 512 lies between order statistics some 26 either side of it (deviation 11.3, and
     # 2.24 of them at 0.975), 0.195 m apart: 10.2 m.
     rows = rows_with(200.0 + np.arange(512) * 100.0 / 512.0)
-    wanted = {"look_number": 1, "confidence": 0.95, "distance_quantile": 0.5}
-    assert tight_enough(rows, **wanted, distance_quantile_width_m=11.0)
-    assert not tight_enough(rows, **wanted, distance_quantile_width_m=9.0)
+    asked = {"look_number": 1, "confidence": 0.95, "distance_quantile": 0.5}
+    assert tight_enough(rows, **asked, distance_quantile_width_m=11.0)
+    assert not tight_enough(rows, **asked, distance_quantile_width_m=9.0)
     # 256 flights are too few for an interval of the 1 % quantile that ends on both sides: 0.99^256 is 0.08.
     few = {"look_number": 1, "confidence": 0.95, "distance_quantile_width_m": 1e6}
     assert not tight_enough(rows.head(256), **few)
@@ -95,10 +95,10 @@ def test_a_study_stops_once_a_quantile_of_the_closest_approach_is_known_as_well_
 
 def test_both_of_two_wishes_have_to_be_met():
     rows = rows_with(200.0 + np.arange(512) * 100.0 / 512.0)
-    wanted = {"look_number": 1, "confidence": 0.95, "distance_quantile": 0.5}
-    assert tight_enough(rows, **wanted, violation_upper=0.01, distance_quantile_width_m=11.0)
-    assert not tight_enough(rows, **wanted, violation_upper=0.001, distance_quantile_width_m=11.0)
-    assert not tight_enough(rows, **wanted, violation_upper=0.01, distance_quantile_width_m=9.0)
+    asked = {"look_number": 1, "confidence": 0.95, "distance_quantile": 0.5}
+    assert tight_enough(rows, **asked, violation_upper=0.01, distance_quantile_width_m=11.0)
+    assert not tight_enough(rows, **asked, violation_upper=0.001, distance_quantile_width_m=11.0)
+    assert not tight_enough(rows, **asked, violation_upper=0.01, distance_quantile_width_m=9.0)
 
 
 def test_a_stop_for_nothing_and_looks_that_cannot_be_are_refused():

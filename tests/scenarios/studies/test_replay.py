@@ -16,7 +16,7 @@ from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from tests.scenarios.short_trial import short_trial
 
-SEA = short_trial(flights=3, duration=10.0, histories=3, spread=180.0)
+TRIAL = short_trial(flights=3, duration=10.0, histories=3, spread=180.0)
 
 
 @pytest.fixture(scope="module")
@@ -24,11 +24,11 @@ def runs(tmp_path_factory):
     """A list of two trials, and a sweep with a comparison."""
     folder = tmp_path_factory.mktemp("runs")
     for name in ("one", "two"):
-        (folder / f"{name}.toml").write_text(SEA, encoding="utf-8")
+        (folder / f"{name}.toml").write_text(TRIAL, encoding="utf-8")
     trials = json.dumps([str(folder / "one.toml"), str(folder / "two.toml")])
-    (folder / "list.toml").write_text(f'study = "sea_trial"\ntitle = "two"\ntrials = {trials}\n', encoding="utf-8")
-    run_study(load_study(str(folder / "list.toml")), "list", folder / "sea")
-    sweep = ["fidelity=kinematic", "sweep.nu=[0.5]", "comparison.nu=[0.5]", "flight.crossings=3"]
+    (folder / "list.toml").write_text(f'study = "trials"\ntitle = "two"\ntrials = {trials}\n', encoding="utf-8")
+    run_study(load_study(str(folder / "list.toml")), "list", folder / "trials")
+    sweep = ["fidelity=kinematic", "sweep.nu=[0.3, 0.5]", "comparison.nu=[0.5]", "flight.crossings=3"]
     run_study(load_study("sweep_nu", sweep), "sweep_nu", folder / "sweep")
     # Neither is needed any more.
     (folder / "two.toml").unlink()
@@ -42,8 +42,8 @@ def replay(name, out):
 @pytest.mark.parametrize(
     ("run", "flight_id", "table"),
     [
-        ("sea", "one_00000", "summary.csv"),
-        ("sea", "two_00002", "summary.csv"),
+        ("trials", "one_00000", "summary.csv"),
+        ("trials", "two_00002", "summary.csv"),
         ("sweep", "nu_0.50", "summary.csv"),
         ("sweep", "nu_0.50_no_preview", "comparison.csv"),
     ],
@@ -63,7 +63,7 @@ def test_a_flight_is_flown_again_identically_with_every_step_of_the_guidance(run
     assert steps["time_s"].diff()[1:].to_numpy() == pytest.approx(0.05, abs=1e-9)
 
 
-@pytest.mark.parametrize(("run", "flight_id"), [("sea", "two_00001.parquet"), ("sweep", "nu_0.50_no_preview")])
+@pytest.mark.parametrize(("run", "flight_id"), [("trials", "two_00001.parquet"), ("sweep", "nu_0.50_no_preview")])
 def test_a_report_of_one_flight_is_about_that_flight(runs, tmp_path, run, flight_id):
     replay(runs / run / "flights" / flight_id, tmp_path / "again")
     report = content(read_run(tmp_path / "again"))
@@ -74,7 +74,7 @@ def test_a_report_of_one_flight_is_about_that_flight(runs, tmp_path, run, flight
 
 
 def test_a_flight_that_goes_another_way_is_told_with_what_has_changed(runs, tmp_path):
-    copy = shutil.copytree(runs / "sea", tmp_path / "copy")
+    copy = shutil.copytree(runs / "trials", tmp_path / "copy")
     manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
     # As if it had been flown from another distance by another version.
     manifest["trials"]["one"]["start"]["distance_m"] = [500.0, 520.0]
@@ -88,21 +88,21 @@ def test_a_flight_that_goes_another_way_is_told_with_what_has_changed(runs, tmp_
 
 
 def test_a_flight_that_was_flown_again_is_not_flown_again_from_there(runs, tmp_path):
-    replay(runs / "sea" / "flights" / "two_00001", tmp_path / "again")
+    replay(runs / "trials" / "flights" / "two_00001", tmp_path / "again")
     with pytest.raises(InputError, match="is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run"):
         Replay(str(tmp_path / "again" / "flights" / "two_00001"))
 
 
 def test_only_what_lies_in_a_run_is_a_flight(runs, tmp_path):
-    assert is_flight(str(runs / "sea" / "flights" / "one_00000"))
+    assert is_flight(str(runs / "trials" / "flights" / "one_00000"))
     assert not is_flight("sweep_nu")
     assert not is_flight(str(tmp_path / "flights" / "one_00000"))
 
 
 def test_what_cannot_be_flown_again_is_refused_in_one_line(runs, tmp_path):
     with pytest.raises(InputError, match=r"has no flight 'three_00000'; its summary\.csv lists them"):
-        Replay(str(runs / "sea" / "flights" / "three_00000"))
-    copy = shutil.copytree(runs / "sea", tmp_path / "copy")
+        Replay(str(runs / "trials" / "flights" / "three_00000"))
+    copy = shutil.copytree(runs / "trials", tmp_path / "copy")
     (copy / "journal.sqlite").unlink()
     with pytest.raises(InputError, match=r"has no journal\.sqlite"):
         Replay(str(copy / "flights" / "one_00000"))

@@ -3,11 +3,11 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.schema.sea_config import Sensors
+from scenarios.schema.equipment import SensorsConfig
 from scenarios.vehicles.sensors import SensorErrors
 
 TIME_STEP = 0.05
-SENSORS = Sensors(
+SENSORS = SensorsConfig(
     position_sigma_m=1.5,
     velocity_sigma_mps=0.1,
     airspeed_sigma_mps=0.3,
@@ -32,7 +32,7 @@ def readings(made, steps):
 
 
 def test_without_errors_sensors_tell_the_truth():
-    position, airspeed, heading = errors(Sensors(), steps=2).read(1, MOTION, 19.0, 0.5, satellites=True)
+    position, airspeed, heading = errors(SensorsConfig(), steps=2).read(1, MOTION, 19.0, 0.5, satellites=True)
     assert (position, airspeed, heading) == (MOTION[:4], 19.0, 0.5)
 
 

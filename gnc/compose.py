@@ -1,0 +1,53 @@
+"""The one place where the parts of the guidance are chosen, from frozen parameters."""
+
+from dataclasses import asdict
+
+from gnc.estimation.health_monitor import HealthMonitor
+from gnc.estimation.own_motion import EstimatedNavigation, OwnMotion, TrueNavigation
+from gnc.estimation.target_motion import ReportedTarget, SteadyTarget, TargetMotion
+from gnc.estimation.vessel_filter import VesselFilter
+from gnc.guidance import Guidance
+from gnc.mission.direct_tracking import DirectTracking
+from gnc.mission.mission import Mission
+from gnc.mission.plume_following import FollowingParameters, PlumeFollowing
+from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters
+from gnc.safety.keepout_guard import KeepoutGuard
+
+
+def keepout_guard(parameters: GuardParameters) -> KeepoutGuard:
+    """Return a fresh keep-out guard."""
+    return KeepoutGuard(**asdict(parameters))
+
+
+def vessel_filter(parameters: FilterParameters) -> VesselFilter:
+    """Return a fresh filter for a vessel's reports."""
+    return VesselFilter(**asdict(parameters))
+
+
+def compose(parameters: GuidanceParameters) -> Guidance:
+    """Return the guidance of one flight, fresh."""
+    p = parameters
+    own: OwnMotion = EstimatedNavigation(p.navigation) if p.navigation else TrueNavigation()
+    target: TargetMotion
+    if isinstance(p.vessel, FilterParameters):
+        target = ReportedTarget(vessel_filter(p.vessel), p.tracking.time_step)
+    else:
+        target = SteadyTarget(*p.vessel)
+    guard = keepout_guard(p.guard) if p.guard else None
+    mission: Mission
+    if isinstance(p.mission, FollowingParameters):
+        mission = PlumeFollowing(p.mission, p.tracking, own=own, target=target, guard=guard)
+    else:
+        mission = DirectTracking(p.mission, p.tracking, own=own, target=target, guard=guard, altitude=p.altitude)
+    return Guidance(
+        own=own,
+        target=target,
+        mission=mission,
+        guard=guard,
+        airspeed_law=p.airspeed_law,
+        monitor=HealthMonitor(p.health) if p.health else None,
+        speed=p.speed,
+        heading_rate_max=p.tracking.heading_rate_max,
+        altitude=p.altitude,
+        plan_interval=p.mission.plan_interval,
+    )

@@ -1,0 +1,118 @@
+"""Where the vehicle is and how it moves, in the frame of the air mass: as it is, or estimated from sensors."""
+
+import math
+from typing import Any, Protocol
+
+from gnc.estimation.navigation import Navigation, NavigationParameters
+
+Motion = tuple[float, float, float, float, float]
+"""North, east [m], north and east velocity over the ground [m/s], rate of the course [rad/s]."""
+
+Readings = tuple[tuple[float, float, float, float] | None, float, float, float, float, float]
+"""What sensors on board say.
+
+Position and velocity over the ground by satellite navigation, if there is any [m, m/s]; airspeed [m/s]; heading and roll [rad];
+rate of the course against the air [rad/s]; error of the control surface that is farthest from its command, over its travel [-].
+"""
+
+_SPEED_MIN = 1.0
+"""Speed below which the ratio of airspeed to speed over the mean air is not formed [m/s]: no vehicle flies as slowly."""
+
+
+class OwnMotion(Protocol):
+    """The vehicle's motion, updated once per guidance step.
+
+    The guidance works in the frame of the mean air, which drifts with the wind and is that of the ground in still air.
+
+    Attributes
+    ----------
+    north, east : in the frame of the air mass [m]
+    course, speed : of the motion through the mean air, from -pi to pi [rad, m/s]
+    heading_rate : of that course [rad/s]
+    ground_north, ground_east : over the ground [m]
+    drift_north, drift_east : how far the frame of the air mass has drifted [m]
+    wind_north, wind_east : velocity of the air mass [m/s]
+    airspeed : as measured, against gusty air [m/s]
+    air_ratio : airspeed over the speed through the mean air [-]
+    lost : for how long there has been no satellite navigation [s]
+    """
+
+    north: float
+    east: float
+    course: float
+    speed: float
+    heading_rate: float
+    ground_north: float
+    ground_east: float
+    drift_north: float
+    drift_east: float
+    wind_north: float
+    wind_east: float
+    airspeed: float
+    air_ratio: float
+    lost: float
+
+    def update(self, measurement: Any) -> None:
+        """Take in what is measured now, in the form that this navigation takes."""
+
+
+class TrueNavigation:
+    """The motion as it is, in still air; attributes as of ``OwnMotion``."""
+
+    __slots__ = (
+        "air_ratio", "airspeed", "course", "drift_east", "drift_north", "east", "ground_east", "ground_north", "heading_rate",
+        "lost", "north", "speed", "wind_east", "wind_north",
+    )  # fmt: skip
+
+    def __init__(self) -> None:
+        self.drift_north = self.drift_east = self.wind_north = self.wind_east = self.lost = 0.0
+        self.north = self.east = self.ground_north = self.ground_east = 0.0
+        self.course = self.speed = self.heading_rate = 0.0
+        self.air_ratio, self.airspeed = 1.0, math.nan
+
+    def update(self, measurement: Motion) -> None:
+        """Take in the motion now."""
+        north, east, v_north, v_east, self.heading_rate = measurement
+        self.north = self.ground_north = north
+        self.east = self.ground_east = east
+        self.course = math.atan2(v_east, v_north)
+        self.speed = math.hypot(v_north, v_east)
+
+
+class EstimatedNavigation:
+    """The motion estimated from sensors, with an estimate of the wind; attributes as of ``OwnMotion``.
+
+    An autopilot turns against the gusty air, the guidance over the mean air: ``gnc.airspeed.pace_hold.air_turn``.
+
+    Parameters
+    ----------
+    parameters : of the navigation
+    """
+
+    __slots__ = (
+        "_navigation", "air_ratio", "airspeed", "course", "drift_east", "drift_north", "east", "ground_east", "ground_north",
+        "heading_rate", "lost", "north", "speed", "wind_east", "wind_north",
+    )  # fmt: skip
+
+    def __init__(self, parameters: NavigationParameters) -> None:
+        self._navigation = Navigation(parameters)
+        self.drift_north = self.drift_east = self.wind_north = self.wind_east = self.lost = 0.0
+        self.north = self.east = self.ground_north = self.ground_east = 0.0
+        self.course = self.speed = self.heading_rate = self.airspeed = 0.0
+        self.air_ratio = 1.0
+
+    def update(self, measurement: Readings) -> None:
+        """Take in what the sensors say now."""
+        position, airspeed, heading, roll, heading_rate, _ = measurement
+        navigation = self._navigation
+        navigation.update(position, airspeed, heading, roll)
+        wind = navigation.wind
+        self.wind_north, self.wind_east = wind_north, wind_east = wind.north, wind.east
+        v_north, v_east = navigation.velocity_north - wind_north, navigation.velocity_east - wind_east
+        self.course, self.speed = math.atan2(v_east, v_north), math.hypot(v_north, v_east)
+        self.airspeed, self.lost = airspeed, navigation.lost
+        self.ground_north, self.ground_east = north, east = navigation.north, navigation.east
+        self.drift_north, self.drift_east = navigation.drift_north, navigation.drift_east
+        self.north, self.east = north - self.drift_north, east - self.drift_east
+        self.air_ratio = max(airspeed, _SPEED_MIN) / max(self.speed, _SPEED_MIN)
+        self.heading_rate = heading_rate * self.air_ratio

@@ -1,0 +1,99 @@
+"""Where the vessel is taken to be, and how it moves: known exactly, or from its reports."""
+
+from typing import Protocol
+
+from gnc.estimation.vessel_filter import VesselFilter
+
+
+class TargetMotion(Protocol):
+    """The vessel's motion over the ground, updated once per guidance step.
+
+    Attributes
+    ----------
+    north, east : [m]
+    velocity_north, velocity_east : [m/s]
+    acceleration_north, acceleration_east : when it was last planned [m/s^2]
+    """
+
+    north: float
+    east: float
+    velocity_north: float
+    velocity_east: float
+    acceleration_north: float
+    acceleration_east: float
+
+    def update(self, time: float, planning: bool) -> None:
+        """Move on to ``time`` [s]; look anew at what is known of the vessel where the mission is ``planning``."""
+
+    def age(self, time: float) -> float:
+        """Return how old the last report is at ``time`` [s]."""
+
+
+class SteadyTarget:
+    """A vessel at constant velocity from the origin, known exactly; attributes as of ``TargetMotion``.
+
+    Parameters
+    ----------
+    velocity_north, velocity_east : [m/s]
+    """
+
+    __slots__ = ("acceleration_east", "acceleration_north", "east", "north", "velocity_east", "velocity_north")
+
+    def __init__(self, velocity_north: float, velocity_east: float) -> None:
+        self.velocity_north, self.velocity_east = velocity_north, velocity_east
+        self.north = self.east = self.acceleration_north = self.acceleration_east = 0.0
+
+    def update(self, time: float, planning: bool) -> None:  # noqa: ARG002 - of the Protocol
+        """Move on to ``time`` [s]."""
+        self.north, self.east = self.velocity_north * time, self.velocity_east * time
+
+    def age(self, _time: float) -> float:
+        """Return 0: what is known is true at all times [s]."""
+        return 0.0
+
+
+class ReportedTarget:
+    """A vessel known from its reports through a filter, extrapolated between looks; attributes as of ``TargetMotion``.
+
+    Parameters
+    ----------
+    vessel : the filter; reports go straight to it, the first one before the first update
+    time_step : of the guidance [s]
+    """
+
+    __slots__ = (
+        "_gain_east",
+        "_gain_north",
+        "_time_step",
+        "acceleration_east",
+        "acceleration_north",
+        "east",
+        "north",
+        "velocity_east",
+        "velocity_north",
+        "vessel",
+    )  # fmt: skip
+
+    def __init__(self, vessel: VesselFilter, time_step: float) -> None:
+        self.vessel, self._time_step = vessel, time_step
+        self.north = self.east = self.velocity_north = self.velocity_east = 0.0
+        self.acceleration_north = self.acceleration_east = self._gain_north = self._gain_east = 0.0
+
+    def update(self, time: float, planning: bool) -> None:
+        """Move on to ``time`` [s]; ask the filter anew where the mission is ``planning``."""
+        if planning:
+            vessel = self.vessel.at(time)
+            self.north, self.east = vessel.north, vessel.east
+            self.velocity_north, self.velocity_east = vessel.velocity_north, vessel.velocity_east
+            self.acceleration_north, self.acceleration_east = vessel.acceleration_north, vessel.acceleration_east
+            self._gain_north = self._time_step * vessel.acceleration_north
+            self._gain_east = self._time_step * vessel.acceleration_east
+        else:
+            self.north += self._time_step * self.velocity_north
+            self.east += self._time_step * self.velocity_east
+            self.velocity_north += self._gain_north
+            self.velocity_east += self._gain_east
+
+    def age(self, time: float) -> float:
+        """Return how old the last report is at ``time`` [s]."""
+        return time - self.vessel.time

@@ -1,0 +1,120 @@
+"""The outer loop: from what is measured to commanded heading rate, airspeed and altitude."""
+
+import math
+from typing import Any
+
+from gnc.airspeed.airspeed_law import AirspeedLaw
+from gnc.estimation.health_monitor import HealthMonitor
+from gnc.estimation.own_motion import OwnMotion
+from gnc.estimation.target_motion import TargetMotion
+from gnc.mission.mission import Mission
+from gnc.safety.keepout_guard import KeepoutGuard
+
+
+class Guidance:
+    """The outer loop of one flight, stepped at a fixed rate. ``gnc.compose`` chooses its parts.
+
+    Parameters
+    ----------
+    own, target : motion of the vehicle and of the vessel
+    mission : what to do, and the tracker of its reference
+    guard : of the keep-out area, or none
+    airspeed_law : keeps the vehicle beside its reference
+    monitor : of the vehicle's health, or none
+    speed : V_r [m/s]
+    heading_rate_max : omega_max; no command exceeds it [rad/s]
+    altitude : to hold [m]
+    plan_interval : steps between plans; with 0 there is one plan, in the first step
+
+    Attributes
+    ----------
+    own, target, mission, guard, monitor, plan_interval : as above
+    guarding : whether the keep-out guard changed the last command
+    heading_rate_command, airspeed_command, altitude_command : last commands [rad/s, m/s, m]
+    """
+
+    # Methods of parts are bound once: each is called at every step.
+    __slots__ = (
+        "_airspeed", "_keep_out", "_limit", "_locate", "_plan", "_sense", "_speed", "_until_plan", "airspeed_command",
+        "altitude_command", "guard", "guarding", "heading_rate_command", "mission", "monitor", "own", "plan_interval",
+        "target",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        *,
+        own: OwnMotion,
+        target: TargetMotion,
+        mission: Mission,
+        guard: KeepoutGuard | None,
+        airspeed_law: AirspeedLaw,
+        monitor: HealthMonitor | None,
+        speed: float,
+        heading_rate_max: float,
+        altitude: float,
+        plan_interval: int,
+    ) -> None:
+        self.own, self.target, self.mission, self.guard, self.monitor = own, target, mission, guard, monitor
+        self._sense, self._locate, self._plan = own.update, target.update, mission.plan
+        self._keep_out, self._airspeed = guard.limit if guard is not None else None, airspeed_law.command
+        self._speed, self._limit = speed, heading_rate_max
+        self.plan_interval, self._until_plan = plan_interval, 0
+        self.guarding = False
+        self.heading_rate_command, self.airspeed_command, self.altitude_command = 0.0, speed, altitude
+
+    def step(self, time: float, measurement: Any) -> None:
+        """Compute the commands from what is measured now, then move the reference on by one time step.
+
+        Parameters
+        ----------
+        time : [s]
+        measurement : in the form that the navigation takes
+        """
+        own, target, mission = self.own, self.target, self.mission
+        self._sense(measurement)
+        if self._until_plan:
+            self._until_plan -= 1
+            self._locate(time, False)
+        else:
+            self._until_plan = self.plan_interval - 1
+            self._locate(time, True)
+            self._plan(time)
+            self.altitude_command = mission.altitude
+        monitor = self.monitor
+        if monitor is not None and monitor.check(measurement, self.airspeed_command, self.heading_rate_command):
+            mission.leave(monitor.fault)
+        tracker, overriding, guarding = mission.tracker, mission.overriding, False
+        course, speed, heading_rate, north, east = own.course, own.speed, own.heading_rate, own.north, own.east
+        reference = tracker.reference
+        ahead_of = reference.course
+        along = (reference.north - north) * math.cos(ahead_of) + (reference.east - east) * math.sin(ahead_of)
+        command = tracker.step(north, east, course, speed, heading_rate)
+        if overriding:
+            command = mission.command()
+        keep_out, guard, least = self._keep_out, self.guard, self._speed
+        if keep_out is not None and guard is not None:
+            # A turn away is flown at V_r at least: what an airspeed law has taken from the airspeed comes back in it.
+            command = keep_out(
+                command,
+                own.ground_north - target.north,
+                own.ground_east - target.east,
+                target.velocity_north - own.wind_north,
+                target.velocity_east - own.wind_east,
+                course,
+                speed if speed > least else least,
+                heading_rate,
+                radius_inflation=mission.radius_inflation,
+            )
+            self.guarding = guarding = guard.intervening
+        tracker.heading_rate_command = command
+        command /= own.air_ratio
+        limit = self._limit
+        self.heading_rate_command = command if -limit <= command <= limit else math.copysign(limit, command)
+        if not overriding:
+            self.airspeed_command = self._airspeed(along, own, guarding)
+        elif mission.leaving:
+            self.airspeed_command, self.altitude_command = mission.airspeed, mission.altitude
+        elif guarding:
+            self.airspeed_command = self._airspeed(0.0, own, True)
+        else:
+            self.airspeed_command = mission.airspeed

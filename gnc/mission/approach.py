@@ -1,0 +1,119 @@
+"""The way to the centre of oscillation, round the keep-out area, and when it begins and ends."""
+
+import math
+from dataclasses import dataclass
+
+from gnc.estimation.own_motion import OwnMotion
+from gnc.estimation.target_motion import TargetMotion
+from gnc.mission.transit import Transit
+from gnc.numeric import limited, wrap
+
+COURSE_GAIN = 2.0
+"""Heading rate per course error off the reference, in units of omega_max [-]."""
+
+_BLOCKED_WITHIN = 0.97
+"""A way that comes closer to the vessel than this fraction of the centre's distance is not blocked by the keep-out area [-]."""
+
+_LEFT_AT = 1.5
+"""Distance from the centre at which tracking is given up, over that at which it begins [-]."""
+
+_JOIN_ASPECT, _LEAVE_ASPECT = 1.2, 1.9
+"""Bearing from the plume's axis within which tracking begins, and beyond which it is given up [rad]."""
+
+LOST_TRACK = 3.0
+"""Distance from the reference at which it no longer counts as tracked, over that at which it does [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ApproachParameters:
+    """How the way to the centre goes.
+
+    Attributes
+    ----------
+    blocked_radius, round_radius : a way to the centre that comes closer to the vessel than the first goes round by the second [m]
+    join_distance : from the centre, within which the reference is tracked [m]
+    tracked : distance from the reference that counts as tracked [m]
+    airspeed : on the way [m/s]
+    """
+
+    blocked_radius: float
+    round_radius: float
+    join_distance: float
+    tracked: float
+    airspeed: float
+
+
+class Approach:
+    """Leads to the centre, and says when to track the reference instead.
+
+    Parameters
+    ----------
+    parameters : of the way
+    own, target : motion of the vehicle and of the vessel
+    speed, heading_rate_max, lag : V_r, omega_max, and lag of the vehicle's heading rate behind its command [m/s, rad/s, s]
+    """
+
+    __slots__ = ("_lag", "_limit", "_own", "_parameters", "_target", "_transit")
+
+    def __init__(
+        self,
+        parameters: ApproachParameters,
+        *,
+        own: OwnMotion,
+        target: TargetMotion,
+        speed: float,
+        heading_rate_max: float,
+        lag: float,
+    ) -> None:
+        self._parameters, self._own, self._target = parameters, own, target
+        self._limit, self._lag = heading_rate_max, lag
+        self._transit = Transit(speed / heading_rate_max)
+
+    def course_ahead(self, last_command: float) -> float:
+        """Return the course that the vehicle will have when a command acts [rad], after its last command [rad/s]."""
+        own = self._own
+        return own.course + 0.5 * self._lag * (own.heading_rate + last_command)
+
+    def command(self, centre_x: float, centre_y: float, last_command: float, *, radius_inflation: float) -> float:
+        """Return the heading rate that leads to the centre, round the vessel [rad/s].
+
+        Parameters
+        ----------
+        centre_x, centre_y : of oscillation, north and east of the vessel [m]
+        last_command : of the heading rate [rad/s]
+        radius_inflation : added to the radii of the keep-out area for now [m]
+        """
+        p, own, target = self._parameters, self._own, self._target
+        to = self._transit.course(
+            own.ground_north - target.north,
+            own.ground_east - target.east,
+            centre_x,
+            centre_y,
+            blocked_radius=min(p.blocked_radius + radius_inflation, _BLOCKED_WITHIN * math.hypot(centre_x, centre_y)),
+            round_radius=p.round_radius + radius_inflation,
+            velocity_north=target.velocity_north - own.wind_north,
+            velocity_east=target.velocity_east - own.wind_east,
+            course=own.course,
+            speed=own.speed,
+        )
+        return limited(COURSE_GAIN * self._limit * wrap(to - self.course_ahead(last_command)), self._limit)
+
+    def joins(self, centre_x: float, centre_y: float, axis: float, *, error: float, tracking: bool, guarding: bool) -> bool:
+        """Return whether to track the reference.
+
+        Parameters
+        ----------
+        centre_x, centre_y : of oscillation, north and east of the vessel [m]
+        axis : course along which the plume trails [rad]
+        error : distance from the reference [m]
+        tracking : whether it is tracked
+        guarding : whether the keep-out guard turns the vehicle away
+        """
+        p, own, target = self._parameters, self._own, self._target
+        x, y = own.ground_north - target.north, own.ground_east - target.east
+        off = math.hypot(centre_x - x, centre_y - y)
+        aspect = abs(wrap(math.atan2(y, x) - axis))
+        if not tracking:
+            return off < p.join_distance and aspect < _JOIN_ASPECT and not guarding
+        held_off = guarding and error > LOST_TRACK * p.tracked
+        return off < _LEFT_AT * p.join_distance and aspect < _LEAVE_ASPECT and not held_off

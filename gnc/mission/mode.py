@@ -1,0 +1,27 @@
+"""What the guidance is doing."""
+
+from enum import Enum
+
+
+class Mode(Enum):
+    """What the guidance is doing.
+
+    Attributes
+    ----------
+    number : in a record: its index among all modes
+    """
+
+    number: int
+
+    APPROACH = "approach"
+    TRACKING = "tracking"
+    HOLDING = "holding off"
+    DEAD_RECKONING = "dead reckoning"
+    OUTRUN = "outrun"
+    NO_PLUME = "no plume"
+    GLIDING = "gliding"
+    TERMINATING = "terminating"
+
+
+for _i, _mode in enumerate(Mode):
+    _mode.number = _i

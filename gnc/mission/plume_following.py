@@ -1,0 +1,231 @@
+"""The mission over a moving vessel: approach round it, track a steered reference, hold off while it is uncertain, leave."""
+
+import math
+from dataclasses import dataclass
+
+from gnc.estimation.health import Fault
+from gnc.estimation.own_motion import OwnMotion
+from gnc.estimation.target_motion import TargetMotion
+from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
+from gnc.mission.egress import Egress
+from gnc.mission.mode import Mode
+from gnc.reference.mean_motion import mean_motion
+from gnc.reference.moving_centre import CentreParameters, MovingCentre
+from gnc.reference.steered import SteeredReference
+from gnc.safety.keepout_guard import KeepoutGuard
+from gnc.tracker import Tracker, TrackingParameters
+
+WIDENING_BEGINS = 0.6
+"""Fraction of the age at which vessel data are stale from which the orbit moves off already [-]."""
+
+EGRESS_SPEED_FRACTION, _SLOWEST_EGRESS = 0.8, 0.05
+"""Fraction of the speed that the vehicle has over the vessel at which it keeps farther off one that does not report [-], and the
+least of that speed over V_r that is reckoned with [-]."""
+
+MANOEUVRE_RANGE, REPORTED_SCATTER = 200.0, 0.03
+"""Distance that the orbit is moved off per acceleration of the vessel [s^2], and what its reports scatter by [m/s^2]."""
+
+GLIDE_ALTITUDE = -1000.0
+"""Altitude that a gliding vehicle is commanded [m]: so far below that the autopilot holds its airspeed by pitch, and sinks."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FollowingParameters:
+    """How a moving vessel's plume is followed.
+
+    Attributes
+    ----------
+    centre : of the centre of oscillation
+    reference_heading_rate : largest of the reference [rad/s]
+    roll_rate_max : that the reference may ask for [rad/s]
+    speed_ratio_max : above it the vessel outruns the vehicle [-]
+    approach : the way to the centre
+    standoff : how much farther off the centre stays until the reference is tracked [m]
+    glide_airspeed : while leaving without thrust or control [m/s]
+    stale : age of vessel data beyond which the keep-out margin no longer covers where the vessel may be [s]
+    vessel_acceleration : largest, of a vessel that does not report [m/s^2]
+    drift_rate : how fast dead reckoning goes wrong [m/s]
+    plan_interval : guidance steps between plans
+    source_altitude, climb : altitude of the plume's origin [m], and by how much its axis rises per distance [-]
+    """
+
+    centre: CentreParameters
+    reference_heading_rate: float
+    roll_rate_max: float
+    speed_ratio_max: float
+    approach: ApproachParameters
+    standoff: float
+    glide_airspeed: float
+    stale: float
+    vessel_acceleration: float
+    drift_rate: float
+    plan_interval: int
+    source_altitude: float
+    climb: float
+
+
+class PlumeFollowing:
+    """Follows a vessel's plume; attributes as of ``gnc.mission.mission.Mission``.
+
+    Parameters
+    ----------
+    parameters : of the mission
+    tracking : of the tracker of its reference
+    own, target : motion of the vehicle and of the vessel, updated by whoever steps the guidance
+    guard : of the keep-out area, or none
+    """
+
+    __slots__ = (
+        "_approach", "_closing_in", "_egress", "_guard", "_orbit_range", "_own", "_parameters", "_plan_time", "_reference",
+        "_speed", "_target", "_tracking", "_tracking_parameters", "airspeed", "altitude", "centre", "centre_error",
+        "leaving", "mode", "radius_inflation", "started", "tracker",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        parameters: FollowingParameters,
+        tracking: TrackingParameters,
+        *,
+        own: OwnMotion,
+        target: TargetMotion,
+        guard: KeepoutGuard | None,
+    ) -> None:
+        self._parameters, self._tracking_parameters = parameters, tracking
+        self._own, self._target, self._guard = own, target, guard
+        self._speed = parameters.centre.speed
+        self._approach = Approach(
+            parameters.approach,
+            own=own,
+            target=target,
+            speed=self._speed,
+            heading_rate_max=tracking.heading_rate_max,
+            lag=tracking.lag,
+        )
+        self._egress = Egress(tracking.heading_rate_max)
+        self._plan_time = 0.0
+        self._tracking = self._closing_in = self.leaving = self.started = False
+        self._orbit_range = self.radius_inflation = self.centre_error = 0.0
+        self.centre = MovingCentre(parameters.centre)
+        self.mode = Mode.APPROACH
+        self.airspeed, self.altitude = parameters.approach.airspeed, parameters.source_altitude
+        self.tracker: Tracker[SteeredReference]
+        self._reference: SteeredReference
+
+    @property
+    def in_place(self) -> bool:
+        """Whether the centre is as near to the vessel as it will come."""
+        return self._closing_in and self.centre.in_place
+
+    @property
+    def overriding(self) -> bool:
+        """Whether ``command`` replaces the tracker's heading rate."""
+        return self.leaving or not self._tracking
+
+    def leave(self, fault: Fault) -> None:
+        """Leave the vessel for good, because of a fault of the vehicle."""
+        self.leaving = True
+        self.mode = Mode.GLIDING if fault is Fault.THRUST_LOST else Mode.TERMINATING
+        self.airspeed, self.altitude = self._parameters.glide_airspeed, GLIDE_ALTITUDE
+
+    def command(self) -> float:
+        """Return the heading rate that leads to the centre of oscillation, round the vessel, or away from it [rad/s]."""
+        own, target, centre, last = self._own, self._target, self.centre, self.tracker.heading_rate_command
+        if self.leaving:
+            x, y = own.ground_north - target.north, own.ground_east - target.east
+            return self._egress.command(x, y, self._approach.course_ahead(last), own.heading_rate)
+        return self._approach.command(centre.x, centre.y, last, radius_inflation=self.radius_inflation)
+
+    def plan(self, time: float) -> None:
+        """Move the centre, steer the reference, and decide what to do."""
+        p, own, centre = self._parameters, self._own, self.centre
+        age = self._target.age(time)
+        self._widen_margin(age)
+        self._move_centre()
+        if not self.started:
+            self.started = True
+            self._plan_time = p.plan_interval * self._tracking_parameters.time_step
+            self._place_reference()
+        self._steer()
+        self._decide()
+        if self.leaving:
+            return
+        self.altitude = p.source_altitude + p.climb * centre.distance
+        if own.lost > 0.0:
+            self.mode = Mode.DEAD_RECKONING
+        elif age > p.stale:
+            self.mode = Mode.HOLDING
+        elif centre.speed_ratio >= p.speed_ratio_max:
+            self.mode = Mode.OUTRUN
+        elif not centre.plume_known:
+            self.mode = Mode.NO_PLUME
+        else:
+            self.mode = Mode.TRACKING if self._tracking else Mode.APPROACH
+
+    def _widen_margin(self, age: float) -> None:
+        """Keep farther off while the vessel may be elsewhere, by no more than the vehicle can make good, until a report comes.
+
+        The orbit begins to move off before the guard asks for it.
+        """
+        p = self._parameters
+        egress = EGRESS_SPEED_FRACTION * max(_SLOWEST_EGRESS, 1.0 - self.centre.speed_ratio) * self._speed
+        widening = min(p.vessel_acceleration * age, egress) * self._plan_time
+        reckoned = p.drift_rate * self._own.lost
+        self.radius_inflation = self.radius_inflation + widening if age > p.stale else reckoned
+        self._orbit_range = self._orbit_range + widening if age > WIDENING_BEGINS * p.stale else reckoned
+
+    def _move_centre(self) -> None:
+        own, target = self._own, self._target
+        manoeuvring = math.hypot(target.acceleration_north, target.acceleration_east)
+        # The centre follows a manoeuvre late.
+        manoeuvre_range = MANOEUVRE_RANGE * max(0.0, manoeuvring - REPORTED_SCATTER)
+        self.centre.move(
+            self._plan_time,
+            vessel_north=target.velocity_north,
+            vessel_east=target.velocity_east,
+            acceleration_north=target.acceleration_north,
+            acceleration_east=target.acceleration_east,
+            wind_north=own.wind_north,
+            wind_east=own.wind_east,
+            additional_range=self._orbit_range + (0.0 if self._closing_in else self._parameters.standoff) + manoeuvre_range,
+        )
+
+    def _place_reference(self) -> None:
+        """Place the reference on the centre of oscillation."""
+        p, own, target, centre = self._parameters, self._own, self._target, self.centre
+        reference = SteeredReference(
+            north=target.north - own.drift_north + centre.x,
+            east=target.east - own.drift_east + centre.y,
+            mean_course=math.atan2(centre.velocity_east, centre.velocity_north),
+            speed_ratio=min(centre.speed_ratio, p.speed_ratio_max),
+            phase=0.0,
+            speed=self._speed,
+            heading_rate=p.reference_heading_rate,
+            roll_rate_max=p.roll_rate_max,
+            time_step=self._tracking_parameters.time_step,
+        )
+        tracker = Tracker(self._tracking_parameters, reference)
+        self.tracker, self._reference = tracker, tracker.ahead
+
+    def _steer(self) -> None:
+        """Steer the reference's mean velocity so that its orbit is where it should be."""
+        p, own, target, centre = self._parameters, self._own, self._target, self.centre
+        lag = self._tracking_parameters.lag
+        orbit_north, orbit_east = self._reference.centre()
+        off_north = target.north - own.drift_north + centre.x + lag * centre.velocity_north - orbit_north
+        off_east = target.east - own.drift_east + centre.y + lag * centre.velocity_east - orbit_east
+        self.centre_error = math.hypot(off_north, off_east)
+        limit = self._tracking_parameters.heading_rate_max
+        mean_course, speed_ratio = mean_motion(centre, off_north, off_east, self._speed, limit)
+        self._reference.steer(mean_course, min(speed_ratio, p.speed_ratio_max))
+
+    def _decide(self) -> None:
+        """Decide whether to track the reference, and whether the orbit may close in."""
+        tracked, own, centre, guard = self._parameters.approach.tracked, self._own, self.centre, self._guard
+        to_north = self.tracker.reference.north + own.drift_north - own.ground_north
+        to_east = self.tracker.reference.east + own.drift_east - own.ground_east
+        error = math.hypot(to_north, to_east)
+        guarding = guard is not None and guard.intervening
+        self._tracking = self._approach.joins(
+            centre.x, centre.y, centre.axis, error=error, tracking=self._tracking, guarding=guarding
+        )
+        self._closing_in = self._tracking and error < (LOST_TRACK if self._closing_in else 1.0) * tracked

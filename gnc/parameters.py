@@ -1,0 +1,60 @@
+"""What the guidance of a flight knows beforehand: frozen, and chosen in one place (``gnc.compose``)."""
+
+from dataclasses import dataclass
+
+from gnc.airspeed.airspeed_law import AirspeedLaw
+from gnc.estimation.health_monitor import HealthParameters
+from gnc.estimation.navigation import NavigationParameters
+from gnc.mission.direct_tracking import DirectParameters
+from gnc.mission.plume_following import FollowingParameters
+from gnc.tracker import TrackingParameters
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GuardParameters:
+    """Parameters of ``gnc.safety.keepout_guard.KeepoutGuard``, which says what each is."""
+
+    radius: float
+    heading_rate_max: float
+    lag: float
+    delay: float
+    time_step: float
+    speed_error: float = 0.0
+    acceleration: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilterParameters:
+    """Parameters of ``gnc.estimation.vessel_filter.VesselFilter``, which says what each is."""
+
+    position_sigma: float
+    velocity_sigma: float
+    acceleration: float
+    memory: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GuidanceParameters:
+    """What the guidance of a flight consists of. What is None is absent.
+
+    Attributes
+    ----------
+    speed, altitude : V_r, and the altitude to hold [m/s, m]
+    tracking : of the tracker
+    airspeed_law : keeps the vehicle beside its reference
+    navigation : of the estimated own motion; None where it is known exactly, in still air
+    vessel : the filter of its reports, or its velocity north and east where it is known exactly and steady [m/s]
+    guard : of the keep-out area
+    mission : following a plume, or tracking a reference that is known in advance
+    health : of the vehicle
+    """
+
+    speed: float
+    altitude: float
+    tracking: TrackingParameters
+    airspeed_law: AirspeedLaw
+    navigation: NavigationParameters | None
+    vessel: FilterParameters | tuple[float, float]
+    guard: GuardParameters | None
+    mission: FollowingParameters | DirectParameters
+    health: HealthParameters | None

@@ -1,0 +1,59 @@
+"""A reference that a vehicle joins where it is nearest: of an orbit's phases, the one that costs the least to reach."""
+
+import math
+from dataclasses import dataclass
+
+from gnc.reference.reference import Orbit, Reference, ReferenceShape
+
+_PHASES = 72
+"""Phases that are compared: 5 degrees apart."""
+
+_COURSE_COST = 1.5
+"""What a difference of course costs, in turn radii per radian [-]: the vehicle needs about its turn, and half of it back."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JoinedOrbit:
+    """An orbit beside a steady vessel.
+
+    Attributes
+    ----------
+    shape, orbit : of the reference
+    vessel_course : [rad]
+    time_step : [s]
+    """
+
+    shape: ReferenceShape
+    orbit: Orbit
+    vessel_course: float
+    time_step: float
+
+    def reference(self, phase: float, centre_north: float, centre_east: float) -> Reference:
+        """Return the reference at a phase [rad] of the orbit about a centre [m]."""
+        return self.shape.reference(
+            self.orbit,
+            phase=phase,
+            centre_north=centre_north,
+            centre_east=centre_east,
+            vessel_course=self.vessel_course,
+            time_step=self.time_step,
+        )
+
+    def nearest(
+        self, centre_north: float, centre_east: float, *, north: float, east: float, course: float, turn_radius: float
+    ) -> Reference:
+        """Return the reference of the orbit about a centre [m] that a vehicle reaches with the least effort.
+
+        Parameters
+        ----------
+        centre_north, centre_east : of oscillation now [m]
+        north, east, course : of the vehicle now [m, m, rad]
+        turn_radius : of the vehicle [m]
+        """
+
+        def cost(reference: Reference) -> float:
+            turn = math.remainder(reference.course - course, 2.0 * math.pi)
+            return math.hypot(reference.north - north, reference.east - east, _COURSE_COST * turn_radius * turn)
+
+        phases = (2.0 * math.pi * i / _PHASES for i in range(_PHASES))
+        return min((self.reference(phase, centre_north, centre_east) for phase in phases), key=cost)

@@ -1,0 +1,136 @@
+"""The points of an experiment: which flights there are, by sweep, cases, comparisons and random variables."""
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from common.registry import is_file_part
+from scenarios.errors import InputError
+from scenarios.schema.experiment import CaseConfig
+from scenarios.schema.load import with_values
+from scenarios.schema.scenario import Scenario
+
+STUDY = "study"
+"""The variant of flights that count; others are comparisons."""
+
+Values = dict[str, object]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Point:
+    """A point of an experiment, of one flight or of several that differ in what is random.
+
+    Attributes
+    ----------
+    label : part of its flights' names; empty where there is one point alone
+    variant : ``STUDY``, or the name of a comparison
+    scenario : with the point's keys set, for one vehicle
+    nu : speed ratio that is swept, or none [-]
+    inputs : swept keys and their values
+    flights : number of flights
+    """
+
+    label: str
+    variant: str
+    scenario: Scenario
+    nu: float | None
+    inputs: Values
+    flights: int
+
+
+def points_of(scenario: Scenario) -> list[Point]:
+    """Return the study's points and then those of the comparisons.
+
+    Raises
+    ------
+    InputError : a case, a comparison or the sweep sets a key that does not exist or a value out of range
+    """
+    points = list(_cases(scenario) if scenario.cases else _grid(scenario))
+    points.sort(key=lambda point: point.variant != STUDY)
+    comparison = scenario.comparison
+    for variant in comparison.variants:
+        try:
+            points += [_varied(point, variant.name, variant.set, comparison.flights) for point in _compared(scenario, points)]
+        except InputError as error:
+            raise InputError(f"comparison '{variant.name}': {error}") from None
+    return points
+
+
+def _grid(scenario: Scenario) -> Iterator[Point]:
+    sweep = scenario.sweep.root
+    for vehicle in _vehicles(scenario):
+        for values in itertools.product(*(dict.fromkeys(map(_hashable, given)) for given in sweep.values())):
+            at = {key: value[1] for key, value in zip(sweep, values, strict=True)}
+            nu = scenario.sweep.nu[list(sweep["nu"]).index(at["nu"])] if "nu" in at else None
+            labels = [_label(key, value) for key, value in at.items()] + ([vehicle] if scenario.fidelity == "both" else [])
+            changed = with_values(scenario, {_key(key): value for key, value in at.items()} | {"fidelity": vehicle})
+            inputs = {key: value for key, value in at.items() if key != "nu"}
+            yield Point(label="_".join(labels), variant=STUDY, scenario=changed, nu=nu, inputs=inputs, flights=scenario.flights)
+
+
+def _hashable(value: object) -> tuple[str, object]:
+    """Return a value with its text, by which equal ones are found: lists and tables may be swept, too."""
+    return repr(value), value
+
+
+def _cases(scenario: Scenario) -> Iterator[Point]:
+    for case in scenario.cases:
+        for vehicle in _vehicles(scenario):
+            changed = _case(scenario, case, vehicle)
+            yield Point(
+                label=f"{case.name}_{vehicle}",
+                variant=case.name if case.comparison else STUDY,
+                scenario=changed,
+                nu=None if changed.circles else changed.vessel.speed_ratio,
+                inputs={},
+                flights=scenario.flights,
+            )
+
+
+def _case(scenario: Scenario, case: CaseConfig, vehicle: str) -> Scenario:
+    values = case.set | (case.set_kinematic if vehicle == "kinematic" else {})
+    if "fidelity" in values:
+        raise InputError(f"case '{case.name}' sets fidelity; set it for the whole scenario, or to 'both'")
+    if "sweep.nu" in values:
+        ratios = values.pop("sweep.nu")
+        if not isinstance(ratios, list | tuple) or len(ratios) != 1:
+            raise InputError(f"case '{case.name}' has sweep.nu = {ratios!r}; give it one speed ratio, as in [0.5]")
+        values["vessel.speed_ratio"] = ratios[0]
+    try:
+        return with_values(scenario, {**values, "fidelity": vehicle})
+    except InputError as error:
+        raise InputError(f"case '{case.name}': {error}") from None
+
+
+def _vehicles(scenario: Scenario) -> tuple[str, ...]:
+    return ("kinematic", "six_dof") if scenario.fidelity == "both" else (scenario.fidelity,)
+
+
+def _compared(scenario: Scenario, points: list[Point]) -> list[Point]:
+    """Return the study's points at which variants are flown."""
+    ratios = scenario.comparison.nu
+    return [point for point in points if point.variant == STUDY and (not ratios or point.nu in ratios)]
+
+
+def _varied(point: Point, name: str, values: Values, flights: int | None) -> Point:
+    return Point(
+        label=f"{point.label}_{name}" if point.label else name,
+        variant=name,
+        scenario=with_values(point.scenario, values),
+        nu=point.nu,
+        inputs=point.inputs,
+        flights=min(flights or point.flights, point.flights),
+    )
+
+
+def _key(key: str) -> str:
+    return "vessel.speed_ratio" if key == "nu" else key
+
+
+def _label(key: str, value: object) -> str:
+    if key == "nu":
+        return f"nu_{value:.6f}".rstrip("0").ljust(len("nu_0.00"), "0")
+    if isinstance(value, str) and is_file_part(value):
+        value = value.rpartition(":")[2]
+    text = f"{value:g}" if isinstance(value, int | float) and not isinstance(value, bool) else str(value)
+    return f"{key.rpartition('.')[2]}_{''.join(c if c.isalnum() or c in '.-' else '_' for c in text)}"[:60]

@@ -1,0 +1,144 @@
+"""The flights of an experiment, by number: each with its scenario and its seed, from the experiment and the number alone."""
+
+import bisect
+import itertools
+import zlib
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from common.run_layout import COMPARISON, SUMMARY
+from scenarios.experiment.draws import sampled_flight
+from scenarios.experiment.points import STUDY, Point, points_of
+from scenarios.schema.load import with_values
+from scenarios.schema.scenario import Scenario
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlightRequest:
+    """A flight to be planned and flown.
+
+    Attributes
+    ----------
+    flight_id : unique in the run
+    trial, variant : name of the trial, and ``STUDY`` or the name of a comparison
+    scenario : of this flight alone
+    seed : of its start, air and noise
+    inputs : swept and sampled keys, and their values
+    """
+
+    flight_id: str
+    trial: str
+    variant: str
+    scenario: Scenario
+    seed: int
+    inputs: dict[str, object]
+
+
+def table_of(variant: str) -> str:
+    """Return the file that the rows of a variant's flights are in."""
+    return SUMMARY if variant == STUDY else COMPARISON
+
+
+class Experiment:
+    """The flights of one scenario.
+
+    Parameters
+    ----------
+    name : of the scenario, the trial's in a list
+    scenario : scaled to its aircraft
+    alone : whether it is the only one of its run: then its name is not part of the names of swept flights
+
+    Raises
+    ------
+    InputError : a point cannot be flown as it is
+    """
+
+    def __init__(self, name: str, scenario: Scenario, *, alone: bool = True) -> None:
+        self.name, self.scenario, self._alone = name, scenario, alone
+        self.points = points_of(scenario)
+        labels = Counter(point.label for point in self.points)
+        self.points = [
+            replace(point, label=f"{point.label}_{i}") if labels[point.label] > 1 else point for i, point in enumerate(self.points)
+        ]
+
+    @cached_property
+    def _ends(self) -> list[int]:
+        """The number of the flight after each point's last."""
+        return list(itertools.accumulate(point.flights for point in self.points))
+
+    @property
+    def flights(self) -> int:
+        """Return the number of flights, comparisons among them."""
+        return self._ends[-1]
+
+    @property
+    def counted(self) -> int:
+        """Return the number of flights of the study itself."""
+        return sum(point.flights for point in self.points if point.variant == STUDY)
+
+    @property
+    def keys(self) -> list[str]:
+        """Return the swept and sampled keys."""
+        swept = [key for key in self.scenario.sweep.root if key != "nu"]
+        return list(dict.fromkeys([*swept, *(draw.key for draw in self.scenario.draws)]))
+
+    def named(self, number: int) -> tuple[str, str]:
+        """Return name and variant of a flight."""
+        point, index = self._point(number)
+        parts = [] if self._alone and point.label else [self.name]
+        parts += [point.label] if point.label else []
+        parts += [f"{index:05d}"] if point.flights > 1 or not point.label else []
+        return "_".join(parts), point.variant
+
+    def index(self, number: int) -> int:
+        """Return the number of a flight among those of its point."""
+        return self._point(number)[1]
+
+    def request(self, number: int, at: Sequence[float] = ()) -> FlightRequest:
+        """Return a flight.
+
+        Parameters
+        ----------
+        number : of the flight, from 0
+        at : position of each random variable in its distribution, from 0 to 1; at random if it is empty
+
+        Raises
+        ------
+        InputError : a sampled value is out of range
+        """
+        point, index = self._point(number)
+        flight_id, variant = self.named(number)
+        if point.scenario.draws:
+            sampled = sampled_flight(self.name, point.scenario, index, at)
+            scenario, seed, inputs = sampled.scenario, sampled.seed, point.inputs | sampled.values
+        else:
+            scenario, inputs = point.scenario, point.inputs
+            seed = self._seed(point, index) if scenario.flight_seed is None else scenario.flight_seed
+        return FlightRequest(flight_id=flight_id, trial=self.name, variant=variant, scenario=scenario, seed=seed, inputs=inputs)
+
+    def settings(self) -> Iterator[Scenario]:
+        """Yield every kind of flight, as far as autopilot and margins depend on it: choices of guidance and turbulence apart."""
+        for point in self.points:
+            choices = [
+                [(draw.key, value) for value in draw.choice]
+                for draw in point.scenario.draws
+                if draw.choice is not None and draw.key.startswith(("guidance.", "turbulence.level"))
+            ]
+            for chosen in itertools.product(*choices):
+                yield with_values(point.scenario, dict(chosen)) if chosen else point.scenario
+
+    def _point(self, number: int) -> tuple[Point, int]:
+        i = bisect.bisect_right(self._ends, number)
+        return self.points[i], number - (self._ends[i - 1] if i else 0)
+
+    def _seed(self, point: Point, index: int) -> int:
+        """Return the seed of a flight, which depends on nu alone where it is swept: variants start alike."""
+        if point.nu is not None and point.flights == 1:
+            entropy = [self.scenario.seed, round(point.nu * 1e6)]
+        else:
+            entropy = [self.scenario.seed, zlib.crc32(self.name.encode()), index]
+        return int(np.random.SeedSequence(entropy).generate_state(1)[0])

@@ -1,0 +1,180 @@
+"""Flying one flight in a process of its own: plan, fly, measure, record. Every way that one can end is a row."""
+
+import bisect
+import itertools
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
+from scenarios.engine.task import Result, Row, Task
+from scenarios.experiment.points import STUDY
+from scenarios.experiment.requests import Experiment, FlightRequest, table_of
+from scenarios.metrics.criteria import failed_criteria
+from scenarios.metrics.crossings import crossing_rows
+from scenarios.metrics.figures import flight_figures, plan_row
+from scenarios.metrics.relative_state import flight_history
+from scenarios.planning.flight_plan import FlightPlan
+from scenarios.planning.planner import plan_flight
+from scenarios.planning.spreads import PredictedSpreads
+from scenarios.simulation.closed_loop import fly
+from scenarios.simulation.failure import failure, unflown
+from scenarios.simulation.outcome import Outcome
+from scenarios.simulation.release import release
+from scenarios.simulation.time_history import history_files
+from scenarios.vehicles.payload import PAYLOADS, Instrument
+from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
+
+_PAYLOAD_STREAM = 1
+"""Number of the random stream of the payload, beside that of the flight's seed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlightWork:
+    """Plans, flies, measures and records the flights of experiments.
+
+    Attributes
+    ----------
+    experiments : one after the other; a task's number counts through them
+    histories : number of time histories to be kept, beside those of flights that failed a criterion
+    setup : of the aircraft, if there is one
+    spreads : predicted for flights in turbulence
+    refusal : why flights in six degrees of freedom cannot be flown, or nothing
+    """
+
+    experiments: tuple[Experiment, ...]
+    histories: int
+    setup: VehicleSetup | None
+    spreads: PredictedSpreads
+    refusal: str = ""
+
+    @property
+    def model(self) -> Path | None:
+        """Return the JSBSim root of the aircraft with its autopilot, if it is to fly."""
+        return self.setup.aircraft.model if self.setup and self.setup.aircraft else None
+
+    def moved(self, model: Path) -> "FlightWork":
+        """Return the same work with its files in another directory."""
+        if self.setup is None or self.setup.aircraft is None:
+            return self
+        return replace(self, setup=replace(self.setup, aircraft=replace(self.setup.aircraft, model=model)))
+
+    @cached_property
+    def _ends(self) -> list[int]:
+        """The number of the task after each experiment's last."""
+        return list(itertools.accumulate(experiment.flights for experiment in self.experiments))
+
+    def located(self, number: int) -> tuple[Experiment, int]:
+        """Return the experiment of a task and the flight's number in it."""
+        i = bisect.bisect_right(self._ends, number)
+        return self.experiments[i], number - (self._ends[i - 1] if i else 0)
+
+    def request(self, task: Task) -> FlightRequest:
+        """Return the flight of a task.
+
+        Raises
+        ------
+        InputError : a sampled value is out of range
+        """
+        experiment, number = self.located(task.number)
+        return experiment.request(number, task.point)
+
+    def fly(self, task: Task) -> Result:
+        """Plan, fly, measure and record one flight."""
+        began = time.perf_counter()
+        row, tables = self._named(task), dict[str, list[Row]]()
+        history: pd.DataFrame | None = None
+        try:
+            request = self.request(task)
+            row |= _request_row(request)
+            named = {key: row[key] for key in ("flight_id", "trial", "variant")}
+            tables[DRAWS] = [named | {"nu": row.get("nu")} | _plain(request.inputs)]
+            if self.refusal and request.scenario.fidelity == "six_dof":
+                return self._result(task, row | unflown(Outcome.TRIM_FAILED, self.refusal), tables)
+            plan = self.plan(request)
+            row |= plan_row(plan)
+            tables[DRAWS][0]["nu"] = row.get("nu")
+            record = fly(plan, release(plan, self._setup(request)), _payload(request, plan), every_step=task.every_step)
+            history = flight_history(plan, record)
+            figures, found = flight_figures(plan, record)
+            row |= figures
+            tables[CROSSINGS] = [named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)]
+            tables[INTERVENTIONS] = [named | stretch._asdict() for stretch in record.interventions]
+            failed = failed_criteria(row, request.scenario.criteria)
+            row |= {"criteria_met": not failed, "message": "; ".join(failed)}
+        except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
+            row |= failure(error)
+        return self._result(task, row | {"wall_time_s": time.perf_counter() - began}, tables, history)
+
+    def lost(self, task: Task, reason: str) -> Result:
+        """Return the result of a flight whose process was lost."""
+        return replace(self._result(task, self._named(task) | unflown(Outcome.FAILED, reason)), lost=True)
+
+    def plan(self, request: FlightRequest) -> FlightPlan:
+        """Return the plan of a flight.
+
+        Raises
+        ------
+        InfeasibleError : it has no solution
+        """
+        return plan_flight(
+            request.scenario, flight_id=request.flight_id, seed=request.seed, setup=self._setup(request), spreads=self.spreads
+        )
+
+    def _setup(self, request: FlightRequest) -> VehicleSetup:
+        kinematic = self.setup is None or request.scenario.fidelity == "kinematic"
+        return kinematic_setup(request.scenario) if kinematic or self.setup is None else self.setup
+
+    def _named(self, task: Task) -> Row:
+        experiment, number = self.located(task.number)
+        flight_id, variant = experiment.named(number)
+        return {"flight_id": flight_id, "trial": experiment.name, "variant": variant}
+
+    def _result(
+        self, task: Task, row: Row, tables: Mapping[str, list[Row]] | None = None, history: pd.DataFrame | None = None
+    ) -> Result:
+        table = table_of(row["variant"])
+        return Result(
+            task=task,
+            items=int(row["variant"] == STUDY),
+            tables={table: [row], **(tables or {})},
+            files=history_files(task, history, planned=self._ends[-1], kept=self.histories, row=row),
+        )
+
+
+def _request_row(request: FlightRequest) -> Row:
+    """Return the part of a row that is known before the flight is planned."""
+    scenario = request.scenario
+    row: Row = {
+        "aircraft": scenario.aircraft if scenario.fidelity == "six_dof" else "none",
+        "fidelity": scenario.fidelity,
+        "seed": request.seed,
+        "fault": scenario.fault.kind,
+    }
+    if scenario.circles:
+        return row
+    return row | {
+        "nu": scenario.nu_over_ground,
+        "wind_speed_mps": scenario.wind.speed_mps,
+        "wind_from_deg": scenario.wind.from_deg,
+        "vessel_speed_mps": scenario.vessel_speed,
+        "turbulence": scenario.turbulence.level,
+        "keepout_radius_m": scenario.keepout.radius_m,
+    }
+
+
+def _payload(request: FlightRequest, plan: FlightPlan) -> list[Instrument]:
+    """Return the flight's instruments, fresh."""
+    generator = np.random.default_rng([request.seed, _PAYLOAD_STREAM])
+    return [PAYLOADS.get(name)(request.scenario, plan.world, generator) for name in plan.payload]
+
+
+def _plain(values: Mapping[str, object]) -> Row:
+    """Return inputs as they go into a table: numbers and words, anything else as JSON."""
+    return {key: value if isinstance(value, str | float | int) else json.dumps(value) for key, value in values.items()}

@@ -1,0 +1,109 @@
+"""What a flight fails of its criteria."""
+
+import math
+
+from gnc.mission.mode import Mode
+from scenarios.metrics.figures import Row
+from scenarios.schema.flight import CriteriaConfig
+from scenarios.simulation.outcome import DITCHED, Outcome
+from scenarios.world.faults import SATELLITES, VESSEL_DATA
+
+_GIVEN_UP = (Mode.GLIDING.value, Mode.TERMINATING.value, DITCHED)
+"""Modes of a flight that is over for its task."""
+
+_ROUNDING = 1.0 + 1e-12
+"""By what a command may exceed its limit: rounding alone [-]."""
+
+Check = tuple[bool, str]
+"""Whether a criterion is met, and what to say where it is not."""
+
+
+def failed_criteria(row: Row, criteria: CriteriaConfig) -> list[str]:
+    """Return what a flight's row fails, each as a short sentence; empty when all is met.
+
+    Beside the criteria every flight has to keep out, to complete, and not to be given up where nothing of the aircraft has failed:
+    a false alarm would end it without a violation, and measure nothing.
+    """
+    checks = [_keeps_out(row)] if "keepout_violations" in row else []
+    if row["outcome"] != Outcome.COMPLETED.value:
+        checks.append((False, row["message"] or "did not complete"))
+    else:
+        checks += [*_tracking_checks(row, criteria), *_command_checks(row, criteria)]
+        if "keepout_violations" in row:
+            checks += [*_crossing_checks(row, criteria), *_mission_checks(row, criteria)]
+    return [message for met, message in checks if not met]
+
+
+def _keeps_out(row: Row) -> Check:
+    count = row["keepout_violations"]
+    return count == 0, f"{count} keep-out violation{'s' * (count != 1)}, the deepest by {row['keepout_depth_m']:.2f} m"
+
+
+def _tracking_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
+    checks = []
+    if criteria.settles:
+        checks.append((math.isfinite(row["settling_time_s"]), "did not settle"))
+        for name, key, limit, unit in (
+            ("rms tracking error", "tracking_error_rms_m", criteria.tracking_error_rms_m, "m"),
+            ("rms airspeed error", "airspeed_error_rms_mps", criteria.airspeed_error_rms_mps, "m/s"),
+            ("largest altitude error", "altitude_error_max_m", criteria.altitude_error_max_m, "m"),
+        ):
+            # One that settled with its last sample has none of these figures, and shows nothing.
+            if limit and math.isfinite(row["settling_time_s"]):
+                checks.append(_at_most(name, row.get(key, math.nan), limit, unit))
+    if criteria.tracking_error_end_m is not None:
+        checks.append(_at_most("tracking error at the end", row["tracking_error_end_m"], criteria.tracking_error_end_m, "m"))
+    return checks
+
+
+def _command_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
+    largest, demand = row["heading_rate_limit_rad_s"], row["heading_rate_demand_max_rad_s"]
+    checks = []
+    if criteria.law_beyond_heading_rate_max:
+        checks.append((demand > largest, f"the law asked for {demand:.4f} rad/s, within omega_max = {largest:.4f}"))
+    else:
+        command = row["heading_rate_command_max_rad_s"]
+        checks.append((command <= largest * _ROUNDING, f"commanded {command:.4f} rad/s, above omega_max = {largest:.4f}"))
+    if criteria.law_within_heading_rate_max:
+        checks.append((demand <= largest * _ROUNDING, f"the law asked for {demand:.4f} rad/s, above omega_max = {largest:.4f}"))
+    return checks
+
+
+def _crossing_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
+    checks = []
+    if "crossing_distance_min_m" in row:
+        nearest, radius = row["crossing_distance_min_m"], row["keepout_radius_m"]
+        checks.append((nearest >= radius, f"crossed at {nearest:.2f} m, inside {radius:g} m"))
+    if criteria.crossing_interval_error:
+        interval, predicted = row.get("crossing_interval_mean_s", math.nan), row["crossing_interval_predicted_s"]
+        error = interval / predicted - 1.0
+        found = f"mean crossing interval {interval:.3f} s, {100.0 * error:+.1f} % of {predicted:.3f} s"
+        message = "too few crossings for an interval" if math.isnan(error) else found
+        checks.append((abs(error) <= criteria.crossing_interval_error, message))
+    for name, key, unit, limits in (
+        ("interval", "crossing_interval_mean_s", "s", criteria.crossing_interval_s),
+        ("distance", "crossing_distance_mean_m", "m", criteria.crossing_distance_m),
+    ):
+        if limits is not None:
+            value = row.get(key, math.nan)
+            message = f"mean crossing {name} {value:.3f} {unit} outside {limits[0]:g} to {limits[1]:g} {unit}"
+            checks.append((limits[0] <= value <= limits[1], message))
+    return checks
+
+
+def _mission_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
+    of_aircraft = row["fault"] not in ("none", VESSEL_DATA, SATELLITES)
+    failed = of_aircraft and row["duration_s"] >= row["fault_time_s"]
+    mode = row["mode_at_end"]
+    checks = [(failed or mode not in _GIVEN_UP, f"ended {mode}, though nothing of the aircraft failed")]
+    if criteria.resumes_within_periods is not None:
+        periods = row.get("resume_periods", math.nan)
+        message = f"crossings resumed {periods:.2f} periods after the last manoeuvre"
+        checks.append((periods <= criteria.resumes_within_periods, message))
+    if criteria.modes_at_end:
+        checks.append((mode in criteria.modes_at_end, f"ended {mode}"))
+    return checks
+
+
+def _at_most(name: str, value: float, limit: float, unit: str) -> Check:
+    return value <= limit, f"{name} {value:.2f} {unit} above {limit:g} {unit}"

@@ -1,0 +1,147 @@
+"""One flight, resolved to SI."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from gnc.estimation.vessel_filter import VesselReport
+from gnc.parameters import GuidanceParameters
+from gnc.reference.reference import Orbit
+from scenarios.margin.keepout_margin import KeepoutMargin
+from scenarios.planning.bounded_steering import Steering
+from scenarios.planning.limits import omega_max
+from scenarios.schema.scenario import Scenario
+from scenarios.vehicles.sensors import SensorErrors
+from scenarios.world.world import ApparentWind, World
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sensing:
+    """What the guidance learns by sensors and reports, where it does not know everything exactly.
+
+    Attributes
+    ----------
+    received : reports of the vessel and when each is received [s]; none where the vessel is known exactly
+    errors : of the sensors
+    """
+
+    received: list[tuple[float, VesselReport]] | None
+    errors: SensorErrors
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Start:
+    """Where a flight begins.
+
+    Attributes
+    ----------
+    north, east : [m]
+    course : through the air [rad]
+    """
+
+    north: float
+    east: float
+    course: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlightPlan:
+    """One flight: guidance, world, sensing, start, and when it ends. What is None is absent.
+
+    Attributes
+    ----------
+    flight_id : unique in the run
+    guidance : parameters of the outer loop
+    steering : of the law's look-ahead, and the bound on its demand
+    start : of the UAV
+    keepout_radius : r_min [m]
+    speed_ratio_max : up to which a vessel is followed [-]
+    heading_rate_max : omega_max, whether commands are cut at it or not [rad/s]
+    duration_max, crossings : when to stop [s, -]
+    settling_band, settling_period : distance from the reference to stay within, and for how long, to be settled [m, s]
+    log_interval : of the record, in guidance steps
+    payload : instruments on board
+    nu : speed ratio at the start; not a number without a vessel [-]
+    world : vessel, plume, air, faults; none where the reference circles without a vessel
+    sensing : sensors and reports; none where everything is known exactly
+    oscillation : of the reference at that ratio
+    periods : of the oscillation at equal steps of nu from 0 to ``speed_ratio_max``, where the reference is steered [s]
+    centre_distance : r_CO where it is fixed, else not a number [m]
+    margin : planned on top of r_min, where the reference is steered
+    apparent_wind : of the vessel, where the reference is steered
+    """
+
+    flight_id: str
+    guidance: GuidanceParameters
+    steering: Steering
+    start: Start
+    keepout_radius: float
+    speed_ratio_max: float
+    heading_rate_max: float
+    duration_max: float
+    crossings: int
+    settling_band: float
+    settling_period: float
+    log_interval: int
+    payload: tuple[str, ...]
+    nu: float = math.nan
+    world: World | None = None
+    sensing: Sensing | None = None
+    oscillation: Orbit | None = None
+    periods: tuple[float, ...] = ()
+    centre_distance: float = math.nan
+    margin: KeepoutMargin | None = None
+    apparent_wind: ApparentWind | None = None
+
+    @classmethod
+    def of(
+        cls,
+        scenario: Scenario,
+        flight_id: str,
+        *,
+        guidance: GuidanceParameters,
+        steering: Steering,
+        start: Start,
+        period: float,
+        **parts: Any,
+    ) -> "FlightPlan":
+        """Return the plan of a flight of a scenario; ``parts`` are those that not every flight has."""
+        flight, g = scenario.flight, scenario.guidance
+        return cls(
+            flight_id=flight_id,
+            guidance=guidance,
+            steering=steering,
+            start=start,
+            keepout_radius=scenario.keepout.radius_m,
+            speed_ratio_max=scenario.following.speed_ratio_max,
+            heading_rate_max=omega_max(g),
+            duration_max=flight.duration_max_s,
+            crossings=flight.crossings,
+            settling_band=flight.settling_band_m,
+            settling_period=period,
+            log_interval=round(g.rate_hz / flight.log_rate_hz),
+            payload=scenario.payload,
+            **parts,
+        )
+
+    @property
+    def time_step(self) -> float:
+        """Return the time step of the guidance [s]."""
+        return self.guidance.tracking.time_step
+
+    @property
+    def altitude(self) -> float:
+        """Return the altitude at the start [m]."""
+        return self.guidance.altitude
+
+    @property
+    def source_height(self) -> float:
+        """Return the height of the keep-out sphere's centre above the sea [m]."""
+        return self.world.source_height if self.world else self.guidance.altitude
+
+    def period(self, nu: float) -> float:
+        """Return the period of the oscillation at a speed ratio [s]."""
+        if not self.periods:
+            return self.oscillation.period if self.oscillation else math.nan
+        steps = len(self.periods) - 1
+        return self.periods[min(round(nu / self.speed_ratio_max * steps), steps)]

@@ -1,0 +1,146 @@
+"""Flights whose reference is steered: beside a vessel that manoeuvres, in wind, by sensors and reports."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from gnc.airspeed.pace_hold import PaceHold
+from gnc.errors import InfeasibleError
+from gnc.estimation.health_monitor import HealthParameters
+from gnc.parameters import GuardParameters, GuidanceParameters
+from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, keepout_margin
+from scenarios.margin.tracking_spread import SpreadTable
+from scenarios.planning.bounded_steering import given_steering
+from scenarios.planning.flight_plan import FlightPlan, Sensing
+from scenarios.planning.guidance import (
+    THRUST_LOST_FRACTION,
+    following_parameters,
+    guard_parameters,
+    navigation_parameters,
+    speed_hold,
+    tracking_parameters,
+)
+from scenarios.planning.limits import omega_max
+from scenarios.planning.reference import orbits, oscillation_at
+from scenarios.planning.start import check_start, sampled_start
+from scenarios.schema.scenario import Scenario
+from scenarios.vehicles.sensors import SensorErrors
+from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.ais_reports import no_outage, received_reports
+from scenarios.world.faults import VESSEL_DATA, sampled_fault
+from scenarios.world.weather import sampled_weather
+from scenarios.world.world import ApparentWind, World, apparent_wind, plume_of, vessel_of
+
+Spreads = Callable[[Scenario], SpreadTable | None]
+"""Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air."""
+
+
+def following_flight(scenario: Scenario, flight_id: str, seed: int, setup: VehicleSetup, spreads: SpreadTable | None) -> FlightPlan:
+    """Return a flight that follows a plume.
+
+    Raises
+    ------
+    InfeasibleError : the vessel outruns the UAV, its plume has no direction, or the flight starts where no command keeps it out
+    """
+    g, f, flight = scenario.guidance, scenario.following, scenario.flight
+    for_world, for_noise = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(2))
+    vessel = vessel_of(scenario)
+    plume = plume_of(scenario, vessel)
+    wind = apparent_wind(scenario, vessel)
+    _check_plume(scenario, wind)
+    nu = wind.at_start / g.airspeed_mps
+    periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
+    margin = keepout_margin(scenario, spreads, nu)
+    start = sampled_start(scenario.start, for_world, course=vessel.course(0.0), axis=plume.axis(0.0))
+    fault = sampled_fault(scenario.fault, for_world)
+    weather = sampled_weather(scenario, for_world)
+    outage = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else no_outage()
+    guard = None
+    if g.keepout_guard:
+        radius = scenario.keepout.radius_m
+        guard = guard_parameters(
+            scenario,
+            setup.reversal,
+            radius + margin.guard,
+            speed_error=f.speed_error_mps,
+            acceleration=f.vessel_acceleration_mps2,
+        )
+        _, _, v_north, v_east = vessel.motion(0.0)
+        through_air = v_north - weather.wind_north, v_east - weather.wind_east
+        airspeed = g.airspeed_mps
+        check_start(start, guard, through_air=through_air, airspeed=airspeed, allowance=margin.guard, keepout_radius=radius)
+    received = None
+    if not scenario.reports.exact:
+        duration = flight.duration_max_s
+        received = received_reports(scenario.reports, vessel, duration=duration, outage=outage, generator=for_noise)
+    steps = round(flight.duration_max_s * g.rate_hz) + 2
+    orbit = oscillation_at(g, scenario.reference, nu)
+    return FlightPlan.of(
+        scenario,
+        flight_id,
+        nu=nu,
+        guidance=_guidance(scenario, setup, margin, widths, guard),
+        steering=given_steering(g),
+        start=start,
+        period=orbit.period,
+        world=World(
+            vessel=vessel,
+            plume=plume,
+            elevation=math.radians(scenario.plume.elevation_deg),
+            source_height=scenario.plume.source_height_m,
+            weather=weather,
+            fault=fault,
+        ),
+        sensing=Sensing(
+            received=received,
+            errors=SensorErrors(scenario.sensors, steps=steps, time_step=1.0 / g.rate_hz, generator=for_noise),
+        ),
+        oscillation=orbit,
+        periods=periods,
+        margin=margin,
+        apparent_wind=wind,
+    )
+
+
+def _guidance(
+    scenario: Scenario,
+    setup: VehicleSetup,
+    margin: KeepoutMargin,
+    widths: tuple[tuple[float, float], ...],
+    guard: GuardParameters | None,
+) -> GuidanceParameters:
+    g = scenario.guidance
+    tracking, hold = tracking_parameters(scenario, setup), speed_hold(scenario, setup)
+    return GuidanceParameters(
+        speed=g.airspeed_mps,
+        altitude=scenario.plume.source_height_m,
+        tracking=tracking,
+        airspeed_law=PaceHold(speed=g.airspeed_mps, hold=hold),
+        navigation=navigation_parameters(scenario, setup),
+        vessel=filter_parameters(scenario.reports),
+        guard=guard,
+        mission=following_parameters(scenario, setup, margin.total, widths),
+        health=HealthParameters(
+            airspeed_error=THRUST_LOST_FRACTION * (g.airspeed_mps - hold.airspeed_min),
+            speed=g.airspeed_mps,
+            heading_rate_max=omega_max(g),
+            lag=tracking.lag,
+            time_step=tracking.time_step,
+        ),
+    )
+
+
+def _check_plume(scenario: Scenario, wind: ApparentWind) -> None:
+    """Raise an InfeasibleError where the scenario implies that no plume can be crossed."""
+    f, speed = scenario.following, scenario.guidance.airspeed_mps
+    if wind.greatest >= f.speed_ratio_max * speed:
+        raise InfeasibleError(
+            f"the vessel moves at up to {wind.greatest:.1f} m/s through the air, nu = {wind.greatest / speed:.2f}; the UAV at"
+            f" {speed:g} m/s follows up to nu = {f.speed_ratio_max:g}: fly faster, or in less apparent wind"
+        )
+    if scenario.plume_by_wind and wind.at_start < f.apparent_wind_min_mps:
+        raise InfeasibleError(
+            f"the apparent wind is {wind.at_start:.2f} m/s; below {f.apparent_wind_min_mps:g} the plume has no"
+            " direction: give wind or vessel another speed, or the plume a direction (plume.direction=given)"
+        )

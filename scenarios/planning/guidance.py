@@ -1,0 +1,163 @@
+"""From a scenario to the parameters of the guidance, in SI."""
+
+import math
+from collections.abc import Sequence
+
+from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
+from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
+from gnc.estimation.navigation import NavigationParameters
+from gnc.mission.approach import ApproachParameters
+from gnc.mission.plume_following import FollowingParameters
+from gnc.parameters import GuardParameters
+from gnc.reference.moving_centre import CentreParameters
+from gnc.tracker import TrackingParameters
+from innerloop.flight.turn_reversal import TurnReversalResponse
+from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
+from scenarios.planning.limits import omega_max
+from scenarios.schema.scenario import Scenario
+from scenarios.vehicles.vehicle_setup import VehicleSetup
+
+PLAN_PERIOD = 0.5
+"""Time between plans, and between measurements of the wind [s]."""
+
+STALE_MIN = 2.0
+"""Shortest age at which vessel data count as stale [s]."""
+
+TRANSIT_FRACTION = 0.5
+"""Fraction of the airspeed beyond V_r that is used on the way to the reference [-]."""
+
+THRUST_LOST_FRACTION = 0.55
+"""Mean lack of airspeed at which thrust counts as lost, over what V_r lies above the slowest airspeed [-]."""
+
+AIRSPEED_SIGMA, COURSE_SIGMA = 0.5, 0.03
+"""Deviations of airspeed and course that the wind's filter takes for noise in still air [m/s, rad]."""
+
+WIND_DRIFT, WIND_PRIOR = 0.02, 10.0
+"""By how much the wind may change in the root of a second, and how large it may be before any measurement [m/s]."""
+
+ROUND_BY = 0.8
+"""By how many turn radii a way round the keep-out area stays farther off than what counts as blocked [-]."""
+
+
+def tracking_parameters(scenario: Scenario, setup: VehicleSetup, steering: Steering | None = None) -> TrackingParameters:
+    """Return how a scenario's reference is tracked; with the steering that is given unless another one was found."""
+    g, time_step = scenario.guidance, 1.0 / scenario.guidance.rate_hz
+    epsilon, radius = (steering or given_steering(g)).look_ahead
+    steering_max = steering.steering_max if steering else g.steering_max_rad_s
+    return TrackingParameters(
+        law=steering_law(g, epsilon_per_m=epsilon, look_ahead_m=radius, steering_max_rad_s=steering_max),
+        heading_rate_max=omega_max(g) if g.command_limit else math.inf,
+        time_step=time_step,
+        # Commands are held for a step: half of it is lag.
+        lag=guidance_lag(scenario, setup) if g.preview else 0.0,
+    )
+
+
+def guidance_lag(scenario: Scenario, setup: VehicleSetup) -> float:
+    """Return how late the vehicle's heading rate follows the guidance [s]: by its own lag, and half a step of holding commands."""
+    return setup.lag + 0.5 / scenario.guidance.rate_hz
+
+
+def guard_parameters(
+    scenario: Scenario, reversal: TurnReversalResponse, radius: float, *, speed_error: float = 0.0, acceleration: float = 0.0
+) -> GuardParameters:
+    """Return the guard of a disc of some radius [m] about the vessel."""
+    return GuardParameters(
+        radius=radius,
+        heading_rate_max=omega_max(scenario.guidance),
+        lag=reversal.lag,
+        delay=reversal.delay,
+        time_step=1.0 / scenario.guidance.rate_hz,
+        speed_error=speed_error,
+        acceleration=acceleration,
+    )
+
+
+def speed_hold(scenario: Scenario, setup: VehicleSetup) -> SpeedHold:
+    """Return how a scenario's flights keep pace with a reference that is steered."""
+    return design_speed_hold(
+        bandwidth=setup.airspeed_bandwidth,
+        speed=scenario.guidance.airspeed_mps,
+        look_ahead=scenario.guidance.look_ahead_m,
+        airspeed_min=setup.airspeed_min,
+        airspeed_max=setup.airspeed_max,
+    )
+
+
+def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> NavigationParameters:
+    """Return what the navigation knows beforehand: how much gusts scatter what it measures the wind by."""
+    g, time_step = scenario.guidance, 1.0 / scenario.guidance.rate_hz
+    gust = 0.0
+    if scenario.turbulence.level != "none":
+        height = scenario.plume.source_height_m
+        sigma = intensities(height, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
+        gust = sigma * math.sqrt(2.0 * scale_lengths(height)[0] / g.airspeed_mps / PLAN_PERIOD)
+    return NavigationParameters(
+        crab_banks=setup.crab_banks,
+        crab_offsets=setup.crab_offsets,
+        airspeed_sigma=math.hypot(AIRSPEED_SIGMA, gust),
+        course_sigma=math.hypot(COURSE_SIGMA, gust / g.airspeed_mps),
+        wind_drift=WIND_DRIFT,
+        wind_prior=WIND_PRIOR,
+        wind_interval=plan_interval(scenario),
+        time_step=time_step,
+    )
+
+
+def plan_interval(scenario: Scenario) -> int:
+    """Return the guidance steps between plans."""
+    return max(1, round(PLAN_PERIOD * scenario.guidance.rate_hz))
+
+
+def approach_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) -> ApproachParameters:
+    """Return the way to the centre of oscillation, round a keep-out area of some radius [m]."""
+    g, f, fastest = scenario.guidance, scenario.following, omega_max(scenario.guidance)
+    airspeed = g.airspeed_mps + TRANSIT_FRACTION * (setup.airspeed_max - g.airspeed_mps)
+    return ApproachParameters(
+        blocked_radius=radius,
+        round_radius=radius + ROUND_BY * g.airspeed_mps / fastest,
+        join_distance=f.join_distance_m,
+        tracked=f.tracked_m,
+        airspeed=min(airspeed, setup.turning_airspeed(fastest)),
+    )
+
+
+def following_parameters(
+    scenario: Scenario, setup: VehicleSetup, margin: float, widths: Sequence[tuple[float, float]]
+) -> FollowingParameters:
+    """Return how the plume of a moving vessel is followed.
+
+    Parameters
+    ----------
+    scenario, setup : the flight, and its vehicle
+    margin : of the keep-out area [m]
+    widths : half-widths of the orbit along and across its course, at equal steps of nu from 0 [m]
+    """
+    g, f, reports = scenario.guidance, scenario.following, scenario.reports
+    fastest, radius = omega_max(g), scenario.keepout.radius_m
+    hold = speed_hold(scenario, setup)
+    centre = CentreParameters(
+        distance_min=radius + margin,
+        speed_ratio_max=f.speed_ratio_max,
+        along=tuple(along for along, _ in widths),
+        across=tuple(across for _, across in widths),
+        plume_heading=None if scenario.plume_by_wind else math.radians(scenario.plume.heading_deg),
+        apparent_wind_min=f.apparent_wind_min_mps,
+        speed=g.airspeed_mps,
+        heading_rate_max=fastest,
+    )
+    return FollowingParameters(
+        centre=centre,
+        reference_heading_rate=(1.0 - g.reserve) * fastest,
+        roll_rate_max=math.radians(g.roll_rate_max_deg_s),
+        speed_ratio_max=f.speed_ratio_max,
+        approach=approach_parameters(scenario, setup, radius + margin),
+        standoff=f.standoff_m,
+        glide_airspeed=0.5 * (g.airspeed_mps + hold.airspeed_min),
+        stale=max(STALE_MIN, reports.interval_s[1] + reports.latency_max_s),
+        vessel_acceleration=f.vessel_acceleration_mps2,
+        drift_rate=f.drift_rate_mps,
+        plan_interval=plan_interval(scenario),
+        source_altitude=scenario.plume.source_height_m,
+        climb=math.tan(math.radians(scenario.plume.elevation_deg)),
+    )

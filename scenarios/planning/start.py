@@ -1,0 +1,79 @@
+"""Where flights begin, and which starts are refused."""
+
+import math
+
+import numpy as np
+
+from gnc.compose import keepout_guard
+from gnc.errors import InfeasibleError
+from gnc.parameters import GuardParameters
+from scenarios.planning.flight_plan import Start
+from scenarios.schema.flight import StartConfig
+
+
+def sampled_start(start: StartConfig, generator: np.random.Generator, *, course: float, axis: float) -> Start:
+    """Return a start: given, or sampled about the plume's axis.
+
+    What is given is sampled all the same, so that nothing else of the flight depends on what is.
+
+    Parameters
+    ----------
+    start : the ``[start]`` section
+    generator : of the random numbers
+    course : of the vessel, or of the reference of a circle [rad]
+    axis : course along which the plume trails [rad]
+    """
+    distance = float(generator.uniform(*start.distance_m))
+    spread = math.radians(start.spread_deg)
+    aspect = float(generator.uniform(-spread, spread))
+    flown = float(generator.uniform(-math.pi, math.pi))
+    if start.course_deg is not None:
+        flown = math.radians(start.course_deg)
+    if start.place_m is not None:
+        north, east = placed(*start.place_m, course)
+        return Start(north=north, east=east, course=flown)
+    if start.range_m is not None:
+        distance = start.range_m
+    bearing = axis + (aspect if start.aspect_deg is None else math.radians(start.aspect_deg))
+    return Start(north=distance * math.cos(bearing), east=distance * math.sin(bearing), course=flown)
+
+
+def placed(ahead: float, right: float, course: float) -> tuple[float, float]:
+    """Return north and east of a place ahead and right of a vessel at the origin on a course [m, rad]."""
+    sin_c, cos_c = math.sin(course), math.cos(course)
+    return ahead * cos_c - right * sin_c, ahead * sin_c + right * cos_c
+
+
+def check_start(
+    start: Start,
+    guard: GuardParameters | None,
+    *,
+    through_air: tuple[float, float],
+    airspeed: float,
+    allowance: float,
+    keepout_radius: float,
+) -> None:
+    """Refuse a start from which no command keeps the aircraft out of the keep-out area.
+
+    Parameters
+    ----------
+    start, guard : the start, and the guard that would have to keep out; any start is accepted without
+    through_air : velocity of the vessel through the air [m/s]
+    airspeed : of the UAV [m/s]
+    allowance : by how much the turn away may come closer than the guard's radius [m]
+    keepout_radius : r_min [m]
+
+    Raises
+    ------
+    InfeasibleError : the best turn away comes too close
+    """
+    if guard is None:
+        return
+    clearance = keepout_guard(guard).clearance(start.north, start.east, *through_air, start.course, airspeed, 0.0)
+    if clearance + allowance < 0.0:
+        raise InfeasibleError(
+            f"the start lies {math.hypot(start.north, start.east):.1f} m from the vessel on course"
+            f" {math.degrees(start.course):.0f} deg, where the best turn away comes within"
+            f" {guard.radius + clearance:.1f} m; keepout.radius_m is {keepout_radius:g} m, and the guard has to keep"
+            f" {guard.radius - allowance:.1f} m: start farther away (start.distance_m) or on another course (start.course_deg)"
+        )

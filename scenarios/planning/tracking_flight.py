@@ -1,0 +1,138 @@
+"""Flights that track the paper's reference, which is known in advance: beside a steady vessel in still air, or on a circle."""
+
+import math
+
+import numpy as np
+
+from gnc.airspeed.along_track import AlongTrackTrim
+from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
+from gnc.parameters import GuardParameters, GuidanceParameters
+from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
+from scenarios.planning.bounded_steering import Steering, plan_steering
+from scenarios.planning.flight_plan import FlightPlan
+from scenarios.planning.guidance import approach_parameters, guard_parameters, plan_interval, tracking_parameters
+from scenarios.planning.limits import omega_max
+from scenarios.planning.reference import circle, joined_orbit, oscillation_at
+from scenarios.planning.start import check_start, placed, sampled_start
+from scenarios.schema.scenario import Scenario
+from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.faults import NO_FAULT
+from scenarios.world.weather import STILL_AIR
+from scenarios.world.world import World, plume_of, vessel_of
+
+GUARD_FRACTION = 0.75
+"""Of the tracking allowance, what the guard keeps beyond r_min: what an aircraft does that the guard does not predict [-]."""
+
+
+def circling_flight(scenario: Scenario, flight_id: str, seed: int, setup: VehicleSetup) -> FlightPlan:
+    """Return a flight that tracks a circle, without a vessel.
+
+    Raises
+    ------
+    InfeasibleError : the circle is too tight
+    """
+    reference = circle(scenario)
+    steering = plan_steering(scenario, omega_max(scenario.guidance), reference.heading_rate)
+    altitude = scenario.plume.source_height_m
+    return FlightPlan.of(
+        scenario,
+        flight_id,
+        guidance=_guidance(scenario, setup, steering, DirectParameters(reference=reference), altitude=altitude),
+        steering=steering,
+        start=sampled_start(scenario.start, np.random.default_rng(seed), course=0.0, axis=math.pi),
+        period=2.0 * math.pi / reference.heading_rate,
+    )
+
+
+def tracking_flight(scenario: Scenario, flight_id: str, seed: int, setup: VehicleSetup) -> FlightPlan:
+    """Return a flight beside a steady vessel that is known exactly, in still air.
+
+    Raises
+    ------
+    InfeasibleError : the vessel outruns the UAV, or the flight starts where no command keeps it out of the keep-out area
+    """
+    g, radius = scenario.guidance, scenario.keepout.radius_m
+    vessel = vessel_of(scenario)
+    plume = plume_of(scenario, vessel)
+    course, (_, _, v_north, v_east) = vessel.course(0.0), vessel.motion(0.0)
+    nu = scenario.nu_over_ground
+    oscillation = oscillation_at(g, scenario.reference, nu)
+    axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
+    rule = distance_by_paper if g.placement == "paper" else distance_exact
+    distance = rule(oscillation, axis, radius + g.tracking_allowance_m)
+    ahead, right, above = centre_of_oscillation(distance, axis)
+    steering = plan_steering(scenario, omega_max(g), oscillation.amplitude)
+    start = sampled_start(scenario.start, np.random.default_rng(seed), course=course, axis=plume.axis(0.0))
+    guard = None
+    guarded = radius + GUARD_FRACTION * g.tracking_allowance_m
+    # The disc that the keep-out sphere cuts out at the height of the flight.
+    disc = math.sqrt(max(0.0, guarded**2 - above**2))
+    if g.keepout_guard and disc > 0.0:
+        guard = guard_parameters(scenario, setup.reversal, disc)
+        check_start(start, guard, through_air=(v_north, v_east), airspeed=g.airspeed_mps, allowance=0.0, keepout_radius=radius)
+    orbit = joined_orbit(scenario, oscillation, course)
+    joining = None
+    if g.approach:
+        approach = approach_parameters(scenario, setup, disc)
+        joining = Joining(approach=approach, orbit=orbit, plan_interval=plan_interval(scenario))
+    mission = DirectParameters(
+        reference=orbit.reference(math.radians(g.phase_deg), *placed(ahead, right, course)),
+        centre=SteadyCentre(*placed(ahead, right, course), nu),
+        joining=joining,
+    )
+    return FlightPlan.of(
+        scenario,
+        flight_id,
+        nu=nu,
+        guidance=_guidance(
+            scenario,
+            setup,
+            steering,
+            mission,
+            altitude=scenario.plume.source_height_m + above,
+            vessel=(v_north, v_east),
+            guard=guard,
+        ),
+        steering=steering,
+        start=start,
+        period=oscillation.period,
+        world=World(
+            vessel=vessel,
+            plume=plume,
+            elevation=axis.elevation,
+            source_height=scenario.plume.source_height_m,
+            weather=STILL_AIR,
+            fault=NO_FAULT,
+        ),
+        oscillation=oscillation,
+        centre_distance=distance,
+    )
+
+
+def _guidance(
+    scenario: Scenario,
+    setup: VehicleSetup,
+    steering: Steering,
+    mission: DirectParameters,
+    *,
+    altitude: float,
+    vessel: tuple[float, float] = (0.0, 0.0),
+    guard: GuardParameters | None = None,
+) -> GuidanceParameters:
+    g = scenario.guidance
+    trim = AlongTrackTrim(
+        speed=g.airspeed_mps,
+        gain=g.airspeed_gain_per_s if g.airspeed_trim else 0.0,
+        change_max=g.airspeed_trim_max_mps,
+    )
+    return GuidanceParameters(
+        speed=g.airspeed_mps,
+        altitude=altitude,
+        tracking=tracking_parameters(scenario, setup, steering),
+        airspeed_law=trim,
+        navigation=None,
+        vessel=vessel,
+        guard=guard,
+        mission=mission,
+        health=None,
+    )

@@ -1,0 +1,248 @@
+"""Which keys of a scenario act: one that no part of its flights uses is refused, with the part that would use it."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from scenarios.errors import InputError
+from scenarios.schema.scenario import Scenario
+
+Test = Callable[[Scenario], bool]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rule:
+    """When some keys act.
+
+    Attributes
+    ----------
+    keys : dotted keys, or the beginnings of keys that end in a dot
+    acts : whether they do in a scenario
+    user : the part that would use them, and how to have it
+    depends : keys on which that depends: where they differ from flight to flight, the keys count as acting
+    by_mission : whether that depends on the mission as well, and so on the keys from which it follows
+    """
+
+    keys: tuple[str, ...]
+    acts: Test
+    user: str
+    depends: tuple[str, ...] = ()
+    by_mission: bool = False
+
+
+_TRACKS = "the mission that tracks the paper's reference; here the reference is steered: set guidance.mission to 'track'"
+_FOLLOWS = "the mission that follows the vessel with a steered reference: set guidance.mission to 'follow'"
+_VESSEL = "an oscillation beside a vessel; here reference.path is 'circle'"
+_OPERATIONAL = ("wind.speed_mps", "turbulence.", "vessel.manoeuvres", "reports.", "sensors.", "fault.kind", "plume.direction")
+"""Keys from which the mission follows where guidance.mission is not given."""
+
+
+def _kinematic(scenario: Scenario) -> bool:
+    return scenario.fidelity in ("kinematic", "both")
+
+
+def _six_dof(scenario: Scenario) -> bool:
+    return scenario.fidelity in ("six_dof", "both")
+
+
+def _trims(scenario: Scenario) -> bool:
+    return not scenario.follows and scenario.guidance.airspeed_trim
+
+
+def _law(*laws: str) -> Test:
+    return lambda s: s.guidance.law in laws
+
+
+LAW_KEYS: tuple[tuple[str, str, Test], ...] = (
+    ("lyapunov_gain_per_m2", "lyapunov", _law("lyapunov")),
+    (
+        "steering_max_rad_s",
+        "cascade, where guidance.tuning is 'given'",
+        lambda s: _law("cascade")(s) and s.guidance.tuning == "given",
+    ),
+    ("gain_per_s", "cascade or line_of_sight", _law("cascade", "line_of_sight")),
+    (
+        "epsilon_per_m",
+        "cascade or lyapunov, where guidance.tuning is 'given'",
+        lambda s: _law("cascade", "lyapunov")(s) and s.guidance.tuning == "given",
+    ),
+    (
+        "look_ahead_m",
+        "cascade or lyapunov, where guidance.tuning is 'given'",
+        lambda s: s.follows or (_law("cascade", "lyapunov")(s) and s.guidance.tuning == "given"),
+    ),
+)
+"""Keys of the project's own steering laws, the laws that use them, and whether one of them does.
+
+A steered reference is kept pace with by the look-ahead, whatever the law (``gnc.airspeed.pace_hold``).
+"""
+
+RULES = (
+    Rule(
+        keys=("guidance.phase_deg", "guidance.placement", "guidance.tracking_allowance_m"),
+        acts=lambda s: not s.follows and not s.circles,
+        user=_TRACKS,
+        by_mission=True,
+    ),
+    Rule(
+        keys=("guidance.tuning", "guidance.airspeed_trim", "guidance.command_limit"),
+        acts=lambda s: not s.follows,
+        user=_TRACKS,
+        by_mission=True,
+    ),
+    Rule(
+        keys=("guidance.phase_deg",),
+        acts=lambda s: not s.guidance.approach or s.circles,
+        user="a reference that is tracked from the first step on; an orbit that is joined has its own phase: set guidance.approach"
+        " to false",
+        depends=("guidance.approach",),
+    ),
+    Rule(
+        keys=("guidance.airspeed_gain_per_s", "guidance.airspeed_trim_max_mps"),
+        acts=_trims,
+        user="trimming of the airspeed: set guidance.airspeed_trim to true, and guidance.mission to 'track'",
+        by_mission=True,
+        depends=("guidance.airspeed_trim",),
+    ),
+    Rule(
+        keys=("guidance.bound_speed_margin_mps",),
+        acts=lambda s: not s.follows and _six_dof(s) and s.guidance.law == "cascade",
+        user="the bound on the cascade law's commands, for an aircraft that tracks the paper's reference",
+        by_mission=True,
+        depends=("guidance.law",),
+    ),
+    Rule(
+        keys=("guidance.approach",),
+        acts=lambda s: not s.follows and not s.circles,
+        user="the mission that tracks the paper's reference; following has its own way to the vessel",
+        by_mission=True,
+    ),
+    Rule(
+        keys=("guidance.keepout_guard", "guidance.reserve", "guidance.roll_rate_max_deg_s", "keepout.", "vessel."),
+        acts=lambda s: not s.circles,
+        user=_VESSEL,
+    ),
+    Rule(
+        keys=("plume.model", "plume.direction", "plume.heading_deg", "plume.elevation_deg", "flight.crossings"),
+        acts=lambda s: not s.circles,
+        user=_VESSEL,
+    ),
+    Rule(
+        keys=("reference.shape",),
+        acts=lambda s: not s.circles and (not s.follows or s.reference.shape == "sinusoid"),
+        user="the mission that tracks a reference known in advance; the steered reference is a sinusoid",
+        by_mission=True,
+    ),
+    Rule(keys=("guidance.bank_deg",), acts=lambda s: s.guidance.heading_rate_max_rad_s is None, user="omega_max, which"
+         " guidance.heading_rate_max_rad_s gives directly: leave one of them out"),
+    Rule(keys=("reference.radius_m",), acts=lambda s: s.circles, user="a circle: set reference.path to 'circle'",
+         depends=("reference.path",)),
+    Rule(keys=("guidance.preview",), acts=lambda s: _six_dof(s) or s.kinematic.heading_rate_lag_s > 0.0,
+         user="a vehicle that lags behind its commands: set fidelity to 'six_dof', or kinematic.heading_rate_lag_s",
+         depends=("kinematic.heading_rate_lag_s",)),
+    Rule(keys=("kinematic.",), acts=_kinematic, user="the kinematic vehicle: set fidelity to 'kinematic'"),
+    Rule(keys=("turbulence.gust_length_s",), acts=lambda s: s.turbulence.gusts > 0, user="gusts: set turbulence.gusts",
+         depends=("turbulence.gusts",)),
+    Rule(keys=("wind.from_deg",), acts=lambda s: s.wind.speed_mps > 0.0, user="wind: set wind.speed_mps",
+         depends=("wind.speed_mps",)),
+    Rule(keys=("plume.heading_deg",), acts=lambda s: not s.plume_by_wind,
+         user="a plume at an angle from the bow: set plume.direction to 'given'", by_mission=True, depends=("plume.direction",)),
+    Rule(keys=("following.apparent_wind_min_mps",), acts=lambda s: s.follows and s.plume_by_wind,
+         user="a plume that trails with the apparent wind: set plume.direction to 'apparent_wind'",
+         by_mission=True, depends=("plume.direction",)),
+    Rule(keys=("following.join_distance_m", "following.tracked_m"),
+         acts=lambda s: s.follows or (s.guidance.approach and not s.circles),
+         user="the way to the orbit: set guidance.approach to true", by_mission=True),
+    Rule(
+        keys=(
+            "following.touches_per_hour", "following.margin_min_m", "following.speed_ratio_max", "following.standoff_m",
+            "following.vessel_acceleration_mps2", "following.speed_error_mps", "following.drift_rate_mps",
+        ),
+        acts=lambda s: s.follows,
+        user=_FOLLOWS,
+        by_mission=True,
+    ),
+    Rule(
+        keys=("reports.position_sigma_m", "reports.velocity_sigma_mps", "reports.latency_max_s", "reports.missing"),
+        acts=lambda s: not s.reports.exact,
+        user="reports that come now and then: set reports.interval_s",
+        depends=("reports.interval_s",),
+    ),
+    Rule(keys=("fault.at_s",), acts=lambda s: s.fault.kind != "none", user="a fault: set fault.kind", depends=("fault.kind",)),
+    Rule(keys=("fault.vessel_data_s",), acts=lambda s: s.fault.kind == "vessel_data",
+         user="a loss of vessel data: set fault.kind to 'vessel_data'", depends=("fault.kind",)),
+    Rule(keys=("fault.satellite_navigation_s",), acts=lambda s: s.fault.kind == "satellite_navigation",
+         user="a loss of satellites: set fault.kind to 'satellite_navigation'", depends=("fault.kind",)),
+    Rule(
+        keys=("turbulence.", "wind.", "reports.", "sensors.", "fault.", "vessel.manoeuvres", "vessel.track"),
+        acts=lambda s: s.follows,
+        user="the mission that follows what it estimates; guidance.mission is 'track', in still air beside a steady vessel: leave"
+        " guidance.mission out, or set it to 'follow'",
+        by_mission=True,
+    ),
+    Rule(keys=("vessel.speed_mps",), acts=lambda s: s.vessel.speed_ratio is None and "nu" not in s.sweep.root,
+         user="a vessel whose speed is not given by sweep.nu or vessel.speed_ratio: leave one of them out"),
+    Rule(keys=("start.distance_m",), acts=lambda s: s.start.place_m is None and s.start.range_m is None,
+         user="a random distance: leave out start.place_m and start.range_m", depends=("start.",)),
+    Rule(keys=("start.spread_deg",), acts=lambda s: s.start.place_m is None and s.start.aspect_deg is None,
+         user="a random bearing: leave out start.place_m and start.aspect_deg", depends=("start.",)),
+    Rule(keys=("criteria.resumes_within_periods",), acts=lambda s: bool(s.vessel.manoeuvres),
+         user="a vessel that manoeuvres: set vessel.manoeuvres", depends=("vessel.manoeuvres",)),
+    Rule(
+        keys=("criteria.tracking_error_rms_m", "criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"),
+        acts=lambda s: s.criteria.settles,
+        user="flights that must settle: set criteria.settles to true",
+    ),
+    Rule(keys=("criteria.crossing_interval_error", "criteria.crossing_interval_s", "criteria.crossing_distance_m",
+               "criteria.modes_at_end"),
+         acts=lambda s: not s.circles, user=_VESSEL),
+    Rule(keys=("statistics.",), acts=lambda s: s.study == "monte_carlo", user="a Monte Carlo study: set study to 'monte_carlo'"),
+    Rule(keys=("sampling",), acts=lambda s: s.study == "monte_carlo" and bool(s.draws),
+         user="a Monte Carlo study with random variables: set study to 'monte_carlo', and give draws"),
+    Rule(keys=("search.",), acts=lambda s: s.study == "falsify", user="a search: set study to 'falsify'"),
+    Rule(keys=("flights",), acts=lambda s: s.study != "falsify", user="other studies; a search flies search.population"
+         " times search.generations"),
+    Rule(keys=("speed_ratio",), acts=lambda s: bool(s.draws), user="random variables: give draws"),
+    Rule(keys=("comparison.nu",), acts=lambda s: not s.comparison.nu or (bool(s.comparison.variants) and "nu" in s.sweep.root),
+         user="variants that are flown at swept speed ratios: give comparison.variants and sweep.nu, or use comparison.flights"),
+    Rule(keys=("comparison.flights",), acts=lambda s: bool(s.comparison.variants), user="variants: give comparison.variants"),
+    *(
+        Rule(keys=(f"guidance.{key}",), acts=used, user=f"the steering law {laws}: set guidance.law",
+             by_mission=True, depends=("guidance.law",))
+        for key, laws, used in LAW_KEYS
+    ),
+)  # fmt: skip
+
+
+def refuse_unused(scenario: Scenario, given: Iterable[str]) -> None:
+    """Refuse keys that no part of a scenario's flights uses.
+
+    Parameters
+    ----------
+    scenario : as checked
+    given : dotted keys that its file and the command line set
+
+    Raises
+    ------
+    InputError : a key has no effect; the message names the part that would use it
+    """
+    for key in sorted(given):
+        if user := unused(scenario, key):
+            raise InputError(f"key '{key}' has no effect here: it is used by {user}")
+
+
+def unused(scenario: Scenario, key: str) -> str:
+    """Return the part that would use a dotted key, where no part of a scenario's flights does; otherwise nothing."""
+    varied = {*scenario.sweep.root, *(draw.key for draw in scenario.draws)}
+    varied |= {other for variant in scenario.comparison.variants for other in variant.set}
+    varied |= {other for case in scenario.cases for other in (*case.set, *case.set_kinematic)}
+    # A mission that is given does not follow from the air, the vessel or the equipment.
+    mission = ("guidance.mission", *(_OPERATIONAL if scenario.guidance.mission is None else ()))
+    for rule in RULES:
+        depends = (*rule.depends, *(mission if rule.by_mission else ()))
+        if _named(key, rule.keys) and not rule.acts(scenario) and not any(_named(other, depends) for other in varied):
+            return rule.user
+    return ""
+
+
+def _named(key: str, names: Iterable[str]) -> bool:
+    return any(key == name or (name.endswith(".") and key.startswith(name)) for name in names)

@@ -1,0 +1,74 @@
+"""What a scenario file may say of equipment: the vessel's reports, sensors, faults, payload. What is absent is ideal."""
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from scenarios.schema.section import NonNegative, Positive, Section, check_ordered
+
+
+class VesselReportsConfig(Section):
+    """Reports of the vessel's motion, as by AIS."""
+
+    interval_s: tuple[NonNegative, NonNegative] = (0.0, 0.0)
+    """Shortest and longest time between reports; 0 for exact knowledge at all times [s]."""
+    position_sigma_m: NonNegative = 5.0
+    """Error of each coordinate of a report, one sigma [m]."""
+    velocity_sigma_mps: NonNegative = 0.15
+    """Error of each component of the velocity, one sigma [m/s]."""
+    latency_max_s: NonNegative = 0.0
+    """Longest time from when a report is true to when it is received [s]."""
+    missing: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
+    """Fraction of reports that are never received [-]."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "VesselReportsConfig":
+        check_ordered("interval_s", self.interval_s)
+        return self
+
+    @property
+    def exact(self) -> bool:
+        """Return whether the vessel's motion is known at all times."""
+        return self.interval_s[1] == 0.0
+
+
+class SensorsConfig(Section):
+    """Errors of the UAV's sensors. Biases are sampled for each flight, within these limits."""
+
+    position_sigma_m: NonNegative = 0.0
+    """Error of each coordinate by satellite navigation, one sigma, wandering with a time constant of a minute [m]."""
+    velocity_sigma_mps: NonNegative = 0.0
+    """Noise of each velocity component by satellite navigation [m/s]."""
+    airspeed_sigma_mps: NonNegative = 0.0
+    """Noise of the airspeed [m/s]."""
+    airspeed_bias_mps: NonNegative = 0.0
+    """Largest bias of the airspeed [m/s]."""
+    heading_sigma_deg: NonNegative = 0.0
+    """Noise of the heading [deg]."""
+    heading_bias_deg: NonNegative = 0.0
+    """Largest bias of the heading [deg]."""
+
+
+class FaultConfig(Section):
+    """A fault in flight."""
+
+    kind: Annotated[str, Field(pattern=r"^[a-z_0-9]+$")] = "none"
+    """none, vessel_data, satellite_navigation, engine, or the name of an actuator of the aircraft (the error lists them)."""
+    at_s: tuple[NonNegative, NonNegative] = (100.0, 250.0)
+    """Earliest and latest time; sampled in between [s]."""
+    vessel_data_s: Positive = 60.0
+    """How long vessel data are lost [s]."""
+    satellite_navigation_s: Positive = 10.0
+    """How long satellite navigation is lost [s]; any other fault is for good."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "FaultConfig":
+        check_ordered("at_s", self.at_s)
+        return self
+
+
+class KinematicConfig(Section):
+    """The paper's vehicle, eq. (1)."""
+
+    heading_rate_lag_s: NonNegative = 0.0
+    """Time constant of the heading rate behind its command; 0 for eq. (1) as it stands [s]."""

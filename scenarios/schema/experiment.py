@@ -1,0 +1,163 @@
+"""What a scenario file may say of an experiment: sweeps, cases, comparisons, random variables, statistics, a search."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, RootModel, model_validator
+
+from scenarios.schema.section import Fraction, NonNegative, Positive, Range, Section, Seed, check_ordered
+
+Sampling = Literal["sobol", "latin_hypercube", "random"]
+
+NU_MAX = 10.0
+"""Largest speed ratio of a sweep [-]; from 1 on there is no solution, and the flight is a row that says so."""
+
+
+class SweepConfig(RootModel[dict[str, tuple[Any, ...]]]):
+    """Keys, each with the values that it takes; every combination is flown. ``nu`` stands for ``vessel.speed_ratio``."""
+
+    root: dict[str, tuple[Any, ...]] = Field(default_factory=dict)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _dotted(cls, given: Any) -> Any:
+        """Take ``sweep.wind.speed_mps`` for the key ``wind.speed_mps``."""
+        return dict(_flat(given)) if isinstance(given, dict) else given
+
+    @model_validator(mode="after")
+    def _values(self) -> "SweepConfig":
+        for key, values in self.root.items():
+            if not values:
+                raise ValueError(f"{key} has no values; give at least one, as in [0.3, 0.5]")
+            if len(values) > 1000:
+                raise ValueError(f"{key} has {len(values)} values; the most is 1000")
+        for nu in self.root.get("nu", ()):
+            if not isinstance(nu, int | float) or isinstance(nu, bool) or not 0.0 <= nu <= NU_MAX:
+                raise ValueError(f"nu is {nu!r}; speed ratios lie between 0 and {NU_MAX:g}")
+        return self
+
+    @property
+    def nu(self) -> tuple[float, ...]:
+        """Return the swept speed ratios."""
+        return tuple(float(nu) for nu in self.root.get("nu", ()))
+
+
+def _flat(values: dict[str, Any], before: str = "") -> list[tuple[str, Any]]:
+    return [
+        entry
+        for key, value in values.items()
+        for entry in (_flat(value, f"{before}{key}.") if isinstance(value, dict) else [(f"{before}{key}", value)])
+    ]
+
+
+class VariantConfig(Section):
+    """A comparison: the same flights with some keys set otherwise."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
+    set: dict[str, object]
+
+
+class ComparisonConfig(Section):
+    """Extra flights that show what a part is worth. They are reported apart and have no part in the verdict."""
+
+    nu: tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...] = ()
+    """Those of the swept speed ratios at which variants are flown; all flights if not given [-]."""
+    flights: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
+    """Of each point of the experiment, how many flights are flown with each variant; all of them if not given."""
+    variants: tuple[VariantConfig, ...] = ()
+
+
+class CaseConfig(Section):
+    """One flight of a study of cases, with some keys set otherwise; flown with each vehicle that ``fidelity`` names."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
+    set: dict[str, object] = Field(default_factory=dict)
+    set_kinematic: dict[str, object] = Field(default_factory=dict)
+    """More keys, for the kinematic vehicle alone."""
+    comparison: bool = False
+    """Reported apart, with no part in the verdict."""
+
+
+class DrawConfig(Section):
+    """A random variable: a key that is sampled for each flight from one distribution."""
+
+    key: str
+    """Dotted key of the scenario; a number is an index into a list, as in vessel.manoeuvres.0.turn_deg."""
+    uniform: Range | None = None
+    """Evenly between these."""
+    normal: tuple[float, Positive] | None = None
+    """Mean and standard deviation."""
+    weibull: tuple[Positive, Positive] | None = None
+    """Shape and scale, as wind speeds have them."""
+    within: Range | None = None
+    """Limits at which a normal or Weibull distribution is cut off."""
+    choice: Annotated[tuple[object, ...], Field(min_length=1)] | None = None
+    """One of these: in turn, so that each comes equally often, or at random by their weights."""
+    weights: tuple[NonNegative, ...] | None = None
+    """Of the choices, in any unit."""
+
+    @model_validator(mode="after")
+    def _one(self) -> "DrawConfig":
+        given = [name for name in ("uniform", "normal", "weibull", "choice") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"draw of '{self.key}' has {' and '.join(given) or 'none'} of uniform, normal, weibull and choice; give one"
+            )
+        for name in ("uniform", "within"):
+            if (values := getattr(self, name)) is not None:
+                check_ordered(f"{name} of the draw of '{self.key}'", values)
+        if self.within is not None and given[0] not in ("normal", "weibull"):
+            raise ValueError(f"draw of '{self.key}' has within beside {given[0]}; it cuts off a normal or a weibull")
+        if self.weights is not None and (self.choice is None or len(self.weights) != len(self.choice) or not sum(self.weights)):
+            raise ValueError(f"draw of '{self.key}' has weights {list(self.weights)}; give each choice one, and not all 0")
+        return self
+
+
+class StatisticsConfig(Section):
+    """Confidence of the figures of a Monte Carlo study, and when the study may stop."""
+
+    confidence: Fraction = 0.95
+    """Of every interval [-]."""
+    violation_upper: Fraction | None = None
+    """Stop once the probability of a keep-out violation is shown to be at most this [-]."""
+    distance_quantile_width_m: Positive | None = None
+    """Stop once the interval of the quantile of the closest approach is as narrow as this [m]."""
+    distance_quantile: Fraction = 0.01
+    """Which quantile that is [-]."""
+
+    @property
+    def stops(self) -> bool:
+        """Return whether the study stops by itself."""
+        return self.violation_upper is not None or self.distance_quantile_width_m is not None
+
+
+class SearchConfig(Section):
+    """A search by differential evolution over the ranges of the random variables."""
+
+    population: Annotated[int, Field(ge=8, le=10_000)] = 64
+    """Flights of a generation [-]."""
+    generations: Annotated[int, Field(ge=0, le=10_000)] = 30
+    """Generations after the first, which is a Sobol sequence [-]."""
+    mutation: tuple[Positive, Positive] = (0.5, 1.0)
+    """Range of the differential weight, sampled anew for each generation [-]."""
+    recombination: Fraction = 0.7
+    """Probability with which a key comes from the mutant [-]."""
+    kept: Annotated[int, Field(ge=1, le=1000)] = 10
+    """Worst flights that are kept as scenario files [-]."""
+
+
+class TrialList(Section):
+    """A list of trials, flown and reported together."""
+
+    study: Literal["trials"]
+    title: str
+    description: str = ""
+    trials: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Scenarios of flights, by their names in the catalog or their paths."""
+    share: Annotated[float, Field(gt=0.0, le=1.0)] = 1.0
+    """Fraction of each trial's flights that are flown, for a quick look [-]."""
+    seed: Seed | None = None
+    """Seed of every trial; each has its own if not given."""
+    histories: Annotated[int, Field(ge=0, le=100_000)] = 350
+    """Number of time histories to be kept."""
+    set: tuple[str, ...] = ()
+    """Keys to set in every trial, as key=value; overrides of the command line that are not keys of this list come here."""

@@ -1,0 +1,73 @@
+"""What a scenario file may say of a flight: where it starts, when it ends, and what it must show."""
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from scenarios.schema.section import Angle, Limit, Positive, Section, check_ordered
+
+
+class StartConfig(Section):
+    """Where flights begin: a random place about the plume's axis, on any course, or a given one."""
+
+    distance_m: tuple[Positive, Positive] = (400.0, 800.0)
+    """Nearest and farthest distance from the vessel [m]."""
+    spread_deg: Annotated[float, Field(ge=0.0, le=180.0)] = 30.0
+    """Largest bearing from the plume's axis, either side [deg]."""
+    range_m: Positive | None = None
+    """Distance from the vessel; random within distance_m if not given [m]."""
+    aspect_deg: Angle | None = None
+    """Bearing from the plume's axis, clockwise; random within spread_deg if not given [deg]."""
+    course_deg: Angle | None = None
+    """Course through the air; any if not given [deg]."""
+    place_m: tuple[float, float] | None = None
+    """Place ahead and right of the vessel or, on a circle, of the reference's start; random if not given [m]."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "StartConfig":
+        check_ordered("distance_m", self.distance_m)
+        if self.place_m is not None and (self.range_m is not None or self.aspect_deg is not None):
+            raise ValueError("place_m is given beside range_m or aspect_deg; give the place in one way")
+        return self
+
+
+class FlightConfig(Section):
+    """When a flight ends and what is recorded."""
+
+    crossings: Annotated[int, Field(ge=0, le=10_000)] = 30
+    """Crossings to fly after settling; 0 to fly for the whole duration [-]."""
+    duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 1500.0
+    """Longest flight [s]."""
+    settling_band_m: Positive = 5.0
+    """Distance to the reference below which a flight counts as settled [m]."""
+    log_rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 10.0
+    """Recording rate [Hz], at least 5 so that keep-out figures are true to centimetres; must divide the guidance rate."""
+
+
+class CriteriaConfig(Section):
+    """What a flight must show, beside keeping out; ``false`` for what is not judged."""
+
+    settles: bool = True
+    """Whether the flight must settle; if not, tracking, airspeed and altitude are not judged."""
+    tracking_error_rms_m: Limit = 1.5
+    """Largest rms distance to the reference after settling [m]."""
+    airspeed_error_rms_mps: Limit = 0.3
+    """Largest rms difference of airspeed from its command [m/s]."""
+    altitude_error_max_m: Limit = 1.5
+    """Largest difference of altitude from its command [m]."""
+    crossing_interval_error: Limit = 0.01
+    """Largest relative difference of the mean crossing interval from pi/omega_0 [-]."""
+    tracking_error_end_m: Positive | None = None
+    """Largest distance to the reference at the end [m]."""
+    crossing_interval_s: tuple[Positive, Positive] | None = None
+    """Least and largest mean crossing interval [s]."""
+    crossing_distance_m: tuple[Positive, Positive] | None = None
+    """Least and largest mean crossing distance from the vessel [m]."""
+    law_beyond_heading_rate_max: bool = False
+    """Whether the law must ask for more than omega_max, to show that it does; how commands are limited is then not judged."""
+    law_within_heading_rate_max: bool = False
+    """Whether the law itself must ask for no more than omega_max, before commands are cut."""
+    resumes_within_periods: Positive | None = None
+    """Largest time from the end of the last manoeuvre to the next crossing, in periods of the oscillation [-]."""
+    modes_at_end: tuple[str, ...] = ()
+    """Modes in which it may end; any if empty."""

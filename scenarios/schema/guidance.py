@@ -1,0 +1,149 @@
+"""What a scenario file may say of the guidance: the reference, the steering law, following a vessel that is not known exactly."""
+
+import math
+from dataclasses import fields
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field, field_validator, model_validator
+
+from common.registry import PluginError
+from common.spelling import did_you_mean
+from gnc.laws.steering_law import STEERING_LAWS
+from scenarios.schema.section import Angle, NonNegative, Positive, Section, check_divides
+
+
+class ReferenceConfig(Section):
+    """The path of the reference point."""
+
+    path: Literal["oscillation", "circle"] = "oscillation"
+    """Oscillate about a centre in the plume, eq. (2), or circle without a vessel, as in the paper's Sims. 1 and 2."""
+    shape: str = "sinusoid"
+    """Shape of the oscillation: sinusoid, that of the paper, or FILE.py:NAME."""
+    radius_m: Positive = 130.0
+    """Radius of the circle, flown to the right [m]."""
+
+
+class GuidanceConfig(Section):
+    """The paper's outer loop. A steering law that is added brings keys of its own: the fields of its dataclass."""
+
+    model_config = ConfigDict(extra="allow")
+
+    mission: Literal["track", "follow"] | None = None
+    """Track the paper's reference, known in advance, or follow the vessel with a reference that is steered.
+
+    If not given: track in still air where the vessel is steady and known exactly, else follow.
+    """
+    law: str = "cascade"
+    """Steering law: cascade, eq. (30), lyapunov, eq. (24), line_of_sight, the baseline, or FILE.py:NAME."""
+    airspeed_mps: Annotated[float, Field(ge=5.0, le=300.0)] = 19.42
+    """V_r, speed of the reference and of the UAV [m/s]; the aircraft's own unless it is given."""
+    bank_deg: Annotated[float, Field(gt=0.0, le=60.0)] = 45.0
+    """Bank whose coordinated turn sets omega_max = g tan(bank)/V_r [deg]; the aircraft's own unless it is given."""
+    heading_rate_max_rad_s: Positive | None = None
+    """omega_max given directly [rad/s]; overrides bank_deg."""
+    reserve: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.015
+    """Fraction of omega_max that the reference leaves to feedback [-]; the paper leaves none."""
+    roll_rate_max_deg_s: Annotated[float, Field(gt=0.0, le=360.0)] = 40.0
+    """Roll rate that the reference may ask for [deg/s]."""
+    phase_deg: Angle = 0.0
+    """Oscillation phase phi_0 [deg]."""
+    placement: Literal["paper", "exact"] = "paper"
+    """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside."""
+    tracking_allowance_m: Annotated[float, Field(ge=0.0, le=10_000.0)] = 1.0
+    """Added to r_min in the placement: what the UAV may stray from the reference. The guard adds three quarters of it [m]."""
+    tuning: Literal["given", "bounded"] = "given"
+    """Look-ahead and steering_max as given, or those that converge fastest while no state asks for more than omega_max."""
+    bound_speed_margin_mps: NonNegative = 0.5
+    """The bound on commands holds while the aircraft's speed exceeds the largest commanded airspeed by no more than this [m/s]."""
+    epsilon_per_m: Positive = 0.005
+    """epsilon of the look-ahead, eq. (15) [1/m]."""
+    look_ahead_m: Positive = 60.0
+    """R of the look-ahead, eq. (15) [m]; above 1/(4 epsilon)."""
+    gain_per_s: Positive = 1.5
+    """Slope of h(phi) in eq. (30), and gain of the line-of-sight law [1/s]."""
+    steering_max_rad_s: Positive = 0.4
+    """Largest |h(phi)| in eq. (30) [rad/s]."""
+    lyapunov_gain_per_m2: Positive = 0.001
+    """k_1 of eq. (24) [1/m2]."""
+    command_limit: bool = True
+    """Cut commands at omega_max. Only a kinematic vehicle can do without: it turns as fast as it is commanded."""
+    preview: bool = True
+    """Run the law ahead of time by the inner loop's measured lag."""
+    airspeed_trim: bool = True
+    """Trim the commanded airspeed by the along-track error."""
+    airspeed_gain_per_s: Positive = 0.15
+    """Commanded airspeed per along-track error [1/s]."""
+    airspeed_trim_max_mps: Positive = 1.0
+    """Largest change of commanded airspeed [m/s]."""
+    keepout_guard: bool = True
+    """Turn away from the keep-out area, of which the paper's law knows nothing."""
+    approach: bool = True
+    """Go round the vessel to the orbit and join it where it is nearest; the paper tracks its reference from the first step on."""
+    rate_hz: Annotated[float, Field(ge=1.0, le=120.0)] = 20.0
+    """Guidance rate [Hz]; must divide the 120 Hz of the simulation."""
+
+    @field_validator("law")
+    @classmethod
+    def _known(cls, law: str) -> str:
+        try:
+            STEERING_LAWS.get(law)
+        except PluginError as error:
+            raise ValueError(str(error)) from None
+        return law
+
+    @model_validator(mode="after")
+    def _law(self) -> "GuidanceConfig":
+        if self.tuning == "bounded" and self.law != "cascade":
+            raise ValueError(f"tuning is 'bounded' with law '{self.law}', which has no bound; set law to 'cascade'")
+        check_divides("rate_hz", self.rate_hz, 120.0)
+        try:
+            keys = self.law_keys
+        except PluginError as error:
+            raise ValueError(f"law: {error}") from None
+        for name, value in (self.model_extra or {}).items():
+            if name not in keys:
+                guess = did_you_mean(name, [*type(self).model_fields, *keys])
+                others = f"; those of law '{self.law}' are {', '.join(keys)}"
+                raise ValueError(f"unknown key 'guidance.{name}'{guess or others}")
+            if isinstance(keys[name], float) and not (type(value) in (int, float) and math.isfinite(value)):
+                raise ValueError(f"{name} is {value!r}; law '{self.law}' takes a finite number, by default {keys[name]:g}")
+        return self
+
+    @property
+    def law_keys(self) -> dict[str, Any]:
+        """Return the keys of the steering law, and their defaults.
+
+        Raises
+        ------
+        PluginError : there is no such law, or it does not load
+        """
+        law: Any = STEERING_LAWS.get(self.law)
+        try:
+            return {of.name: of.default for of in fields(law) if of.init}
+        except TypeError:
+            raise PluginError(f"steering law '{self.law}' is not a dataclass; its fields are the keys of [guidance]") from None
+
+
+class FollowingConfig(Section):
+    """How the reference follows a vessel that manoeuvres, in wind that is estimated, from sensors and reports."""
+
+    touches_per_hour: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-4
+    """Chance of touching r_min per flight hour that the keep-out margin is planned for [1/h]."""
+    margin_min_m: NonNegative = 3.0
+    """Smallest keep-out margin, in calm air and with exact knowledge [m]."""
+    speed_ratio_max: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.97
+    """Speed ratio from which a vessel counts as one that outruns the UAV [-]."""
+    apparent_wind_min_mps: Positive = 1.0
+    """Apparent wind below which a plume has no direction that could be known [m/s]."""
+    standoff_m: Positive = 100.0
+    """How much farther off than r_CO the centre of oscillation stays until the UAV tracks its reference [m]."""
+    join_distance_m: Positive = 150.0
+    """Distance from the centre of oscillation at which the way there ends and tracking begins [m]."""
+    tracked_m: Positive = 12.0
+    """Distance from the reference that counts as tracked: the centre closes in [m]."""
+    vessel_acceleration_mps2: NonNegative = 0.0
+    """Largest acceleration of the vessel that the keep-out guard allows for, also while no report comes [m/s2]."""
+    speed_error_mps: NonNegative = 0.0
+    """Error of the relative speed that the keep-out guard allows for [m/s]."""
+    drift_rate_mps: NonNegative = 1.0
+    """How fast dead reckoning may go wrong without satellite navigation [m/s]."""

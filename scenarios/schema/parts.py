@@ -1,0 +1,45 @@
+"""The parts that a scenario names: by a registered name, or by a Python file, FILE.py:NAME."""
+
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from common.registry import is_file_part
+from scenarios.schema.scenario import Scenario
+
+_WORDS = ("title", "description")
+"""Keys whose values are no names."""
+
+
+def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    """Yield the key and the name of each part of a scenario, those that its random variables may choose among them."""
+    yield "aircraft", scenario.aircraft
+    yield "reference.shape", scenario.reference.shape
+    yield "guidance.law", scenario.guidance.law
+    yield "vessel.track", scenario.vessel.track
+    yield "plume.model", scenario.plume.model
+    names: list[tuple[str, object]] = [("payload", scenario.payload)]
+    names += [(draw.key, choice) for draw in scenario.draws for choice in draw.choice or ()]
+    for key, value in names:
+        if key in ("reference.shape", "guidance.law", "vessel.track", "plume.model"):
+            yield key, str(value)
+        elif key == "payload" and isinstance(value, Iterable):
+            yield from ((key, str(name)) for name in value)
+
+
+def with_absolute_files(value: Any, folder: Path) -> Any:
+    """Return a document, or a value of one, in which the files of parts have absolute paths.
+
+    Parameters
+    ----------
+    value : the document, a table, a list or a single value
+    folder : directory that the files are relative to
+    """
+    if isinstance(value, dict):
+        return {key: below if key in _WORDS else with_absolute_files(below, folder) for key, below in value.items()}
+    if isinstance(value, list):
+        return [with_absolute_files(below, folder) for below in value]
+    if isinstance(value, str) and is_file_part(value) and "=" not in value:
+        return os.path.normpath(folder.absolute() / value)
+    return value

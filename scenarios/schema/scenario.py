@@ -1,0 +1,198 @@
+"""A scenario file: world, equipment, guidance, start, flight and criteria of its flights, and the experiment on them."""
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from scenarios.schema.equipment import FaultConfig, KinematicConfig, SensorsConfig, VesselReportsConfig
+from scenarios.schema.experiment import (
+    CaseConfig,
+    ComparisonConfig,
+    DrawConfig,
+    Sampling,
+    SearchConfig,
+    StatisticsConfig,
+    SweepConfig,
+)
+from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
+from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig
+from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
+from scenarios.schema.world import KeepoutConfig, PlumeConfig, TurbulenceConfig, VesselConfig, WindConfig
+
+DEFAULT_AIRCRAFT = "x8"
+
+DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "plume.source_height_m")
+"""Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept."""
+
+Histories = Annotated[int, Field(ge=0, le=100_000)]
+"""Number of time histories to be kept: an even sample. Those of flights that failed a criterion are kept beside them."""
+
+
+class Scenario(Section):
+    """A whole scenario file of flights."""
+
+    study: str = "flights"
+    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search; or FILE.py:NAME."""
+    title: str
+    description: str = ""
+    aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = DEFAULT_AIRCRAFT
+    fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
+    """The aircraft in six degrees of freedom, the paper's kinematic vehicle, or one after the other."""
+    seed: Seed = 1
+    flights: Annotated[int, Field(ge=1, le=1_000_000)] = 1
+    """Flights of each point of the experiment, each with a seed and a sample of the random variables of its own."""
+    flight_seed: Seed | None = None
+    """Of start, air and noise; each flight has its own, from seed, name and number, if it is not given."""
+    histories: Histories = 200
+    speed_ratio: Range = (0.0, 1e9)
+    """Flights whose nu leaves this range, at the start or after a manoeuvre, are sampled again [-]."""
+    sampling: Sampling = "sobol"
+    """How samples are spread: evenly over all distributions at once, or over each, or not at all."""
+    sweep: SweepConfig = SweepConfig()
+    cases: tuple[CaseConfig, ...] = ()
+    draws: tuple[DrawConfig, ...] = ()
+    comparison: ComparisonConfig = ComparisonConfig()
+    statistics: StatisticsConfig = StatisticsConfig()
+    search: SearchConfig = SearchConfig()
+    vessel: VesselConfig = VesselConfig()
+    plume: PlumeConfig = PlumeConfig()
+    keepout: KeepoutConfig = KeepoutConfig()
+    wind: WindConfig = WindConfig()
+    turbulence: TurbulenceConfig = TurbulenceConfig()
+    reports: VesselReportsConfig = VesselReportsConfig()
+    sensors: SensorsConfig = SensorsConfig()
+    fault: FaultConfig = FaultConfig()
+    payload: tuple[str, ...] = ()
+    """Instruments on board, each by its name or FILE.py:NAME; their readings are columns of the time history."""
+    kinematic: KinematicConfig = KinematicConfig()
+    reference: ReferenceConfig = ReferenceConfig()
+    guidance: GuidanceConfig = GuidanceConfig()
+    following: FollowingConfig = FollowingConfig()
+    start: StartConfig = StartConfig()
+    flight: FlightConfig = FlightConfig()
+    criteria: CriteriaConfig = CriteriaConfig()
+
+    @property
+    def circles(self) -> bool:
+        """Return whether the reference circles, without a vessel."""
+        return self.reference.path == "circle"
+
+    @property
+    def follows(self) -> bool:
+        """Return whether the reference is steered: where mission says so, or air or vessel are not steady and known exactly."""
+        if self.guidance.mission is not None:
+            return self.guidance.mission == "follow"
+        return not (
+            self.wind.speed_mps == 0.0
+            and self.turbulence.calm
+            and not self.vessel.manoeuvres
+            and self.vessel.track == "manoeuvres"
+            and self.plume.model == "straight"
+            and self.reports.exact
+            and self.sensors == SensorsConfig()
+            and self.fault.kind == "none"
+            and self.plume.direction != "apparent_wind"
+        )
+
+    @property
+    def plume_by_wind(self) -> bool:
+        """Return whether the plume trails behind the vessel's motion through the air."""
+        return self.plume.direction == "apparent_wind" or (self.plume.direction is None and self.follows)
+
+    @property
+    def vessel_speed(self) -> float:
+        """Return the vessel's speed over the ground before any manoeuvre [m/s]."""
+        ratio = self.vessel.speed_ratio
+        return self.vessel.speed_mps if ratio is None else ratio * self.guidance.airspeed_mps
+
+    @property
+    def nu_over_ground(self) -> float:
+        """Return the vessel's speed over the ground over V_r, which is nu in still air [-]."""
+        ratio = self.vessel.speed_ratio
+        return self.vessel.speed_mps / self.guidance.airspeed_mps if ratio is None else ratio
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scenario":
+        check_divides("flight.log_rate_hz", self.flight.log_rate_hz, self.guidance.rate_hz)
+        check_ordered("speed_ratio", self.speed_ratio)
+        if self.circles and (self.follows or self.sweep.root or self.draws):
+            raise ValueError(
+                "reference.path is 'circle' beside wind, a vessel that is followed, a sweep or draws; a circle has no vessel:"
+                " set reference.path to 'oscillation', or put it into a case of its own"
+            )
+        if self.fidelity == "six_dof" and not self.guidance.command_limit:
+            raise ValueError(
+                "guidance.command_limit is false; the aircraft cannot turn as fast as that: set fidelity to 'kinematic'"
+            )
+        if self.fidelity == "kinematic" and not self.turbulence.calm:
+            raise ValueError(
+                "turbulence.level or turbulence.gusts is set with fidelity 'kinematic', which feels the steady wind alone:"
+                " set fidelity to 'six_dof', or turbulence.level to 'none' and turbulence.gusts to 0"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _starts_outside(self) -> "Scenario":
+        radius, start = self.keepout.radius_m, self.start
+        # A default distance is scaled to the aircraft later, and checked then.
+        to_be_scaled = start.range_m is None and "distance_m" not in start.model_fields_set and self.aircraft != DEFAULT_AIRCRAFT
+        if self.circles:
+            return self
+        if start.place_m is not None:
+            nearest, where = math.hypot(*start.place_m), "start.place_m lies at"
+        elif start.range_m is not None:
+            nearest, where = start.range_m, "start.range_m is"
+        elif to_be_scaled:
+            return self
+        else:
+            nearest, where = start.distance_m[0], "start.distance_m begins at"
+        if nearest <= radius:
+            raise ValueError(f"{where} {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m")
+        return self
+
+    @model_validator(mode="after")
+    def _fits_into_the_flight(self) -> "Scenario":
+        air, room = self.turbulence, self.flight.duration_max_s
+        if self.fault.kind != "none" and self.fault.at_s[1] >= room:
+            raise ValueError(
+                f"fault.at_s ends at {self.fault.at_s[1]:g} s; it must lie within flight.duration_max_s, {room:g} s:"
+                " fly longer, or let it fail earlier"
+            )
+        if air.gusts * 2.0 * air.gust_length_s > 0.9 * room:
+            raise ValueError(
+                f"turbulence.gusts is {air.gusts}, each {2.0 * air.gust_length_s:g} s long; they do not fit into"
+                f" flight.duration_max_s, {room:g} s: give fewer or shorter ones"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _experiment(self) -> "Scenario":
+        names = [case.name for case in self.cases]
+        if len(set(names)) < len(names):
+            raise ValueError(f"cases are named {', '.join(names)}; give each a name of its own")
+        if self.cases and self.sweep.root:
+            raise ValueError(f"sweep has {', '.join(self.sweep.root)} beside {len(names)} cases; give one of the two")
+        if self.study == "paper" and not self.cases:
+            raise ValueError("study is 'paper' without cases; give it cases, or set study to 'flights'")
+        if self.study == "falsify" and not self.draws:
+            raise ValueError("draws is empty; give the keys to search over, each with its range")
+        if self.study == "falsify" and (self.sweep.root or self.cases or self.comparison.variants or self.fidelity == "both"):
+            raise ValueError(
+                "study is 'falsify' beside a sweep, cases, a comparison or two vehicles; it searches one point: remove them"
+            )
+        keys = [draw.key for draw in self.draws]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise ValueError(f"draws has '{key}' {keys.count(key)} times; give a key once")
+            if "." not in key and key != "flight_seed":
+                raise ValueError(f"draws has '{key}', the same for all flights; give keys of sections, as in wind.speed_mps")
+            if key in self.sweep.root:
+                raise ValueError(f"'{key}' is in sweep and in draws; give it in one of them")
+        for key in [*keys, *self.sweep.root]:
+            if key.startswith(DESIGNED_FOR):
+                raise ValueError(
+                    f"'{key}' varies from flight to flight; autopilot and margins are worked out once for it: give each value a run"
+                    " of its own"
+                )
+        return self

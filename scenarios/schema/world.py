@@ -1,0 +1,105 @@
+"""What a scenario file may say of the world: vessel, plume, wind, turbulence, keep-out area. What is absent is ideal."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from scenarios.schema.section import Angle, NonNegative, Positive, Section
+
+
+class ManoeuvreConfig(Section):
+    """A change of the vessel's course or speed, at a steady rate."""
+
+    at_s: NonNegative
+    """When it begins [s]."""
+    turn_deg: Angle = 0.0
+    """Change of course, positive to starboard [deg]."""
+    turn_rate_deg_s: Annotated[float, Field(gt=0.0, le=5.0)] = 0.5
+    """Rate of the turn [deg/s]."""
+    speed_mps: Annotated[float, Field(ge=0.0, le=30.0)] | None = None
+    """Speed over the ground that it ends with; that before if not given [m/s]."""
+    acceleration_mps2: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+    """Rate of the change of speed [m/s2]."""
+
+
+class VesselConfig(Section):
+    """The ship."""
+
+    speed_mps: Annotated[float, Field(ge=0.0, le=300.0)] = 8.0
+    """Speed over the ground, before any manoeuvre [m/s]."""
+    speed_ratio: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
+    """The same over the UAV's airspeed, nu in calm air [-]; it is used instead of speed_mps where it is given."""
+    course_deg: Angle = 0.0
+    """Course, clockwise from north [deg]."""
+    track: str = "manoeuvres"
+    """Where it is over time: by its speed, course and manoeuvres, or FILE.py:NAME."""
+    manoeuvres: tuple[ManoeuvreConfig, ...] = ()
+    """Its manoeuvres, one after the other."""
+
+    @model_validator(mode="after")
+    def _in_turn(self) -> "VesselConfig":
+        times = [m.at_s for m in self.manoeuvres]
+        if times != sorted(times):
+            raise ValueError(f"manoeuvres begin at {times} s; put them in their order")
+        return self
+
+
+class PlumeConfig(Section):
+    """The axis of the smoke plume: a half-line from the funnel."""
+
+    model: str = "straight"
+    """Where the plume is: a half-line that follows its direction at once, or FILE.py:NAME."""
+    direction: Literal["apparent_wind", "given"] | None = None
+    """Behind the vessel's motion through the air, or, as in the paper, at heading_deg from the bow.
+
+    If not given: as in the paper in still air where the vessel is steady and known, else by the apparent wind.
+    """
+    heading_deg: Angle = 180.0
+    """Direction chi_P, clockwise from the vessel's bow [deg]; 180 is straight astern."""
+    elevation_deg: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
+    """Elevation alpha_P above the horizon [deg]."""
+    source_height_m: Annotated[float, Field(ge=10.0, le=500.0)] = 60.0
+    """Height of the funnel's mouth above the sea, where the axis starts [m]."""
+
+
+class KeepoutConfig(Section):
+    """The sphere about the funnel's mouth that the UAV must not enter."""
+
+    radius_m: Annotated[float, Field(ge=10.0, le=10_000.0)] = 200.0
+    """r_min [m]."""
+
+
+class WindConfig(Section):
+    """The steady wind."""
+
+    speed_mps: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
+    """Wind speed [m/s]."""
+    from_deg: Angle = 0.0
+    """Direction that it comes from, clockwise from north [deg]."""
+
+
+class TurbulenceConfig(Section):
+    """Turbulence of MIL-F-8785C, and discrete gusts."""
+
+    level: Literal["none", "light", "moderate", "severe"] = "none"
+    """Light, moderate and severe are 15, 30 and 45 knots of wind at 20 feet."""
+    gusts: Annotated[int, Field(ge=0, le=100)] = 0
+    """Number of 1-cosine gusts, at random times and from random directions."""
+    gust_speed_mps: NonNegative = 0.0
+    """Their largest speed [m/s]."""
+    gust_length_s: Positive = 4.0
+    """How long each takes to rise, and to fall [s]."""
+
+    @model_validator(mode="after")
+    def _gusts(self) -> "TurbulenceConfig":
+        if (self.gusts > 0) != (self.gust_speed_mps > 0.0):
+            raise ValueError(
+                f"gusts is {self.gusts} with a gust_speed_mps of {self.gust_speed_mps:g}; give turbulence.gusts and"
+                " turbulence.gust_speed_mps, or neither"
+            )
+        return self
+
+    @property
+    def calm(self) -> bool:
+        """Whether there is none."""
+        return self.level == "none" and not self.gusts

@@ -1,0 +1,74 @@
+"""What the guidance learns by sensors and reports, and what it passes on to the vehicle beside its commands."""
+
+from gnc.estimation.health import Fault
+from gnc.estimation.own_motion import Motion, Readings
+from gnc.estimation.target_motion import ReportedTarget
+from gnc.estimation.vessel_filter import VesselReport
+from gnc.guidance import Guidance
+from scenarios.planning.flight_plan import Sensing
+from scenarios.vehicles.vehicle import Vehicle
+from scenarios.world.faults import SATELLITES, VESSEL_DATA
+from scenarios.world.world import World
+
+
+class OnboardSensing:
+    """Sensors with errors, reports of the vessel, and the flight's fault.
+
+    Parameters
+    ----------
+    sensing : reports and errors
+    world : what is true, and what fails
+    vehicle, guidance : under way; reports go straight to the filter of its target, at each plan where the vessel is known exactly
+    altitude : that the vehicle holds at the start [m]
+
+    Attributes
+    ----------
+    airspeed_error : of the last reading [m/s]; an autopilot that measures it flies that much past the command
+    """
+
+    __slots__ = (
+        "_altitude", "_errors", "_exact", "_fault", "_guidance", "_held", "_received", "_report", "_vehicle",
+        "_vessel", "airspeed_error", "failing",
+    )  # fmt: skip
+
+    def __init__(self, sensing: Sensing, world: World, vehicle: Vehicle, guidance: Guidance, *, altitude: float) -> None:
+        if not isinstance(guidance.target, ReportedTarget):
+            raise TypeError("the guidance knows its target exactly, and has no use for reports; give it a filter")
+        self._errors, self._fault, self._vessel = sensing.errors, world.fault, world.vessel
+        self._exact, self._received = sensing.received is None, list(reversed(sensing.received or []))
+        self._vehicle, self._guidance = vehicle, guidance
+        self._report = guidance.target.vessel.report
+        self._altitude, self._held, self.failing = altitude, False, world.fault.of_aircraft()
+        self.airspeed_error = 0.0
+
+    def read(self, step: int, time: float, motion: Motion) -> Readings:
+        """Return what the sensors say at a step; hand on what reports have come, and let fail what fails now."""
+        airspeed, heading, roll = self._vehicle.air_data()
+        fault = self._fault
+        if self._exact:
+            # The flight begins with a vessel that is known, whatever fails.
+            outage = step > 0 and fault.lasts(VESSEL_DATA, time)
+            if step % self._guidance.plan_interval == 0 and not outage:
+                self._report(VesselReport(time, *self._vessel.motion(time)))
+        else:
+            while self._received and self._received[-1][0] <= time:
+                self._report(self._received.pop()[1])
+        if self.failing and time >= fault.begins:
+            self.failing = False
+            self._vehicle.fail(fault.kind)
+        satellites = not fault.lasts(SATELLITES, time)
+        position, measured, measured_heading = self._errors.read(step, motion, airspeed, heading, satellites=satellites)
+        self.airspeed_error = measured - airspeed
+        return position, measured, measured_heading, roll, motion[4], self._vehicle.servo_error()
+
+    def act(self) -> None:
+        """Pass on what the guidance has decided beside heading rate and airspeed."""
+        guidance = self._guidance
+        if guidance.altitude_command != self._altitude:
+            self._altitude = guidance.altitude_command
+            self._vehicle.command_altitude(self._altitude)
+        monitor = guidance.monitor
+        if not self._held and monitor is not None and monitor.fault is Fault.ACTUATOR_STUCK:
+            # Where one surface is elevator and aileron, each would undo the other's work.
+            self._held = True
+            self._vehicle.hold_elevator()

@@ -1,0 +1,112 @@
+"""What is recorded of a flight: its columns, each with unit and meaning, and how the flight ended."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.simulation.interventions import Intervention
+from scenarios.simulation.outcome import Outcome
+
+Array = npt.NDArray[np.float64]
+
+MEANINGS = {
+    "time_s": "time since the start",
+    "north_m": "place of the UAV over the ground, true",
+    "east_m": "place of the UAV over the ground, true",
+    "velocity_north_mps": "velocity over the ground, true",
+    "velocity_east_mps": "velocity over the ground, true",
+    "heading_rate_rad_s": "rate of the course through the air",
+    "course_rad": "course over the ground, from -pi to pi",
+    "vessel_north_m": "place of the vessel, true",
+    "vessel_east_m": "place of the vessel, true",
+    "vessel_velocity_north_mps": "velocity of the vessel over the ground, true",
+    "vessel_velocity_east_mps": "velocity of the vessel over the ground, true",
+    "plume_axis_rad": "course along which the plume trails, true",
+    "reference_north_m": "place of the reference over the ground",
+    "reference_east_m": "place of the reference over the ground",
+    "reference_course_rad": "course of the reference through the air",
+    "reference_heading_rate_rad_s": "rate of that course",
+    "centre_north_m": "centre of oscillation, as the guidance has it",
+    "centre_east_m": "centre of oscillation, as the guidance has it",
+    "centre_error_m": "distance of the orbit's centre from it",
+    "wind_north_mps": "velocity of the air mass, as estimated",
+    "wind_east_mps": "velocity of the air mass, as estimated",
+    "vessel_seen_north_m": "place of the vessel, as the guidance has it",
+    "vessel_seen_east_m": "place of the vessel, as the guidance has it",
+    "speed_ratio": "nu, as the guidance has it",
+    "mode": "index of what the guidance does in the manifest's modes",
+    "heading_rate_demand_rad_s": "heading rate that the law asks for, before any limit",
+    "heading_rate_command_rad_s": "heading rate that the autopilot is commanded",
+    "airspeed_command_mps": "airspeed that the autopilot is commanded",
+    "altitude_command_m": "altitude that the autopilot is commanded; far below the sea while a vehicle with a fault glides",
+    "command_saturated": "1 while the demand is cut at omega_max",
+    "guard": "1 while the keep-out guard changes commands, 2 while it cannot hold its radius",
+    "altitude_m": "altitude above the sea",
+    "airspeed_mps": "true airspeed, with gusts",
+    "roll_rad": "roll",
+    "climb_rate_mps": "climb rate",
+    "pitch_rad": "pitch",
+    "alpha_rad": "angle of attack",
+    "sideslip_rad": "sideslip",
+    "elevator": "elevator command",
+    "aileron": "aileron command",
+    "throttle": "throttle command",
+    "rudder": "rudder command",
+    "delta_m": "look-ahead of the reference, equation (15)",
+    "rho_m": "length of z, equation (16)",
+    "phi_r_rad": "course of the reference against that of z, equation (19)",
+    "phi_rad": "course through the air against that of z, equation (19)",
+}
+"""Columns of a time history, in order, and what each is. A vehicle's own, from ``altitude_m`` on, may be not a number."""
+
+RELATIVE_COLUMNS = ("delta_m", "rho_m", "phi_r_rad", "phi_rad")
+"""The states of equation (19), in its order: they follow from the others."""
+
+COLUMNS = tuple(column for column in MEANINGS if column not in RELATIVE_COLUMNS)
+"""Columns of a flight's record."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlightRecord:
+    """What was flown.
+
+    Attributes
+    ----------
+    outcome, message : how it ended, in a word and in a sentence
+    mode : of the guidance at the end, or ``DITCHED``
+    settled_at : when it had settled, not a number if it never had [s]
+    interventions : each time that the keep-out guard changed commands
+    columns : of the histories: ``COLUMNS``, and those of the payload
+    history : shape (samples, len(columns))
+    every_step : the same of every step of the guidance, if that was recorded; otherwise ``history``
+    saturation_fraction : fraction of guidance steps whose demand was cut at omega_max [-]
+    heading_rate_demand_max, heading_rate_command_max : largest heading rate that the law asked for, and that was commanded, at any
+        step of the guidance [rad/s]
+    guard_time : for how long the guard changed commands, altogether [s]
+    """
+
+    outcome: Outcome
+    message: str
+    mode: str
+    settled_at: float
+    interventions: list[Intervention]
+    columns: tuple[str, ...]
+    history: Array
+    every_step: Array
+    saturation_fraction: float
+    heading_rate_demand_max: float
+    heading_rate_command_max: float
+    guard_time: float
+
+    def column(self, name: str) -> Array:
+        """Return one column of the history."""
+        return self.history[:, self.columns.index(name)]
+
+
+def unit_of(column: str) -> str:
+    """Return the unit that a column's name ends in, or 1."""
+    for suffix, unit in (("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"), ("_deg", "deg")):
+        if column.endswith(suffix):
+            return unit
+    return "1"

@@ -1,0 +1,102 @@
+"""Keeps the samples of a flight under way."""
+
+import math
+import struct
+from collections.abc import Sequence
+
+import numpy as np
+
+from gnc.guidance import Guidance
+from scenarios.simulation.record import COLUMNS, Array
+from scenarios.simulation.settling import Settling
+from scenarios.vehicles.payload import Instrument
+from scenarios.vehicles.vehicle import Vehicle
+from scenarios.world.world import World
+
+Motion = tuple[float, float, float, float, float]
+Place = tuple[float, float, float, float]
+"""North and east [m], course [rad] and heading rate [rad/s]."""
+
+
+class Recorder:
+    """Records one flight, and watches whether it has settled.
+
+    Parameters
+    ----------
+    guidance, vehicle, world : of the flight; the world may be absent
+    payload : instruments on board
+    settling : watches the flight
+
+    Attributes
+    ----------
+    columns : of the record
+    """
+
+    __slots__ = (
+        "_axis_at", "_guard", "_guidance", "_mission", "_own", "_pack", "_payload", "_rows", "_sample", "_settled", "_target",
+        "_vessel_at", "columns",
+    )  # fmt: skip
+
+    def __init__(
+        self, guidance: Guidance, vehicle: Vehicle, world: World | None, payload: Sequence[Instrument], settling: Settling
+    ) -> None:
+        self._guidance, self._own, self._target = guidance, guidance.own, guidance.target
+        self._mission, self._guard = guidance.mission, guidance.guard
+        self._sample, self._payload, self._settled = vehicle.sample, payload, settling.update
+        self._vessel_at = world.vessel.motion if world else _no_vessel
+        self._axis_at = world.plume.axis if world else _no_axis
+        self.columns = COLUMNS + tuple(column for instrument in payload for column in instrument.COLUMNS)
+        # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and slow to make an array of.
+        self._rows, self._pack = bytearray(), struct.Struct(f"{len(self.columns)}d").pack
+
+    def reference(self) -> Place | None:
+        """Return where the reference is in the frame of the air mass; nothing before the mission has placed it."""
+        if not self._mission.started:
+            return None
+        reference = self._mission.tracker.reference
+        return reference.north, reference.east, reference.course, reference.heading_rate
+
+    def record(self, time: float, motion: Motion, reference: Place, *, judged: bool) -> tuple[tuple[float, ...], bool]:
+        """Keep a row; return the vehicle's sample, and whether the flight has all its crossings, which ``judged`` samples tell.
+
+        Parameters
+        ----------
+        time : [s]
+        motion : of the vehicle, true
+        reference : as the guidance had it when it computed its commands
+        """
+        guidance, own, target, mission, guard = self._guidance, self._own, self._target, self._mission, self._guard
+        tracker, centre, centre_error = mission.tracker, mission.centre, mission.centre_error
+        own_north, own_east, v_north, v_east, _ = motion
+        north, east, course, heading_rate = reference
+        north += own.drift_north
+        east += own.drift_east
+        vessel, axis = self._vessel_at(time), self._axis_at(time)
+        seen_north, seen_east = target.north, target.east
+        sample = self._sample()
+        read = [value for instrument in self._payload for value in instrument.read(time, motion, sample)] if self._payload else ()
+        self._rows += self._pack(
+            time, *motion, math.atan2(v_east, v_north), *vessel, axis, north, east, course, heading_rate,
+            seen_north + centre.x, seen_east + centre.y, centre_error, own.wind_north, own.wind_east,
+            seen_north, seen_east, centre.speed_ratio, mission.mode.number,
+            tracker.heading_rate_demand, guidance.heading_rate_command, guidance.airspeed_command, guidance.altitude_command,
+            tracker.saturated, guard.intervening + guard.lost if guard is not None else 0.0,
+            *sample, *read,
+        )  # fmt: skip
+        if not judged:
+            return sample, False
+        error = math.hypot(north - own_north, east - own_east)
+        place = centre_error if mission.in_place else math.inf
+        return sample, self._settled(time, error, place, own_north - vessel[0], own_east - vessel[1], axis)
+
+    def rows(self) -> Array:
+        """Return what is recorded, shape (rows, columns)."""
+        return np.frombuffer(self._rows).reshape(-1, len(self.columns))
+
+
+def _no_vessel(_time: float) -> Place:
+    return 0.0, 0.0, 0.0, 0.0
+
+
+def _no_axis(_time: float) -> float:
+    return math.nan

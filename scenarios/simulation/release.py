@@ -1,0 +1,30 @@
+"""The vehicle at the start of a flight."""
+
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from scenarios.planning.flight_plan import FlightPlan
+from scenarios.vehicles.jsbsim import JsbsimVehicle
+from scenarios.vehicles.kinematic import KinematicVehicle
+from scenarios.vehicles.vehicle import Vehicle
+from scenarios.vehicles.vehicle_setup import VehicleSetup
+
+
+def release(plan: FlightPlan, setup: VehicleSetup) -> Vehicle:
+    """Return the vehicle at the start of a flight.
+
+    Parameters
+    ----------
+    plan : the flight
+    setup : of the aircraft, or of the kinematic vehicle
+    """
+    start, world = plan.start, plan.world
+    where = {"north": start.north, "east": start.east, "altitude": plan.altitude, "course": start.course}
+    aircraft = setup.aircraft
+    if aircraft is None:
+        north, east = world.weather.wind if world else (0.0, 0.0)
+        speed = plan.guidance.speed
+        return KinematicVehicle(**where, speed=speed, time_step=plan.time_step, lag=setup.lag, wind_north=north, wind_east=east)
+    failable = world is not None and world.fault.of_aircraft()
+    flown = AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable)
+    # Still air needs no weather of its own.
+    weather = world.weather if world and plan.sensing else None
+    return JsbsimVehicle(flown, aircraft.start, aircraft.envelope, **where, time_step=plan.time_step, weather=weather)

@@ -1,0 +1,56 @@
+"""When a flight has settled, and how often it has crossed the plume since."""
+
+import math
+
+_CENTRE_BANDS = 3.0
+"""Distance of the orbit's centre from its place that counts as there, over the settling band: the vessel is not known exactly."""
+
+
+class Settling:
+    """Watches a flight, sample by sample.
+
+    A flight has settled from the first moment from which the vehicle stays near its reference, and the orbit near its place, for a
+    whole period. It stays settled: what turbulence or a manoeuvre do later belongs to the flight.
+
+    Parameters
+    ----------
+    band : distance from the reference that counts as near [m]
+    period : of the oscillation [s]
+    crossings : to be flown; 0 for no end
+
+    Attributes
+    ----------
+    at : when the flight had settled, not a number as long as that does not show [s]
+    crossings : flown since
+    """
+
+    __slots__ = ("_band", "_centre_band", "_complete", "_demanded", "_open", "_period", "_side", "_since", "at", "crossings")
+
+    def __init__(self, *, band: float, period: float, crossings: int) -> None:
+        self._band, self._centre_band, self._period, self._demanded = band, _CENTRE_BANDS * band, period, crossings
+        self._since, self._side, self._complete, self._open = math.inf, 0.0, False, True
+        self.at, self.crossings = math.nan, 0
+
+    def update(self, time: float, tracking_error: float, centre_error: float, x: float, y: float, axis: float) -> bool:
+        """Take note of a sample; return whether the flight had all crossings that it is to fly by the last one.
+
+        Parameters
+        ----------
+        time : [s]
+        tracking_error : distance to the reference [m]
+        centre_error : distance of the orbit's centre from its place, infinite while that is still closing in [m]
+        x, y : north and east of the vessel [m]
+        axis : course along which the plume trails [rad]
+        """
+        cos_a, sin_a = math.cos(axis), math.sin(axis)
+        before, self._side = self._side, cos_a * y - sin_a * x
+        if self._open and (tracking_error >= self._band or centre_error >= self._centre_band):
+            self._since, self.crossings = math.inf, 0
+        elif self._since == math.inf:
+            self._since = time
+        elif before * self._side < 0.0 and cos_a * x + sin_a * y > 0.0:
+            self.crossings += 1
+        if self._open and time - self._since >= self._period:
+            self.at, self._open = self._since, False
+        complete, self._complete = self._complete, not self._open and 0 < self._demanded <= self.crossings
+        return complete

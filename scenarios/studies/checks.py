@@ -1,0 +1,89 @@
+"""What can be checked of a study before anything is flown."""
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from aircraft.fleet.find import find_spec
+from aircraft.simulation.faults import fault_names
+from aircraft.spec import Envelope
+from common.registry import PluginError, Registry, is_file_part
+from common.spelling import did_you_mean
+from gnc.reference.reference import REFERENCE_SHAPES
+from scenarios.errors import InputError
+from scenarios.experiment.draws import check_draws
+from scenarios.experiment.requests import Experiment
+from scenarios.planning.limits import check_flyable
+from scenarios.schema.parts import part_names
+from scenarios.schema.scenario import Scenario
+from scenarios.simulation.failure import failure
+from scenarios.vehicles.payload import PAYLOADS
+from scenarios.world.faults import SATELLITES, VESSEL_DATA
+from scenarios.world.plume import PLUME_MODELS
+from scenarios.world.vessel import VESSEL_TRACKS
+
+_REGISTRIES: dict[str, Registry[Any]] = {
+    "reference.shape": REFERENCE_SHAPES,
+    "vessel.track": VESSEL_TRACKS,
+    "plume.model": PLUME_MODELS,
+    "payload": PAYLOADS,
+}
+"""Where the parts are found that neither the schema nor the design of the autopilot looks up."""
+
+
+def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) -> None:
+    """Check the flights of a study.
+
+    Raises
+    ------
+    InputError : flights that differ in what the autopilot is designed for, an airspeed or a bank that the aircraft cannot fly, a
+        fault that it cannot have, a part that does not exist, a key that cannot be sampled
+    """
+    experiments = list(experiments)
+    points = [point.scenario for experiment in experiments for point in experiment.points]
+    if len({(s.aircraft, s.guidance.airspeed_mps, s.plume.source_height_m) for s in points}) > 1:
+        raise InputError("flights differ in aircraft, guidance.airspeed_mps or plume.source_height_m; give each a run of its own")
+    for scenario in points:
+        _check_parts(scenario)
+        if envelope is not None and scenario.fidelity == "six_dof":
+            check_flyable(scenario.guidance, find_spec(scenario.aircraft).title, envelope)
+        _check_fault(scenario)
+    for experiment in experiments:
+        if experiment.scenario.draws:
+            for point in experiment.points:
+                with plugins_explained("a flight cannot be sampled", [point.scenario]):
+                    check_draws(experiment.name, point.scenario)
+
+
+@contextmanager
+def plugins_explained(what: str, scenarios: Iterable[Scenario]) -> Iterator[None]:
+    """Turn what a part from a file raises before any flight into an InputError that begins with ``what``."""
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:
+        if not any(is_file_part(name) for scenario in scenarios for _, name in part_names(scenario)):
+            raise
+        raise InputError(f"{what}: {failure(error)['message']}") from error
+
+
+def _check_fault(scenario: Scenario) -> None:
+    kinds = {scenario.fault.kind}
+    for draw in scenario.draws:
+        kinds |= {str(kind) for kind in draw.choice or ()} if draw.key == "fault.kind" else set()
+    known = {"none", VESSEL_DATA, SATELLITES}
+    if scenario.fidelity == "six_dof" and kinds - known:
+        known |= set(fault_names(find_spec(scenario.aircraft)))
+    for kind in sorted(kinds - known):
+        guess = did_you_mean(kind, known)
+        raise InputError(f"fault.kind is '{kind}'{guess or ';'} what can fail is {', '.join(sorted(known))}")
+
+
+def _check_parts(scenario: Scenario) -> None:
+    for key, name in part_names(scenario):
+        try:
+            if key in _REGISTRIES:
+                _REGISTRIES[key].get(name)
+        except PluginError as error:
+            raise InputError(f"{key}: {error}") from None

@@ -1,0 +1,180 @@
+"""Flights of one scenario, or of a list of trials, as a study."""
+
+import math
+from array import array
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from common.run_layout import COMPARISON, CROSSINGS, DRAWS, INTERVENTIONS, SUMMARY, time_history_path
+from gnc.mission.mode import Mode
+from scenarios.engine.journal import Journal
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
+from scenarios.engine.task import Task
+from scenarios.experiment.requests import Experiment
+from scenarios.flight import FlightWork
+from scenarios.metrics.columns import CROSSING_COLUMNS, INPUT_COLUMNS, INTERVENTION_COLUMNS, SUMMARY_COLUMNS
+from scenarios.planning.scaling import scaled
+from scenarios.planning.spreads import predicted_spreads
+from scenarios.schema.experiment import TrialList
+from scenarios.schema.scenario import Scenario
+from scenarios.studies.checks import check_flights, plugins_explained
+from scenarios.studies.manifest import config_hash, initial_manifest, parameters, plugins
+from scenarios.studies.study import study
+from scenarios.studies.summary import FlightCounts
+from scenarios.vehicles.vehicle_setup import aircraft_setup, design_of, kinematic_setup, spec_of
+
+
+@study("flights")
+class FlightStudy:
+    """Flights of one scenario, or of several trials one after the other.
+
+    Parameters
+    ----------
+    scenario, name : the scenario or the list of trials, and its name
+    trials : the scenarios to fly, by name
+    overrides : overrides that were applied, recorded in the manifest
+
+    Raises
+    ------
+    InputError : an unknown aircraft or fault, a key that cannot be sampled, or flights that need different autopilots
+    """
+
+    what = "flights"
+
+    def __init__(
+        self, scenario: Scenario | TrialList, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()
+    ) -> None:
+        first = next(iter(trials.values()))
+        spec = spec_of(first)
+        self._design, self._refusal = design_of(spec, first.plume.source_height_m) if spec else (None, "")
+        envelope = self._design.design.schedule.envelope if self._design else spec.envelope if spec else None
+        if envelope is not None:
+            trials = {trial: scaled(of, envelope) for trial, of in trials.items()}
+        self.trials = dict(trials)
+        if isinstance(scenario, Scenario):
+            # What the manifest says of it is what is flown.
+            scenario = self.trials[name]
+        self.experiments = {trial: Experiment(trial, of, alone=len(trials) == 1) for trial, of in self.trials.items()}
+        check_flights(self.experiments.values(), self._design.design.schedule.envelope if self._design else None)
+        self.histories = scenario.histories
+        self.flights = {trial: experiment.counted for trial, experiment in self.experiments.items()}
+        keys = dict.fromkeys(key for experiment in self.experiments.values() for key in experiment.keys)
+        self.tables = {
+            SUMMARY: SUMMARY_COLUMNS,
+            CROSSINGS: CROSSING_COLUMNS,
+            INTERVENTIONS: INTERVENTION_COLUMNS,
+            DRAWS: (*INPUT_COLUMNS, *keys),
+        }
+        if self._numbers > self.planned:
+            self.tables[COMPARISON] = SUMMARY_COLUMNS
+        points = [point.scenario for experiment in self.experiments.values() for point in experiment.points]
+        self.plugins = plugins(points)
+        self.config_hash = config_hash(scenario, *self.trials.values(), files=self.plugins, names=list(self.trials))
+        self._manifest = initial_manifest(scenario, name, overrides) | {
+            # A list of trials does not change with what it lists.
+            "config_hash": self.config_hash,
+            "modes": [mode.value for mode in Mode],
+            "trial_parameters": {trial: parameters(of) for trial, of in self.trials.items()},
+            "plugins": self.plugins,
+        }
+
+    @property
+    def planned(self) -> int:
+        """Number of flights, comparisons apart."""
+        return sum(self.flights.values())
+
+    @property
+    def _numbers(self) -> int:
+        """Number of flights, comparisons among them."""
+        return sum(experiment.flights for experiment in self.experiments.values())
+
+    def initial_manifest(self) -> dict[str, Any]:
+        """Return the manifest as written before the first flight."""
+        return self._manifest | self._sizes()
+
+    def _sizes(self) -> dict[str, Any]:
+        """Return the entries of the manifest on how many flights there are, which a study may find out as it goes."""
+        trials = {trial: scenario.model_dump(mode="json") for trial, scenario in self.trials.items()}
+        return {"trials": trials, "trial_flights": self.flights, "flights_planned": self.planned}
+
+    def work(self, run: RunDirectory) -> FlightWork:
+        """Return the work on its flights, after writing the aircraft's autopilot into the run directory."""
+        # Of a trial that has been scaled to the aircraft: its airspeed is where flights start.
+        first = next(iter(self.trials.values()))
+        flown = self._design if first.fidelity != "kinematic" else None
+        setup = aircraft_setup(flown, first, run) if flown else None
+        lag = (setup or kinematic_setup(first)).lag
+        self._manifest["guidance_lag_s"] = lag + 0.5 / first.guidance.rate_hz
+        settings = [setting for experiment in self.experiments.values() for setting in experiment.settings()]
+        with plugins_explained("the keep-out margin cannot be predicted", settings):
+            spreads = predicted_spreads(settings, flown, setup)
+        return FlightWork(
+            experiments=tuple(self.experiments.values()),
+            histories=self.histories,
+            setup=setup,
+            spreads=spreads,
+            refusal=self._refusal,
+        )
+
+    def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
+        """Fly every flight; then those again that have no time history, but should be looked at."""
+        fly(Task(number=i) for i in range(self._numbers))
+        fly(self.representative_flights(run, journal))
+
+    def representative_flights(self, run: RunDirectory, journal: Journal) -> list[Task]:
+        """Return the closest flight of each trial, and the one whose closest approach is the median, to be recorded."""
+        # Figures alone: a hundred thousand rows would be too many.
+        distances = {trial: (array("d"), array("q")) for trial in self.trials}
+        for number, row in journal.numbered(SUMMARY):
+            if "min_distance_m" in row:
+                nearest, numbers = distances[row["trial"]]
+                nearest.append(row["min_distance_m"])
+                numbers.append(number)
+        chosen = []
+        for nearest, numbers in distances.values():
+            order = np.argsort(nearest, kind="stable")
+            chosen += [numbers[i] for i in (order[0], order[len(order) // 2])] if len(order) else []
+        return self.unrecorded(chosen, run, journal)
+
+    def unrecorded(self, numbers: Sequence[int], run: RunDirectory, journal: Journal) -> list[Task]:
+        """Return the tasks of those flights that have no time history yet, to be recorded."""
+        return [
+            replace(self.task(number), recorded=True)
+            for number in numbers
+            for row in journal.rows(SUMMARY, first=number, below=number + 1)
+            if not (run.path / time_history_path(row["flight_id"])).is_file()
+        ]
+
+    def task(self, number: int) -> Task:
+        """Return the task of a flight."""
+        return Task(number=number)
+
+    def postprocess(self, run: RunDirectory, _journal: Journal, progress: Progress) -> None:
+        """Do nothing: everything is in the tables."""
+
+    def export(self, run: RunDirectory, journal: Journal) -> None:
+        """Write its tables."""
+        write_tables(run, journal, self.tables)
+
+    def summary(self, journal: Journal) -> StudySummary:
+        """Return the result so far."""
+        whole = FlightCounts(planned=self.planned)
+        trial_counts = {trial: FlightCounts(planned=flights) for trial, flights in self.flights.items()}
+        for row in journal.rows(SUMMARY):
+            whole.add(row)
+            trial_counts[row["trial"]].add(row)
+        lines = [f"{whole.planned} flights planned, {whole.done} done: {whole.completed} completed"]
+        for trial, counts in trial_counts.items():
+            nearest = "" if math.isinf(counts.nearest) else f", nearest {counts.nearest:.1f} m"
+            kept = f"{counts.keepout_violations} keep-out violations{nearest}"
+            lines.append(f"  {trial}: {counts.met} of {counts.planned} met every criterion; {kept}")
+        return StudySummary(
+            done=whole.done,
+            met=whole.met == whole.planned,
+            lines=[*lines, *whole.failed_lines("    ")],
+            manifest=whole.manifest() | self._sizes() | {"guidance_lag_s": self._manifest.get("guidance_lag_s")},
+        )

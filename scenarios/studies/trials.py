@@ -1,0 +1,49 @@
+"""A list of trials as a study."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from scenarios.errors import InputError
+from scenarios.schema.effect import unused
+from scenarios.schema.experiment import TrialList
+from scenarios.schema.load import load_study
+from scenarios.schema.overrides import parse_override
+from scenarios.schema.scenario import Scenario
+from scenarios.studies.flight_study import FlightStudy
+
+
+class TrialStudy(FlightStudy):
+    """The trials of a list, one after the other.
+
+    Parameters
+    ----------
+    study, name : the list, and its name
+    overrides : overrides that were applied, recorded in the manifest
+
+    Raises
+    ------
+    InputError : a listed trial does not exist, or is not one of flights, or two have one name; and as of ``FlightStudy``
+    """
+
+    def __init__(self, study: TrialList, name: str, *, overrides: Sequence[str] = ()) -> None:
+        super().__init__(study, name, _trials(study), overrides=overrides)
+
+
+def _trials(study: TrialList) -> dict[str, Scenario]:
+    seed = [] if study.seed is None else [f"seed={study.seed}"]
+    trials: dict[str, Scenario] = {}
+    for listed in study.trials:
+        trial = load_study(listed, [*study.set, *seed], refusing=False)
+        if not isinstance(trial, Scenario) or trial.study != "flights":
+            raise InputError(f"trials: '{listed}' is a study of {trial.study}; list scenarios of flights")
+        if Path(listed).stem in trials:
+            raise InputError(f"trials: two are called '{Path(listed).stem}'; list each once, and give files names of their own")
+        flights = math.ceil(study.share * trial.flights)
+        trials[Path(listed).stem] = trial.model_copy(update={"flights": flights})
+    for override in study.set:
+        key, _ = parse_override(override)
+        users = [unused(trial, key) for trial in trials.values()]
+        if all(users):
+            raise InputError(f"key '{key}' has no effect in any trial: it is used by {users[0]}")
+    return trials

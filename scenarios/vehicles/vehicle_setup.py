@@ -1,0 +1,152 @@
+"""What flights need of their vehicle beyond their scenario: an aircraft with its autopilot, or the kinematic vehicle."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from aircraft.dynamics.equilibrium import Trim
+from aircraft.errors import AircraftError
+from aircraft.fleet.find import find_spec
+from aircraft.spec import AircraftSpec, Envelope
+from innerloop.designs.cache import Designed, designed
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.step_responses import level_trim
+from innerloop.flight.turn_reversal import TurnReversalResponse, measure_turn_reversal
+from innerloop.jsbsim.root import write_root
+from innerloop.synthesis.schedule import Schedule
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.errors import InputError
+from scenarios.schema.scenario import DEFAULT_AIRCRAFT, Scenario
+
+KINEMATIC_BANDWIDTH = 1.0
+"""Bandwidth of a kinematic vehicle's airspeed that its guidance reckons with; it follows at once [rad/s]."""
+
+_KINEMATIC_AIRSPEEDS = 0.7, 1.3
+"""Airspeeds between which a kinematic vehicle is flown, over V_r [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Aircraft:
+    """An aircraft in six degrees of freedom, and the JSBSim root of its autopilot.
+
+    Attributes
+    ----------
+    spec, envelope : the aircraft, and where the autopilot may fly it
+    start : equilibrium to start from
+    model : JSBSim root
+    """
+
+    spec: AircraftSpec
+    envelope: Envelope
+    start: Trim
+    model: Path
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VehicleSetup:
+    """What flights need of their vehicle.
+
+    Attributes
+    ----------
+    lag : of the heading rate behind its command [s]
+    reversal : how the heading rate follows a reversal of the turn
+    airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
+    turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed; empty without a limit [m/s, rad/s]
+    crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
+    aircraft : in six degrees of freedom, or none for the kinematic vehicle
+    """
+
+    lag: float
+    reversal: TurnReversalResponse
+    airspeed_bandwidth: float
+    airspeed_min: float
+    airspeed_max: float
+    turn_airspeeds: tuple[float, ...] = ()
+    turn_rates: tuple[float, ...] = ()
+    crab_banks: tuple[float, ...] = (-1.0, 1.0)
+    crab_offsets: tuple[float, ...] = (0.0, 0.0)
+    aircraft: Aircraft | None = None
+
+    def turning_airspeed(self, heading_rate: float) -> float:
+        """Return the airspeed up to which a heading rate [rad/s] can be flown at the autopilot's largest bank [m/s]."""
+        if not self.turn_airspeeds:
+            return math.inf
+        # Turns are slower the faster the aircraft flies.
+        return float(np.interp(-heading_rate, [-turn for turn in self.turn_rates], self.turn_airspeeds))
+
+
+def spec_of(scenario: Scenario) -> AircraftSpec | None:
+    """Return a scenario's aircraft, or the one that kinematic flights of it are scaled to; none where there is neither.
+
+    Raises
+    ------
+    InputError : there is no such aircraft, or no autopilot can be designed for it
+    """
+    if scenario.fidelity == "kinematic" and scenario.aircraft == DEFAULT_AIRCRAFT:
+        return None
+    try:
+        return find_spec(scenario.aircraft)
+    except AircraftError as error:
+        raise InputError(f"aircraft: {error}") from None
+
+
+def design_of(spec: AircraftSpec, altitude: float) -> tuple[Designed | None, str]:
+    """Return the aircraft's autopilot at ``altitude`` [m], or nothing and why there is none."""
+    try:
+        return designed(spec, altitude), ""
+    except AircraftError as error:
+        return None, str(error)
+
+
+def kinematic_setup(scenario: Scenario) -> VehicleSetup:
+    """Return what kinematic flights of a scenario need."""
+    lag, speed = scenario.kinematic.heading_rate_lag_s, scenario.guidance.airspeed_mps
+    slowest, fastest = _KINEMATIC_AIRSPEEDS
+    return VehicleSetup(
+        lag=lag,
+        reversal=TurnReversalResponse(delay=0.0, lag=lag),
+        airspeed_bandwidth=KINEMATIC_BANDWIDTH,
+        airspeed_min=slowest * speed,
+        airspeed_max=fastest * speed,
+    )
+
+
+def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory) -> VehicleSetup:
+    """Return what flights of the aircraft need; write its autopilot into the run directory.
+
+    Parameters
+    ----------
+    found : its autopilot
+    scenario : whose airspeed and height the flights start at
+    run : the run directory
+    """
+    schedule = found.design.schedule
+    write_root(schedule, run.model)
+    run.write_json(run.innerloop, found.record)
+    start = level_trim(
+        schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, schedule.level(schedule.middle)
+    )
+    turns = schedule.trims[schedule.middle]
+    return VehicleSetup(
+        lag=float(found.record["heading_rate_lag_s"]),
+        reversal=measure_turn_reversal(AutopilotedAircraft(schedule.spec, run.model), start, schedule.envelope.bank),
+        airspeed_bandwidth=found.design.bandwidths.airspeed,
+        airspeed_min=schedule.envelope.airspeed_min,
+        airspeed_max=schedule.envelope.airspeed_max,
+        turn_airspeeds=tuple(schedule.airspeeds),
+        turn_rates=_slower_turns(schedule),
+        crab_banks=tuple(turn.roll for turn in turns),
+        crab_offsets=tuple(turn.course_offset() for turn in turns),
+        aircraft=Aircraft(spec=schedule.spec, envelope=schedule.envelope, start=start, model=run.model),
+    )
+
+
+def _slower_turns(schedule: Schedule) -> tuple[float, ...]:
+    """Return the heading rate of the slower of both turns at the autopilot's largest bank, at each airspeed [rad/s]."""
+    bank = schedule.envelope.bank_max
+    return tuple(
+        min(abs(float(np.interp(side * bank, [t.roll for t in row], [t.yaw_rate for t in row]))) for side in (-1.0, 1.0))
+        for row in schedule.trims
+    )

@@ -1,0 +1,44 @@
+"""What fails in one flight, and when."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from scenarios.schema.equipment import FaultConfig
+
+VESSEL_DATA, SATELLITES = "vessel_data", "satellite_navigation"
+"""Faults that are not the aircraft's."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TimedFault:
+    """A fault of one flight.
+
+    Attributes
+    ----------
+    kind : as the scenario names it; ``none`` for none
+    begins, ends : when; for good what ends at infinity [s]
+    """
+
+    kind: str
+    begins: float
+    ends: float
+
+    def lasts(self, kind: str, time: float) -> bool:
+        """Return whether a fault of this kind is on."""
+        return kind == self.kind and self.begins <= time < self.ends
+
+    def of_aircraft(self) -> bool:
+        """Return whether it is a part of the aircraft that fails."""
+        return self.kind not in ("none", VESSEL_DATA, SATELLITES)
+
+
+NO_FAULT = TimedFault(kind="none", begins=math.inf, ends=math.inf)
+
+
+def sampled_fault(fault: FaultConfig, generator: np.random.Generator) -> TimedFault:
+    """Return the flight's fault, at its time."""
+    begins = float(generator.uniform(*fault.at_s))
+    lasts = {VESSEL_DATA: fault.vessel_data_s, SATELLITES: fault.satellite_navigation_s}.get(fault.kind, math.inf)
+    return TimedFault(kind=fault.kind, begins=begins, ends=begins + lasts)

@@ -1,0 +1,90 @@
+"""The world of one flight: vessel, plume and air as they are, and what fails."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from aircraft.atmosphere.weather import Weather
+from scenarios.schema.scenario import Scenario
+from scenarios.world.faults import TimedFault
+from scenarios.world.plume import PLUME_MODELS, Plume
+from scenarios.world.vessel import VESSEL_TRACKS, SteadyVessel, VesselTruth, sampled
+from scenarios.world.weather import wind_ned
+
+_MARGIN = 5.0
+"""How long the track goes on after the longest flight [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class World:
+    """What is true outside the UAV.
+
+    Attributes
+    ----------
+    vessel, plume : the ship's motion and the plume's axis
+    elevation, source_height : of the plume's axis, and of its origin above the sea [rad, m]
+    weather : the air
+    fault : what fails, and when
+    """
+
+    vessel: VesselTruth
+    plume: Plume
+    elevation: float
+    source_height: float
+    weather: Weather
+    fault: TimedFault
+
+
+def vessel_of(scenario: Scenario) -> VesselTruth:
+    """Return the vessel's motion over the longest flight.
+
+    Raises
+    ------
+    PluginError : it has no such track
+    """
+    config = scenario.vessel
+    if config.track == "manoeuvres" and not config.manoeuvres:
+        return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
+    track: VesselTruth = VESSEL_TRACKS.get(config.track)(config, scenario.vessel_speed, scenario.flight.duration_max_s + _MARGIN)
+    return track
+
+
+def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
+    """Return the plume behind a vessel.
+
+    Raises
+    ------
+    PluginError : there is no such plume model
+    """
+    model = PLUME_MODELS.get(scenario.plume.model)
+    duration = scenario.flight.duration_max_s + _MARGIN
+    plume: Plume = model(scenario.plume, vessel, wind_ned(scenario.wind), duration, by_wind=scenario.plume_by_wind)
+    return plume
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ApparentWind:
+    """How fast a vessel moves through the air.
+
+    Attributes
+    ----------
+    at_start, least, greatest : at time 0, and over the whole track [m/s]
+    """
+
+    at_start: float
+    least: float
+    greatest: float
+
+
+def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
+    """Return how fast a vessel moves through the air, over the longest flight."""
+    if isinstance(vessel, SteadyVessel):
+        _, _, v_north, v_east = vessel.motion(0.0)
+        wind_north, wind_east = wind_ned(scenario.wind)
+        steady = math.hypot(v_north - wind_north, v_east - wind_east)
+        return ApparentWind(at_start=steady, least=steady, greatest=steady)
+    velocity, _ = sampled(vessel, scenario.flight.duration_max_s + _MARGIN)
+    through_air = velocity - np.array(wind_ned(scenario.wind))
+    speeds = np.hypot(through_air[:, 0], through_air[:, 1])
+    return ApparentWind(at_start=float(speeds[0]), least=float(speeds.min()), greatest=float(speeds.max()))

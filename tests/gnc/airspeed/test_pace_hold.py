@@ -1,0 +1,60 @@
+import math
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gnc.airspeed.pace_hold import PaceHold, SpeedHold, air_turn, airspeed_to_hold, design_speed_hold
+from gnc.errors import InfeasibleError
+
+HOLD = SpeedHold(gain=0.3, airspeed_min=15.0, airspeed_max=25.0)
+X8 = {"bandwidth": 1.3, "speed": 19.42, "look_ahead": 60.0, "airspeed_min": 15.0, "airspeed_max": 25.0}
+
+
+def test_on_the_reference_at_its_speed_the_airspeed_that_is_flown_is_asked_for():
+    # Nothing is amiss, whatever the gust: 2 m/s from ahead make 21 m/s out of 19.
+    for gust in (-2.0, 0.0, 2.0):
+        airspeed = airspeed_to_hold(HOLD, along=0.0, reference_speed=19.0, speed=19.0, airspeed=19.0 + gust)
+        assert airspeed == 19.0 + gust
+
+
+@given(st.floats(-100.0, 100.0), st.floats(5.0, 40.0), st.floats(5.0, 40.0))
+def test_the_airspeed_asked_for_is_one_the_vehicle_can_fly(along, speed, airspeed):
+    asked = airspeed_to_hold(HOLD, along=along, reference_speed=19.0, speed=speed, airspeed=airspeed)
+    assert HOLD.airspeed_min <= asked <= HOLD.airspeed_max
+
+
+def test_a_reference_ahead_and_a_lack_of_speed_ask_for_more():
+    # 19 m/s, 0.3 m/s for each of the 2 m, and the 0.5 m/s that are lacking.
+    assert airspeed_to_hold(HOLD, along=2.0, reference_speed=19.0, speed=18.5, airspeed=19.0) == pytest.approx(20.1, abs=1e-12)
+
+
+def test_the_gain_is_the_rate_of_the_steering_law_where_the_airspeed_is_quick_enough():
+    assert design_speed_hold(**X8).gain == pytest.approx(19.42 / 60.0, rel=1e-12)
+
+
+def test_a_slow_airspeed_is_given_a_gain_that_does_not_overshoot():
+    bandwidth = 0.4
+    gain = design_speed_hold(**(X8 | {"bandwidth": bandwidth})).gain
+    # Position behind a first-order speed: s^2 + b s + b k has its poles together, where they are fastest, at k = b/4.
+    assert bandwidth**2 - 4.0 * bandwidth * gain == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("changed", [{"speed": 14.0}, {"speed": 25.0}, {"bandwidth": 0.0}, {"look_ahead": math.nan}])
+def test_what_cannot_be_held_is_refused(changed):
+    with pytest.raises(InfeasibleError):
+        design_speed_hold(**(X8 | changed))
+
+
+def test_the_same_acceleration_turns_both_motions():
+    # 0.4 rad/s over the mean air at 20 m/s is 8 m/s^2, which at an airspeed of 16 m/s turns 0.5 rad/s.
+    assert air_turn(0.4, speed=20.0, airspeed=16.0) == pytest.approx(0.5, rel=1e-12)
+    assert air_turn(air_turn(0.4, speed=20.0, airspeed=16.0), speed=16.0, airspeed=20.0) == pytest.approx(0.4, rel=1e-12)
+
+
+@pytest.mark.parametrize("guarding", [False, True])
+def test_the_pace_is_held_over_the_mean_air_also_while_the_guard_turns_away(guarding):
+    own = SimpleNamespace(speed=18.5, airspeed=20.0)
+    held = airspeed_to_hold(HOLD, along=2.0, reference_speed=19.0, speed=18.5, airspeed=20.0)
+    assert PaceHold(speed=19.0, hold=HOLD).command(2.0, own, guarding) == held

@@ -1,0 +1,54 @@
+"""The vessel's motion as the guidance has it: known exactly, or from reports."""
+
+import pytest
+
+from gnc.estimation.target_motion import ReportedTarget, SteadyTarget
+from gnc.estimation.vessel_filter import VesselFilter, VesselReport
+
+TIME_STEP = 0.05
+
+
+def fields(target):
+    return target.north, target.east, target.velocity_north, target.velocity_east
+
+
+@pytest.mark.parametrize("planning", [True, False])
+def test_a_steady_target_goes_straight_on_from_the_origin_and_is_never_old(planning):
+    target = SteadyTarget(6.0, -2.5)
+    target.update(12.0, planning=planning)
+    assert fields(target) == (72.0, -30.0, 6.0, -2.5)
+    assert (target.acceleration_north, target.acceleration_east, target.age(12.0)) == (0.0, 0.0, 0.0)
+
+
+def reported(*reports):
+    target = ReportedTarget(VesselFilter(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0), TIME_STEP)
+    for report in reports:
+        target.vessel.report(VesselReport(*report))
+    return target
+
+
+def test_a_reported_target_is_where_the_filter_has_it_when_the_mission_plans():
+    target = reported((0.0, 100.0, -40.0, 6.0, 2.0), (5.0, 130.0, -30.0, 6.5, 2.0))
+    target.update(7.0, True)
+    seen = target.vessel.at(7.0)
+    assert fields(target) == (seen.north, seen.east, seen.velocity_north, seen.velocity_east)
+    assert (target.acceleration_north, target.acceleration_east) == (seen.acceleration_north, seen.acceleration_east)
+    assert target.acceleration_north > 0.0
+    assert target.age(7.0) == 2.0
+
+
+def test_between_plans_it_goes_on_at_its_acceleration():
+    target = reported((0.0, 100.0, -40.0, 6.0, 2.0), (5.0, 130.0, -30.0, 6.5, 2.0))
+    target.update(7.0, True)
+    for step in range(1, 10):
+        target.update(7.0 + step * TIME_STEP, False)
+    seen = target.vessel.at(7.0 + 9 * TIME_STEP)
+    # 0.45 s at an acceleration that decays over 40 s, of 0.02 m/s^2 or so: 1 % of 9 mm/s; and half of it, as sums run, of 0.2 mm.
+    assert fields(target) == pytest.approx((seen.north, seen.east, seen.velocity_north, seen.velocity_east), abs=1e-3)
+    # A report that comes meanwhile is used at the next plan.
+    target.vessel.report(VesselReport(7.4, 0.0, 0.0, 0.0, 0.0))
+    before = fields(target)
+    target.update(7.5, False)
+    assert fields(target) == pytest.approx(before, abs=1.0)
+    target.update(7.55, True)
+    assert target.north < before[0] - 20.0

@@ -1,0 +1,119 @@
+import math
+
+import numpy as np
+import pytest
+from gnc_cases import (
+    HEADING_RATE_MAX,
+    SPEED,
+    TIME_STEP,
+    fly,
+    make_reference,
+    paper_oscillation,
+    paper_parameters,
+    tracking_parameters,
+)
+
+from gnc.compose import compose
+from gnc.estimation.health import Fault
+from gnc.estimation.own_motion import TrueNavigation
+from gnc.estimation.target_motion import SteadyTarget
+from gnc.mission.approach import ApproachParameters
+from gnc.mission.direct_tracking import DirectParameters, DirectTracking, Joining, SteadyCentre
+from gnc.mission.mode import Mode
+from gnc.parameters import GuardParameters
+from gnc.reference.joining import JoinedOrbit
+from gnc.reference.oscillating import Sinusoid
+from gnc.reference.placement import PlumeAxis, distance_by_paper
+
+NU = 0.1
+GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, time_step=TIME_STEP)
+APPROACH = ApproachParameters(
+    blocked_radius=200.75,
+    round_radius=200.75 + 0.8 * SPEED / HEADING_RATE_MAX,
+    join_distance=150.0,
+    tracked=12.0,
+    airspeed=SPEED,
+)
+PLAN_INTERVAL = 10
+
+
+@pytest.fixture
+def mission():
+    parameters = DirectParameters(reference=make_reference(paper_oscillation(0.5)))
+    own, target = TrueNavigation(), SteadyTarget(0.0, 0.0)
+    return DirectTracking(parameters, tracking_parameters(), own=own, target=target, guard=None, altitude=62.0)
+
+
+def guidance(*, joining=True, nu=NU):
+    """Return the guidance of a flight behind a vessel that goes north from the origin, with a guard about it."""
+    oscillation = paper_oscillation(nu, reserve=0.015)
+    orbit = JoinedOrbit(shape=Sinusoid(), orbit=oscillation, vessel_course=0.0, time_step=TIME_STEP)
+    centre = SteadyCentre(-distance_by_paper(oscillation, PlumeAxis(heading=math.pi), 201.0), 0.0, nu)
+    mission = DirectParameters(
+        reference=orbit.reference(0.0, centre.x, centre.y),
+        centre=centre,
+        joining=Joining(approach=APPROACH, orbit=orbit, plan_interval=PLAN_INTERVAL) if joining else None,
+    )
+    return compose(paper_parameters(mission, vessel=(nu * SPEED, 0.0), guard=GUARD))
+
+
+def settles(flight):
+    """Return when a flight comes within 5 m of its reference for good [s]; infinite if it does not."""
+    outside = np.flatnonzero(flight.distance >= 5.0)
+    last = outside[-1] + 1 if outside.size else 0
+    return last * TIME_STEP if last < len(flight.distance) else math.inf
+
+
+def test_without_a_way_it_tracks_from_the_first_step_on_and_overrides_nothing(mission):
+    assert mission.started
+    mission.plan(0.0)
+    assert (mission.mode, mission.overriding, mission.leaving, mission.command()) == (Mode.TRACKING, False, False, 0.0)
+    assert (mission.altitude, mission.radius_inflation, mission.centre_error, mission.in_place) == (62.0, 0.0, 0.0, True)
+    # Its reference is placed beforehand: it knows no centre of its own.
+    assert all(math.isnan(value) for value in mission.centre)
+
+
+def test_it_knows_no_way_out(mission):
+    with pytest.raises(ValueError, match="the vehicle has a fault, thrust lost, and its mission knows no way out"):
+        mission.leave(Fault.THRUST_LOST)
+
+
+@pytest.mark.parametrize("bearing", [0.0, 0.3, -2.0])
+@pytest.mark.parametrize("nu", [0.1, 0.5])
+def test_from_ahead_it_goes_round_the_vessel_and_settles_where_law_and_guard_alone_take_longer(nu, bearing):
+    start = (600.0 * math.cos(bearing), 600.0 * math.sin(bearing) + 10.0, bearing + math.pi)
+    round_the_vessel, straight = (fly(guidance(joining=joining, nu=nu), start, duration=400.0) for joining in (True, False))
+    for flight in (round_the_vessel, straight):
+        # The guard's radius, at the steps at least.
+        assert np.min(flight.to_vessel) >= 200.75
+    # Measured, 52 to 105 s.
+    assert settles(round_the_vessel) < 120.0
+    assert np.max(round_the_vessel.distance[-600:]) < 0.5
+    # Law and guard undo each other's work: measured, 181 to 392 s, and half of them not within 400 s.
+    assert settles(straight) > 2.0 * settles(round_the_vessel)
+
+
+def test_the_orbit_is_joined_outside_of_its_place_and_closes_in_once_it_is_tracked(monkeypatch):
+    seen = []
+    plan = DirectTracking.plan
+
+    def noted(mission, time):
+        plan(mission, time)
+        seen.append((mission.mode, mission.in_place, mission.centre_error))
+
+    monkeypatch.setattr(DirectTracking, "plan", noted)
+    made = guidance()
+    mission = made.mission
+    # As it begins: on the way, two times 12 m outside.
+    assert (mission.mode, mission.overriding, mission.in_place, mission.centre_error) == (Mode.APPROACH, True, False, 24.0)
+    fly(made, (-600.0, 40.0, 0.0), duration=120.0)
+    modes, in_place, errors = zip(*seen, strict=True)
+    joined = modes.index(Mode.TRACKING)
+    assert set(modes[:joined]) == {Mode.APPROACH}
+    assert set(modes[joined:]) == {Mode.TRACKING}
+    # It never moves out again, and is in its place from when on nothing is left; 24 m at 0.2 V_r take 6.2 s, 13 plans.
+    assert np.all(np.diff(errors) <= 0.0)
+    assert errors[joined] == 24.0
+    there = in_place.index(True)
+    assert there - joined >= 13
+    assert [error == 0.0 for error in errors] == list(in_place) == [False] * there + [True] * (len(seen) - there)

@@ -1,0 +1,231 @@
+"""A scenario scaled to an aircraft: the same study in the aircraft's own units of time and length."""
+
+import dataclasses
+import math
+import re
+
+import numpy as np
+import pytest
+from pydantic import BaseModel
+
+from aircraft.fleet.aerosonde import AEROSONDE
+from aircraft.fleet.x8 import X8
+from aircraft.spec import Envelope
+from scenarios.errors import InputError
+from scenarios.experiment.requests import Experiment
+from scenarios.planning.planner import plan_flight
+from scenarios.planning.scaling import scaled, units
+from scenarios.schema.load import load_study, with_values
+from scenarios.simulation.closed_loop import fly
+from scenarios.simulation.outcome import Outcome
+from scenarios.simulation.record import COLUMNS
+from scenarios.simulation.release import release
+from scenarios.vehicles.vehicle_setup import kinematic_setup
+
+SPEED, GRAVITY = 19.42, 9.80665
+
+NOT_SCALED = {
+    # The aircraft's own.
+    "guidance.airspeed_mps",
+    # World and equipment, and what is written for a circle about which the scenario says everything.
+    "vessel.speed_mps", "plume.source_height_m", "keepout.radius_m", "reference.radius_m", "wind.speed_mps",
+    "turbulence.gust_speed_mps", "turbulence.gust_length_s", "reports.interval_s", "reports.position_sigma_m",
+    "reports.velocity_sigma_mps", "reports.latency_max_s", "sensors.position_sigma_m", "sensors.velocity_sigma_mps",
+    "sensors.airspeed_sigma_mps", "sensors.airspeed_bias_mps", "fault.at_s", "fault.vessel_data_s", "fault.satellite_navigation_s",
+    # What a ship does, how well it is known, and how often the keep-out area may be touched.
+    "following.apparent_wind_min_mps", "following.vessel_acceleration_mps2", "following.speed_error_mps",
+    "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
+    # The paper's vehicle has no lag, however fast it turns.
+    "kinematic.heading_rate_lag_s",
+    # The simulation runs at 120 Hz for every aircraft.
+    "guidance.rate_hz", "flight.log_rate_hz",
+    # Not set by default; who sets them means what they say.
+    "guidance.heading_rate_max_rad_s", "start.place_m", "start.range_m",
+    "criteria.tracking_error_end_m", "criteria.crossing_interval_s",
+    "criteria.crossing_distance_m",
+}  # fmt: skip
+"""Keys with a length or a time in them that are what they are for every aircraft."""
+
+DIMENSIONS = {
+    "_per_hour": (0, -1), "_mps2": (1, -2),
+    "_per_m2": (-2, 0), "_per_m": (-1, 0), "_per_s": (0, -1), "_rad_s": (0, -1), "_deg_s": (0, -1), "_mps": (1, -1),
+    "_hz": (0, -1), "_m": (1, 0), "_s": (0, 1),
+}  # fmt: skip
+"""Powers of length and time in a unit, by the suffix that names it (house style); the first that fits."""
+
+
+def aircraft(time, length):
+    """Return an aircraft whose units are so many times the defaults': V = 19.42 length/time, and tan(bank) = omega_max V/g."""
+    airspeed = SPEED * length / time
+    rate = GRAVITY / SPEED / time
+    return Envelope(airspeed_min=1.0, airspeed_max=300.0, airspeed=airspeed, bank=math.atan(rate * airspeed / GRAVITY))
+
+
+def keys(scenario):
+    """Return every key of a scenario's sections and its value."""
+    sections = {name: getattr(scenario, name) for name in type(scenario).model_fields}
+    return {
+        f"{name}.{key}": getattr(section, key)
+        for name, section in sections.items()
+        if isinstance(section, BaseModel)
+        for key in type(section).model_fields
+    }
+
+
+def dimension(key):
+    # The one exception, explained where it is scaled: altitude follows pitch at a given speed, not the turn.
+    if key == "criteria.altitude_error_max_m":
+        return 1, -1
+    return next((powers for suffix, powers in DIMENSIONS.items() if key.endswith(suffix)), None)
+
+
+def test_units_are_those_of_the_turn():
+    # By hand: omega_max = g tan(bank)/V. Twice as fast at 45 degrees turns half as fast: 1/omega_max is 2, V/omega_max is 4.
+    double = units(dataclasses.replace(X8.envelope, airspeed=2.0 * SPEED))
+    assert (double.time, double.length, double.speed) == pytest.approx((2.0, 4.0, 2.0), rel=1e-12)
+    # At its own speed with tan(bank) = 1/2 it turns half as fast, over twice the length.
+    shallow = units(dataclasses.replace(X8.envelope, bank=math.atan(0.5)))
+    assert (shallow.time, shallow.length, shallow.speed) == pytest.approx((2.0, 2.0, 1.0), rel=1e-12)
+    # Aerosonde, 25 m/s and 45 degrees: 25/19.42, and its square.
+    own = units(AEROSONDE.envelope)
+    assert (own.time, own.length) == pytest.approx((1.28733, 1.65722), rel=1e-5)
+
+
+@pytest.mark.parametrize("name", ["sweep_nu", "sim3", "paper"])
+def test_the_x8_flies_every_scenario_as_it_is_written(name):
+    # The defaults are its numbers, to the last bit: they are multiplied by 1.
+    scenario = load_study(name)
+    assert scaled(scenario, X8.envelope) == scenario
+
+
+def test_an_aircraft_flies_its_own_airspeed_and_bank():
+    own = scaled(load_study("sweep_nu"), aircraft(time=2.0, length=3.0)).guidance
+    assert own.airspeed_mps == pytest.approx(1.5 * SPEED, rel=1e-12)
+    # tan(bank) = omega_max V/g = 0.5 * 1.5.
+    assert own.bank_deg == pytest.approx(math.degrees(math.atan(0.75)), rel=1e-12)
+
+
+def test_every_key_with_a_length_or_a_time_is_scaled_by_its_unit_or_said_not_to_be():
+    scenario = load_study("sweep_nu")
+    before, after = keys(scenario), keys(scaled(scenario, aircraft(time=2.0, length=3.0)))
+    dimensional = {key for key in before if dimension(key)}
+    # A list that names keys that are gone, or that are without a unit, would be no decision.
+    assert dimensional >= NOT_SCALED
+    for key in before:
+        powers = None if key in NOT_SCALED else dimension(key)
+        if powers:
+            factor = 3.0 ** powers[0] * 2.0 ** powers[1]
+            assert after[key] == pytest.approx(np.multiply(before[key], factor), rel=1e-12), key
+        elif key not in ("guidance.airspeed_mps", "guidance.bank_deg"):
+            assert after[key] == before[key], key
+
+
+def test_keys_without_a_unit_in_their_names_have_no_length_and_no_time():
+    # Else the test before this one would not see them. Units stand in brackets in a key's description.
+    scenario = load_study("sweep_nu")
+    for name in keys(scenario):
+        section, key = name.split(".")
+        unit = re.search(r"\[([^\]]+)\]", type(getattr(scenario, section)).model_fields[key].description or "")
+        assert (dimension(name) is not None) == (unit is not None and unit[1] not in ("-", "deg")), name
+
+
+def scaled_keys():
+    scenario = load_study("sweep_nu")
+    before, after = keys(scenario), keys(scaled(scenario, aircraft(time=2.0, length=3.0)))
+    return [key for key in before if before[key] != after[key]]
+
+
+@pytest.mark.parametrize("share", [1.0, 1.25])
+def test_what_a_scenario_sets_itself_is_never_touched(share):
+    # Neither where it is another number than the default, nor where it is the same.
+    scenario = load_study("sweep_nu")
+    assert len(scaled_keys()) >= 18
+    for key in scaled_keys():
+        given = np.multiply(keys(scenario)[key], share).tolist()
+        # Some are keys of parts that these flights do not have.
+        written = load_study("sweep_nu", [f"{key}={given}"], refusing=False)
+        found = keys(scaled(written, aircraft(time=2.0, length=3.0)))
+        assert np.array_equal(found[key], given), key
+        # And the others are scaled all the same.
+        assert sum(found[other] != keys(scenario)[other] for other in scaled_keys() if other != key) == len(scaled_keys()) - 1
+
+
+def test_a_file_of_its_own_is_taken_at_its_word_too(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text('title = "own"\nsweep = { nu = [0.5] }\nguidance = { look_ahead_m = 60.0 }\n', encoding="utf-8")
+    found = scaled(load_study(str(path)), aircraft(time=2.0, length=3.0))
+    assert found.guidance.look_ahead_m == 60.0
+    assert found.guidance.epsilon_per_m == pytest.approx(0.005 / 3.0, rel=1e-12)
+
+
+def test_an_aircraft_that_the_scenario_cannot_be_scaled_to_is_refused_by_the_key():
+    # So tight a turn that the nearest start, 400 m for the X8, lies inside of 200 m.
+    with pytest.raises(InputError, match=r"start\.distance_m begins at 180 m; it must exceed keepout\.radius_m, 200 m"):
+        scaled(load_study("sweep_nu"), aircraft(time=0.6, length=0.45))
+
+
+@pytest.fixture
+def kinematic_flight(monkeypatch):
+    """Return ``in_own_units``, whose plans too are as often as its steps, however long these are."""
+
+    def kinematic_flight(time, *args, **how):
+        with monkeypatch.context() as patched:
+            patched.setattr("scenarios.planning.guidance.PLAN_PERIOD", 0.5 * time)
+            return in_own_units(time, *args, **how)
+
+    return kinematic_flight
+
+
+def in_own_units(time, length, *overrides, nu, lag):
+    """Fly a scenario that is scaled to an aircraft, its keep-out area and its steps scaled by hand; return it in its units."""
+    by_hand = {
+        "keepout.radius_m": 200.0 * length,
+        "guidance.rate_hz": 20.0 / time,
+        "flight.log_rate_hz": 10.0 / time,
+        "kinematic.heading_rate_lag_s": lag * time,
+    }
+    words = ["fidelity=kinematic", f"sweep.nu=[{nu}]", "comparison.variants=[]", *overrides]
+    settings = with_values(scaled(load_study("sweep_nu", words, refusing=False), aircraft(time, length)), by_hand)
+    request = Experiment("sweep_nu", settings).request(0)
+    setup = kinematic_setup(request.scenario)
+    plan = plan_flight(request.scenario, flight_id="x", seed=request.seed, setup=setup)
+    record = fly(plan, release(plan, setup))
+    assert record.outcome is Outcome.COMPLETED
+    unit = {"_mps": length / time, "_rad_s": 1.0 / time, "_s": time, "_m": length}
+    # Altitude is the plume's, and not of the turn; course is an angle, compared as its cosine and sine by the velocities.
+    level = ("altitude_m", "altitude_command_m", "climb_rate_mps")
+    flown = [name for name in COLUMNS if name.endswith(tuple(unit)) and name not in level]
+    scale = [next(size for suffix, size in unit.items() if name.endswith(suffix)) for name in flown]
+    return record.history[:, [COLUMNS.index(name) for name in flown]] / scale
+
+
+FLIGHTS = pytest.mark.parametrize(
+    ("nu", "lag", "overrides"),
+    [
+        (0.5, 0.0, []),
+        (0.15, 0.3, []),
+        (0.95, 0.3, ["guidance.preview=false"]),
+        (0.5, 0.0, ["guidance.law=lyapunov"]),
+        (0.3, 0.3, ["guidance.law=line_of_sight"]),
+        (0.5, 0.3, ["guidance.tuning=bounded", "guidance.reserve=0.4"]),
+    ],
+)
+
+
+@FLIGHTS
+def test_in_its_own_units_every_aircraft_flies_the_same_flight(kinematic_flight, nu, lag, overrides):
+    base = kinematic_flight(1.0, 1.0, *overrides, nu=nu, lag=lag)
+    other = kinematic_flight(2.0, 4.0, *overrides, nu=nu, lag=lag)
+    assert len(base) > 1000
+    # Twice the speed at 45 degrees of bank: factors are powers of two, so even roundings scale. Equal to the last bit, whatever
+    # the law does with a difference.
+    np.testing.assert_array_equal(other, base)
+
+
+@pytest.mark.parametrize(("nu", "overrides"), [(0.0, []), (0.5, []), (0.7, ["guidance.law=lyapunov"])])
+def test_it_is_the_same_flight_at_another_bank_as_far_as_roundings_go(kinematic_flight, nu, overrides):
+    # tan(bank) = 2.4/1.5^2, 47 degrees. A reference that is limited by its roll rate would differ: with the bank, by gravity.
+    base, other = (kinematic_flight(*unit, *overrides, nu=nu, lag=0.3) for unit in ((1.0, 1.0), (1.5, 2.4)))
+    assert base.shape == other.shape
+    # Roundings of thousands of steps that contract towards the reference, of lengths up to 4 km; measured 3e-11.
+    np.testing.assert_allclose(other, base, rtol=1e-8, atol=1e-8)

@@ -1,0 +1,85 @@
+"""The margin of a flight that follows a plume: of the turbulence that it has."""
+
+import pytest
+from flight_cases import plan, scenario
+
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.errors import InputError
+from scenarios.experiment.requests import Experiment
+from scenarios.margin.tracking_spread import CALM_AIR_SPREAD, Spread, SpreadTable
+from scenarios.planning.spreads import SPREAD_RATIOS, PredictedSpreads, predicted_spreads
+from scenarios.vehicles.vehicle_setup import aircraft_setup
+
+LEVELS = ("none", "light", "moderate")
+
+
+TABLED = SpreadTable(
+    speed_ratios=(0.2, 0.6),
+    spreads=tuple(
+        Spread(along=s, across=s, radial=s, radial_rate=s, airspeed=s, airspeed_rate=s, airspeed_limit=100.0) for s in (1.0, 2.0)
+    ),
+)
+
+
+def test_a_flight_has_the_spread_of_its_speed_ratio_and_none_in_still_air():
+    # A quarter and three quarters of the way between 0.2 and 0.6; the nearest counts.
+    for nu, sigma in ((0.3, 1.0), (0.5, 2.0)):
+        trial = scenario(fidelity="six_dof", turbulence={"level": "light"}, vessel={"speed_mps": 19.42 * nu})
+        assert plan(trial, spreads=lambda _: TABLED).margin.tracking_sigma == sigma
+        assert plan(trial).margin.tracking_sigma == CALM_AIR_SPREAD.radial == 0.0
+
+
+@pytest.fixture(scope="module")
+def x8(designs, tmp_path_factory):
+    """The design that other tests have too, at 100 m, and what flights need of it."""
+    found = designs("x8")
+    return found, aircraft_setup(found, gusty(level="none"), RunDirectory(tmp_path_factory.mktemp("x8")))
+
+
+def gusty(**turbulence):
+    return scenario(fidelity="six_dof", plume={"source_height_m": 100.0}, turbulence=turbulence)
+
+
+def sampling(key, choice):
+    draws = [{"key": key, "choice": list(choice)}]
+    return scenario(fidelity="six_dof", flights=len(choice), plume={"source_height_m": 100.0}, draws=draws)
+
+
+def test_an_experiment_that_samples_its_turbulence_plans_each_levels_own_margin(x8, monkeypatch):
+    found, setup = x8
+    # Two of five, for time's sake.
+    monkeypatch.setattr("scenarios.planning.spreads.SPREAD_RATIOS", SPREAD_RATIOS[1:3])
+    experiment = Experiment("trial", sampling("turbulence.level", LEVELS))
+    spreads = predicted_spreads(experiment.settings(), found, setup)
+    # Still air has no spread.
+    assert {level for level, _ in spreads.tables} == {"light", "moderate"}
+    assert {table.speed_ratios for table in spreads.tables.values()} == {SPREAD_RATIOS[1:3]}
+    margins = {}
+    for number, level in enumerate(LEVELS):
+        request = experiment.request(number)
+        assert request.scenario.turbulence.level == level
+        margins[level] = plan(request.scenario, seed=request.seed, setup=setup, spreads=spreads).margin
+        # The same as of a scenario that has this turbulence in every flight.
+        alone = gusty(level=level)
+        own = predicted_spreads([alone], found, setup)
+        assert {level for level, _ in own.tables} == {level} - {"none"}
+        assert plan(alone, setup=setup, spreads=own).margin == margins[level]
+    # MIL-F-8785C: twice the wind at 20 feet has twice the intensity, and the loop is linear; in still air the least is kept.
+    assert margins["none"].tracking_sigma == 0.0
+    assert margins["moderate"].tracking_sigma == pytest.approx(2.0 * margins["light"].tracking_sigma, rel=1e-6)
+    assert margins["none"].total < margins["light"].total < margins["moderate"].total
+    assert margins["none"].guard < margins["light"].guard < margins["moderate"].guard
+
+
+def test_a_flight_whose_spread_was_not_predicted_is_refused():
+    # Neither that of another level nor none: it would fly with too small a margin.
+    spreads = PredictedSpreads(tables={("moderate", gusty(level="moderate").guidance.model_dump_json()): TABLED})
+    assert spreads(gusty(level="moderate")) is TABLED
+    with pytest.raises(InputError, match="sampled from a continuous distribution in turbulence"):
+        spreads(gusty(level="light"))
+
+
+def test_a_kinematic_vehicle_has_no_spread(x8):
+    assert predicted_spreads([scenario()], *x8).tables == {}
+    assert predicted_spreads([gusty(level="light")], None, None).tables == {}
+    assert PredictedSpreads()(scenario()) is None

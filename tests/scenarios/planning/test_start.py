@@ -1,0 +1,97 @@
+"""Where flights begin, whatever their mission."""
+
+import math
+
+import numpy as np
+import pytest
+from flight_cases import plan, scenario
+
+from scenarios.experiment.requests import Experiment
+from scenarios.schema.load import load_study
+from scenarios.schema.scenario import Scenario
+
+
+def start_of(flight):
+    """Return distance [m], bearing and course [deg] of a flight's start."""
+    start = flight.start
+    bearing = math.degrees(math.atan2(start.east, start.north))
+    return math.hypot(start.north, start.east), bearing % 360.0, math.degrees(start.course)
+
+
+def tracking(**changes):
+    return Scenario.model_validate({"title": "test", "fidelity": "kinematic"} | changes)
+
+
+MISSIONS = pytest.mark.parametrize("made", [scenario, tracking], ids=["following", "tracking"])
+
+
+@MISSIONS
+def test_a_start_that_is_given_is_where_and_as_it_was_given(made):
+    # The vessel goes north in still air: its plume trails south, and bearings from it count clockwise.
+    given = plan(made(start={"range_m": 500.0, "aspect_deg": 30.0, "course_deg": -70.0})).start
+    bearing = math.radians(180.0 + 30.0)
+    # Rounding of the vessel's track, a kilometre of it at most.
+    assert (given.north, given.east) == pytest.approx((500.0 * math.cos(bearing), 500.0 * math.sin(bearing)), abs=1e-9)
+    assert given.course == pytest.approx(math.radians(-70.0))
+
+
+@MISSIONS
+def test_a_place_ahead_and_right_of_the_vessel_may_be_given(made):
+    given = plan(made(vessel={"speed_mps": 8.0, "course_deg": 90.0}, start={"place_m": (-400.0, 30.0)})).start
+    # Eastbound: astern is west, and right is south.
+    assert (given.north, given.east) == pytest.approx((-30.0, -400.0), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "place", "found"),
+    [
+        ("range_m", 1000.0, 0, 1000.0),
+        # Against the plume's axis, 180 degrees.
+        ("aspect_deg", -45.0, 1, 135.0),
+        ("course_deg", 90.0, 2, 90.0),
+    ],
+)
+def test_nothing_else_of_a_flight_changes_with_a_start_that_is_given(key, value, place, found):
+    changes = {
+        "reports": {"interval_s": (2.0, 10.0)},
+        "sensors": {"position_sigma_m": 2.0},
+        "fault": {"kind": "vessel_data", "at_s": (10.0, 20.0)},
+    }
+    sampled, given = (plan(scenario(**changes, start=start)) for start in ({}, {key: value}))
+    one, other = list(start_of(sampled)), list(start_of(given))
+    assert other[place] == pytest.approx(found)
+    assert one[place] != pytest.approx(found)
+    del one[place], other[place]
+    assert other == pytest.approx(one, rel=1e-12)
+    assert given.sensing.received == sampled.sensing.received
+    assert given.world.fault == sampled.world.fault
+    for step in (0, 1, 100):
+        one, other = (flight.sensing.errors.read(step, (0.0,) * 5, 0.0, 0.0, satellites=True) for flight in (sampled, given))
+        assert other == one
+        assert one[0][0] != 0.0
+
+
+@MISSIONS
+def test_starts_that_are_not_given_lie_within_their_limits(made):
+    trial = made(start={"distance_m": [400.0, 500.0], "spread_deg": 20.0}, flight={"duration_max_s": 10.0})
+    distance, bearing, course = np.transpose([start_of(plan(trial, seed=seed)) for seed in range(40)])
+    assert 400.0 <= distance.min() < 420.0
+    assert 480.0 < distance.max() <= 500.0
+    assert 160.0 <= bearing.min() < 170.0
+    assert 190.0 < bearing.max() <= 200.0
+    # Any course: both halves of the compass, and fore and aft.
+    assert course.min() < -90.0
+    assert course.max() > 90.0
+
+
+def test_starts_depend_on_the_seed_and_nu_alone():
+    def seeds(*overrides):
+        experiment = Experiment("sweep_nu", load_study("sweep_nu", overrides))
+        return {experiment.named(i): experiment.request(i).seed for i in range(experiment.flights)}
+
+    base = seeds()
+    at = base["nu_0.50", "study"]
+    assert at == seeds("sweep.nu=[0.5]", "comparison.variants=[]")["nu_0.50", "study"]
+    assert at == base["nu_0.50_no_preview", "no_preview"]
+    assert at != seeds("seed=2")["nu_0.50", "study"]
+    assert len({seed for (_, variant), seed in base.items() if variant == "study"}) == 20

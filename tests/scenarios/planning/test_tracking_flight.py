@@ -1,0 +1,101 @@
+"""Flights that track the paper's reference."""
+
+import math
+
+import pytest
+
+from gnc.compose import keepout_guard
+from gnc.errors import InfeasibleError
+from innerloop.flight.turn_reversal import TurnReversalResponse
+from scenarios.planning.planner import plan_flight
+from scenarios.schema.load import load_study, with_values
+from scenarios.vehicles.vehicle_setup import VehicleSetup
+
+SETUP = VehicleSetup(
+    lag=0.275, reversal=TurnReversalResponse(delay=0.0, lag=0.3), airspeed_bandwidth=1.0, airspeed_min=15.0, airspeed_max=25.0
+)
+
+
+def plan(*overrides, nu=0.5, seed=1):
+    scenario = with_values(load_study("sweep_nu", overrides), {"vessel.speed_ratio": nu})
+    return plan_flight(scenario, flight_id="x", seed=seed, setup=SETUP)
+
+
+def test_what_such_a_flight_has_no_use_for_is_absent():
+    flight = plan()
+    assert (flight.sensing, flight.margin, flight.apparent_wind, flight.periods) == (None, None, None, ())
+    assert (flight.guidance.navigation, flight.guidance.health) == (None, None)
+    assert flight.guidance.vessel == pytest.approx((0.5 * 19.42, 0.0))
+    # A circle has no vessel either.
+    circling = plan_flight(
+        load_study("paper", ["cases=[]", "study=flights", "reference.path=circle"]), flight_id="x", seed=1, setup=SETUP
+    )
+    assert (circling.world, circling.oscillation, circling.guidance.guard) == (None, None, None)
+    assert math.isnan(circling.nu)
+
+
+def test_the_altitude_is_that_of_the_centre_of_oscillation():
+    # Equation (9): z_CO = r_CO sin(alpha_P), above the funnel at 60 m.
+    flight = plan("plume.elevation_deg=10")
+    assert flight.altitude == pytest.approx(60.0 + flight.centre_distance * math.sin(math.radians(10.0)), abs=1e-9)
+    assert flight.source_height == 60.0
+
+
+def test_omega_max_is_the_coordinated_turn_at_the_bank_asked_for():
+    # g tan(45 deg)/19.42 m/s = 0.50498 rad/s.
+    assert plan().guidance.tracking.heading_rate_max == pytest.approx(9.80665 / 19.42, rel=1e-12)
+    given = plan("guidance.heading_rate_max_rad_s=0.503")
+    assert given.heading_rate_max == given.guidance.tracking.heading_rate_max == 0.503
+
+
+def test_commands_may_be_left_uncut():
+    flight = plan("fidelity=kinematic", "guidance.command_limit=false")
+    assert flight.guidance.tracking.heading_rate_max == math.inf
+    # What they are judged by.
+    assert flight.heading_rate_max == pytest.approx(9.80665 / 19.42, rel=1e-12)
+
+
+def test_preview_and_airspeed_trim_can_be_switched_off():
+    assert plan("guidance.preview=false").guidance.tracking.lag == 0.0
+    # Half a step of 20 Hz beside the vehicle's own.
+    assert plan().guidance.tracking.lag == pytest.approx(0.3, rel=1e-12)
+    assert plan().guidance.airspeed_law.gain == 0.15
+    assert plan("guidance.airspeed_trim=false").guidance.airspeed_law.gain == 0.0
+    assert plan("guidance.keepout_guard=false").guidance.guard is None
+
+
+def test_a_start_from_which_no_command_keeps_out_is_refused():
+    # 210 m astern of a vessel at rest, straight at it: a turn away takes 38 m, and its lag besides.
+    start = ["start.place_m=[-210.0, 0.0]", "start.course_deg=0"]
+    with pytest.raises(InfeasibleError, match=r"the start lies 210\.0 m from the vessel on course 0 deg, where the best turn away"):
+        plan(*start, nu=0.0)
+    # Away from it, or with no guard, it is flown.
+    plan(start[0], "start.course_deg=180", nu=0.0)
+    plan(*start, "guidance.keepout_guard=false", nu=0.0)
+
+
+def test_the_guard_keeps_its_fraction_of_what_the_orbit_keeps():
+    # r_min and 0.75 of the allowance of 1 m: the clearance of a vehicle that recedes is its distance less that.
+    guard = keepout_guard(plan(nu=0.0).guidance.guard)
+    assert guard.clearance(0.0, 300.0, 0.0, 0.0, math.pi / 2.0, 19.42, 0.0) == pytest.approx(300.0 - 200.75, abs=1e-9)
+
+
+def test_the_guard_keeps_the_disc_that_the_keep_out_sphere_cuts_out_at_the_height_of_the_flight():
+    flight = plan("plume.elevation_deg=20")
+    above = flight.altitude - 60.0
+    assert flight.guidance.guard.radius == pytest.approx(math.sqrt(200.75**2 - above**2), rel=1e-12)
+    # Above the whole sphere there is nothing to keep out of.
+    assert plan("plume.elevation_deg=60", "guidance.tracking_allowance_m=400").guidance.guard is None
+
+
+@pytest.mark.parametrize(
+    ("overrides", "nu", "words"),
+    [
+        ([], 1.0, "nu is 1; it must be below 1"),
+        ([], 1.3, "nu is 1.3"),
+        (["guidance.look_ahead_m=40"], 0.5, "R is 40 m; it must exceed"),
+    ],
+)
+def test_infeasible_flights_say_why(overrides, nu, words):
+    with pytest.raises(InfeasibleError, match=words):
+        plan(*overrides, nu=nu)

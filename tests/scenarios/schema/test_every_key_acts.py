@@ -1,0 +1,147 @@
+"""Every key of the schema acts: with another value the flight differs, or the key is refused by name."""
+
+import pytest
+
+from scenarios.engine.task import Task
+from scenarios.errors import InputError
+from scenarios.experiment.requests import Experiment
+from scenarios.flight import FlightWork
+from scenarios.planning.spreads import PredictedSpreads
+from scenarios.schema.keys import known_keys
+from scenarios.schema.load import load_study
+from scenarios.schema.scenario import Scenario
+from tests.run_tables import history_in
+
+SHORT = """
+title = "short"
+fidelity = "kinematic"
+seed = 3
+flight.duration_max_s = 120.0
+criteria.tracking_error_rms_m = 1e-4
+"""
+
+BASES = {
+    "tracking": """
+vessel.speed_mps = 8.0
+flight.crossings = 2
+start.distance_m = [300.0, 400.0]
+""",
+    "following": """
+guidance.mission = "follow"
+vessel.speed_mps = 6.0
+vessel.manoeuvres = [{ at_s = 60.0, turn_deg = 20.0, speed_mps = 7.0 }]
+wind = { speed_mps = 4.0, from_deg = 60.0 }
+reports.interval_s = [2.0, 5.0]
+fault = { kind = "satellite_navigation", at_s = [70.0, 80.0] }
+flight.crossings = 0
+start.distance_m = [300.0, 400.0]
+""",
+    "circle": 'reference.path = "circle"\nstart.place_m = [80.0, -60.0]\n',
+}
+"""Flights of the kinematic vehicle with each mission, and without a vessel."""
+
+VALUES = {
+    "seed": 4, "flight_seed": 9, "speed_ratio": [0.0, 0.5], "sampling": "random",
+    "comparison.nu": [0.5], "comparison.flights": 2,
+    "statistics.confidence": 0.9, "statistics.violation_upper": 0.1, "statistics.distance_quantile_width_m": 1.0,
+    "statistics.distance_quantile": 0.05,
+    "search.population": 8, "search.generations": 1, "search.mutation": [0.4, 0.6], "search.recombination": 0.5, "search.kept": 1,
+    "vessel.speed_mps": 7.0, "vessel.speed_ratio": 0.3, "vessel.course_deg": 40.0,
+    "vessel.manoeuvres": [{"at_s": 20.0, "turn_deg": 30.0}],
+    "vessel.manoeuvres.0.at_s": 50.0, "vessel.manoeuvres.0.turn_deg": 30.0, "vessel.manoeuvres.0.turn_rate_deg_s": 1.0,
+    "vessel.manoeuvres.0.speed_mps": 8.0, "vessel.manoeuvres.0.acceleration_mps2": 0.1,
+    "plume.direction": "apparent_wind", "plume.heading_deg": 170.0, "plume.elevation_deg": 10.0, "plume.source_height_m": 80.0,
+    "keepout.radius_m": 180.0, "wind.speed_mps": 3.0, "wind.from_deg": 100.0,
+    "turbulence.level": "light", "turbulence.gusts": 2, "turbulence.gust_speed_mps": 3.0, "turbulence.gust_length_s": 3.0,
+    "reports.interval_s": [3.0, 6.0], "reports.position_sigma_m": 8.0, "reports.velocity_sigma_mps": 0.3,
+    "reports.latency_max_s": 2.0, "reports.missing": 0.5,
+    "sensors.position_sigma_m": 1.0, "sensors.velocity_sigma_mps": 0.1, "sensors.airspeed_sigma_mps": 0.3,
+    "sensors.airspeed_bias_mps": 0.5, "sensors.heading_sigma_deg": 1.0, "sensors.heading_bias_deg": 2.0,
+    "fault.kind": "vessel_data", "fault.at_s": [20.0, 40.0], "fault.vessel_data_s": 20.0, "fault.satellite_navigation_s": 30.0,
+    "kinematic.heading_rate_lag_s": 0.5, "reference.path": "circle", "reference.radius_m": 150.0,
+    "guidance.mission": "follow", "guidance.law": "line_of_sight", "guidance.airspeed_mps": 18.0, "guidance.bank_deg": 40.0,
+    "guidance.heading_rate_max_rad_s": 0.45, "guidance.reserve": 0.1, "guidance.roll_rate_max_deg_s": 5.0,
+    "guidance.phase_deg": 90.0, "guidance.placement": "exact", "guidance.tracking_allowance_m": 5.0, "guidance.tuning": "bounded",
+    "guidance.bound_speed_margin_mps": 0.8, "guidance.epsilon_per_m": 0.01, "guidance.look_ahead_m": 80.0,
+    "guidance.gain_per_s": 1.0, "guidance.steering_max_rad_s": 0.2, "guidance.lyapunov_gain_per_m2": 0.002,
+    "guidance.command_limit": False, "guidance.preview": False, "guidance.airspeed_trim": False,
+    "guidance.airspeed_gain_per_s": 0.1, "guidance.airspeed_trim_max_mps": 0.5, "guidance.keepout_guard": False,
+    "guidance.approach": False, "guidance.rate_hz": 40.0,
+    "following.touches_per_hour": 1e-6, "following.margin_min_m": 20.0, "following.speed_ratio_max": 0.2,
+    "following.apparent_wind_min_mps": 12.0, "following.standoff_m": 50.0, "following.join_distance_m": 60.0,
+    "following.tracked_m": 4.0, "following.vessel_acceleration_mps2": 0.1, "following.speed_error_mps": 1.0,
+    "following.drift_rate_mps": 5.0,
+    "start.distance_m": [350.0, 400.0], "start.spread_deg": 90.0, "start.range_m": 350.0, "start.aspect_deg": 20.0,
+    "start.course_deg": 30.0, "start.place_m": [-300.0, 50.0],
+    "flight.crossings": 4, "flight.duration_max_s": 20.0, "flight.settling_band_m": 0.5, "flight.log_rate_hz": 20.0,
+    "criteria.settles": False, "criteria.tracking_error_rms_m": 1e-6, "criteria.airspeed_error_rms_mps": 1e-9,
+    "criteria.altitude_error_max_m": 1e-9, "criteria.crossing_interval_error": 1e-9, "criteria.tracking_error_end_m": 1e-15,
+    "criteria.crossing_interval_s": [1.0, 1.1], "criteria.crossing_distance_m": [1.0, 1.1],
+    "criteria.law_beyond_heading_rate_max": True, "criteria.law_within_heading_rate_max": True,
+    "criteria.resumes_within_periods": 1e-3, "criteria.modes_at_end": ["transit"],
+}  # fmt: skip
+"""Another legal value of each key."""
+
+OWN_VALUES = {
+    "following": {"plume.direction": "given", "guidance.mission": "track", "criteria.crossing_interval_error": False},
+    "circle": {"reference.path": "oscillation"},
+}
+"""Where that is what a mission has anyway, or its flight fails one limit as it does the other."""
+
+ELSEWHERE = {
+    "study", "title", "description", "fidelity", "aircraft", "payload", "vessel.track", "plume.model", "reference.shape",
+    "flights", "histories", "sweep", "cases", "draws", "comparison", "comparison.variants",
+}  # fmt: skip
+"""Kinds of study, texts, experiments and parts, which tests of their own are about (test_extension_points, test_experiments)."""
+
+LEVEL = {"criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"}
+"""Criteria that the kinematic vehicle always meets: it is level and as fast as commanded."""
+
+BEYOND_OR_WITHIN = {"criteria.law_beyond_heading_rate_max", "criteria.law_within_heading_rate_max"}
+"""Criteria of which every flight meets exactly one."""
+
+
+def flown(path, *overrides):
+    scenario = load_study(str(path), overrides)
+    work = FlightWork(experiments=(Experiment("short", scenario),), histories=1, setup=None, spreads=PredictedSpreads())
+    result = work.fly(Task(number=0))
+    (row,) = result.tables["summary.csv"]
+    return {key: repr(value) for key, value in row.items() if key != "wall_time_s"}, history_in(result)
+
+
+def written(value):
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key} = {written(below)}" for key, below in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(written, value)) + "]"
+    return str(value).lower() if isinstance(value, bool) else f'"{value}"' if isinstance(value, str) else repr(value)
+
+
+def test_every_key_has_another_value_here():
+    sections = {key.rpartition(".")[0] for key in known_keys(Scenario)}
+    keys = {
+        key
+        for key in known_keys(Scenario)
+        if key not in sections | {"vessel.manoeuvres"} and not key.startswith(("cases.", "draws.", "comparison.v"))
+    }
+    assert keys - ELSEWHERE == VALUES.keys() - {"vessel.manoeuvres"}
+
+
+@pytest.mark.parametrize("base", BASES)
+def test_with_another_value_of_any_key_the_flight_differs_or_the_key_is_refused(base, tmp_path):
+    path = tmp_path / "short.toml"
+    path.write_text(SHORT + BASES[base], encoding="utf-8")
+    row, history = flown(path)
+    silent, unnamed = [], []
+    for key, value in (VALUES | OWN_VALUES.get(base, {})).items():
+        try:
+            other, changed = flown(path, f"{key}={written(value)}")
+        except InputError as refusal:
+            names = (key.rpartition(".")[2], key.partition(".")[0], "reference.path", "start.place_m")
+            unnamed += [] if any(name in str(refusal) for name in names) else [(key, str(refusal))]
+            continue
+        if other == row and (history is changed or history.equals(changed)):
+            silent.append(key)
+    assert set(silent) <= LEVEL | BEYOND_OR_WITHIN, silent
+    assert len(BEYOND_OR_WITHIN & set(silent)) == 1
+    assert not unnamed

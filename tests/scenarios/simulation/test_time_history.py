@@ -1,0 +1,38 @@
+"""Which time histories a run keeps."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from scenarios.engine.task import Result, Task
+from scenarios.simulation.time_history import history_files, keeps_history
+from tests.run_tables import history_in
+
+MET, UNMET = {"criteria_met": True}, {"criteria_met": False}
+
+
+@pytest.mark.parametrize(("planned", "wanted"), [(1, 1), (7, 3), (100, 7), (20, 20), (5, 200), (1000, 1), (10, 0)])
+def test_as_many_are_kept_as_are_asked_for_evenly_among_all(planned, wanted):
+    kept = [number for number in range(planned) if keeps_history(Task(number=number), planned=planned, kept=wanted, row=MET)]
+    assert len(kept) == min(planned, wanted)
+    if len(kept) > 1:
+        # Every so many: two gaps differ by one at most.
+        assert np.ptp(np.diff(kept)) <= 1
+
+
+def test_flights_that_failed_or_are_to_be_recorded_are_kept_beside_them():
+    few = {"planned": 10, "kept": 0}
+    assert keeps_history(Task(number=3), **few, row=UNMET)
+    assert keeps_history(Task(number=3, recorded=True), **few, row=MET)
+    assert not keeps_history(Task(number=3), **few, row=MET)
+
+
+def test_a_history_comes_back_from_its_file_exactly():
+    history = pd.DataFrame({"time_s": [0.0, 0.1 + 0.2], "north_m": [np.nan, 5e-324]})
+    result = Result(
+        task=Task(number=0),
+        tables={},
+        files=history_files(Task(number=0), history, planned=1, kept=1, row=MET | {"flight_id": "a"}),
+    )
+    assert list(result.files) == ["flights/a.parquet"]
+    pd.testing.assert_frame_equal(history_in(result), history, check_exact=True)

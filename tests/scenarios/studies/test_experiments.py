@@ -1,0 +1,131 @@
+"""Experiments on any scenario, in any study: what was once refused in calm air or in wind flies in both."""
+
+import json
+
+import pandas as pd
+import pytest
+
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+from tests.run_tables import rows_of
+
+KINEMATIC = ("fidelity=kinematic", "comparison.variants=[]", "flight.crossings=4")
+BOTH_LAWS = '[{name="line_of_sight", set={"guidance.law"="line_of_sight"}}, {name="lyapunov", set={"guidance.law"="lyapunov"}}]'
+
+
+def flown(out, name, *overrides):
+    """Fly a study; return its rows, all completed outside the keep-out area."""
+    run_study(load_study(name, overrides), name, out, overrides=overrides)
+    rows = rows_of(out)
+    for row in rows:
+        assert (row["outcome"], row["keepout_violations"]) == ("completed", 0), row["message"]
+    return rows
+
+
+@pytest.fixture(scope="module")
+def x8(tmp_path_factory):
+    """One flight of the X8 with a rising plume, in wind and light turbulence."""
+    out = tmp_path_factory.mktemp("x8") / "run"
+    keys = ["sweep.nu=[0.5]", "comparison.variants=[]", "flight.crossings=4"]
+    air = ["wind.speed_mps=5", "wind.from_deg=90", "turbulence.level=light", "plume.elevation_deg=10"]
+    (row,) = flown(out, "sweep_nu", *keys, *air)
+    return row, pd.read_parquet(out / "flights" / "nu_0.50.parquet")
+
+
+def test_the_sweep_flies_in_wind_and_turbulence(x8):
+    row, history = x8
+    assert (row["wind_speed_mps"], row["turbulence"], row["mode_at_end"]) == (5.0, "light", "tracking")
+    # The vessel goes north at 0.5 V_r, the wind comes from abeam: by Pythagoras, nu of the motion through the air.
+    assert row["nu"] == pytest.approx((0.5**2 + (5.0 / 19.42) ** 2) ** 0.5, rel=1e-9)
+    assert row["vessel_speed_mps"] == pytest.approx(0.5 * 19.42)
+    # Turbulence is felt, and a margin planned for it.
+    assert history["airspeed_mps"].std() > 0.1
+    assert row["spread_predicted_m"] > 0.0
+    assert row["keepout_margin_m"] > 3.0
+
+
+def test_a_plume_that_rises_is_crossed_above_the_funnel_in_wind_too(x8):
+    _, history = x8
+    last = history.iloc[-1]
+    # The orbit's centre is at least r_min from the funnel at 60 m: sin(10 deg) of that, and no more than of twice r_min.
+    assert 60.0 + 200.0 * 0.1736 < last["altitude_m"] < 60.0 + 400.0 * 0.1736
+
+
+def test_the_wind_may_be_set_in_a_kinematic_sweep(tmp_path):
+    (row,) = flown(tmp_path / "run", "sweep_nu", *KINEMATIC, "sweep.nu=[0.3]", "wind.speed_mps=5")
+    assert (row["fidelity"], row["wind_speed_mps"]) == ("kinematic", 5.0)
+    # Both head on: the vessel goes north, the wind comes from there.
+    assert row["nu"] == pytest.approx(0.3 + 5.0 / 19.42, rel=1e-9)
+
+
+@pytest.mark.parametrize("key", ["sweep.wind.speed_mps=[0, 5]", 'sweep."wind.speed_mps"=[0, 5]'])
+def test_any_key_may_be_swept(tmp_path, key):
+    rows = flown(tmp_path / "run", "sweep_nu", *KINEMATIC, "sweep.nu=[0.3]", key)
+    assert [row["flight_id"] for row in rows] == ["nu_0.30_speed_mps_0", "nu_0.30_speed_mps_5"]
+    assert [row["wind_speed_mps"] for row in rows] == [0.0, 5.0]
+    assert [row["nu"] for row in rows] == pytest.approx([0.3, 0.3 + 5.0 / 19.42], rel=1e-9)
+    inputs = rows_of(tmp_path / "run", "draws.csv")
+    assert [row["wind.speed_mps"] for row in inputs] == [0, 5]
+    assert [row["nu"] for row in inputs] == [row["nu"] for row in rows]
+    # They differ in the wind alone.
+    assert rows[0]["seed"] == rows[1]["seed"]
+
+
+@pytest.mark.parametrize("key", ["wind.speed_mps = [0, 2]", '"wind.speed_mps" = [0, 2]'])
+def test_a_file_names_a_swept_key_with_and_without_quotes(tmp_path, key):
+    path = tmp_path / "own.toml"
+    path.write_text(f'title = "own"\n[sweep]\nkeepout.radius_m = [150, 200]\n{key}\n', encoding="utf-8")
+    assert load_study(str(path)).sweep.root == {"keepout.radius_m": (150, 200), "wind.speed_mps": (0, 2)}
+
+
+def test_a_sweep_over_two_keys_flies_each_combination(tmp_path):
+    keys = ["sweep.nu=[0.3, 0.5]", "sweep.keepout.radius_m=[150, 200]"]
+    rows = flown(tmp_path / "run", "sweep_nu", *KINEMATIC, *keys)
+    assert [(row["nu"], row["keepout_radius_m"]) for row in rows] == [(0.3, 150), (0.3, 200), (0.5, 150), (0.5, 200)]
+    for row in rows:
+        assert row["min_distance_m"] >= row["keepout_radius_m"]
+
+
+def test_a_value_that_cannot_be_swept_is_refused(tmp_path):
+    with pytest.raises(ValueError, match=r"'guidance\.airspeed_mps' varies from flight to flight"):
+        load_study("sweep_nu", ["sweep.guidance.airspeed_mps=[18, 19]"])
+    with pytest.raises(ValueError, match=r"unknown key 'wind\.sped_mps'; did you mean 'wind\.speed_mps'"):
+        flown(tmp_path / "run", "sweep_nu", *KINEMATIC, "sweep.wind.sped_mps=[0, 5]")
+
+
+def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_path):
+    keys = ["flights=3", f"comparison.variants={BOTH_LAWS}", "comparison.flights=2"]
+    rows = flown(tmp_path / "run", "sea_wind", "fidelity=kinematic", "flight.crossings=2", *keys)
+    variants = rows_of(tmp_path / "run", "comparison.csv")
+    assert [row["variant"] for row in rows] == ["study"] * 3
+    assert [row["variant"] for row in variants] == ["line_of_sight"] * 2 + ["lyapunov"] * 2
+    same = ["seed", "nu", "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "start_distance_m", "start_aspect_deg"]
+    for number, variant in enumerate(variants):
+        assert [variant[name] for name in same] == [rows[number % 2][name] for name in same]
+        assert variant["flight_id"] == f"{variant['variant']}_{number % 2:05d}"
+    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
+    assert manifest["flights_planned"] == 3
+
+
+SAMPLED = ("fidelity=kinematic", "turbulence={}", "flights=4", "flight.duration_max_s=40", "histories=0")
+WIND = '{key="wind.speed_mps", uniform=[0, 5]}'
+
+
+def test_monte_carlo_samples_steering_laws_at_random(tmp_path):
+    laws = '{key="guidance.law", choice=["cascade", "lyapunov"]}'
+    rows = flown(tmp_path / "run", "monte_carlo", *SAMPLED, f"draws=[{WIND}, {laws}]")
+    inputs = rows_of(tmp_path / "run", "draws.csv")
+    assert [row["flight_id"] for row in inputs] == [row["flight_id"] for row in rows]
+    # A Sobol sequence halves every range evenly.
+    assert sorted(row["guidance.law"] for row in inputs) == ["cascade", "cascade", "lyapunov", "lyapunov"]
+    assert (tmp_path / "run" / "statistics.json").is_file()
+
+
+def test_monte_carlo_compares_steering_laws_at_the_same_points(tmp_path):
+    rows = flown(tmp_path / "run", "monte_carlo", *SAMPLED, f"draws=[{WIND}]", f"comparison.variants={BOTH_LAWS}")
+    variants = rows_of(tmp_path / "run", "comparison.csv")
+    assert len(rows) == 4
+    for name in ("line_of_sight", "lyapunov"):
+        of_variant = [row for row in variants if row["variant"] == name]
+        assert [(row["seed"], row["wind_speed_mps"]) for row in of_variant] == [(r["seed"], r["wind_speed_mps"]) for r in rows]
+    assert {row["variant"] for row in rows_of(tmp_path / "run", "draws.csv")} == {"study", "line_of_sight", "lyapunov"}

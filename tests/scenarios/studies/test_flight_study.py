@@ -1,0 +1,193 @@
+"""Flights and lists of trials as the command line runs them, kinematic and short."""
+
+import json
+
+import pandas as pd
+import pytest
+
+from scenarios.engine.executors import ExecutorFactory
+from scenarios.errors import InputError
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+from tests.run_tables import rows_of
+from tests.scenarios.short_trial import short_trial
+
+TRIAL = short_trial(flights=4, duration=8.0)
+
+
+def written(directory):
+    """Write a list of two trials; return its path."""
+    for name in ("one", "two"):
+        (directory / f"{name}.toml").write_text(TRIAL, encoding="utf-8")
+    path = directory / "list.toml"
+    trials = [str(directory / "one.toml"), str(directory / "two.toml")]
+    path.write_text(f'study = "trials"\ntitle = "two"\ntrials = {json.dumps(trials)}\n', encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def listed(tmp_path_factory):
+    """A list of two trials."""
+    return written(tmp_path_factory.mktemp("trials"))
+
+
+@pytest.fixture(scope="module")
+def whole(listed, tmp_path_factory):
+    """All of its flights, flown one after the other."""
+    directory = tmp_path_factory.mktemp("runs") / "whole"
+    assert run(listed, directory).all_met
+    return directory
+
+
+def quiet(doing, done, total):
+    """Say nothing."""
+
+
+def run(path, out, *overrides, jobs=1, resume=False, progress=quiet):
+    study = load_study(str(path), overrides)
+    return run_study(
+        study, path.stem, out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress, overrides=overrides
+    )
+
+
+def tables(directory):
+    """Return the tables of a run but for how long it took."""
+    summary = pd.read_csv(directory / "summary.csv").drop(columns="wall_time_s")
+    return summary, (directory / "crossings.csv").read_bytes()
+
+
+def same(one, other):
+    pd.testing.assert_frame_equal(tables(one)[0], tables(other)[0], check_exact=True)
+    return tables(one)[1] == tables(other)[1]
+
+
+def test_the_same_rows_come_from_one_process_and_from_two(listed, whole, tmp_path):
+    assert run(listed, tmp_path / "run", jobs=2).all_met
+    assert same(whole, tmp_path / "run")
+    summary, _ = tables(whole)
+    assert list(summary["flight_id"]) == [f"{trial}_{i:05d}" for trial in ("one", "two") for i in range(4)]
+    # Same scenario and seed, another name: other flights.
+    assert summary["wind_speed_mps"].nunique() == 8
+
+
+def test_a_share_of_the_flights_is_the_first_ones_of_each_trial(listed, whole, tmp_path):
+    result = run(listed, tmp_path / "share", "share=0.3")
+    # 0.3 of four, rounded up.
+    assert result.planned == result.summary.done == 4
+    assert [row["trial"] for row in rows_of(tmp_path / "share")] == ["one", "one", "two", "two"]
+    every, part = tables(whole)[0], tables(tmp_path / "share")[0]
+    first = every[every["flight_id"].isin(part["flight_id"])].reset_index(drop=True)
+    pd.testing.assert_frame_equal(first, part, check_exact=True)
+
+
+def test_a_key_of_the_trials_is_set_in_every_one(listed, tmp_path):
+    run(listed, tmp_path / "run", "keepout.radius_m=150", "seed=5", "share=0.1")
+    assert [row["keepout_radius_m"] for row in rows_of(tmp_path / "run")] == [150.0, 150.0]
+    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
+    assert {trial["seed"] for trial in manifest["trials"].values()} == {5}
+    assert {trial["keepout"]["radius_m"] for trial in manifest["trials"].values()} == {150.0}
+    assert manifest["flights_planned"] == 2
+    assert manifest["flights_met_criteria"] == 2
+
+
+def test_a_run_that_is_to_keep_no_history_keeps_those_that_tell_most(listed, whole, tmp_path):
+    # Of each trial the closest flight and the median one; they are flown again for it, and their rows are as they were.
+    assert run(listed, tmp_path / "run", "histories=0").all_met
+    assert same(whole, tmp_path / "run")
+    told = set()
+    for _, flights in pd.read_csv(whole / "summary.csv").groupby("trial"):
+        nearest_first = list(flights.sort_values("min_distance_m")["flight_id"])
+        # Of four, the median is taken to be the third: half of all are nearer.
+        told |= {f"{nearest_first[0]}.parquet", f"{nearest_first[2]}.parquet"}
+    kept = tmp_path / "run" / "flights"
+    assert {path.name for path in kept.iterdir()} == told
+    for name in told:
+        pd.testing.assert_frame_equal(pd.read_parquet(kept / name), pd.read_parquet(whole / "flights" / name), check_exact=True)
+
+
+def test_what_was_drawn_for_each_flight_is_a_table(whole):
+    drawn, flown = rows_of(whole, "draws.csv"), rows_of(whole)
+    assert [row["flight_id"] for row in drawn] == [row["flight_id"] for row in flown]
+    assert [row["wind.speed_mps"] for row in drawn] == [row["wind_speed_mps"] for row in flown]
+    assert [row["nu"] for row in drawn] == [row["nu"] for row in flown]
+
+
+def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(listed, whole, tmp_path):
+    interrupts = []
+
+    def interrupt_once(doing, done, total):
+        if done == 2 and not interrupts:
+            interrupts.append(done)
+            raise KeyboardInterrupt
+
+    broken = tmp_path / "broken"
+    result = run(listed, broken, progress=interrupt_once)
+    assert result.interrupted
+    assert 2 <= result.summary.done == len(rows_of(broken)) < 8
+    assert json.loads((broken / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
+    flown = []
+
+    def count(doing, done, total):
+        flown.append(done)
+
+    kept = result.summary.done
+    result = run(listed, broken, resume=True, progress=count)
+    assert not result.interrupted
+    # It goes on where it was, after the design of the autopilot.
+    assert flown[1:] == list(range(kept, 9))
+    assert same(whole, broken)
+
+
+def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
+    listed = written(tmp_path)
+    run(listed, tmp_path / "run", "share=0.1")
+    one = tmp_path / "one.toml"
+    one.write_text(TRIAL.replace("[0.0, 5.0]", "[0.0, 6.0]"), encoding="utf-8")
+    with pytest.raises(InputError, match="was run with another configuration"):
+        run(listed, tmp_path / "run", "share=0.1", resume=True)
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ('trials = ["sea_nowhere"]', "unknown scenario 'sea_nowhere'"),
+        ('trials = ["paper"]', "'paper' is a study of paper; list scenarios of flights"),
+        ('trials = ["sea_trial"]', "'sea_trial' is a study of trials; list scenarios of flights"),
+        ('trials = ["sea_wind", "sea_wind"]', "two are called 'sea_wind'; list each once"),
+        ("trials = []", "trials: value is"),
+        ('trials = ["sea_wind"]\nset = 5', "set: value is 5; give a list in brackets"),
+        ('trials = ["sea_wind"]\nset = "share=1"', "set: value is 'share=1'; give a list in brackets"),
+        ('trials = ["sea_wind"]\nset = ["colour"]', "'colour' is not of the form key=value"),
+        ('trials = ["sea_wind"]\nset = ["vessel.colour=1"]', "unknown key 'vessel.colour'"),
+        ('trials = ["sea_wind"]\nshare = 0.0', "share: value is 0.0"),
+        (
+            'trials = ["sea_wind"]\nset = ["fidelity=kinematic", "fault.kind=engine"]',
+            "fault.kind is 'engine'; .*what can fail is none, satellite_navigation, vessel_data",
+        ),
+        ('trials = ["sea_wind"]\nset = ["fault.at_s=[300, 100]"]', r"at_s is \[300.0, 100.0\]; its first value must not exceed"),
+        ('trials = ["sea_wind"]\nset = ["speed_ratio=[0.9, 0.1]"]', r"speed_ratio is \[0.9, 0.1\]; its first value"),
+        ('trials = ["sea_wind"]\nset = ["aircraft=zeppelin"]', "unknown aircraft 'zeppelin'"),
+        ('trials = ["sea_wind"', "not valid TOML"),
+    ],
+)
+def test_bad_trials_are_refused_in_one_line_before_anything_is_written(line, words, tmp_path):
+    path = tmp_path / "list.toml"
+    path.write_text(f'study = "trials"\ntitle = "bad"\n{line}\n', encoding="utf-8")
+    with pytest.raises(InputError, match=words) as refused:
+        run(path, tmp_path / "run", "start.spread_deg=10")
+    assert "\n" not in str(refused.value)
+    assert not (tmp_path / "run").exists()
+
+
+def test_trials_that_need_different_autopilots_are_refused(tmp_path):
+    listed = written(tmp_path)
+    (tmp_path / "two.toml").write_text(TRIAL + "[plume]\nsource_height_m = 80.0\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"flights differ in .* plume.source_height_m; give each a run of its own"):
+        run(listed, tmp_path / "run")
+
+
+def test_what_happened_is_told_in_lines(listed, tmp_path):
+    lines = run(listed, tmp_path / "run", "share=0.1", "vessel.speed_mps=19.4", "speed_ratio=[0, 9]").summary.lines
+    assert lines[0] == "2 flights planned, 2 done: 0 completed"
+    assert lines[1].startswith("  one: 0 of 1 met every criterion; 0 keep-out violations")
+    assert lines[3].startswith("    one_00000: infeasible: the vessel moves at up to")

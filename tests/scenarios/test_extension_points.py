@@ -1,0 +1,206 @@
+"""Parts that a user adds, each by one file: they fly in a sweep, stand in its manifest, and are refused in one line."""
+
+import importlib.metadata
+import json
+
+import pandas as pd
+import pytest
+
+from common.registry import ENTRY_POINTS, file_hash
+from gnc.laws.steering_law import STEERING_LAWS
+from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.runner import fly_study
+from scenarios.errors import InputError
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+from scenarios.studies.replay import Replay
+from tests.run_tables import rows_of
+from tests.scenarios.plugin_files import LAW, PARTS, TRACK, line_of, write_scenario
+
+
+def run(path, out, *overrides, resume=False):
+    return run_study(load_study(path, overrides), "own", out, resume=resume, overrides=overrides)
+
+
+def manifest(out):
+    return json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+
+
+def refusal(path, out, *overrides, resume=False):
+    with pytest.raises(InputError) as refused:
+        run(path, out, *overrides, resume=resume)
+    message = str(refused.value)
+    assert "\n" not in message
+    return message
+
+
+@pytest.mark.parametrize(("key", "name"), PARTS.items())
+def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path, key, name):
+    path = write_scenario(tmp_path, line_of(key, name))
+    # An aircraft is one in six degrees of freedom, with an autopilot of its own.
+    run(path, tmp_path / "run", *(["fidelity=six_dof"] if key == "aircraft" else []))
+    rows = rows_of(tmp_path / "run")
+    assert [row["nu"] for row in rows] == [0.3, 0.5]
+    for row in rows:
+        assert (row["outcome"], row["keepout_violations"]) == ("completed", 0), row["message"]
+        assert row["aircraft"] == (str(tmp_path / name) if key == "aircraft" else "none")
+    part = str(tmp_path / name)
+    assert manifest(tmp_path / "run")["plugins"] == {part: file_hash(part)}
+    config = manifest(tmp_path / "run")["config"]
+    section, _, last = key.partition(".")
+    value = config[section][last] if last else config[section]
+    assert value == ([part] if key == "payload" else part)
+
+
+def test_parts_act_on_the_flight(tmp_path):
+    path = write_scenario(tmp_path, "".join(line_of(key, name) for key, name in PARTS.items() if key != "guidance.law"))
+    run(path, tmp_path / "run", "sweep.nu=[0.5]")
+    (row,) = rows_of(tmp_path / "run")
+    # Of the slower aircraft, 18 m/s; of the plume's model, 190 deg from the bow, which points north at first.
+    assert row["vessel_speed_mps"] == pytest.approx(9.0)
+    assert row["plume_heading_deg"] == pytest.approx(190.0)
+    history = pd.read_parquet(tmp_path / "run" / "flights" / "nu_0.50.parquet")
+    # The vessel weaves by 10 deg; the instrument reads its 100 ppb on the axis, and noise of 1 ppb off it.
+    assert history["vessel_velocity_east_mps"].max() == pytest.approx(9.0 * 0.1745, rel=1e-3)
+    assert history["so2_ppb"].max() > 90.0
+    assert -6.0 < history["so2_ppb"].min() < 1.0
+
+
+def test_a_steering_laws_fields_are_keys_of_guidance(tmp_path):
+    path = write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\nguidance.lead_s = 0.5\n')
+    assert load_study(path).guidance.model_extra == {"lead_s": 0.5}
+    one, other = tmp_path / "one", tmp_path / "other"
+    run(path, one, "sweep.nu=[0.5]")
+    run(path, other, "sweep.nu=[0.5]", "guidance.lead_s=2.0")
+    errors = [rows_of(out)[0]["tracking_error_rms_m"] for out in (one, other)]
+    assert errors[0] != errors[1]
+    assert manifest(other)["config"]["guidance"]["lead_s"] == 2.0
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("guidance.leed_s=2", "unknown key 'guidance.leed_s'; did you mean 'lead_s'?"),
+        ("guidance.xyz=2", "unknown key 'guidance.xyz'; those of law "),
+        ("guidance.lead_s=long", "lead_s is 'long'; law "),
+        ("guidance.lead_s=inf", "takes a finite number, by default 1"),
+    ],
+)
+def test_a_key_that_the_law_does_not_have_or_cannot_use_is_refused(tmp_path, override, words):
+    assert words in refusal(write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\n'), tmp_path / "run", override)
+    # And without that law its keys are no keys at all.
+    assert "unknown key 'guidance.lead_s'" in refusal(str(tmp_path / "own.toml"), tmp_path / "run", "guidance={lead_s=1}")
+
+
+def test_a_file_is_relative_to_the_scenario_file_and_in_an_override_to_the_current_directory(tmp_path, monkeypatch):
+    write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\n')
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "other.py").write_text(LAW, encoding="utf-8")
+    trials = 'study = "trials"\ntitle = "list"\ntrials = ["sea_wind"]\nset = ["guidance.law=other.py:Pursuit"]\n'
+    (elsewhere / "trials.toml").write_text(trials, encoding="utf-8")
+    monkeypatch.chdir(elsewhere)
+    assert load_study("../own.toml").guidance.law == str(tmp_path / "law.py:Pursuit")
+    assert load_study("../own.toml", ["guidance.law=other.py:Pursuit"]).guidance.law == str(elsewhere / "other.py:Pursuit")
+    monkeypatch.chdir(tmp_path)
+    # A list of trials hands it on to its trials, wherever they lie.
+    assert load_study("elsewhere/trials.toml").set == (f'guidance.law="{elsewhere / "other.py:Pursuit"}"',)
+
+
+def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
+    write_scenario(tmp_path, 'flights = 2\nstudy = "monte_carlo"\nhistories = 0\n')
+    law = "law.py:Pursuit"
+    text = {
+        "sweep": f'sweep."guidance.law" = ["{law}", "cascade"]\n',
+        "draws": f'[[draws]]\nkey = "guidance.law"\nchoice = ["{law}", "cascade"]\n',
+        "comparison": f'[[comparison.variants]]\nname = "own"\nset = {{ "guidance.law" = "{law}" }}\n',
+    }
+    for name, more in text.items():
+        (tmp_path / f"{name}.toml").write_text('extends = "own.toml"\n' + more, encoding="utf-8")
+        run(str(tmp_path / f"{name}.toml"), tmp_path / name, "sweep.nu=[0.5]")
+        assert list(manifest(tmp_path / name)["plugins"]) == [str(tmp_path / law)], name
+        assert {row["outcome"] for row in rows_of(tmp_path / name)} == {"completed"}, name
+    assert {row["flight_id"][:15] for row in rows_of(tmp_path / "sweep")} == {"nu_0.50_law_Pur", "nu_0.50_law_cas"}
+    assert {row["variant"] for row in rows_of(tmp_path / "comparison", "comparison.csv")} == {"own"}
+    case = '[[cases]]\nname = "one"\nset = { "guidance.law" = "law.py:Pursuit", "vessel.speed_ratio" = 0.5 }\n'
+    (tmp_path / "cases.toml").write_text(f'title = "cases"\nfidelity = "kinematic"\n{case}', encoding="utf-8")
+    assert load_study(str(tmp_path / "cases.toml")).cases[0].set["guidance.law"] == str(tmp_path / law)
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "words"),
+    [
+        ("guidance.law", "import nowhere_to_be_found\n", "own.py does not load: ModuleNotFoundError: No module named 'nowhere_to"),
+        ("guidance.law", "class Part:\n", "own.py does not load: IndentationError"),
+        ("guidance.law", "class Pert: ...\n", "own.py has no 'Part'; did you mean 'Pert'?"),
+        ("guidance.law", "class Part: ...\n", "has no method heading_rate(); see the Protocol in gnc.laws"),
+        ("guidance.law", "class Part:\n    def heading_rate(self): ...\n", "is not a dataclass; its fields are the keys"),
+        ("plume.model", "class Part: ...\n", "plume.model: plume model '"),
+        ("vessel.track", "class Part:\n    def motion(self, time): ...\n", "has no method course(); see the Protocol"),
+        ("payload", "class Part: ...\n", "has no method read(); see the Protocol in scenarios.vehicles"),
+        ("reference.shape", "class Part: ...\n", "has no method design(); see the Protocol in gnc.reference"),
+        ("aircraft", "Part = 3\n", "own.py:Part' is of type int; it must be an AircraftSpec"),
+    ],
+)
+def test_a_file_that_does_not_load_or_is_not_the_part_is_refused_in_one_line(tmp_path, key, text, words):
+    message = refusal(write_scenario(tmp_path, line_of(key, "own.py:Part"), text), tmp_path / "run")
+    assert words in message
+    assert "own.py" in message
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_file_that_is_not_there_is_refused_with_its_path(tmp_path):
+    message = refusal(write_scenario(tmp_path, 'guidance.law = "lav.py:Pursuit"\n'), tmp_path / "run")
+    assert f"{tmp_path / 'lav.py'}: cannot be read: No such file" in message
+
+
+def test_a_part_that_raises_in_flight_makes_a_row_that_says_where(tmp_path):
+    text = LAW.replace(
+        "        lead =", '        if reference.course > 0.5:\n            raise RuntimeError("lost")\n        lead ='
+    )
+    run(write_scenario(tmp_path, 'guidance.law = "own.py:Pursuit"\n', text), tmp_path / "run")
+    rows = rows_of(tmp_path / "run")
+    line = text.splitlines().index('            raise RuntimeError("lost")') + 1
+    assert [(row["outcome"], row["message"]) for row in rows] == [("failed", f"RuntimeError: lost (own.py:{line})")] * 2
+
+
+def test_a_part_that_raises_before_any_flight_is_refused_in_one_line(tmp_path):
+    text = TRACK.replace("        self._speed,", '        raise RuntimeError("no chart")\n        self._speed,')
+    draws = '[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n'
+    message = refusal(write_scenario(tmp_path, 'vessel.track = "own.py:Weaving"\n' + draws, text), tmp_path / "run")
+    assert message.startswith("a flight cannot be sampled: RuntimeError: no chart (own.py:")
+
+
+def test_a_run_is_resumed_and_replayed_with_the_same_file_only(tmp_path):
+    path = write_scenario(tmp_path, 'guidance.law = "own.py:Pursuit"\n', LAW)
+    run(path, tmp_path / "run", "sweep.nu=[0.5]")
+    flight = str(tmp_path / "run" / "flights" / "nu_0.50")
+
+    def replay(out):
+        return fly_study(Replay(flight), out, executor_factory=ExecutorFactory(), resume=False, progress=lambda *_: None)
+
+    assert run(path, tmp_path / "run", "sweep.nu=[0.5]", resume=True).all_met
+    assert replay(tmp_path / "again").all_met
+    (tmp_path / "own.py").write_text(LAW.replace("1.2", "1.3"), encoding="utf-8")
+    assert "was run with another configuration" in refusal(path, tmp_path / "run", "sweep.nu=[0.5]", resume=True)
+    with pytest.raises(InputError, match=r"own\.py' has changed since the run; replay it with the file as it was then"):
+        replay(tmp_path / "changed")
+
+
+def test_an_installed_package_announces_a_part_as_an_entry_point(tmp_path, monkeypatch):
+    (tmp_path / "their_package.py").write_text(LAW, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    point = importlib.metadata.EntryPoint("pursuit", "their_package:Pursuit", f"{ENTRY_POINTS}.{STEERING_LAWS.kind}")
+    found = importlib.metadata.entry_points
+
+    def entry_points(**selected):
+        return importlib.metadata.EntryPoints([*found(**selected), *([point] if selected == {"group": point.group} else [])])
+
+    monkeypatch.setattr(importlib.metadata, "entry_points", entry_points)
+    # Pursuit of a point ahead flies 1.7 m beside its reference, and settles within the band.
+    lines = 'guidance.law = "pursuit"\nguidance.lead_s = 0.5\ncriteria.tracking_error_rms_m = 2.5\n'
+    path = write_scenario(tmp_path, lines)
+    assert run(path, tmp_path / "run").all_met
+    assert "pursuit" in STEERING_LAWS.names()
+    # It is installed, with a version of its own: no file to be asked for again.
+    assert manifest(tmp_path / "run")["plugins"] == {}

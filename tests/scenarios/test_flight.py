@@ -1,0 +1,90 @@
+"""One flight as a task: whatever becomes of it is a row."""
+
+import re
+
+import pytest
+from flight_cases import ASTERN, SPEED, fly, work
+
+from scenarios.engine.task import Task
+from scenarios.metrics.columns import INPUT_COLUMNS, SUMMARY_COLUMNS
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"vessel": {"speed_mps": 19.0}}, "nu = 0.98; the UAV at 19.42 m/s follows up to nu = 0.97: fly faster"),
+        # Not at first, but once the vessel has turned against the wind.
+        (
+            {
+                "vessel": {"speed_mps": 10.0, "manoeuvres": [{"at_s": 60.0, "turn_deg": 180.0, "turn_rate_deg_s": 2.0}]},
+                "wind": {"speed_mps": 9.5, "from_deg": 180.0},
+            },
+            "the vessel moves at up to 19.5 m/s through the air",
+        ),
+        ({"vessel": {"speed_mps": 0.0}}, "the apparent wind is 0.00 m/s; below 1 the plume has no direction"),
+        ({"wind": {"speed_mps": 8.0, "from_deg": 180.0}}, "the apparent wind is 0.00 m/s"),
+    ],
+)
+def test_what_cannot_be_flown_is_an_infeasible_row_with_one_clear_line(changes, words):
+    result = fly(**changes)
+    assert (result.row["outcome"], result.row["criteria_met"]) == ("infeasible", False)
+    assert words in result.row["message"]
+    assert "\n" not in result.row["message"]
+    assert set(result.row) <= set(SUMMARY_COLUMNS)
+    assert result.history is None
+
+
+@pytest.mark.parametrize(
+    ("duration", "words"),
+    [
+        (20.0, r"did not settle within 20 s; allow more time \(flight\.duration_max_s\)"),
+        # 400 m astern it settles within a minute and a half; 40 crossings take six.
+        (120.0, r"flew [1-9]\d? of 40 crossings after settling within 120 s; allow more time \(flight\.duration_max_s\)"),
+    ],
+)
+def test_a_flight_that_has_not_all_its_crossings_in_time_says_so(duration, words):
+    row = fly(start=ASTERN, flight={"crossings": 40, "duration_max_s": duration}).row
+    assert (row["outcome"], row["criteria_met"]) == ("not_settled", False)
+    assert re.search(words, row["message"])
+
+
+@pytest.fixture
+def broken(monkeypatch):
+    """Return a function that lets every flight end in an error."""
+
+    def broken(error):
+        def fly(*_, **__):
+            raise error
+
+        monkeypatch.setattr("scenarios.flight.fly", fly)
+
+    return broken
+
+
+def test_an_error_that_nobody_thought_of_is_a_row_too(broken):
+    broken(ZeroDivisionError("division by zero"))
+    result = fly(start=ASTERN)
+    assert (result.row["outcome"], result.row["criteria_met"]) == ("failed", False)
+    # What it was, and where it was raised.
+    assert result.row["message"].startswith("ZeroDivisionError: division by zero (test_flight.py:")
+    # What is known by then is in the tables: the flight that was sampled, and its plan.
+    assert result.row["nu"] == pytest.approx(8.0 / SPEED)
+    (inputs,) = result.tables["draws.csv"]
+    assert inputs == dict(zip(INPUT_COLUMNS, ("trial_00000", "trial", "study", result.row["nu"]), strict=True))
+    assert set(result.row) <= set(SUMMARY_COLUMNS)
+    assert result.history is None
+
+
+def test_a_lack_of_memory_is_no_row_but_ends_the_process(broken):
+    # The executor tries the flight once more, in a process of its own.
+    broken(MemoryError())
+    with pytest.raises(MemoryError):
+        fly(start=ASTERN)
+
+
+def test_a_flight_whose_process_was_lost_is_a_row():
+    result = work().lost(Task(number=0), "why")
+    assert result.lost
+    (row,) = result.tables["summary.csv"]
+    named = {"flight_id": "trial_00000", "trial": "trial", "variant": "study"}
+    assert row == named | {"outcome": "failed", "message": "why", "criteria_met": False}

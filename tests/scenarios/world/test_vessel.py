@@ -1,0 +1,80 @@
+"""The vessel's true motion."""
+
+import math
+
+import numpy as np
+import pytest
+
+from scenarios.schema.world import VesselConfig
+from scenarios.world.vessel import TRACK_STEP, ManoeuvringVessel, SteadyVessel, sampled, track_times
+
+
+def track(vessel, duration=600.0):
+    """Return the vessel of a ``[vessel]`` section."""
+    config = VesselConfig.model_validate(vessel)
+    return ManoeuvringVessel(config, config.speed_mps, duration)
+
+
+def test_a_steady_turn_is_a_circle():
+    # From north, to the right, all the way round at 1 deg/s: radius 8/0.01745 m, centred to starboard.
+    vessel = track({"speed_mps": 8.0, "manoeuvres": [{"at_s": 0.0, "turn_deg": 360.0, "turn_rate_deg_s": 1.0}]}, 400.0)
+    rate = math.radians(1.0)
+    radius = 8.0 / rate
+    for time in (0.0, 33.33, 90.0, 200.017, 360.0):
+        angle = rate * time
+        north, east, v_north, v_east = vessel.motion(time)
+        # The trapezoidal rule over 0.05 s: h^2/12 of the acceleration's change, 0.28 m/s^2 at most, 6e-5 m.
+        assert (north, east) == pytest.approx((radius * math.sin(angle), radius * (1.0 - math.cos(angle))), abs=1e-4)
+        # Velocity linear in between: h^2/8 of 8 rate^2, 8e-7 m/s.
+        assert (v_north, v_east) == pytest.approx((8.0 * math.cos(angle), 8.0 * math.sin(angle)), abs=1e-6)
+    assert vessel.manoeuvres_end == pytest.approx(360.0)
+
+
+@pytest.mark.parametrize(("speed", "end"), [(11.0, 11.0), (0.0, 0.0)])
+def test_a_change_of_speed_is_a_parabola(speed, end):
+    vessel = track({"speed_mps": 8.0, "course_deg": 90.0, "manoeuvres": [
+        {"at_s": 50.0, "speed_mps": speed, "acceleration_mps2": 0.1}
+    ]})  # fmt: skip
+    takes = abs(speed - 8.0) / 0.1
+    assert vessel.manoeuvres_end == pytest.approx(50.0 + takes)
+    sign = math.copysign(0.1, speed - 8.0)
+    for since in (0.0, 10.0, takes, takes + 30.0):
+        accelerating = min(since, takes)
+        way = 400.0 + 8.0 * since + 0.5 * sign * accelerating**2 + sign * takes * (since - accelerating)
+        # The trapezoidal rule is exact but for the two corners, which lie on points of the table.
+        assert vessel.motion(50.0 + since)[1] == pytest.approx(way, abs=1e-6)
+    assert vessel.motion(50.0 + takes + 1.0)[3] == pytest.approx(end, abs=1e-12)
+
+
+def test_manoeuvres_follow_each_other():
+    vessel = track({"speed_mps": 8.0, "manoeuvres": [
+        {"at_s": 10.0, "turn_deg": 90.0, "turn_rate_deg_s": 1.0},
+        {"at_s": 200.0, "turn_deg": -30.0, "turn_rate_deg_s": 0.5, "speed_mps": 5.0, "acceleration_mps2": 0.1},
+    ]})  # fmt: skip
+    _, _, v_north, v_east = vessel.motion(150.0)
+    assert (v_north, v_east) == pytest.approx((0.0, 8.0), abs=1e-9)
+    _, _, v_north, v_east = vessel.motion(300.0)
+    course = math.radians(60.0)
+    assert (v_north, v_east) == pytest.approx((5.0 * math.cos(course), 5.0 * math.sin(course)), abs=1e-9)
+    # The slower of both parts: 30/0.5 s, against 3/0.1 s.
+    assert vessel.manoeuvres_end == pytest.approx(260.0)
+
+
+@pytest.mark.parametrize("course_deg", [0.0, 30.0, -145.0])
+def test_a_vessel_without_manoeuvres_moves_as_a_steady_one(course_deg):
+    tabled = track({"speed_mps": 8.0, "course_deg": course_deg})
+    steady = SteadyVessel(8.0, math.radians(course_deg))
+    for time in (0.0, 0.01, 3.333, 100.0, 599.97):
+        # Sums of 12,000 steps over 4.8 km.
+        assert tabled.motion(time) == pytest.approx(steady.motion(time), rel=0.0, abs=1e-9)
+        assert tabled.course(time) == pytest.approx(steady.course(time), rel=0.0, abs=1e-9)
+    assert math.isnan(tabled.manoeuvres_end)
+    assert math.isnan(steady.manoeuvres_end)
+    for one, other in zip(sampled(tabled, 600.0), sampled(steady, 600.0), strict=True):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-9)
+
+
+def test_a_track_goes_on_somewhat_beyond_its_duration():
+    times = track_times(10.0)
+    assert times[-2] > 10.0
+    np.testing.assert_allclose(np.diff(times), TRACK_STEP, rtol=1e-12)

@@ -1,0 +1,40 @@
+import math
+
+import numpy as np
+import pytest
+from flight_cases import scenario
+
+from scenarios.schema.world import WindConfig
+from scenarios.world.weather import sampled_weather, wind_ned
+
+
+def generator():
+    return np.random.default_rng(9)
+
+
+@pytest.mark.parametrize(
+    ("from_deg", "blows_to"), [(0.0, (-10.0, 0.0)), (90.0, (0.0, -10.0)), (180.0, (10.0, 0.0)), (270.0, (0.0, 10.0))]
+)
+def test_the_wind_blows_to_where_it_does_not_come_from(from_deg, blows_to):
+    assert wind_ned(WindConfig(speed_mps=10.0, from_deg=from_deg)) == pytest.approx(blows_to, abs=1e-12)
+
+
+def test_gusts_come_one_after_the_other_and_are_no_stronger_than_they_may():
+    turbulence = {"gusts": 5, "gust_speed_mps": 8.0, "gust_length_s": 4.0}
+    weather = sampled_weather(scenario(fidelity="six_dof", turbulence=turbulence, flight={"duration_max_s": 500.0}), generator())
+    assert len(weather.gusts) == 5
+    for i, gust in enumerate(weather.gusts):
+        # A hundred seconds for each, of which it takes four to rise and four to fall.
+        assert 100.0 * i <= gust.start
+        assert gust.start + gust.rise + gust.fall <= 100.0 * (i + 1)
+        assert 4.0 <= math.hypot(*gust.velocity_ned) <= 8.0
+        assert gust.velocity_ned[2] == 0.0
+    assert weather.turbulence is None
+
+
+def test_the_seed_determines_the_air():
+    turbulence = {"level": "light", "gusts": 2, "gust_speed_mps": 4.0}
+    blown = scenario(fidelity="six_dof", turbulence=turbulence, wind={"speed_mps": 5.0, "from_deg": 30.0})
+    assert sampled_weather(blown, generator()) == sampled_weather(blown, generator())
+    assert sampled_weather(blown, np.random.default_rng(10)) != sampled_weather(blown, generator())
+    assert sampled_weather(blown, generator()).wind == wind_ned(blown.wind)
