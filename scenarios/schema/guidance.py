@@ -117,11 +117,25 @@ class GuidanceConfig(Section):
         ------
         PluginError : there is no such law, or it does not load
         """
-        law: Any = STEERING_LAWS.get(self.law)
+        return _law_keys(self.law)
+
+    def keys_lost_with(self, law: object) -> list[str]:
+        """Return the keys given here that are those of this steering law and not of ``law``."""
+        given = self.model_extra or {}
+        if not (given and isinstance(law, str)):
+            return []
         try:
-            return {of.name: of.default for of in fields(law) if of.init}
-        except TypeError:
-            raise PluginError(f"steering law '{self.law}' is not a dataclass; its fields are the keys of [guidance]") from None
+            return [name for name in given if name not in _law_keys(law)]
+        except PluginError:
+            return []
+
+
+def _law_keys(law: str) -> dict[str, Any]:
+    dataclass: Any = STEERING_LAWS.get(law)
+    try:
+        return {of.name: of.default for of in fields(dataclass) if of.init}
+    except TypeError:
+        raise PluginError(f"steering law '{law}' is not a dataclass; its fields are the keys of [guidance]") from None
 
 
 class FollowingConfig(Section):

@@ -201,6 +201,10 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
     if not values:
         return scenario
     document = scenario.model_dump()
+    if "guidance.law" in values:
+        # Keys that only the other law has, such as those of a steering law that is added, go with it.
+        for key in scenario.guidance.keys_lost_with(values["guidance.law"]):
+            del document["guidance"][key]
     for key, value in values.items():
         set_value(document, key, value, Scenario)
     return checked(document, Scenario)

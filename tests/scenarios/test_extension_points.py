@@ -11,7 +11,7 @@ from gnc.laws.steering_law import STEERING_LAWS
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
-from scenarios.schema.load import load_study
+from scenarios.schema.load import load_study, with_values
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from tests.run_tables import rows_of
@@ -75,6 +75,17 @@ def test_a_steering_laws_fields_are_keys_of_guidance(tmp_path):
     errors = [rows_of(out)[0]["tracking_error_rms_m"] for out in (one, other)]
     assert errors[0] != errors[1]
     assert manifest(other)["config"]["guidance"]["lead_s"] == 2.0
+
+
+def test_another_law_does_not_inherit_the_keys_of_the_law_that_it_replaces(tmp_path):
+    path = write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\nguidance.lead_s = 0.5\n')
+    scenario = load_study(path)
+    assert with_values(scenario, {"guidance.law": "lyapunov"}).guidance.model_extra == {}
+    assert with_values(scenario, {"guidance.law": scenario.guidance.law}).guidance.model_extra == {"lead_s": 0.5}
+    with pytest.raises(InputError, match=r"unknown key 'guidance\.lead_s'"):
+        with_values(scenario, {"guidance.law": "lyapunov", "guidance.lead_s": 1.0})
+    with pytest.raises(InputError, match="unknown steering law 'nosuch'"):
+        with_values(scenario, {"guidance.law": "nosuch"})
 
 
 @pytest.mark.parametrize(
