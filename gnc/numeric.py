@@ -2,6 +2,9 @@
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 _TURN = 2.0 * math.pi
 
 
@@ -13,6 +16,12 @@ def wrap(angle: float) -> float:
         return shifted - math.pi
     wrapped = math.fmod(shifted, _TURN)
     return wrapped - math.pi if wrapped >= 0.0 else wrapped + math.pi
+
+
+def wrapped(angles: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return angles [rad] brought to between -pi and pi, of any shape."""
+    result: npt.NDArray[np.float64] = angles - _TURN * np.rint(angles / _TURN)
+    return result
 
 
 def limited(value: float, limit: float) -> float:

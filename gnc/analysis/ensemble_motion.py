@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from gnc.analysis.turning_reference import TurningReferences
 from gnc.laws.delta import LookAhead
+from gnc.numeric import wrapped
 
 Array = npt.NDArray[np.float64]
 
@@ -282,13 +283,6 @@ class CascadeCutMotion(Motion):
         omega_rho = self._omega_rho(view, state, rates, self._references.heading_rate_at(time))
         steering = np.clip(vehicle.gain * wrapped(state[2]), -vehicle.steering_max, vehicle.steering_max)
         return np.clip(omega_rho - steering, -vehicle.heading_rate_max, vehicle.heading_rate_max), omega_rho
-
-
-def wrapped(angle: Array) -> Array:
-    """Return angles [rad] brought to between -pi and pi."""
-    turn = 2.0 * np.pi
-    result: Array = angle - turn * np.rint(angle / turn)
-    return result
 
 
 MOTIONS: dict[Steering, type[Motion]] = {

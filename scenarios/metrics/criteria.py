@@ -3,7 +3,7 @@
 import math
 
 from gnc.mission.mode import Mode
-from scenarios.metrics.figures import Row
+from scenarios.engine.task import Row
 from scenarios.schema.flight import CriteriaConfig
 from scenarios.simulation.outcome import DITCHED, Outcome
 from scenarios.world.faults import SATELLITES, VESSEL_DATA

@@ -1,19 +1,19 @@
 """From the record of a flight to its row in the summary."""
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from common.numeric import rms
 from gnc.mission.mode import Mode
+from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import keepout_figures
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.record import FlightRecord
 
 Array = npt.NDArray[np.float64]
-Row = dict[str, Any]
 
 
 def plan_row(plan: FlightPlan) -> Row:
@@ -102,11 +102,6 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     row |= _estimation_figures(plan, record, settled, position)
     crossings = _crossings(plan, record, settled, position, velocity)
     return row | _crossing_figures(plan, record, crossings), crossings
-
-
-def rms(values: Array) -> float:
-    """Return the root of the mean square."""
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def _in_vessel_frame(record: FlightRecord, source_height: float) -> tuple[Array, Array]:

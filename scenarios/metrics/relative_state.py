@@ -5,6 +5,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from gnc.laws.delta import LookAhead
+from gnc.numeric import wrapped
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.record import RELATIVE_COLUMNS, FlightRecord
 
@@ -32,9 +33,4 @@ def relative_states(
     delta = look_ahead.epsilon * (to_north**2 + to_east**2) + look_ahead.radius
     z_north, z_east = to_north + delta * np.cos(reference_course), to_east + delta * np.sin(reference_course)
     z_course = np.arctan2(z_east, z_north)
-    return delta, np.hypot(z_north, z_east), _wrapped(reference_course - z_course), _wrapped(course - z_course)
-
-
-def _wrapped(angle: Array) -> Array:
-    """Return angles between -pi and pi [rad]."""
-    return np.asarray(angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi)), dtype=np.float64)
+    return delta, np.hypot(z_north, z_east), wrapped(reference_course - z_course), wrapped(course - z_course)

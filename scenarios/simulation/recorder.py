@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from gnc.estimation.own_motion import Motion
 from gnc.guidance import Guidance
 from scenarios.simulation.record import COLUMNS, Array
 from scenarios.simulation.settling import Settling
@@ -13,7 +14,6 @@ from scenarios.vehicles.payload import Instrument
 from scenarios.vehicles.vehicle import Vehicle
 from scenarios.world.world import World
 
-Motion = tuple[float, float, float, float, float]
 Place = tuple[float, float, float, float]
 """North and east [m], course [rad] and heading rate [rad/s]."""
 

@@ -4,8 +4,7 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from common.registry import Registry
-
-Motion = tuple[float, float, float, float, float]
+from gnc.estimation.own_motion import Motion
 
 
 class Instrument(Protocol):

@@ -1,11 +1,12 @@
 import math
 
+import numpy as np
 import pytest
 from gnc_cases import examples
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from gnc.numeric import limited, wrap
+from gnc.numeric import limited, wrap, wrapped
 
 # The last floating-point number below pi, and the first beyond -pi: where wrap functions go wrong.
 BELOW_HALF_TURN = math.nextafter(math.pi, 0.0)
@@ -81,3 +82,14 @@ def test_a_limited_value_is_what_min_and_max_make_of_it(value, limit):
 def test_what_is_not_a_number_is_not_made_one(limit):
     # A command that were cut to its limit would hide that the guidance has lost count.
     assert math.isnan(limited(math.nan, limit))
+
+
+@examples(200)
+@given(angle=st.floats(-1e4, 1e4))
+def test_angles_of_an_array_are_wrapped_as_one_angle_is(angle):
+    found = wrapped(np.array([[angle, angle + 2.0 * math.pi]]))
+    assert found.shape == (1, 2)
+    assert np.abs(found).max() <= math.pi + 1e-11
+    # Half a turn may stay on either side.
+    assert np.cos(found) == pytest.approx(math.cos(wrap(angle)), abs=1e-11)
+    assert np.sin(found) == pytest.approx(math.sin(wrap(angle)), abs=1e-11)
