@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from aircraft.errors import AircraftError
-from aircraft.units import RAD_S_PER_RPM
+from common.units import RAD_S_PER_RPM
 
 MODELS = Path(__file__).parent / "models"
 """The JSBSim root of the project's own aircraft."""

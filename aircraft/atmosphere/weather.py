@@ -7,7 +7,7 @@ from aircraft.atmosphere.gusts import Gust, end_gust
 from aircraft.atmosphere.turbulence import JSBSIM_TYPE, Turbulence
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
-from aircraft.units import METRES_PER_FOOT
+from common.units import METRES_PER_FOOT
 
 _SEED_MAX = 2**31 - 1
 

@@ -29,7 +29,7 @@ from aircraft.simulation.properties import (
 )
 from aircraft.simulation.state import RigidBodyState, with_wind
 from aircraft.spec import AircraftSpec
-from aircraft.units import METRES_PER_FOOT
+from common.units import METRES_PER_FOOT
 
 TIME_STEP = 1.0 / 120.0
 """Integration step of JSBSim and of the autopilot inside it [s]."""

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from aircraft.simulation.state import RigidBodyState
-from aircraft.units import METRES_PER_FOOT
+from common.units import METRES_PER_FOOT
 
 EARTH_RATE = 7.292115e-5
 """Rotation rate of the earth, as in JSBSim's default planet [rad/s]."""

@@ -5,13 +5,11 @@ from dataclasses import dataclass
 
 import numpy.typing as npt
 
+from common.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.reference.bessel import eta_for_speed_ratio
 from gnc.reference.orbit import half_widths, offset
 from gnc.reference.reference import Array
-
-GRAVITY = 9.80665
-"""Standard acceleration of free fall [m/s^2]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,16 +105,16 @@ def design_oscillation(
             f" {(1.0 - reserve) * heading_rate_max:g} rad/s: raise omega_max or lower the reserve"
         )
     by_heading_rate = available / eta
-    by_roll_rate = math.sqrt(GRAVITY * roll_rate_max / (speed * eta))
+    by_roll_rate = math.sqrt(STANDARD_GRAVITY * roll_rate_max / (speed * eta))
     limit = "heading rate" if by_heading_rate <= by_roll_rate else "roll rate"
     return Oscillation(nu=nu, speed=speed, eta=eta, omega_0=min(by_heading_rate, by_roll_rate), limit=limit)
 
 
 def heading_rate_for_bank(bank: float, speed: float) -> float:
     """Return the heading rate [rad/s] of a coordinated turn at ``bank`` [rad] and ``speed`` [m/s]."""
-    return GRAVITY * math.tan(bank) / speed
+    return STANDARD_GRAVITY * math.tan(bank) / speed
 
 
 def bank_for_heading_rate(heading_rate: float, speed: float) -> float:
     """Return the bank [rad] of a coordinated turn at ``heading_rate`` [rad/s] and ``speed`` [m/s]."""
-    return math.atan(heading_rate * speed / GRAVITY)
+    return math.atan(heading_rate * speed / STANDARD_GRAVITY)

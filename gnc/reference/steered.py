@@ -11,9 +11,9 @@ eta. Both therefore move mostly while the reference passes the centre.
 
 import math
 
+from common.units import STANDARD_GRAVITY
 from gnc.numeric import wrap
 from gnc.reference.orbit_tables import eta_for_mean_speed, unit_offset
-from gnc.reference.oscillation import GRAVITY
 
 _ETA_FREQUENCY = 0.2
 """Amplitude below which the frequency no longer rises [rad]: nearly straight flight needs no fast oscillation."""
@@ -91,7 +91,7 @@ class SteeredReference:
     ) -> None:
         self.speed = speed
         self._available = heading_rate
-        self._acceleration = GRAVITY * roll_rate_max / speed
+        self._acceleration = STANDARD_GRAVITY * roll_rate_max / speed
         self._time_step = time_step
         self._rate_max = _RATE_FRACTION * heading_rate
         self._smoothing = min(1.0, time_step * heading_rate / _SMOOTHING)

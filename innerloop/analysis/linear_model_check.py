@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.fdm import Fdm
-from aircraft.units import METRES_PER_FOOT
+from common.units import METRES_PER_FOOT
 
 OUTPUTS: dict[str, tuple[str, float]] = {
     "airspeed": ("velocities/vt-fps", METRES_PER_FOOT),

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.linearise import BODY_STATES
 from aircraft.simulation.fdm import TIME_STEP
-from aircraft.units import STANDARD_GRAVITY
+from common.units import STANDARD_GRAVITY
 from innerloop.synthesis.weights import DELAY
 
 NOMINAL = "as modelled"

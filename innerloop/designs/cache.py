@@ -16,6 +16,7 @@ from typing import Any
 import control
 
 import aircraft
+import common
 import innerloop
 from aircraft.errors import AircraftError
 from aircraft.simulation.model_copy import copy_model
@@ -49,8 +50,8 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
     """Return the design of an aircraft at ``altitude`` [m] and its record: from the cache if nothing it depends on has
     changed.
 
-    It depends on the aircraft's spec and files, the altitude, the source of ``aircraft`` and ``innerloop``, and on the
-    versions of Python, JSBSim and the numerical packages. A failed design is cached as well.
+    It depends on the aircraft's spec and files, the altitude, the source of ``aircraft``, ``common`` and ``innerloop``,
+    and on the versions of Python, JSBSim and the numerical packages. A failed design is cached as well.
 
     Raises
     ------
@@ -84,7 +85,7 @@ def design_key(spec: AircraftSpec, altitude: float) -> str:
         *(f"{package} {importlib.metadata.version(package)}" for package in _PACKAGES),
     ):
         digest.update(text.encode())
-    for package in (aircraft, innerloop):
+    for package in (aircraft, common, innerloop):
         for folder in package.__path__:
             _add_files(digest, Path(folder), "*.py")
     with tempfile.TemporaryDirectory() as copy:

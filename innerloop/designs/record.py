@@ -11,7 +11,7 @@ from aircraft.dynamics.equilibrium import Trim, TrimOutcome
 from aircraft.dynamics.trim import search_trim
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import Envelope
-from aircraft.units import STANDARD_GRAVITY
+from common.units import STANDARD_GRAVITY
 from innerloop.analysis.linear_model_check import verify_model
 from innerloop.analysis.margins import BREAK_NAMES, Loops, Margin
 from innerloop.analysis.perturbations import NOMINAL

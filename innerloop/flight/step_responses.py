@@ -11,7 +11,7 @@ from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.trim import trim
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.spec import AircraftSpec
-from aircraft.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from common.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from innerloop.analysis.margins import closed_loop
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE

@@ -19,7 +19,7 @@ from aircraft.simulation.properties import (
     initial_conditions,
 )
 from aircraft.spec import Envelope
-from aircraft.units import STANDARD_GRAVITY
+from common.units import STANDARD_GRAVITY
 from innerloop.jsbsim.properties import AIRSPEED_COMMAND, ALTITUDE_COMMAND, BANK_COMMAND, HEADING_RATE, HEADING_RATE_COMMAND, RESET
 from innerloop.synthesis.schedule import Schedule
 

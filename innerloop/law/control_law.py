@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import RegularGridInterpolator
 
-from aircraft.units import STANDARD_GRAVITY
+from common.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import LATERAL, LONGITUDINAL, Gains
 from innerloop.synthesis.schedule import Schedule
 

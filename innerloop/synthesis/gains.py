@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.dynamics.equilibrium import Trim
-from aircraft.units import STANDARD_GRAVITY
+from common.units import STANDARD_GRAVITY
 from innerloop.synthesis.quasi_static import pick, quasi_static
 from innerloop.synthesis.weights import ControlWeights, DesignWeights
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from aircraft.dynamics.envelope import TABLE_REACH
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.spec import AircraftSpec, Envelope
-from aircraft.units import STANDARD_GRAVITY
+from common.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import Gains
 from innerloop.synthesis.weights import DesignWeights
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import control
 
 from aircraft.simulation.fdm import TIME_STEP
-from aircraft.units import STANDARD_GRAVITY
+from common.units import STANDARD_GRAVITY
 from innerloop.synthesis.quasi_static import quasi_static, state_lag
 
 DELAY = 1.5 * TIME_STEP

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec
-from aircraft.units import METRES_PER_FOOT
+from common.units import METRES_PER_FOOT
 from innerloop.analysis.dryden import low_altitude_turbulence
 from innerloop.designs.cache import Designed
 from scenarios.errors import InputError

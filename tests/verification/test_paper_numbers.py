@@ -7,11 +7,12 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from common.units import STANDARD_GRAVITY
 from gnc.laws.delta import RelativeState, look_ahead, relative_state
 from gnc.laws.lyapunov import lyapunov_law
 from gnc.reference.bessel import ETA_MAX, eta_for_speed_ratio, mean_speed_ratio
 from gnc.reference.orbit import f_x, half_widths, offset
-from gnc.reference.oscillation import GRAVITY, design_oscillation, heading_rate_for_bank
+from gnc.reference.oscillation import design_oscillation, heading_rate_for_bank
 from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
 
 SPEED = 19.42
@@ -64,7 +65,7 @@ def test_the_two_numbers_of_sim_3_give_the_speed_and_heading_rate_that_the_paper
     # two digits, and at the 19.42 m/s that they settle on the orbit is 13.953 m.
     speed = brentq(lambda v: half_widths(oscillation_at(0.5, speed=v, heading_rate_max=omega_max))[0] - 14.0, 5.0, 50.0)
     assert speed == pytest.approx(19.4, abs=0.1)
-    assert math.degrees(math.atan(0.503 * 19.4 / GRAVITY)) == pytest.approx(45.0, abs=0.5)
+    assert math.degrees(math.atan(0.503 * 19.4 / STANDARD_GRAVITY)) == pytest.approx(45.0, abs=0.5)
     assert heading_rate_for_bank(math.radians(45.0), 19.4) == pytest.approx(0.503, abs=0.003)
 
 
@@ -163,8 +164,8 @@ def test_the_reference_respects_the_roll_rate_where_equation_8_does_not():
     # 0.503^2/0.45 rad/s^2, which is 64 deg/s of roll.
     roll_rate = math.radians(40.0)
     free, limited = oscillation_at(0.95), oscillation_at(0.95, roll_rate_max=roll_rate)
-    assert math.degrees(free.eta * free.omega_0**2 * SPEED / GRAVITY) == pytest.approx(64.0, abs=1.0)
-    assert limited.eta * limited.omega_0**2 * SPEED / GRAVITY == pytest.approx(roll_rate, rel=1e-13)
+    assert math.degrees(free.eta * free.omega_0**2 * SPEED / STANDARD_GRAVITY) == pytest.approx(64.0, abs=1.0)
+    assert limited.eta * limited.omega_0**2 * SPEED / STANDARD_GRAVITY == pytest.approx(roll_rate, rel=1e-13)
 
 
 def test_a_reference_started_on_the_centre_at_another_phase_would_fly_off_centre():

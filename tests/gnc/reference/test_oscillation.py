@@ -5,9 +5,10 @@ from gnc_cases import HEADING_RATE_MAX, SPEED, examples, paper_oscillation
 from hypothesis import given
 from hypothesis import strategies as st
 
+from common.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.reference.bessel import eta_for_speed_ratio
-from gnc.reference.oscillation import GRAVITY, bank_for_heading_rate, design_oscillation, heading_rate_for_bank
+from gnc.reference.oscillation import bank_for_heading_rate, design_oscillation, heading_rate_for_bank
 
 ROLL_RATE_MAX = math.radians(40.0)
 
@@ -35,7 +36,7 @@ def test_the_oscillation_is_the_fastest_within_heading_rate_and_roll_rate(nu, re
     oscillation = paper_oscillation(nu, reserve=reserve, vessel_heading_rate=vessel_heading_rate, roll_rate_max=roll_rate_max)
     heading_rate_use = (oscillation.amplitude + abs(vessel_heading_rate)) / ((1.0 - reserve) * HEADING_RATE_MAX)
     # paper-notes, care 5: the heading acceleration's amplitude is eta omega_0^2 = g/V times the roll rate.
-    roll_rate_use = oscillation.eta * oscillation.omega_0**2 / (GRAVITY / SPEED * roll_rate_max)
+    roll_rate_use = oscillation.eta * oscillation.omega_0**2 / (STANDARD_GRAVITY / SPEED * roll_rate_max)
     # Neither bound is exceeded and one of them is met, to rounding.
     assert max(heading_rate_use, roll_rate_use) == pytest.approx(1.0, rel=1e-12)
     assert (oscillation.limit == "heading rate") == (heading_rate_use >= roll_rate_use)
@@ -52,7 +53,7 @@ def test_the_roll_rate_takes_over_for_fast_vessels():
     fast = paper_oscillation(0.9, roll_rate_max=ROLL_RATE_MAX)
     assert fast.limit == "roll rate"
     # Roundings of the square root.
-    assert fast.omega_0**2 * fast.eta == pytest.approx(GRAVITY * ROLL_RATE_MAX / SPEED, rel=1e-14)
+    assert fast.omega_0**2 * fast.eta == pytest.approx(STANDARD_GRAVITY * ROLL_RATE_MAX / SPEED, rel=1e-14)
 
 
 def test_the_oscillation_carries_its_speed_ratio_and_eta():

@@ -6,7 +6,7 @@ import control
 import numpy as np
 import pytest
 
-from aircraft.units import METRES_PER_FOOT
+from common.units import METRES_PER_FOOT
 from innerloop.analysis.dryden import dryden_filters, low_altitude_turbulence
 from innerloop.analysis.gust_response import GUSTS
 

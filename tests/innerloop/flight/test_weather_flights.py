@@ -11,7 +11,7 @@ from aircraft.atmosphere.weather import Weather
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.local_frame import LocalFrame
 from aircraft.simulation.properties import EARTH_RATE
-from aircraft.units import STANDARD_GRAVITY
+from common.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 TIME_STEP = 1.0 / 120.0

@@ -7,7 +7,7 @@ import control
 import numpy as np
 import pytest
 
-from aircraft.units import STANDARD_GRAVITY
+from common.units import STANDARD_GRAVITY
 from innerloop.synthesis import weights
 from innerloop.synthesis.gains import design_gains
 from innerloop.synthesis.schedule import LEVEL_GAINS
