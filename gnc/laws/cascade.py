@@ -1,9 +1,10 @@
 """The cascade law, equation (30)."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-from gnc.laws.delta import LookAhead, bare_state, look_ahead, relative_velocity
-from gnc.laws.steering_law import check_parameters, steering_law
+from gnc.laws.delta import bare_state, relative_velocity
+from gnc.laws.delta_law import DeltaLaw
+from gnc.laws.steering_law import steering_law
 from gnc.numeric import limited
 from gnc.reference.reference import Reference
 
@@ -35,30 +36,22 @@ def cascade_law(phi: float, omega_rho: float, gain: float, rate_max: float) -> f
 
 @steering_law("cascade")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CascadeLaw:
+class CascadeLaw(DeltaLaw):
     """The cascade law on the relative state of the delta formulation: course error and geometry one after the other.
 
     Attributes
     ----------
-    epsilon_per_m : growth of the look-ahead with the squared distance [1/m]
-    look_ahead_m : look-ahead on the reference, R [m], above 1/(4 epsilon)
+    epsilon_per_m, look_ahead_m : as of ``DeltaLaw``
     gain_per_s : slope of h(phi) at 0 [1/s]
     steering_max_rad_s : largest |h(phi)| [rad/s]
 
     Raises
     ------
-    ValueError : a parameter is not finite and above 0, or R is too short
+    ValueError : as of ``DeltaLaw``
     """
 
-    epsilon_per_m: float = 0.005
-    look_ahead_m: float = 60.0
     gain_per_s: float = 1.5
     steering_max_rad_s: float = 0.4
-    _look_ahead: LookAhead = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        check_parameters(self)
-        object.__setattr__(self, "_look_ahead", look_ahead(self.epsilon_per_m, self.look_ahead_m))
 
     def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
