@@ -103,5 +103,5 @@ def _step_through(guidance: Guidance, measured: Measured, reports: list[Any]) ->
     target = guidance.target
     for at, measurement in measured:
         while reports and reports[-1][0] <= at and isinstance(target, ReportedTarget):
-            target.vessel.report(reports.pop()[1])
+            target.report(reports.pop()[1])
         guidance.step(at, measurement)

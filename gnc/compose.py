@@ -4,13 +4,14 @@ from dataclasses import asdict
 
 from gnc.estimation.health_monitor import HealthMonitor
 from gnc.estimation.own_motion import EstimatedNavigation, OwnMotion, TrueNavigation
+from gnc.estimation.reachable_set import ReachableSet
 from gnc.estimation.target_motion import ReportedTarget, SteadyTarget, TargetMotion
 from gnc.estimation.vessel_filter import VesselFilter
 from gnc.guidance import Guidance
 from gnc.mission.direct_tracking import DirectTracking
 from gnc.mission.mission import Mission
 from gnc.mission.plume_following import FollowingParameters, PlumeFollowing
-from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters
+from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters, ReportedVessel
 from gnc.safety.keepout_guard import KeepoutGuard
 
 
@@ -29,8 +30,8 @@ def compose(parameters: GuidanceParameters) -> Guidance:
     p = parameters
     own: OwnMotion = EstimatedNavigation(p.navigation) if p.navigation else TrueNavigation()
     target: TargetMotion
-    if isinstance(p.vessel, FilterParameters):
-        target = ReportedTarget(vessel_filter(p.vessel), p.tracking.time_step)
+    if isinstance(p.vessel, ReportedVessel):
+        target = ReportedTarget(vessel_filter(p.vessel.filter), ReachableSet(p.vessel.limits), p.tracking.time_step)
     else:
         target = SteadyTarget(*p.vessel)
     guard = keepout_guard(p.guard) if p.guard else None

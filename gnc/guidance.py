@@ -78,6 +78,8 @@ class Guidance:
         else:
             self._until_plan = self.plan_interval - 1
             self._locate(time, True)
+            if self.guard is not None:
+                self.guard.tubes = target.tubes
             self._plan(time)
             self.altitude_command = mission.altitude
         monitor = self.monitor
@@ -94,17 +96,7 @@ class Guidance:
         keep_out, guard, least = self._keep_out, self.guard, self._speed
         if keep_out is not None and guard is not None:
             # A turn away is flown at V_r at least: what an airspeed law has taken from the airspeed comes back in it.
-            command = keep_out(
-                command,
-                own.ground_north - target.north,
-                own.ground_east - target.east,
-                target.velocity_north - own.wind_north,
-                target.velocity_east - own.wind_east,
-                course,
-                speed if speed > least else least,
-                heading_rate,
-                radius_inflation=mission.radius_inflation,
-            )
+            command = keep_out(command, time, own, speed if speed > least else least)
             self.guarding = guarding = guard.intervening
         tracker.heading_rate_command = command
         command /= own.air_ratio

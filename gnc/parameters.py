@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from gnc.airspeed.airspeed_law import AirspeedLaw
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.navigation import NavigationParameters
+from gnc.estimation.reachable_set import VesselLimits
 from gnc.mission.direct_tracking import DirectParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.tracker import TrackingParameters
@@ -20,7 +21,8 @@ class GuardParameters:
     delay: float
     time_step: float
     speed_error: float = 0.0
-    acceleration: float = 0.0
+    deviation: float = 0.0
+    drift_rate: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,6 +36,20 @@ class FilterParameters:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ReportedVessel:
+    """A vessel that is known from its reports.
+
+    Attributes
+    ----------
+    filter : of the reports
+    limits : what the vessel and its reports keep within
+    """
+
+    filter: FilterParameters
+    limits: VesselLimits
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class GuidanceParameters:
     """What the guidance of a flight consists of. What is None is absent.
 
@@ -43,7 +59,7 @@ class GuidanceParameters:
     tracking : of the tracker
     airspeed_law : keeps the vehicle beside its reference
     navigation : of the estimated own motion; None where it is known exactly, in still air
-    vessel : the filter of its reports, or its velocity north and east where it is known exactly and steady [m/s]
+    vessel : how it is known from reports, or its velocity north and east where that is known exactly and steady [m/s]
     guard : of the keep-out area
     mission : following a plume, or tracking a reference that is known in advance
     health : of the vehicle
@@ -54,7 +70,7 @@ class GuidanceParameters:
     tracking: TrackingParameters
     airspeed_law: AirspeedLaw
     navigation: NavigationParameters | None
-    vessel: FilterParameters | tuple[float, float]
+    vessel: ReportedVessel | tuple[float, float]
     guard: GuardParameters | None
     mission: FollowingParameters | DirectParameters
     health: HealthParameters | None

@@ -1,6 +1,7 @@
 """Where the vehicle is and how it moves, in the frame of the air mass: as it is, or estimated from sensors."""
 
 import math
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from gnc.estimation.navigation import Navigation, NavigationParameters
@@ -54,6 +55,31 @@ class OwnMotion(Protocol):
 
     def update(self, measurement: Any) -> None:
         """Take in what is measured now, in the form that this navigation takes."""
+
+
+class AirMotion(Protocol):
+    """What of a vehicle's motion a turn away is predicted from; attributes as of ``OwnMotion``."""
+
+    ground_north: float
+    ground_east: float
+    course: float
+    heading_rate: float
+    wind_north: float
+    wind_east: float
+    lost: float
+
+
+@dataclass(slots=True, kw_only=True)
+class KnownMotion:
+    """A motion that is given; attributes as of ``AirMotion``."""
+
+    ground_north: float
+    ground_east: float
+    course: float
+    heading_rate: float = 0.0
+    wind_north: float = 0.0
+    wind_east: float = 0.0
+    lost: float = 0.0
 
 
 class TrueNavigation:

@@ -1,8 +1,10 @@
 """Where the vessel is taken to be, and how it moves: known exactly, or from its reports."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
-from gnc.estimation.vessel_filter import VesselFilter
+from gnc.estimation.reachable_set import ReachableSet, Tube
+from gnc.estimation.vessel_filter import VesselFilter, VesselReport
 
 
 class TargetMotion(Protocol):
@@ -13,6 +15,7 @@ class TargetMotion(Protocol):
     north, east : [m]
     velocity_north, velocity_east : [m/s]
     acceleration_north, acceleration_east : when it was last planned [m/s^2]
+    tubes : discs that contain it, from when it was last planned on, the one known best first
     """
 
     north: float
@@ -21,6 +24,7 @@ class TargetMotion(Protocol):
     velocity_east: float
     acceleration_north: float
     acceleration_east: float
+    tubes: Sequence[Tube]
 
     def update(self, time: float, planning: bool) -> None:
         """Move on to ``time`` [s]; look anew at what is known of the vessel where the mission is ``planning``."""
@@ -37,11 +41,12 @@ class SteadyTarget:
     velocity_north, velocity_east : [m/s]
     """
 
-    __slots__ = ("acceleration_east", "acceleration_north", "east", "north", "velocity_east", "velocity_north")
+    __slots__ = ("acceleration_east", "acceleration_north", "east", "north", "tubes", "velocity_east", "velocity_north")
 
     def __init__(self, velocity_north: float, velocity_east: float) -> None:
         self.velocity_north, self.velocity_east = velocity_north, velocity_east
         self.north = self.east = self.acceleration_north = self.acceleration_east = 0.0
+        self.tubes: Sequence[Tube] = (Tube(0.0, 0.0, 0.0, velocity_north, velocity_east),)
 
     def update(self, time: float, planning: bool) -> None:  # noqa: ARG002 - of the Protocol
         """Move on to ``time`` [s]."""
@@ -57,31 +62,41 @@ class ReportedTarget:
 
     Parameters
     ----------
-    vessel : the filter; reports go straight to it, the first one before the first update
+    vessel : the filter of its reports
+    reach : where it may be
     time_step : of the guidance [s]
     """
 
     __slots__ = (
         "_gain_east",
         "_gain_north",
+        "_reach",
         "_time_step",
         "acceleration_east",
         "acceleration_north",
         "east",
         "north",
+        "tubes",
         "velocity_east",
         "velocity_north",
         "vessel",
     )  # fmt: skip
 
-    def __init__(self, vessel: VesselFilter, time_step: float) -> None:
-        self.vessel, self._time_step = vessel, time_step
+    def __init__(self, vessel: VesselFilter, reach: ReachableSet, time_step: float) -> None:
+        self.vessel, self._reach, self._time_step = vessel, reach, time_step
+        self.tubes: Sequence[Tube] = ()
         self.north = self.east = self.velocity_north = self.velocity_east = 0.0
         self.acceleration_north = self.acceleration_east = self._gain_north = self._gain_east = 0.0
+
+    def report(self, report: VesselReport) -> None:
+        """Take in a report, the first one before the first update."""
+        self.vessel.report(report)
+        self._reach.report(report)
 
     def update(self, time: float, planning: bool) -> None:
         """Move on to ``time`` [s]; ask the filter anew where the mission is ``planning``."""
         if planning:
+            self.tubes = self._reach.tubes(time)
             vessel = self.vessel.at(time)
             self.north, self.east = vessel.north, vessel.east
             self.velocity_north, self.velocity_east = vessel.velocity_north, vessel.velocity_east

@@ -74,14 +74,14 @@ class Approach:
         own = self._own
         return own.course + 0.5 * self._lag * (own.heading_rate + last_command)
 
-    def command(self, centre_x: float, centre_y: float, last_command: float, *, radius_inflation: float) -> float:
+    def command(self, centre_x: float, centre_y: float, last_command: float, *, additional_range: float) -> float:
         """Return the heading rate that leads to the centre, round the vessel [rad/s].
 
         Parameters
         ----------
         centre_x, centre_y : of oscillation, north and east of the vessel [m]
         last_command : of the heading rate [rad/s]
-        radius_inflation : added to the radii of the keep-out area for now [m]
+        additional_range : added to the radii of the keep-out area for now [m]
         """
         p, own, target = self._parameters, self._own, self._target
         to = self._transit.course(
@@ -89,8 +89,8 @@ class Approach:
             own.ground_east - target.east,
             centre_x,
             centre_y,
-            blocked_radius=min(p.blocked_radius + radius_inflation, _BLOCKED_WITHIN * math.hypot(centre_x, centre_y)),
-            round_radius=p.round_radius + radius_inflation,
+            blocked_radius=min(p.blocked_radius + additional_range, _BLOCKED_WITHIN * math.hypot(centre_x, centre_y)),
+            round_radius=p.round_radius + additional_range,
             velocity_north=target.velocity_north - own.wind_north,
             velocity_east=target.velocity_east - own.wind_east,
             course=own.course,

@@ -95,7 +95,7 @@ class DirectTracking:
 
     __slots__ = (
         "_approach", "_axis", "_closing", "_guard", "_joining", "_own", "_standoff", "_target", "_tracking", "airspeed", "altitude",
-        "centre", "centre_error", "in_place", "leaving", "mode", "overriding", "radius_inflation", "started", "tracker",
+        "centre", "centre_error", "in_place", "leaving", "mode", "overriding", "started", "tracker",
     )  # fmt: skip
 
     def __init__(
@@ -122,7 +122,6 @@ class DirectTracking:
         self.overriding, self.leaving = self._approach is not None, False
         self.started, self.centre_error, self.in_place = True, self._standoff, not self.overriding
         self.mode = Mode.APPROACH if self.overriding else Mode.TRACKING
-        self.radius_inflation = 0.0
 
     def plan(self, time: float) -> None:  # noqa: ARG002 - of the Protocol
         """Decide whether to go on round the vessel, to track the reference, and whether its orbit may close in."""
@@ -151,7 +150,7 @@ class DirectTracking:
     def command(self) -> float:
         """Return the heading rate that leads to where the orbit is joined, round the vessel [rad/s]."""
         last = self.tracker.heading_rate_command
-        return self._approach.command(*self._joined_at(), last, radius_inflation=0.0) if self._approach else last
+        return self._approach.command(*self._joined_at(), last, additional_range=0.0) if self._approach else last
 
     def leave(self, fault: Fault) -> None:
         """Refuse to leave: this mission knows no way out, and is not given a monitor that could ask for it.

@@ -42,7 +42,6 @@ class Mission(Protocol):
     in_place : whether the centre is as near to the vessel as it will come
     overriding : whether ``command`` replaces the tracker's heading rate
     leaving : whether the vehicle leaves for good, and sinks
-    radius_inflation : added to the keep-out guard's radius for now [m]
     airspeed, altitude : to command, the airspeed only while overriding [m/s, m]
     """
 
@@ -50,7 +49,6 @@ class Mission(Protocol):
     mode: Mode
     centre_error: float
     leaving: bool
-    radius_inflation: float
     airspeed: float
     altitude: float
 

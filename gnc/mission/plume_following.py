@@ -15,13 +15,6 @@ from gnc.reference.steered import SteeredReference
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.tracker import Tracker, TrackingParameters
 
-WIDENING_BEGINS = 0.6
-"""Fraction of the age at which vessel data are stale from which the orbit moves off already [-]."""
-
-EGRESS_SPEED_FRACTION, _SLOWEST_EGRESS = 0.8, 0.05
-"""Fraction of the speed that the vehicle has over the vessel at which it keeps farther off one that does not report [-], and the
-least of that speed over V_r that is reckoned with [-]."""
-
 MANOEUVRE_RANGE, REPORTED_SCATTER = 200.0, 0.03
 """Distance that the orbit is moved off per acceleration of the vessel [s^2], and what its reports scatter by [m/s^2]."""
 
@@ -43,7 +36,7 @@ class FollowingParameters:
     standoff : how much farther off the centre stays until the reference is tracked [m]
     glide_airspeed : while leaving without thrust or control [m/s]
     stale : age of vessel data beyond which the keep-out margin no longer covers where the vessel may be [s]
-    vessel_acceleration : largest, of a vessel that does not report [m/s^2]
+    reach, reach_time : how far the vessel may be, that time ahead, from where it is taken to be, while its reports come [m, s]
     drift_rate : how fast dead reckoning goes wrong [m/s]
     plan_interval : guidance steps between plans
     source_altitude, climb : altitude of the plume's origin [m], and by how much its axis rises per distance [-]
@@ -57,7 +50,8 @@ class FollowingParameters:
     standoff: float
     glide_airspeed: float
     stale: float
-    vessel_acceleration: float
+    reach: float
+    reach_time: float
     drift_rate: float
     plan_interval: int
     source_altitude: float
@@ -76,9 +70,9 @@ class PlumeFollowing:
     """
 
     __slots__ = (
-        "_approach", "_closing_in", "_egress", "_guard", "_orbit_range", "_own", "_parameters", "_plan_time", "_reference",
-        "_speed", "_target", "_tracking", "_tracking_parameters", "airspeed", "altitude", "centre", "centre_error",
-        "leaving", "mode", "radius_inflation", "started", "tracker",
+        "_approach", "_closing_in", "_egress", "_guard", "_orbit_range", "_orbit_rate", "_own", "_parameters",
+        "_plan_time", "_reference", "_speed", "_target", "_tracking", "_tracking_parameters", "airspeed", "altitude", "centre",
+        "centre_error", "leaving", "mode", "started", "tracker",
     )  # fmt: skip
 
     def __init__(
@@ -104,7 +98,7 @@ class PlumeFollowing:
         self._egress = Egress(tracking.heading_rate_max)
         self._plan_time = 0.0
         self._tracking = self._closing_in = self.leaving = self.started = False
-        self._orbit_range = self.radius_inflation = self.centre_error = 0.0
+        self._orbit_range = self._orbit_rate = self.centre_error = 0.0
         self.centre = MovingCentre(parameters.centre)
         self.mode = Mode.APPROACH
         self.airspeed, self.altitude = parameters.approach.airspeed, parameters.source_altitude
@@ -133,13 +127,13 @@ class PlumeFollowing:
         if self.leaving:
             x, y = own.ground_north - target.north, own.ground_east - target.east
             return self._egress.command(x, y, self._approach.course_ahead(last), own.heading_rate)
-        return self._approach.command(centre.x, centre.y, last, radius_inflation=self.radius_inflation)
+        return self._approach.command(centre.x, centre.y, last, additional_range=self._orbit_range)
 
     def plan(self, time: float) -> None:
         """Move the centre, steer the reference, and decide what to do."""
         p, own, centre = self._parameters, self._own, self.centre
         age = self._target.age(time)
-        self._widen_margin(age)
+        self._widen_margin()
         self._move_centre()
         if not self.started:
             self.started = True
@@ -161,17 +155,19 @@ class PlumeFollowing:
         else:
             self.mode = Mode.TRACKING if self._tracking else Mode.APPROACH
 
-    def _widen_margin(self, age: float) -> None:
-        """Keep farther off while the vessel may be elsewhere, by no more than the vehicle can make good, until a report comes.
-
-        The orbit begins to move off before the guard asks for it.
-        """
-        p = self._parameters
-        egress = EGRESS_SPEED_FRACTION * max(_SLOWEST_EGRESS, 1.0 - self.centre.speed_ratio) * self._speed
-        widening = min(p.vessel_acceleration * age, egress) * self._plan_time
-        reckoned = p.drift_rate * self._own.lost
-        self.radius_inflation = self.radius_inflation + widening if age > p.stale else reckoned
-        self._orbit_range = self._orbit_range + widening if age > WIDENING_BEGINS * p.stale else reckoned
+    def _widen_margin(self) -> None:
+        """Keep farther off while the vessel may be farther from where it is taken to be than as long as its reports come."""
+        p, target, axis = self._parameters, self._target, self.centre.axis
+        cos_a, sin_a = math.cos(axis), math.sin(axis)
+        # Each disc in the direction of the plume, from where the vessel is taken to be.
+        reach = min(
+            tube.reach(p.reach_time)
+            + cos_a * (tube.north - target.north + p.reach_time * (tube.velocity_north - target.velocity_north))
+            + sin_a * (tube.east - target.east + p.reach_time * (tube.velocity_east - target.velocity_east))
+            for tube in target.tubes
+        )
+        last, self._orbit_range = self._orbit_range, max(0.0, reach - p.reach) + p.drift_rate * self._own.lost
+        self._orbit_rate = (self._orbit_range - last) / self._plan_time if self._plan_time else 0.0
 
     def _move_centre(self) -> None:
         own, target = self._own, self._target
@@ -187,6 +183,7 @@ class PlumeFollowing:
             wind_north=own.wind_north,
             wind_east=own.wind_east,
             additional_range=self._orbit_range + (0.0 if self._closing_in else self._parameters.standoff) + manoeuvre_range,
+            additional_rate=self._orbit_rate,
         )
 
     def _place_reference(self) -> None:

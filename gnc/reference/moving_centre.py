@@ -28,6 +28,9 @@ _DISTANCE_GAIN = 0.12
 _DISTANCE_SPEED_FRACTION = 0.3
 """Fraction of the speed that the vehicle has over the vessel at which the centre's distance may change [-]."""
 
+_RECEDING_SPEED_FRACTION = 0.9
+"""Fraction of the vehicle's speed at which the centre may move while it has to recede from the vessel [-]: it must be followed."""
+
 
 _VESSEL_SPEED_MIN = 0.1
 """Speed over ground that a vessel is given at least where its turn is computed from it [m/s]: at rest it has no course."""
@@ -100,6 +103,7 @@ class MovingCentre:
         wind_north: float,
         wind_east: float,
         additional_range: float,
+        additional_rate: float = 0.0,
     ) -> None:
         """Move on by ``time_step`` [s].
 
@@ -108,7 +112,7 @@ class MovingCentre:
         vessel_north, vessel_east : its velocity over the ground [m/s]
         acceleration_north, acceleration_east : of the vessel [m/s^2]
         wind_north, wind_east : velocity of the air mass [m/s]
-        additional_range : added to r_CO for now [m]
+        additional_range, additional_rate : added to r_CO for now, and how fast that grows [m, m/s]
         """
         p = self._parameters
         air_north, air_east = vessel_north - wind_north, vessel_east - wind_east
@@ -137,6 +141,11 @@ class MovingCentre:
         target = self._target(swung_north, swung_east) + additional_range
         fastest = _DISTANCE_SPEED_FRACTION * max(_EXCESS_SPEED_MIN, 1.0 - self.speed_ratio) * p.speed
         recede = limited(_DISTANCE_GAIN * p.heading_rate_max * (target - self.distance), fastest)
+        if additional_rate > 0.0:
+            along = air_north * math.cos(self.axis) + air_east * math.sin(self.axis)
+            across = through_air * through_air - along * along
+            most = math.sqrt(max(0.0, (_RECEDING_SPEED_FRACTION * p.speed) ** 2 - across)) - along
+            recede = max(recede, min(recede + additional_rate, most))
         self.axis = wrap(self.axis + turn * time_step)
         self.distance += recede * time_step
         self.in_place = abs(target - self.distance) < _IN_PLACE * target

@@ -1,51 +1,59 @@
-"""Keeping out of a moving disc whatever the guidance demands: a filter of heading-rate commands, after docs/keepout_guard.md.
+"""Keeping out wherever the vessel may be, whatever the guidance demands: a filter of heading-rate commands.
 
 The guard predicts, at each step, the vehicle's path if it flew the demanded heading rate for that step and then turned
-away at omega_max, to the left or to the right, with the vehicle's own lag. While one of the two keeps the radius the
-guidance is free. Otherwise as much of the turn that was safe at the last step is mixed in as is needed: that turn is
-still possible, and so is staying out (a backup-manoeuvre safety filter: Gurriet et al., "An Online Approach to Active
-Set Invariance", CDC 2018).
+away at omega_max, to the left or to the right, with the vehicle's own lag. While one of the two keeps off a disc that
+contains the vessel for certain, as it moves and grows, the guidance is free. Otherwise as much of the turn that was
+safe at the last step is mixed in as is needed. The disc of that turn stays true whatever is reported later, so that
+turn is still possible, and so is staying out: docs/keepout_guard.md (a backup-manoeuvre safety filter: Gurriet et al.,
+"An Online Approach to Active Set Invariance", CDC 2018).
 
-Everything is posed in the air mass, relative to the disc: the vehicle's course and speed are those of its motion through the air.
+Predictions are posed in the air mass, relative to the disc: the vehicle's course and speed are those of its motion through the air.
 The guard plans no way round; it keeps out and no more.
 """
 
 import math
 from collections import deque
+from collections.abc import Sequence
 
+from gnc.estimation.own_motion import AirMotion
+from gnc.estimation.reachable_set import Tube
 from gnc.safety.turn_prediction import Motion, TurnPrediction
 
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
+_WHOLE = 1e-6
+"""Of a step, by which a dead time may lack a whole number of them without losing one [-]."""
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away, which is found to 1/32."""
 
 
 class KeepoutGuard:
-    """A moving disc that commands must not lead into. It keeps a memory and must be called once per time step.
+    """A radius about a vessel that commands must not lead into. It keeps a memory and must be called once per time step.
 
     Parameters
     ----------
-    radius : that the vehicle's path must keep from the disc's centre [m]
+    radius : that the vehicle's path must keep from the vessel [m]
+    deviation : by how much nearer the vehicle may come in a full reversal of its turn than predicted [m]
     heading_rate_max : omega_max, the largest command [rad/s]
     lag : time constant of the vehicle's heading rate behind its command; 0 if it follows at once [s]
-    delay : dead time before that; the command's next whole step counts [s]
+    delay : dead time before that; what is left of it after whole steps counts as lag [s]
     time_step : for which a command is held [s]
-    speed_error : b, bound on the error of the relative velocity that is given, airspeed, wind and disc together [m/s]
-    acceleration : a, bound on how fast that velocity changes other than by turning the vehicle [m/s^2]
+    speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together [m/s]
+    drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
 
     Attributes
     ----------
+    tubes : discs that contain the vessel; whoever knows of it sets them, the one known best first
     intervening : whether the last command was changed
     interventions : how often interventions began
-    lost : whether neither turn away held the radius at the last step; the better one is flown
+    lost : whether, at the last step, no turn away kept off by more than deviation and speed error explain; the best is flown
     """
 
     __slots__ = (
-        "_acceleration",
-        "_delay",
-        "_free_inflation",
+        "_deviation",
+        "_drift_rate",
         "_free_steps",
+        "_kept_off",
         "_lag",
         "_prediction",
         "_radius",
@@ -55,78 +63,75 @@ class KeepoutGuard:
         "_time_step",
         "_turn_time",
         "_under_way",
+        "_until_acting",
         "intervening",
         "interventions",
         "lost",
+        "tubes",
     )
 
     def __init__(
         self,
         *,
         radius: float,
+        deviation: float = 0.0,
         heading_rate_max: float,
         lag: float,
         time_step: float,
         delay: float = 0.0,
         speed_error: float = 0.0,
-        acceleration: float = 0.0,
+        drift_rate: float = 0.0,
     ) -> None:
-        self._radius, self._rate = radius, heading_rate_max
-        self._lag, self._time_step = lag, time_step
-        self._delay = round(delay / time_step) * time_step
-        self._under_way: deque[float] = deque(maxlen=round(delay / time_step))
-        self._speed_error, self._acceleration = speed_error, acceleration
+        self._radius, self._deviation = radius, deviation
+        self._rate, self._time_step = heading_rate_max, time_step
+        # A command acts for whole steps; the rest of the dead time is as late as lag is.
+        steps = math.floor(delay / time_step + _WHOLE)
+        self._lag, self._until_acting = lag + max(0.0, delay - steps * time_step), steps * time_step
+        self._under_way: deque[float] = deque(maxlen=steps)
+        # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
+        self._speed_error, self._drift_rate = speed_error + drift_rate, drift_rate
         self._prediction = TurnPrediction(
-            radius=radius,
             heading_rate_max=heading_rate_max,
-            lag=lag,
-            delay=self._delay,
+            lag=self._lag,
+            delay=self._until_acting,
             time_step=time_step,
-            speed_error=speed_error,
-            acceleration=acceleration,
+            deviation=deviation,
         )
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
-        self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * lag + self._delay + time_step
-        self._side = 0.0
-        self._free_steps, self._free_inflation = 0, 0.0
+        self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * self._lag + self._until_acting + time_step
+        self._side, self._free_steps = 0.0, 0
+        self._kept_off: Tube | None = None
+        self.tubes: Sequence[Tube] = ()
         self.intervening = self.lost = False
         self.interventions = 0
 
-    def limit(
-        self,
-        command: float,
-        x: float,
-        y: float,
-        velocity_north: float,
-        velocity_east: float,
-        course: float,
-        speed: float,
-        heading_rate: float,
-        *,
-        radius_inflation: float = 0.0,
-    ) -> float:
+    def limit(self, command: float, time: float, own: AirMotion, speed: float) -> float:
         """Return the command, or as much of a turn away as is needed [rad/s].
 
         Parameters
         ----------
         command : that the guidance demands [rad/s]
-        x, y : of the vehicle, north and east of the disc's centre [m]
-        velocity_north, velocity_east : of the disc in the air mass [m/s]
-        course, speed : of the vehicle in the air mass [rad, m/s]
-        heading_rate : rate of that course now [rad/s]
-        radius_inflation : added to the radius, e.g. while no report of the disc's motion is received [m]
+        time : now [s]
+        own : the vehicle's motion
+        speed : of the vehicle in the air mass, to reckon with [m/s]
         """
         bounded = -self._rate <= command <= self._rate
-        if self._free_steps > 0 and bounded and radius_inflation <= self._free_inflation:
+        if self._free_steps > 0 and bounded:
             self._free_steps -= 1
             self._under_way.append(command)
             return command
-        self._free_steps, self._free_inflation = 0, radius_inflation
-        motion = (x, y, velocity_north, velocity_east, course, speed, heading_rate)
-        free = self._free_when_far(motion, radius_inflation)
-        if free <= 0.0:
-            then = self._prediction.when_acting(motion, self._under_way)
-            free = self._free_by_turning_away(command, then, radius_inflation)
+        self._free_steps = 0
+        free, motions = -1.0, []
+        for tube in self._candidates(time, own):
+            motion = self._relative(tube, time, own, speed)
+            free = self._free_when_far(motion)
+            if free <= 0.0:
+                motion = self._prediction.when_acting(motion, self._under_way)
+                free = self._free_by_turning_away(command, motion)
+            if free >= 0.0:
+                self._kept_off = tube
+                break
+            motions.append((motion, tube))
         if free >= 0.0:
             self.intervening = self.lost = False
             if bounded:
@@ -134,88 +139,112 @@ class KeepoutGuard:
         else:
             self.interventions += not self.intervening
             self.intervening = True
-            command = self._mix(command, then, radius_inflation)
+            command = self._mix(command, motions)
         if not self._under_way:
-            self._under_way.extend([heading_rate] * (self._under_way.maxlen or 0))
+            self._under_way.extend([own.heading_rate] * (self._under_way.maxlen or 0))
         self._under_way.append(command)
         return command
 
-    def clearance(
-        self,
-        x: float,
-        y: float,
-        velocity_north: float,
-        velocity_east: float,
-        course: float,
-        speed: float,
-        heading_rate: float,
-        *,
-        radius_inflation: float = 0.0,
-    ) -> float:
-        """Return by how much the better turn away, begun now, keeps the radius [m]; negative if no command can hold it.
+    def clearance(self, time: float, own: AirMotion, speed: float) -> float:
+        """Return by how much the better turn away, begun now, keeps off [m]; negative if no command can keep off.
 
         Parameters are those of ``limit``. That no other commands do better is argued in docs/keepout_guard.md.
         """
-        motion = (x, y, velocity_north, velocity_east, course, speed, heading_rate)
-        then = self._prediction.when_acting(motion, self._under_way)
-        start = (then[0], then[1], then[4], then[6])
-        return max(
-            self._prediction.turn_away(side, start, then, self._delay, radius_inflation, -math.inf)[0] for side in (1.0, -1.0)
+        best = -math.inf
+        for tube in self.tubes:
+            then = self._prediction.when_acting(self._relative(tube, time, own, speed), self._under_way)
+            start = (then[0], then[1], then[4], then[6])
+            for side in (1.0, -1.0):
+                best = max(best, self._prediction.turn_away(side, start, then, self._until_acting, -math.inf)[0])
+        return best
+
+    def _candidates(self, time: float, own: AirMotion) -> Sequence[Tube]:
+        """Return the disc that reaches least far towards the vehicle, and the one that was kept off last."""
+        tubes, last = self.tubes, self._kept_off
+        nearest = tubes[0]
+        if len(tubes) > 1:
+            nearest = max(tubes, key=lambda tube: self._gap(tube, time, own))
+        return (nearest,) if last is None or last is nearest else (nearest, last)
+
+    def _gap(self, tube: Tube, time: float, own: AirMotion) -> float:
+        """Return the distance from a disc at the end of a quarter of a turn, if the vehicle stayed where it is [m]."""
+        since = time - tube.time + 0.5 * math.pi / self._rate
+        north = own.ground_north - tube.north - tube.velocity_north * since
+        east = own.ground_east - tube.east - tube.velocity_east * since
+        return math.hypot(north, east) - tube.radius - (tube.growth + 0.5 * tube.acceleration * since) * since
+
+    def _relative(self, tube: Tube, time: float, own: AirMotion, speed: float) -> Motion:
+        """Return the vehicle's motion relative to a disc, with all that is uncertain in the disc's radius and growth."""
+        since = time - tube.time
+        return (
+            own.ground_north - (tube.north + tube.velocity_north * since),
+            own.ground_east - (tube.east + tube.velocity_east * since),
+            tube.velocity_north - own.wind_north,
+            tube.velocity_east - own.wind_east,
+            own.course,
+            speed,
+            own.heading_rate,
+            self._radius + self._drift_rate * own.lost + tube.radius + (tube.growth + 0.5 * tube.acceleration * since) * since,
+            self._speed_error + tube.growth + tube.acceleration * since,
+            tube.acceleration,
         )
 
-    def _free_when_far(self, motion: Motion, radius_inflation: float) -> float:
+    def _free_when_far(self, motion: Motion) -> float:
         """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
-        x, y, velocity_north, velocity_east, _, speed, _ = motion
-        duration, acceleration = self._turn_time, self._acceleration
-        closing = speed + math.hypot(velocity_north, velocity_east) + self._speed_error
-        gap = math.hypot(x, y) - self._radius - radius_inflation - (closing + 0.5 * acceleration * duration) * duration
+        x, y, velocity_north, velocity_east, _, speed, _, radius, growth, acceleration = motion
+        duration = self._turn_time
+        closing = speed + math.hypot(velocity_north, velocity_east) + growth
+        gap = math.hypot(x, y) - radius - (closing + 0.5 * acceleration * duration) * duration
         return min(gap / (closing + 1.5 * acceleration * duration), duration)
 
-    def _free_by_turning_away(self, command: float, motion: Motion, radius_inflation: float) -> float:
+    def _free_by_turning_away(self, command: float, motion: Motion) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
         after = self._prediction.after(command, motion)
         x, y, course, _ = after
         floor = _RESOLUTION * motion[5] / self._rate
         nearer = 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
         for side in (nearer, -nearer):
-            slack, free = self._prediction.turn_away(side, after, motion, self._delay + self._time_step, radius_inflation, floor)
+            slack, free = self._prediction.turn_away(side, after, motion, self._until_acting + self._time_step, floor)
             if slack >= floor:
                 self._side = side
                 return free
         return -1.0
 
-    def _mix(self, command: float, motion: Motion, radius_inflation: float) -> float:
-        """Return the command with the least of a turn away that keeps the radius, or the better turn if none does [rad/s]."""
-        x, y, _, _, course, speed, heading_rate = motion
-        floor = _RESOLUTION * speed / self._rate
-        begun = self._delay + self._time_step
-        slacks = []
-        for side in (self._side, -self._side) if self._side else (1.0, -1.0):
-            turn = side * self._rate
-            slack, _ = self._prediction.turn_away(
-                side, self._prediction.after(turn, motion), motion, begun, radius_inflation, -math.inf
-            )
-            slacks.append((slack, side))
-            if self._side and slack >= 0.0:
-                break
-        slack, side = max(slacks)
+    def _mix(self, command: float, motions: Sequence[tuple[Motion, Tube]]) -> float:
+        """Return the command with the least of a turn away that keeps off, or the turn that was safe before [rad/s]."""
+        slack, side, motion, tube = self._best_turn(motions)
+        x, y, _, _, course, speed, heading_rate, *_ = motion
         self._side = side
         turn = side * self._rate
-        self.lost = slack < 0.0
-        if self.lost:
-            # Away from the disc and no farther, in case it is the radius that has overtaken a vehicle that flies away from it.
+        self.lost = slack < -self._deviation - self._speed_error * self._turn_time
+        if slack < 0.0:
+            # Away from the disc and no farther.
             left = math.remainder(math.atan2(y, x) - course - self._lag * heading_rate, 2.0 * math.pi)
             return left / self._time_step if abs(left) < self._rate * self._time_step else turn
+        self._kept_off = tube
+        floor = _RESOLUTION * speed / self._rate
+        begun = self._until_acting + self._time_step
         mixed = turn
         low, high = 0.0, 1.0
         for _ in range(_BISECTIONS):
             fraction = 0.5 * (low + high)
             trial = command + fraction * (turn - command)
-            slack, _ = self._prediction.turn_away(
-                side, self._prediction.after(trial, motion), motion, begun, radius_inflation, floor
-            )
+            slack, _ = self._prediction.turn_away(side, self._prediction.after(trial, motion), motion, begun, floor)
             if slack >= floor:
                 high, mixed = fraction, trial
             else:
                 low = fraction
         return mixed
+
+    def _best_turn(self, motions: Sequence[tuple[Motion, Tube]]) -> tuple[float, float, Motion, Tube]:
+        """Return slack [m], side, motion and disc of the turn away to fly: the one that was safe, or the best if it is not."""
+        begun = self._until_acting + self._time_step
+        found: list[tuple[float, float, Motion, Tube]] = []
+        for motion, tube in motions:
+            for side in (self._side, -self._side) if self._side else (1.0, -1.0):
+                after = self._prediction.after(side * self._rate, motion)
+                slack, _ = self._prediction.turn_away(side, after, motion, begun, -math.inf)
+                found.append((slack, side, motion, tube))
+                if self._side and slack >= 0.0:
+                    return found[-1]
+        return max(found, key=lambda entry: entry[:2])

@@ -8,8 +8,12 @@ _TURN = 0.125
 _TURN_MAX = 2.5 * math.pi
 """Course after which a turn away is over [rad]: once round, and what a turn the other way before it and the disc's motion add."""
 
-Motion = tuple[float, float, float, float, float, float, float]
-"""Arguments of ``KeepoutGuard.limit`` from x to heading_rate."""
+Motion = tuple[float, float, float, float, float, float, float, float, float, float]
+"""A vehicle's motion relative to a disc, and how the disc grows.
+
+North and east of the disc's centre [m]; the disc's velocity north and east in the air mass [m/s]; the vehicle's course and speed
+there, and its heading rate [rad, m/s, rad/s]; radius of the disc now [m], rate of its growth [m/s] and of that [m/s^2].
+"""
 Start = tuple[float, float, float, float]
 """x, y, course and heading rate."""
 
@@ -19,27 +23,24 @@ class TurnPrediction:
 
     Parameters
     ----------
-    radius, heading_rate_max, lag, delay, time_step, speed_error, acceleration : as of ``KeepoutGuard``; the delay in whole steps
+    heading_rate_max, lag, delay, time_step, deviation : as of ``KeepoutGuard``; the delay in whole steps
     """
 
     __slots__ = (
-        "_acceleration", "_chord", "_delay", "_hold", "_interval", "_lag", "_points_max", "_radius", "_rate", "_speed_error",
+        "_chord", "_delay", "_deviation", "_hold", "_interval", "_lag", "_points_max", "_rate",
     )  # fmt: skip
 
     def __init__(
         self,
         *,
-        radius: float,
         heading_rate_max: float,
         lag: float,
         delay: float,
         time_step: float,
-        speed_error: float,
-        acceleration: float,
+        deviation: float = 0.0,
     ) -> None:
-        self._radius, self._rate = radius, heading_rate_max
+        self._rate, self._deviation = heading_rate_max, deviation
         self._lag, self._delay = lag, delay
-        self._speed_error, self._acceleration = speed_error, acceleration
         self._hold = _held(time_step, lag)
         interval = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
         self._interval = _held(interval, lag)
@@ -55,7 +56,7 @@ class TurnPrediction:
         count = under_way.maxlen
         if not count:
             return motion
-        x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
+        x, y, velocity_north, velocity_east, course, speed, heading_rate, *disc = motion
         duration, turned, mean, decay = self._hold
         turned_by, mean_by, gained_by = duration - turned, 0.5 * duration - mean, 1.0 - decay
         begun, middles = course, 0.0
@@ -69,11 +70,12 @@ class TurnPrediction:
         chord = speed * (1.0 - half * half / 6.0)
         x += (chord * math.cos(middle) - velocity_north) * self._delay
         y += (chord * math.sin(middle) - velocity_east) * self._delay
-        return x, y, velocity_north, velocity_east, course, speed, heading_rate
+        radius, growth, acceleration = disc
+        return x, y, velocity_north, velocity_east, course, speed, heading_rate, radius, growth, acceleration
 
     def after(self, command: float, motion: Motion) -> Start:
         """Return where a command held for one time step leads."""
-        x, y, velocity_north, velocity_east, course, speed, heading_rate = motion
+        x, y, velocity_north, velocity_east, course, speed, heading_rate, _, _, _ = motion
         duration, turned, mean, decay = self._hold
         middle = course + mean * heading_rate + (0.5 * duration - mean) * command
         return (
@@ -83,9 +85,7 @@ class TurnPrediction:
             decay * heading_rate + (1.0 - decay) * command,
         )
 
-    def turn_away(
-        self, side: float, start: Start, motion: Motion, time: float, radius_inflation: float, floor: float
-    ) -> tuple[float, float]:
+    def turn_away(self, side: float, start: Start, motion: Motion, time: float, floor: float) -> tuple[float, float]:
         """Return by how much a full turn away keeps the radius [m], and for how long [s] no command before it can change that.
 
         It is over once the vehicle recedes and its turn makes it recede faster: by going on until it heads straight away, and
@@ -97,19 +97,22 @@ class TurnPrediction:
         start : of the turn
         motion : when the command that is judged begins to act
         time : from now to the start [s]
-        radius_inflation, floor : [m]
+        floor : [m]
         """
         cos, sin, sqrt = math.cos, math.sin, math.sqrt
         x, y, course, heading_rate = start
-        _, _, velocity_north, velocity_east, _, speed, _ = motion
+        _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration = motion
         duration, turned, mean, decay = self._interval
         turn = side * self._rate
         ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - decay) * turn
         chord = speed * duration * self._chord
         north, east = velocity_north * duration, velocity_east * duration
-        error, half, lag = self._speed_error, 0.5 * self._acceleration, self._lag
-        fixed = self._radius + radius_inflation
-        least = slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
+        half, lag = 0.5 * acceleration, self._lag
+        # The farther the vehicle has to roll into the turn, the more it deviates; where it is now it does not yet.
+        deviation = self._deviation * max(0.0, 0.5 - 0.5 * side * heading_rate / self._rate)
+        fixed += deviation
+        slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
+        least = slack + deviation
         outward = side * (y * cos(course) - x * sin(course))
         acting = time - self._delay
         gain = -1.0
@@ -155,7 +158,7 @@ class TurnPrediction:
 def _range_rate(start: Start, motion: Motion) -> float:
     """Return the rate at which the distance from the disc's centre grows [m/s]."""
     x, y, course, _ = start
-    _, _, velocity_north, velocity_east, _, speed, _ = motion
+    _, _, velocity_north, velocity_east, _, speed, *_ = motion
     return ((speed * math.cos(course) - velocity_north) * x + (speed * math.sin(course) - velocity_east) * y) / math.hypot(x, y)
 
 

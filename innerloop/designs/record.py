@@ -18,7 +18,9 @@ from innerloop.analysis.perturbations import NOMINAL
 from innerloop.analysis.robustness import REQUIRED, Check
 from innerloop.designs.designer import Design
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.reversal_search import reversals_of_a_design, search_reversals
 from innerloop.flight.step_responses import Response, flown_step, measure_lag, model_step, predicted_step
+from innerloop.flight.turn_reversal import measure_turn_reversal
 from innerloop.law.control_law import ControlLaw
 from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.schedule import LEVEL_GAINS, Schedule
@@ -73,6 +75,25 @@ def design_record(design: Design, root: Path) -> Record:
         "responses": _responses(schedule, aircraft),
         "verification": verify_model(Fdm(schedule.spec), schedule.models[schedule.middle][LEVEL_GAINS], level),
         "heading_rate_lag_s": measure_lag(aircraft, level, schedule.envelope.bank),
+        "turn_reversal": reversal_record(aircraft, level, schedule.envelope.bank),
+    }
+
+
+def reversal_record(aircraft: AutopilotedAircraft, start: Trim, bank: float, *, reversals: int | None = None) -> Record:
+    """Return how the heading rate follows a reversal of a turn at ``bank`` [rad], and the deviations that a search found."""
+    response = measure_turn_reversal(aircraft, start, bank)
+    count = reversals or reversals_of_a_design(bank, start.airspeed)
+    found = search_reversals(aircraft, start, bank, response, reversals=count)
+    return {
+        "bank_deg": math.degrees(bank),
+        "airspeed_mps": start.airspeed,
+        "delay_s": response.delay,
+        "lag_s": response.lag,
+        "reversals": found.reversals,
+        "deviation_99_percent_m": found.usual,
+        "deviation_max_m": found.deviation,
+        "worst_command_before": found.command_before,
+        "worst_airspeed_before_mps": found.airspeed_before,
     }
 
 

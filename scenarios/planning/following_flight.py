@@ -8,8 +8,11 @@ import numpy as np
 from gnc.airspeed.pace_hold import PaceHold
 from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
-from gnc.parameters import GuardParameters, GuidanceParameters
-from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, keepout_margin
+from gnc.estimation.reachable_set import VesselLimits, tube
+from gnc.estimation.vessel_filter import VesselReport
+from gnc.parameters import GuardParameters, GuidanceParameters, ReportedVessel
+from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
+from scenarios.margin.orbit_room import orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
 from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.flight_plan import FlightPlan, Sensing
@@ -20,8 +23,9 @@ from scenarios.planning.guidance import (
     navigation_parameters,
     speed_hold,
     tracking_parameters,
+    turn_time,
 )
-from scenarios.planning.limits import omega_max
+from scenarios.planning.limits import PLAN_PERIOD, omega_max
 from scenarios.planning.reference import orbits, oscillation_at
 from scenarios.planning.start import check_start, sampled_start
 from scenarios.schema.scenario import Scenario
@@ -51,36 +55,35 @@ def following_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehic
     _check_plume(scenario, wind)
     nu = wind.at_start / g.airspeed_mps
     periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
-    margin = keepout_margin(scenario, spreads, nu)
+    limits = vessel_limits(scenario, turn_time(scenario, setup.reversal))
+    orbit = oscillation_at(g, scenario.reference, nu)
+    sigma, level = tracking_level(scenario, spreads, nu)
+    radius = scenario.keepout.radius_m
+    guarded = guard_parameters(scenario, setup, radius + level)
+    widest = widest_tube(limits, scenario.reports, plan_period=PLAN_PERIOD)
+    farthest = max(radius + f.margin_min_m, orbit_distance(guarded, widest, orbit)) + level
+    reach = widest.reach(turn_time(scenario, setup.reversal))
+    margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
     start = sampled_start(scenario.start, for_world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, for_world)
     weather = sampled_weather(scenario, for_world)
     outage = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else no_outage()
     guard = None
     if g.keepout_guard:
-        radius = scenario.keepout.radius_m
-        guard = guard_parameters(
-            scenario,
-            setup.reversal,
-            radius + margin.guard,
-            speed_error=f.speed_error_mps,
-            acceleration=f.vessel_acceleration_mps2,
-        )
-        _, _, v_north, v_east = vessel.motion(0.0)
-        through_air = v_north - weather.wind_north, v_east - weather.wind_east
-        airspeed = g.airspeed_mps
-        check_start(start, guard, through_air=through_air, airspeed=airspeed, allowance=margin.guard, keepout_radius=radius)
+        guard = guarded
+        first = VesselReport(0.0, *vessel.motion(0.0))
+        blowing = (weather.wind_north, weather.wind_east)
+        check_start(start, guard, tube(first, limits, 0.0), wind=blowing, airspeed=g.airspeed_mps, keepout_radius=radius)
     received = None
     if not scenario.reports.exact:
         duration = flight.duration_max_s
         received = received_reports(scenario.reports, vessel, duration=duration, outage=outage, generator=for_noise)
     steps = round(flight.duration_max_s * g.rate_hz) + 2
-    orbit = oscillation_at(g, scenario.reference, nu)
     return FlightPlan.of(
         scenario,
         flight_id,
         nu=nu,
-        guidance=_guidance(scenario, setup, margin, widths, guard),
+        guidance=_guidance(scenario, setup, margin, widths, guard, limits),
         steering=given_steering(g),
         start=start,
         period=orbit.period,
@@ -109,6 +112,7 @@ def _guidance(
     margin: KeepoutMargin,
     widths: tuple[tuple[float, float], ...],
     guard: GuardParameters | None,
+    limits: VesselLimits,
 ) -> GuidanceParameters:
     g = scenario.guidance
     tracking, hold = tracking_parameters(scenario, setup), speed_hold(scenario, setup)
@@ -118,9 +122,9 @@ def _guidance(
         tracking=tracking,
         airspeed_law=PaceHold(speed=g.airspeed_mps, hold=hold),
         navigation=navigation_parameters(scenario, setup),
-        vessel=filter_parameters(scenario.reports),
+        vessel=ReportedVessel(filter=filter_parameters(scenario.reports), limits=limits),
         guard=guard,
-        mission=following_parameters(scenario, setup, margin.total, widths),
+        mission=following_parameters(scenario, setup, margin, widths),
         health=HealthParameters(
             airspeed_error=THRUST_LOST_FRACTION * (g.airspeed_mps - hold.airspeed_min),
             speed=g.airspeed_mps,

@@ -12,13 +12,12 @@ from gnc.parameters import GuardParameters
 from gnc.reference.moving_centre import CentreParameters
 from gnc.tracker import TrackingParameters
 from innerloop.flight.turn_reversal import TurnReversalResponse
+from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
-from scenarios.planning.limits import omega_max
+from scenarios.planning.limits import PLAN_PERIOD, omega_max
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
-
-PLAN_PERIOD = 0.5
-"""Time between plans, and between measurements of the wind [s]."""
+from scenarios.world.faults import SATELLITES
 
 STALE_MIN = 2.0
 """Shortest age at which vessel data count as stale [s]."""
@@ -58,19 +57,25 @@ def guidance_lag(scenario: Scenario, setup: VehicleSetup) -> float:
     return setup.lag + 0.5 / scenario.guidance.rate_hz
 
 
-def guard_parameters(
-    scenario: Scenario, reversal: TurnReversalResponse, radius: float, *, speed_error: float = 0.0, acceleration: float = 0.0
-) -> GuardParameters:
-    """Return the guard of a disc of some radius [m] about the vessel."""
+def guard_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) -> GuardParameters:
+    """Return the guard that keeps a radius [m] about wherever the vessel may be."""
+    f, air = scenario.following, scenario.turbulence
     return GuardParameters(
         radius=radius,
+        deviation=setup.response_error,
         heading_rate_max=omega_max(scenario.guidance),
-        lag=reversal.lag,
-        delay=reversal.delay,
+        lag=setup.reversal.lag,
+        delay=setup.reversal.delay,
         time_step=1.0 / scenario.guidance.rate_hz,
-        speed_error=speed_error,
-        acceleration=acceleration,
+        # A gust may begin at any moment; and one that blows turns with the vehicle in the prediction, but not in the air.
+        speed_error=f.speed_error_mps + air.gust_speed_mps if scenario.follows else 0.0,
+        drift_rate=f.drift_rate_mps if SATELLITES in scenario.declared_faults else 0.0,
     )
+
+
+def turn_time(scenario: Scenario, reversal: TurnReversalResponse) -> float:
+    """Return how long half a turn takes, with what it takes to begin [s]: that of a turn away."""
+    return math.pi / omega_max(scenario.guidance) + reversal.delay + reversal.lag
 
 
 def speed_hold(scenario: Scenario, setup: VehicleSetup) -> SpeedHold:
@@ -123,21 +128,21 @@ def approach_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) 
 
 
 def following_parameters(
-    scenario: Scenario, setup: VehicleSetup, margin: float, widths: Sequence[tuple[float, float]]
+    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, widths: Sequence[tuple[float, float]]
 ) -> FollowingParameters:
     """Return how the plume of a moving vessel is followed.
 
     Parameters
     ----------
     scenario, setup : the flight, and its vehicle
-    margin : of the keep-out area [m]
+    margin : of the keep-out area
     widths : half-widths of the orbit along and across its course, at equal steps of nu from 0 [m]
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports
     fastest, radius = omega_max(g), scenario.keepout.radius_m
     hold = speed_hold(scenario, setup)
     centre = CentreParameters(
-        distance_min=radius + margin,
+        distance_min=radius + margin.total,
         speed_ratio_max=f.speed_ratio_max,
         along=tuple(along for along, _ in widths),
         across=tuple(across for _, across in widths),
@@ -151,11 +156,12 @@ def following_parameters(
         reference_heading_rate=(1.0 - g.reserve) * fastest,
         roll_rate_max=math.radians(g.roll_rate_max_deg_s),
         speed_ratio_max=f.speed_ratio_max,
-        approach=approach_parameters(scenario, setup, radius + margin),
+        approach=approach_parameters(scenario, setup, radius + margin.total),
         standoff=f.standoff_m,
         glide_airspeed=0.5 * (g.airspeed_mps + hold.airspeed_min),
         stale=max(STALE_MIN, reports.interval_s[1] + reports.latency_max_s),
-        vessel_acceleration=f.vessel_acceleration_mps2,
+        reach=margin.reach,
+        reach_time=turn_time(scenario, setup.reversal),
         drift_rate=f.drift_rate_mps,
         plan_interval=plan_interval(scenario),
         source_altitude=scenario.plume.source_height_m,

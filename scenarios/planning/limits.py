@@ -27,3 +27,7 @@ def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> N
             f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {title} stops at"
             f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or guidance.heading_rate_max_rad_s"
         )
+
+
+PLAN_PERIOD = 0.5
+"""Time between plans, and between measurements of the wind [s]."""

@@ -6,6 +6,8 @@ import numpy as np
 
 from gnc.compose import keepout_guard
 from gnc.errors import InfeasibleError
+from gnc.estimation.own_motion import KnownMotion
+from gnc.estimation.reachable_set import Tube
 from gnc.parameters import GuardParameters
 from scenarios.planning.flight_plan import Start
 from scenarios.schema.flight import StartConfig
@@ -47,10 +49,10 @@ def placed(ahead: float, right: float, course: float) -> tuple[float, float]:
 def check_start(
     start: Start,
     guard: GuardParameters | None,
+    vessel: Tube,
     *,
-    through_air: tuple[float, float],
+    wind: tuple[float, float],
     airspeed: float,
-    allowance: float,
     keepout_radius: float,
 ) -> None:
     """Refuse a start from which no command keeps the aircraft out of the keep-out area.
@@ -58,9 +60,9 @@ def check_start(
     Parameters
     ----------
     start, guard : the start, and the guard that would have to keep out; any start is accepted without
-    through_air : velocity of the vessel through the air [m/s]
+    vessel : where it may be
+    wind : north and east [m/s]
     airspeed : of the UAV [m/s]
-    allowance : by how much the turn away may come closer than the guard's radius [m]
     keepout_radius : r_min [m]
 
     Raises
@@ -69,11 +71,14 @@ def check_start(
     """
     if guard is None:
         return
-    clearance = keepout_guard(guard).clearance(start.north, start.east, *through_air, start.course, airspeed, 0.0)
-    if clearance + allowance < 0.0:
+    keeping = keepout_guard(guard)
+    keeping.tubes = (vessel,)
+    own = KnownMotion(ground_north=start.north, ground_east=start.east, course=start.course, wind_north=wind[0], wind_east=wind[1])
+    clearance = keeping.clearance(vessel.time, own, airspeed)
+    if clearance < 0.0:
         raise InfeasibleError(
             f"the start lies {math.hypot(start.north, start.east):.1f} m from the vessel on course"
             f" {math.degrees(start.course):.0f} deg, where the best turn away comes within"
-            f" {guard.radius + clearance:.1f} m; keepout.radius_m is {keepout_radius:g} m, and the guard has to keep"
-            f" {guard.radius - allowance:.1f} m: start farther away (start.distance_m) or on another course (start.course_deg)"
+            f" {guard.radius + clearance:.1f} m of where it may be; keepout.radius_m is {keepout_radius:g} m, and the guard"
+            f" has to keep {guard.radius:.1f} m: start farther away (start.distance_m) or on another course (start.course_deg)"
         )

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from gnc.airspeed.along_track import AlongTrackTrim
+from gnc.estimation.reachable_set import Tube
 from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
 from gnc.parameters import GuardParameters, GuidanceParameters
 from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
@@ -19,9 +20,6 @@ from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.faults import NO_FAULT
 from scenarios.world.weather import STILL_AIR
 from scenarios.world.world import World, plume_of, vessel_of
-
-GUARD_FRACTION = 0.75
-"""Of the tracking allowance, what the guard keeps beyond r_min: what an aircraft does that the guard does not predict [-]."""
 
 
 def circling_flight(scenario: Scenario, flight_id: str, seed: int, setup: VehicleSetup) -> FlightPlan:
@@ -64,12 +62,12 @@ def tracking_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehicl
     steering = plan_steering(scenario, omega_max(g), oscillation.amplitude)
     start = sampled_start(scenario.start, np.random.default_rng(seed), course=course, axis=plume.axis(0.0))
     guard = None
-    guarded = radius + GUARD_FRACTION * g.tracking_allowance_m
     # The disc that the keep-out sphere cuts out at the height of the flight.
-    disc = math.sqrt(max(0.0, guarded**2 - above**2))
+    disc = math.sqrt(max(0.0, radius**2 - above**2))
     if g.keepout_guard and disc > 0.0:
-        guard = guard_parameters(scenario, setup.reversal, disc)
-        check_start(start, guard, through_air=(v_north, v_east), airspeed=g.airspeed_mps, allowance=0.0, keepout_radius=radius)
+        guard = guard_parameters(scenario, setup, disc)
+        known = Tube(0.0, 0.0, 0.0, v_north, v_east)
+        check_start(start, guard, known, wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius)
     orbit = joined_orbit(scenario, oscillation, course)
     joining = None
     if g.approach:

@@ -155,7 +155,8 @@ RULES = (
     Rule(
         keys=(
             "following.touches_per_hour", "following.margin_min_m", "following.speed_ratio_max", "following.standoff_m",
-            "following.vessel_acceleration_mps2", "following.speed_error_mps", "following.drift_rate_mps",
+            "following.vessel_acceleration_mps2", "following.vessel_speed_max_mps", "following.speed_error_mps",
+            "following.drift_rate_mps",
         ),
         acts=lambda s: s.follows,
         user=_FOLLOWS,

@@ -156,8 +156,10 @@ class FollowingConfig(Section):
     tracked_m: Positive = 12.0
     """Distance from the reference that counts as tracked: the centre closes in [m]."""
     vessel_acceleration_mps2: NonNegative = 0.0
-    """Largest acceleration of the vessel that the keep-out guard allows for, also while no report comes [m/s2]."""
+    """Largest acceleration of the vessel, along its course and across it together: what it may do between reports [m/s2]."""
+    vessel_speed_max_mps: Positive | None = None
+    """Largest speed of the vessel over the ground; without limit if not given [m/s]."""
     speed_error_mps: NonNegative = 0.0
-    """Error of the relative speed that the keep-out guard allows for [m/s]."""
+    """Largest error of the UAV's own velocity through the air and of the wind, together [m/s]."""
     drift_rate_mps: NonNegative = 1.0
     """How fast dead reckoning may go wrong without satellite navigation [m/s]."""

@@ -96,6 +96,12 @@ class Scenario(Section):
         )
 
     @property
+    def declared_faults(self) -> frozenset[str]:
+        """Return the kinds of faults that its flights may have."""
+        drawn = [value for draw in self.draws if draw.key == "fault.kind" for value in draw.choice or ()]
+        return frozenset({self.fault.kind, *map(str, drawn), *map(str, self.sweep.root.get("fault.kind", ()))} - {"none"})
+
+    @property
     def plume_by_wind(self) -> bool:
         """Return whether the plume trails behind the vessel's motion through the air."""
         return self.plume.direction == "apparent_wind" or (self.plume.direction is None and self.follows)

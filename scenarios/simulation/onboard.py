@@ -37,7 +37,7 @@ class OnboardSensing:
         self._errors, self._fault, self._vessel = sensing.errors, world.fault, world.vessel
         self._exact, self._received = sensing.received is None, list(reversed(sensing.received or []))
         self._vehicle, self._guidance = vehicle, guidance
-        self._report = guidance.target.vessel.report
+        self._report = guidance.target.report
         self._altitude, self._held, self.failing = altitude, False, world.fault.of_aircraft()
         self.airspeed_error = 0.0
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from common.run_layout import COMPARISON, CROSSINGS, DRAWS, INTERVENTIONS, SUMMARY, time_history_path
 from gnc.mission.mode import Mode
+from gnc.reference.oscillation import bank_for_heading_rate
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
@@ -17,6 +18,7 @@ from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
 from scenarios.metrics.columns import CROSSING_COLUMNS, INPUT_COLUMNS, INTERVENTION_COLUMNS, SUMMARY_COLUMNS
+from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
 from scenarios.schema.experiment import TrialList
@@ -106,10 +108,11 @@ class FlightStudy:
         # Of a trial that has been scaled to the aircraft: its airspeed is where flights start.
         first = next(iter(self.trials.values()))
         flown = self._design if first.fidelity != "kinematic" else None
-        setup = aircraft_setup(flown, first, run) if flown else None
+        settings = [setting for experiment in self.experiments.values() for setting in experiment.settings()]
+        steepest = max(bank_for_heading_rate(omega_max(s.guidance), s.guidance.airspeed_mps) for s in [first, *settings])
+        setup = aircraft_setup(flown, first, run, bank=steepest) if flown else None
         lag = (setup or kinematic_setup(first)).lag
         self._manifest["guidance_lag_s"] = lag + 0.5 / first.guidance.rate_hz
-        settings = [setting for experiment in self.experiments.values() for setting in experiment.settings()]
         with plugins_explained("the keep-out margin cannot be predicted", settings):
             spreads = predicted_spreads(settings, flown, setup)
         return FlightWork(

@@ -11,9 +11,10 @@ from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftSpec, Envelope
 from innerloop.designs.cache import Designed, designed
+from innerloop.designs.record import reversal_record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import level_trim
-from innerloop.flight.turn_reversal import TurnReversalResponse, measure_turn_reversal
+from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.root import write_root
 from innerloop.synthesis.schedule import Schedule
 from scenarios.engine.run_directory import RunDirectory
@@ -22,6 +23,12 @@ from scenarios.schema.scenario import DEFAULT_AIRCRAFT, Scenario
 
 KINEMATIC_BANDWIDTH = 1.0
 """Bandwidth of a kinematic vehicle's airspeed that its guidance reckons with; it follows at once [rad/s]."""
+
+_SAME_BANK = 1e-3
+"""By how much the guidance's bank may exceed that of the design before its reversal is measured anew [rad]."""
+
+_SAME_AIRSPEED = 0.05
+"""Difference of the airspeed flown from that of the design above which it is, too, over the latter [-]."""
 
 _KINEMATIC_AIRSPEEDS = 0.7, 1.3
 """Airspeeds between which a kinematic vehicle is flown, over V_r [-]."""
@@ -52,6 +59,7 @@ class VehicleSetup:
     ----------
     lag : of the heading rate behind its command [s]
     reversal : how the heading rate follows a reversal of the turn
+    response_error : how much nearer a full reversal may come than with that response [m]
     airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
     turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed; empty without a limit [m/s, rad/s]
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
@@ -60,6 +68,7 @@ class VehicleSetup:
 
     lag: float
     reversal: TurnReversalResponse
+    response_error: float
     airspeed_bandwidth: float
     airspeed_min: float
     airspeed_max: float
@@ -107,13 +116,14 @@ def kinematic_setup(scenario: Scenario) -> VehicleSetup:
     return VehicleSetup(
         lag=lag,
         reversal=TurnReversalResponse(delay=0.0, lag=lag),
+        response_error=0.0,
         airspeed_bandwidth=KINEMATIC_BANDWIDTH,
         airspeed_min=slowest * speed,
         airspeed_max=fastest * speed,
     )
 
 
-def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory) -> VehicleSetup:
+def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, bank: float = 0.0) -> VehicleSetup:
     """Return what flights of the aircraft need; write its autopilot into the run directory.
 
     Parameters
@@ -121,6 +131,7 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory) -> Ve
     found : its autopilot
     scenario : whose airspeed and height the flights start at
     run : the run directory
+    bank : steepest that the guidance asks for [rad]
     """
     schedule = found.design.schedule
     write_root(schedule, run.model)
@@ -129,9 +140,15 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory) -> Ve
         schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, schedule.level(schedule.middle)
     )
     turns = schedule.trims[schedule.middle]
+    reversal = found.record["turn_reversal"]
+    slower_or_faster = abs(start.airspeed / reversal["airspeed_mps"] - 1.0)
+    if bank > schedule.envelope.bank + _SAME_BANK or slower_or_faster > _SAME_AIRSPEED:
+        aircraft = AutopilotedAircraft(schedule.spec, run.model)
+        reversal = reversal_record(aircraft, start, max(bank, schedule.envelope.bank))
     return VehicleSetup(
         lag=float(found.record["heading_rate_lag_s"]),
-        reversal=measure_turn_reversal(AutopilotedAircraft(schedule.spec, run.model), start, schedule.envelope.bank),
+        reversal=TurnReversalResponse(delay=reversal["delay_s"], lag=reversal["lag_s"]),
+        response_error=reversal["deviation_99_percent_m"],
         airspeed_bandwidth=found.design.bandwidths.airspeed,
         airspeed_min=schedule.envelope.airspeed_min,
         airspeed_max=schedule.envelope.airspeed_max,

@@ -7,6 +7,8 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from hypothesis import strategies as st
 
+from gnc.estimation.own_motion import KnownMotion
+from gnc.estimation.reachable_set import Tube
 from gnc.numeric import wrap
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.unicycle import lagged_move, unicycle_move
@@ -20,8 +22,36 @@ commands = st.floats(-HEADING_RATE_MAX, HEADING_RATE_MAX)
 distances = st.floats(0.0, 700.0)
 
 
+class DiscGuard:
+    """A keep-out guard asked about one disc, whose velocity it is told anew at each step; it may accelerate from then on."""
+
+    def __init__(self, acceleration=0.0, **parameters):
+        self.guard = KeepoutGuard(time_step=TIME_STEP, **parameters)
+        self._acceleration, self._time, self._north, self._east = acceleration, 0.0, 0.0, 0.0
+
+    def __getattr__(self, name):
+        return getattr(self.__dict__["guard"], name)
+
+    def _own(self, x, y, velocity_north, velocity_east, course, heading_rate, radius_inflation):
+        place = (self._time, self._north, self._east, velocity_north, velocity_east)
+        self.guard.tubes = (Tube(*place, radius_inflation, 0.0, self._acceleration),)
+        return KnownMotion(ground_north=self._north + x, ground_east=self._east + y, course=course, heading_rate=heading_rate)
+
+    def limit(self, command, x, y, velocity_north, velocity_east, course, speed, heading_rate, *, radius_inflation=0.0):
+        own = self._own(x, y, velocity_north, velocity_east, course, heading_rate, radius_inflation)
+        answer = self.guard.limit(command, self._time, own, speed)
+        self._time += TIME_STEP
+        self._north += TIME_STEP * velocity_north
+        self._east += TIME_STEP * velocity_east
+        return answer
+
+    def clearance(self, x, y, velocity_north, velocity_east, course, speed, heading_rate):
+        own = self._own(x, y, velocity_north, velocity_east, course, heading_rate, 0.0)
+        return self.guard.clearance(self._time, own, speed)
+
+
 def make_guard(*, lag=0.4, delay=0.0, radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, **changes):
-    return KeepoutGuard(radius=radius, heading_rate_max=heading_rate_max, lag=lag, delay=delay, time_step=TIME_STEP, **changes)
+    return DiscGuard(radius=radius, heading_rate_max=heading_rate_max, lag=lag, delay=delay, **changes)
 
 
 def moved(state, command, lag, duration, speed=SPEED):

@@ -1,0 +1,127 @@
+"""Where a vessel may be that is known from reports: discs that it cannot have left, each from one report.
+
+Between reports the vessel moves as it likes within what is declared of it: an acceleration, in any direction, and a speed. From a
+report at time t_i its place at t_i + s lies within
+
+    k hypot(sigma_p, sigma_v s) + a s^2/2    of p_i + v_i s,    and within    k sigma_p + v_max s    of p_i,
+
+k standard deviations of the report's errors being the largest that are allowed for. Every such disc is true for good, whatever is
+reported later. So the vessel is in all of them at once, and to keep off one of them is enough (docs/keepout_guard.md).
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from gnc.estimation.vessel_filter import VesselReport
+
+_KEPT = 3
+"""Newest reports that discs are made of: an older one could be nearer the truth only by its luck [-]."""
+
+
+class Tube(NamedTuple):
+    """A disc that contains the vessel from ``time`` on, as it moves and grows.
+
+    Its centre moves at a constant velocity, its radius is ``radius`` + ``growth`` t + ``acceleration`` t^2/2 after t seconds.
+
+    Attributes
+    ----------
+    time : [s]
+    north, east : of its centre then [m]
+    velocity_north, velocity_east : of its centre over the ground [m/s]
+    radius, growth, acceleration : [m, m/s, m/s^2]
+    """
+
+    time: float
+    north: float
+    east: float
+    velocity_north: float
+    velocity_east: float
+    radius: float = 0.0
+    growth: float = 0.0
+    acceleration: float = 0.0
+
+    def reach(self, ahead: float) -> float:
+        """Return the radius some time ahead [s, m]."""
+        return self.radius + (self.growth + 0.5 * self.acceleration * ahead) * ahead
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VesselLimits:
+    """What a vessel and its reports are declared to keep within.
+
+    Attributes
+    ----------
+    acceleration : largest, in any direction [m/s^2]
+    speed_max : largest over the ground; infinite if none is declared [m/s]
+    position_sigma, velocity_sigma : of a report's components; the vehicle's own place counts as the vessel's [m, m/s]
+    deviations : k, largest error of a report in any direction over its standard deviation [-]
+    horizon : for how long ahead a tube serves at most before it is replaced [s]
+    """
+
+    acceleration: float
+    speed_max: float
+    position_sigma: float
+    velocity_sigma: float
+    deviations: float
+    horizon: float
+
+
+def tube(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
+    """Return the disc at ``time`` [s] of a vessel that may have accelerated since its report, as it grows from then on.
+
+    Parameters
+    ----------
+    report, limits : the report, and what the vessel keeps within
+    time : not before the report's [s]
+    """
+    age, k, acceleration = time - report.time, limits.deviations, limits.acceleration
+    place, drift = limits.position_sigma, limits.velocity_sigma
+    by_reports = k * math.hypot(place, drift * age)
+    # The error of the velocity counts the more the older the report; by the end of the horizon, this much.
+    later = age + limits.horizon
+    drifting = k * drift * drift * later / math.hypot(place, drift * later) if drift > 0.0 else 0.0
+    return Tube(
+        time,
+        report.north + report.velocity_north * age,
+        report.east + report.velocity_east * age,
+        report.velocity_north,
+        report.velocity_east,
+        by_reports + 0.5 * acceleration * age * age,
+        drifting + acceleration * age,
+        acceleration,
+    )
+
+
+def tube_by_speed(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
+    """Return the disc of a vessel that may have gone anywhere at its largest speed since its report; parameters as of ``tube``."""
+    reported, speed = limits.deviations * limits.position_sigma, limits.speed_max
+    return Tube(time, report.north, report.east, 0.0, 0.0, reported + speed * (time - report.time), speed)
+
+
+class ReachableSet:
+    """The discs of a vessel that is known from reports.
+
+    Parameters
+    ----------
+    limits : what vessel and reports keep within
+    """
+
+    __slots__ = ("_limits", "_reports")
+
+    def __init__(self, limits: VesselLimits) -> None:
+        self._limits = limits
+        self._reports: list[VesselReport] = []
+
+    def report(self, report: VesselReport) -> None:
+        """Take in a report, which may be older than others."""
+        self._reports = sorted([*self._reports, report], key=lambda of: -of.time)[:_KEPT]
+
+    def tubes(self, time: float) -> Sequence[Tube]:
+        """Return the discs of the reports that are kept at ``time`` [s], that of the newest first."""
+        limits, reports = self._limits, self._reports
+        found = [tube(report, limits, time) for report in reports]
+        if math.isfinite(limits.speed_max) and limits.acceleration > 0.0:
+            found.append(tube_by_speed(reports[0], limits, time))
+        return found

@@ -1,0 +1,50 @@
+"""How far from the vessel an orbit has to lie for the keep-out guard not to act on it."""
+
+import itertools
+
+import numpy as np
+
+from gnc.compose import keepout_guard
+from gnc.estimation.own_motion import KnownMotion
+from gnc.estimation.reachable_set import Tube
+from gnc.parameters import GuardParameters
+from gnc.reference.reference import Orbit
+
+_PHASES = 24
+"""Points of half an orbit from which a turn away is predicted: the other half is its mirror image [-]."""
+
+_FAR = 3.0
+"""Distance at which that is done first, over the radius to be kept [-]."""
+
+
+def orbit_distance(guard: GuardParameters, vessel: Tube, orbit: Orbit) -> float:
+    """Return the smallest distance of an orbit from the vessel for which a turn away is always left to the guard [m].
+
+    Parameters
+    ----------
+    guard : its parameters
+    vessel : where it may be, as large as that becomes
+    orbit : about a centre of oscillation astern of the vessel
+    """
+    time = orbit.period * (np.arange(_PHASES) + 0.5) / (2.0 * _PHASES)
+    piece = 1e-3 * orbit.period
+    places = [orbit.offset(time + i * piece) for i in range(3)]
+    mean = orbit.nu * orbit.speed
+    courses = [np.arctan2((y1 - y0) / piece, (x1 - x0) / piece + mean) for (x0, y0), (x1, y1) in itertools.pairwise(places)]
+    rates = (courses[1] - courses[0]) / piece
+    along, _ = orbit.half_widths()
+    keeping = keepout_guard(guard)
+    keeping.tubes = (vessel._replace(time=0.0, north=0.0, east=0.0, velocity_north=mean, velocity_east=0.0),)
+    points = np.column_stack([*places[0], courses[0], rates]).tolist()
+    distance = _FAR * (guard.radius + vessel.radius)
+    for _ in range(2):
+        # Clearances change as the distance does, but for the curvature of a disc.
+        distance -= min(
+            keeping.clearance(
+                0.0,
+                KnownMotion(ground_north=x - distance - along, ground_east=y, course=course, heading_rate=rate),
+                orbit.speed,
+            )
+            for x, y, course, rate in points
+        )
+    return distance
