@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 from design_runs import AIRSPEEDS, BANKS_DEG, CASES, LOOPS, record, write_design
+from report_parts import blocks_of
 
 from reports.build import build_reports
 from reports.design.data import complete, excess_overshoot, where
@@ -34,11 +35,6 @@ def path(tmp_path_factory):
 @pytest.fixture(scope="module")
 def report(path):
     return content(read_run(path))
-
-
-def blocks_of(report, kind, anchor=None):
-    sections = [section for section in report.sections if anchor in (None, section.anchor)]
-    return [block for section in sections for block in section.blocks if isinstance(block, kind)]
 
 
 def first_version():

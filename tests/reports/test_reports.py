@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from design_runs import record
+from report_parts import blocks_of
 
 from reports.build import build_reports
 from reports.document.axes import in_kilometres
@@ -44,12 +45,6 @@ def report(run_path):
 @pytest.fixture
 def copy(run_path, tmp_path):
     return shutil.copytree(run_path, tmp_path / "copy")
-
-
-def blocks_of(report, kind, anchor=None):
-    """Return the blocks of a kind, of the whole report or of one section."""
-    sections = [s for s in report.sections if anchor in (None, s.anchor)]
-    return [block for section in sections for block in section.blocks if isinstance(block, kind)]
 
 
 def flights_of(report):
