@@ -93,7 +93,7 @@ def test_the_table_counts_and_orders_as_the_run_did(failed_path, failed):
         ordered = np.sort(rows["settling_time_s"].fillna(np.inf))
         # The 600th or 601st of 1200 is their median: either may be printed, to the second.
         assert float(cells[4].replace(",", "")) == pytest.approx(ordered[600], abs=0.5 + ordered[600] - ordered[599])
-        # Under every law some never settled, so that the time by which all had is none.
+        # Under every law some never settled, so that there is no time by which all had.
         assert cells[7] == "–"
         assert [row[2] for row in table.rows[4 * i : 4 * i + 3]] == ["400", "400", "400"]
 
