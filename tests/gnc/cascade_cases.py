@@ -3,12 +3,7 @@
 import math
 
 import numpy as np
-from gnc_cases import (
-    SPEED,
-    delta_steering,
-    relative,
-    tracking_motion,
-)
+from gnc_cases import SPEED, delta_steering, relative, tracking_motion
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 

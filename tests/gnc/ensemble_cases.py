@@ -3,12 +3,7 @@
 import math
 
 import numpy as np
-from gnc_cases import (
-    HEADING_RATE_MAX,
-    LOOK_AHEAD,
-    OSCILLATION,
-    SPEED,
-)
+from gnc_cases import HEADING_RATE_MAX, LOOK_AHEAD, OSCILLATION, SPEED
 from lyapunov_cases import K_1
 
 from gnc.analysis.ensemble import fly_ensemble

@@ -1,8 +1,6 @@
 """What the tests of law (24) share."""
 
-from gnc_cases import (
-    SPEED,
-)
+from gnc_cases import SPEED
 
 from gnc.laws.lyapunov import lyapunov_law
 

@@ -5,19 +5,11 @@ import math
 import numpy as np
 import pytest
 from bounds_cases import command, distances, look_aheads, steering, turns
-from gnc_cases import (
-    LOOK_AHEAD,
-    SPEED,
-    courses,
-    examples,
-)
+from gnc_cases import LOOK_AHEAD, SPEED, courses, examples
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.analysis.bounds import (
-    heading_rate_bound,
-    heading_rate_bound_least,
-)
+from gnc.analysis.bounds import heading_rate_bound, heading_rate_bound_least
 from gnc.analysis.worst_case_search import heading_rates
 from gnc.analysis.worst_position import factors, factors_at_most
 from gnc.errors import InfeasibleError

@@ -5,25 +5,12 @@ import math
 import numpy as np
 import pytest
 from cascade_cases import cartesian_v_1_rate, fly_law_30, gains, rates_max
-from gnc_cases import (
-    LOOK_AHEAD,
-    OSCILLATION,
-    SPEED,
-    circling,
-    courses,
-    examples,
-    oscillating,
-    relative,
-    tracking_starts,
-)
+from gnc_cases import LOOK_AHEAD, OSCILLATION, SPEED, circling, courses, examples, oscillating, relative, tracking_starts
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from gnc.analysis.cascade_system import (
-    delta_bound,
-    excursion_time,
-)
+from gnc.analysis.cascade_system import delta_bound, excursion_time
 from gnc.laws.cascade import h
 from gnc.laws.delta import look_ahead
 

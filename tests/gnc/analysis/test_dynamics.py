@@ -29,6 +29,14 @@ from gnc.numeric import wrap
 
 offsets = st.floats(-300.0, 300.0)
 heading_rates = st.floats(-0.5, 0.5)
+ANY_MOTION = given(
+    north=offsets,
+    east=offsets,
+    reference_course=courses,
+    course=courses,
+    reference_heading_rate=heading_rates,
+    heading_rate=heading_rates,
+)
 
 
 def law_30(state, omega_rho):
@@ -90,14 +98,7 @@ def test_equation_20_follows_from_21_by_the_law_of_cosines_and_keeps_delta_what_
 
 
 @examples(100)
-@given(
-    north=offsets,
-    east=offsets,
-    reference_course=courses,
-    course=courses,
-    reference_heading_rate=heading_rates,
-    heading_rate=heading_rates,
-)
+@ANY_MOTION
 def test_equation_21_is_as_printed(north, east, reference_course, course, reference_heading_rate, heading_rate):
     state = relative([north, east, reference_course, 0.0, 0.0, course])
     delta, rho, phi_r, phi = state
@@ -135,14 +136,7 @@ def test_v_1_is_half_the_squared_distance(north, east, reference_course, course)
 
 
 @examples(100)
-@given(
-    north=offsets,
-    east=offsets,
-    reference_course=courses,
-    course=courses,
-    reference_heading_rate=heading_rates,
-    heading_rate=heading_rates,
-)
+@ANY_MOTION
 def test_the_rate_of_v_1_is_equation_23_whatever_the_control(
     north, east, reference_course, course, reference_heading_rate, heading_rate
 ):

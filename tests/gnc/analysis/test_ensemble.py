@@ -5,17 +5,7 @@ import math
 import numpy as np
 import pytest
 from ensemble_cases import GAIN, STEERING_MAX, TIGHT, VEHICLE, fly, history, oscillating, references, wandering
-from gnc_cases import (
-    HEADING_RATE_MAX,
-    LOOK_AHEAD,
-    OSCILLATION,
-    SPEED,
-    courses,
-    delta_steering,
-    examples,
-    relative,
-    tracking_motion,
-)
+from gnc_cases import HEADING_RATE_MAX, LOOK_AHEAD, OSCILLATION, SPEED, courses, delta_steering, examples, relative, tracking_motion
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from lyapunov_cases import K_1

@@ -5,10 +5,7 @@ import math
 import numpy as np
 import pytest
 from ensemble_cases import BAND, GAIN, STEERING_MAX, fly, history, oscillating, references, wandering
-from gnc_cases import (
-    LOOK_AHEAD,
-    SPEED,
-)
+from gnc_cases import LOOK_AHEAD, SPEED
 from lyapunov_cases import K_1
 
 from gnc.analysis.averaged_motion import averaged_settling_time

@@ -5,13 +5,7 @@ import math
 import numpy as np
 import pytest
 from bounds_cases import LIMIT, distances, fastest, look_aheads, steering
-from gnc_cases import (
-    LOOK_AHEAD,
-    SPEED,
-    courses,
-    examples,
-    relative,
-)
+from gnc_cases import LOOK_AHEAD, SPEED, courses, examples, relative
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
