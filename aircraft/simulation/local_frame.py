@@ -34,10 +34,6 @@ class LocalFrame:
         self.east_scale = (EQUATORIAL_RADIUS / math.sqrt(w) + altitude) * math.cos(latitude)
         """Metres per radian of longitude: radius of the parallel."""
 
-    def to_local(self, latitude: float, longitude: float) -> tuple[float, float]:
-        """Return north and east [m] of a place [rad]."""
-        return (latitude - self._latitude) * self.north_scale, (longitude - self._longitude) * self.east_scale
-
     def to_geodetic(self, north: float, east: float) -> tuple[float, float]:
         """Return latitude and longitude [rad] of a local place [m]."""
         return self._latitude + north / self.north_scale, self._longitude + east / self.east_scale

@@ -3,12 +3,9 @@
 import math
 
 from scipy.optimize import brentq
-from scipy.special import j0, jn_zeros
+from scipy.special import j0
 
 from gnc.errors import InfeasibleError
-
-ETA_MAX = float(jn_zeros(0, 1)[0])
-"""First zero of J_0: eta of a vessel at rest [rad]."""
 
 
 def mean_speed_ratio(eta: float) -> float:

@@ -12,6 +12,9 @@ CONTROLS = ("elevator", "aileron", "throttle", "rudder")
 TOGETHER = "all controls"
 """The loop break at all controls at once, which has disk margins only."""
 
+FAST = 45.0
+"""Poles farther out [rad/s] belong to servos and delays, and would hide those of the flight."""
+
 _REQUIRED = {"gain_db": 6.0, "phase_deg": 45.0, "perturbed_gain_db": 4.0, "perturbed_phase_deg": 30.0}
 _MARGINS = ("gain_db", "phase_deg", "disk_gain_db", "disk_phase_deg")
 

@@ -5,11 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from reports.design.data import Record, speed
+from reports.design.data import FAST, Record, speed
 from reports.document.chart import Chart, Line, Note, Panel
-
-_FAST = 45.0
-"""Poles farther out [rad/s] belong to servos and delays, and would hide those of the flight."""
 
 _SLOW = 1.5
 """Size of the magnified part about the origin [rad/s]."""
@@ -23,7 +20,7 @@ def pole_chart(design: Record) -> Chart:
     return Chart(
         name="gridpoles",
         caption="Poles at every point of the grid, by airspeed; the lower half is its mirror image. Left the bare aircraft with"
-        f" servos and engine, right under the autopilot; below, magnified about the origin. Poles beyond {_FAST:g} rad/s (servos,"
+        f" servos and engine, right under the autopilot; below, magnified about the origin. Poles beyond {FAST:g} rad/s (servos,"
         " delays) are left out. Rays: damping ratio ζ.",
         panels=[
             *(_panel(design, kind, title, _reach(design)) for kind, title in _KINDS),
@@ -40,7 +37,7 @@ _KINDS = (("open_loop", "Aircraft"), ("closed_loop", "Under the autopilot"))
 def _reach(design: Record) -> float:
     """Return the distance from the origin of the farthest pole that is shown."""
     sizes = [math.hypot(*pole) for poles in design["poles"] for kind, _ in _KINDS for pole in poles[kind]]
-    return max((size for size in sizes if size < _FAST), default=_FAST)
+    return max((size for size in sizes if size < FAST), default=FAST)
 
 
 def _panel(design: Record, kind: str, title: str, reach: float) -> Panel:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from reports.design.data import Record, at_middle, bank_deg, loop_name, loops_of, responses_of, speed
+from reports.design.data import FAST, Record, at_middle, bank_deg, loop_name, loops_of, responses_of, speed
 from reports.design.loop_charts import turned
 from reports.design.loop_styles import LOOP_STYLES, OTHER_LOOP
 from reports.design.response_charts import RESPONSE_STYLES
@@ -15,9 +15,6 @@ _COMMANDS = {
     "airspeed": ("Airspeed [m/s]", "airspeed step"),
     "altitude": ("Altitude [m]", "altitude step"),
 }
-
-_FAST = 45.0
-"""Poles farther out belong to servos and delays, and would hide those of the flight [1/s]."""
 
 
 def innerloop_charts(design: Record) -> list[Chart]:
@@ -111,7 +108,7 @@ def _poles(design: Record) -> Chart:
 
     return Chart(
         name="poles",
-        caption=f"Poles at {speed(design['design_airspeed_mps'])}, up to {_FAST:g} 1/s: the bare aircraft with servos and engine,"
+        caption=f"Poles at {speed(design['design_airspeed_mps'])}, up to {FAST:g} 1/s: the bare aircraft with servos and engine,"
         " and under the autopilot.",
         panels=[
             Panel(
@@ -132,4 +129,4 @@ def _poles(design: Record) -> Chart:
 def _reach(poles: list[list[float]]) -> float:
     """Return how far the s-plane is shown [1/s]: to hold every pole that is not too fast, in its width and in its height."""
     sizes = [1.1 * max(-real, abs(imaginary) / 0.45) for real, imaginary in poles]
-    return max((size for size in sizes if size <= _FAST), default=_FAST)
+    return max((size for size in sizes if size <= FAST), default=FAST)

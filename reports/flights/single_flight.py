@@ -10,7 +10,7 @@ import pandas as pd
 
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, Style, circle
-from reports.run.columns import Array, column
+from reports.run.columns import NOTICEABLE, Array, column
 from reports.run.run_data import RunData
 from reports.run.time_history import about_the_plume, funnel_distance, tracking_error
 
@@ -28,9 +28,6 @@ _NEAR, _FAR = 0.95, 1.6
 
 _ERROR_MIN = 0.1
 """Floor of the tracking error's logarithmic axis [m]."""
-
-_NOTICEABLE = 1e-3
-"""Smallest estimate of the wind [m/s] and error of the vessel's position [m] that have a panel."""
 
 _TIME = "Time [s]"
 
@@ -189,7 +186,7 @@ class _View:
 
     def _wind_panel(self) -> Panel | None:
         north, east = self._c("wind_north_mps"), self._c("wind_east_mps")
-        if not np.nanmax(np.abs([north, east]), initial=0.0) > _NOTICEABLE:
+        if not np.nanmax(np.abs([north, east]), initial=0.0) > NOTICEABLE:
             return None
         # Wind is given by where it comes from.
         towards, speed = math.radians(float(self._row["wind_from_deg"])) + math.pi, float(self._row["wind_speed_mps"])
@@ -201,7 +198,7 @@ class _View:
         """Return how far the vessel is from where it is taken to be, or nothing if it is known exactly."""
         north, east = (self._c(f"vessel_seen_{axis}_m") - self._c(f"vessel_{axis}_m") for axis in ("north", "east"))
         error = np.hypot(north, east)
-        if not np.nanmax(error, initial=0.0) > _NOTICEABLE:
+        if not np.nanmax(error, initial=0.0) > NOTICEABLE:
             return None
         return Panel(x_label=_TIME, y_label="Vessel off [m]", lines=[self._line(error)])
 

@@ -11,14 +11,11 @@ from reports.document.panels import Group, capped, classes, histogram, points, q
 from reports.flights.names import fault_name, manoeuvre_name
 from reports.flights.panels_over import CLEARANCE, PanelsOver, by_violation
 from reports.monte_carlo.names import input_label
-from reports.run.columns import Array, clearance, column, total
+from reports.run.columns import NOTICEABLE, Array, clearance, column, total
 from reports.run.trials import Kind, Trial
 
 _Figure = tuple[Array, str, list[tuple[float, str]]]
 """Values of the flights, the label of their axis, and values to be marked, by name."""
-
-_NOTICEABLE = 1e-3
-"""Smallest error of the vessel's position that is shown [m]."""
 
 _R_MIN = (0.0, "r_min")
 _TRACKING = ("tracking_error_rms_m", "Tracking error, rms [m]")
@@ -123,7 +120,7 @@ def _errors(trial: Trial) -> list[Chart]:
     rows, over = trial.flown, PanelsOver(trial, "nu", by_violation(trial))
     largest, typical = column(rows, "vessel_error_max_m"), column(rows, "vessel_error_rms_m")
     vessel = None
-    if np.nanmax(largest, initial=0.0) > _NOTICEABLE:
+    if np.nanmax(largest, initial=0.0) > NOTICEABLE:
         series = [(largest, "largest of the flight", "orange"), (typical, "rms after settling", "blue")]
         vessel = histogram(series, "Error of the vessel's position [m]")
     panels = [

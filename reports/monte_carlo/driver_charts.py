@@ -8,7 +8,7 @@ import pandas as pd
 
 from reports.document.chart import Chart, Line, Panel
 from reports.document.panels import capped, level, strips
-from reports.monte_carlo.names import FIGURES, input_label, input_name
+from reports.monte_carlo.names import CLEARANCE, FIGURES, input_label, input_name
 from reports.run.columns import Array, Mask, clearance, violated
 from reports.run.run_data import RunData
 
@@ -23,8 +23,6 @@ INPUTS_MAX = 12
 
 SCATTERED = 4
 """Inputs that the clearance is shown over."""
-
-_CLEARANCE = FIGURES["clearance_m"].label
 
 
 def driver_charts(statistics: dict[str, Any]) -> list[Chart]:
@@ -112,7 +110,7 @@ def _scatter(values: "pd.Series[Any]", near: Array, groups: list[tuple[Mask, str
     bottom = min(0.0, float(near.min()))
     lines.append(level(x, 0.0, "r_min"))
     y_range = (bottom - 0.05 * (top - bottom), top)
-    return Panel(x_label=input_label(str(values.name)), y_label=_CLEARANCE, lines=lines, y_range=y_range)
+    return Panel(x_label=input_label(str(values.name)), y_label=CLEARANCE, lines=lines, y_range=y_range)
 
 
 def _strips(values: "pd.Series[Any]", near: Array, groups: list[tuple[Mask, str, str]]) -> Panel:
@@ -121,7 +119,7 @@ def _strips(values: "pd.Series[Any]", near: Array, groups: list[tuple[Mask, str,
     beyond = near > top
     shown = [*((mask & ~beyond, name, colour) for mask, name, colour in groups), (beyond, "beyond the panel", "black")]
     words, label = [str(value).replace("_", " ") for value in values], input_label(str(values.name))
-    return strips(np.minimum(near, top), words, _CLEARANCE, label, shown, [(0.0, "r_min")], named=True)
+    return strips(np.minimum(near, top), words, CLEARANCE, label, shown, [(0.0, "r_min")], named=True)
 
 
 def thinned(near: Array) -> npt.NDArray[np.int64]:

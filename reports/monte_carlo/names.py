@@ -47,6 +47,9 @@ FIGURES = {
 }
 """By the keys of ``statistics.json``, in the order they are shown."""
 
+CLEARANCE = FIGURES["clearance_m"].label
+"""Label of an axis of clearances."""
+
 
 def input_name(key: str) -> str:
     """Return what an input is called, by its dotted key, without its unit."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from reports.document.chart import Chart, Line, Panel
 from reports.document.panels import histogram
-from reports.monte_carlo.names import FIGURES
+from reports.monte_carlo.names import CLEARANCE, FIGURES
 from reports.run.columns import Array, clearance, column, interval_error
 from reports.run.run_data import RunData
 
@@ -19,14 +19,12 @@ _SHOWN = 0.005
 _NEARER = 0.9
 """Fraction of flights that the curve of the nearest goes up to."""
 
-_CLEARANCE = FIGURES["clearance_m"].label
-
 
 def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     """Return how the clearance and the other figures of the flights are spread."""
     rows = run.summary
     near = clearance(rows)
-    counted_near = histogram([(_within(near, lowest=0.0), "flights", "blue")], _CLEARANCE, [(0.0, "r_min")])
+    counted_near = histogram([(_within(near, lowest=0.0), "flights", "blue")], CLEARANCE, [(0.0, "r_min")])
     if counted_near is None:
         return []
     kept = Chart(
@@ -83,7 +81,7 @@ def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
     far = float(np.quantile(near[np.isfinite(near)], _NEARER))
     nearest = min(0.0, float(x[0]))
     return Panel(
-        x_label=_CLEARANCE,
+        x_label=CLEARANCE,
         y_label="Flights as near or nearer [%]",
         lines=[
             Line(x=x, y=100.0 * fraction, label="flights", colour="blue"),

@@ -150,7 +150,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
 
 
 def coincidences(flown: Flown) -> Array:
-    """Return the times at which phi_r = phi [s], linear between samples. Jumps by a turn are none."""
+    """Return the times at which phi_r = phi [s], linear between samples. Jumps by a turn do not count."""
     gap = flown.column("phi_r_rad") - flown.column("phi_rad")
     at = np.nonzero((gap[:-1] * gap[1:] < 0.0) & (np.abs(np.diff(gap)) < math.pi))[0]
     fraction = gap[at] / (gap[at] - gap[at + 1])

@@ -7,6 +7,9 @@ import pandas as pd
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
+NOTICEABLE = 1e-3
+"""Smallest error of a position [m] or speed [m/s] that is shown."""
+
 _LOST_MODES = ("ditched", "gliding", "terminating")
 """Modes at the end of a flight whose aircraft does not come back."""
 

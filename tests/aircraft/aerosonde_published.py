@@ -220,7 +220,7 @@ def fly(y, commands, breaks, world: World, lags: Lags, at):
     Parameters
     ----------
     commands : function of time [s] to three deflections [rad] and throttle [-], constant between the times ``breaks`` [s]
-    at : times at which the answer is wanted [s], from 0
+    at : times of the answers [s], from 0
 
     Returns
     -------

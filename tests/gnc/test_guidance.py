@@ -2,17 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from gnc_cases import (
-    HEADING_RATE_MAX,
-    SPEED,
-    TIME_STEP,
-    examples,
-    fly,
-    make_guidance,
-    make_reference,
-    motion,
-    paper_oscillation,
-)
+from gnc_cases import HEADING_RATE_MAX, SPEED, TIME_STEP, examples, fly, make_guidance, make_reference, motion, paper_oscillation
 from hypothesis import given
 from hypothesis import strategies as st
 

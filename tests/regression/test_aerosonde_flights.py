@@ -5,21 +5,21 @@ import math
 import pytest
 from study_runs import assert_flown_as_the_issue_asks, fly_study
 
-from aircraft.fleet.aerosonde import AEROSONDE
-from innerloop.designs.cache import designed
-
 NUS = (0.3, 0.5, 0.7)
+HEIGHT = "plume.source_height_m=100.0"
+"""The altitude of the design that other tests have too."""
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    return fly_study(tmp_path_factory.mktemp("aerosonde") / "run", "aerosonde", nus=NUS)
+def run(designs, tmp_path_factory):
+    designs("aerosonde")
+    return fly_study(tmp_path_factory.mktemp("aerosonde") / "run", "aerosonde", HEIGHT, nus=NUS)
 
 
-def test_every_loop_keeps_6_db_and_45_degrees_wherever_it_was_checked(run):
+def test_every_loop_keeps_6_db_and_45_degrees_wherever_it_was_checked(designs):
     # The usual requirement on a single loop (MIL-F-9490D: 6 dB, 45 deg), at every airspeed and bank, and in between. Disk margins
     # that open all controls at once are smaller by nature, and not part of it.
-    margins = [row for row in designed(AEROSONDE, 60.0).record["margins"] if row["loop"] != "all controls"]
+    margins = [row for row in designs("aerosonde").record["margins"] if row["loop"] != "all controls"]
     assert len({(row["airspeed_mps"], row["bank_rad"]) for row in margins}) > 25
     assert {"elevator", "aileron", "throttle", "rudder"} <= {row["loop"] for row in margins}
     for row in margins:
@@ -61,7 +61,13 @@ def test_its_controls_stay_off_their_stops(run):
 
 def test_the_guard_keeps_it_out_where_the_law_would_fly_in(tmp_path):
     # The X8's start at nu = 0.15 (test_flights), in the Aerosonde's units, about a keep-out area that is as much larger.
-    words = ["guidance.approach=false", "keepout.radius_m=331.44", "flight.crossings=2", "criteria.crossing_interval_error=0.1"]
+    words = [
+        HEIGHT,
+        "guidance.approach=false",
+        "keepout.radius_m=331.44",
+        "flight.crossings=2",
+        "criteria.crossing_interval_error=0.1",
+    ]
     without = fly_study(tmp_path / "without", "aerosonde", *words, "guidance.keepout_guard=false", nus=(0.15,)).rows[0.15]
     guarded = fly_study(tmp_path / "guarded", "aerosonde", *words, nus=(0.15,)).rows[0.15]
     assert without["keepout_violations"] > 0

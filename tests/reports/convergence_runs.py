@@ -9,6 +9,8 @@ LAWS = ("lyapunov", "cascade", "cascade_cut")
 REFERENCES = ("circle", "oscillation", "random")
 SPEED = 19.42
 SAMPLES = 6
+TRAJECTORIES = 1200
+"""Of each law, in the studies that several tests read."""
 
 
 def write_convergence_run(path, trajectories, *, seed=1, failures=(), cut_failures=0, state="complete", planned=None):

@@ -1,4 +1,4 @@
-"""The commands as a user types them, each in a process of its own."""
+"""The commands as a user types them: in a process of their own where that is tested, else in this one, which has imported all."""
 
 import json
 import os
@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+
+from scenarios.run import main
 
 ROOT = Path(__file__).parents[2]
 SHORT = ["--set", "flight.crossings=2", "--set", "comparison.variants=[]", "--no-report"]
@@ -25,6 +27,28 @@ def run(*arguments, module="scenarios.run", cwd=ROOT):
         check=False,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
     )
+
+
+@pytest.fixture
+def run_here(monkeypatch, capsys):
+    """Return ``run`` without a process: parsing, messages and exit status are the same."""
+
+    def run_here(*arguments):
+        monkeypatch.setattr(sys, "argv", ["scenarios.run", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        out, err = capsys.readouterr()
+        return subprocess.CompletedProcess(arguments, ended.value.code, out, err)
+
+    return run_here
+
+
+@pytest.fixture
+def interruptible():
+    """Let a child process take SIGINT, also where pytest itself was started to ignore it, as a script does behind ``&``."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def assert_refused(result, *words):
@@ -76,15 +100,16 @@ def test_help_and_list_answer():
         (["sweep_nu", "--executor", "slurm"], ["--executor", "'slurm'", "'local', 'dask'"]),
     ],
 )
-def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path):
-    assert_refused(run(*arguments, cwd=tmp_path), *words)
+def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path, run_here, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert_refused(run_here(*arguments), *words)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_directory_that_holds_another_run_is_left_alone(tmp_path):
+def test_a_directory_that_holds_another_run_is_left_alone(tmp_path, run_here):
     (tmp_path / "manifest.json").write_text('{"config_hash": "other", "fingerprint": {}}', encoding="utf-8")
     assert_refused(run("sweep_nu", "--out", tmp_path, *SHORT), "holds another run", "--resume")
-    assert_refused(run("sweep_nu", "--out", tmp_path, "--resume", *SHORT), "another configuration")
+    assert_refused(run_here("sweep_nu", "--out", tmp_path, "--resume", *SHORT), "another configuration")
     assert [path.name for path in tmp_path.iterdir()] == ["manifest.json"]
 
 
@@ -96,9 +121,11 @@ def test_an_unknown_aircraft_cannot_be_designed_for(tmp_path):
     assert_refused(run("zeppelin", "--out", tmp_path, module="innerloop.design"), "unknown aircraft 'zeppelin'")
 
 
-def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_path):
+def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_path, run_here):
     out = tmp_path / "run"
-    result = run("sweep_nu", "--out", out, *SHORT, "--set", "sweep.nu=[0.5, 1.0]", "--set", "criteria.tracking_error_rms_m=0.001")
+    result = run_here(
+        "sweep_nu", "--out", out, *SHORT, "--set", "sweep.nu=[0.5, 1.0]", "--set", "criteria.tracking_error_rms_m=0.001"
+    )
     assert result.returncode == 1
     assert "must be below 1" in result.stdout
     summary = pd.read_csv(out / "summary.csv")
@@ -107,15 +134,15 @@ def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_
     assert manifest["outcomes"]["infeasible"] == 1
 
 
-def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tmp_path):
+def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tmp_path, run_here, interruptible):
     # Two crossings are too few for means over them.
     settings = ["sweep_nu", *SHORT, "--jobs", "1", "--set", "criteria.crossing_interval_error=0.1"]
     settings += ["--set", "criteria.tracking_error_rms_m=5.0"]
     # Flights enough that some are left when the interrupt comes: the autopilot is remembered, and each takes a fifth of a second.
-    nus = [0.2, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95]
+    nus = [0.2, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7, 0.8, 0.9]
     settings += ["--set", f"sweep.nu={nus}"]
     whole, broken = tmp_path / "whole", tmp_path / "broken"
-    assert run(*settings, "--out", whole).returncode == 0
+    assert run_here(*settings, "--out", whole).returncode == 0
     process = subprocess.Popen(
         [sys.executable, "-m", "scenarios.run", *settings, "--out", str(broken)],
         cwd=ROOT,
@@ -136,7 +163,7 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
     assert json.loads((broken / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
     kept = pd.read_csv(broken / "summary.csv")
     assert 1 <= len(kept) < len(nus)
-    resumed = run(*settings, "--out", broken, "--resume")
+    resumed = run_here(*settings, "--out", broken, "--resume")
     assert resumed.returncode == 0, resumed.stderr
     columns = [name for name in kept.columns if name != "wall_time_s"]
     pd.testing.assert_frame_equal(
@@ -145,11 +172,11 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
     assert (broken / "crossings.csv").read_bytes() == (whole / "crossings.csv").read_bytes()
 
 
-def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tmp_path):
+def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tmp_path, run_here):
     # 0.005 of 200 flights, with the seed and the duration that the trials are told; too short to settle.
     keys = ["trials=['sea_wind']", "share=0.005", "fidelity=kinematic", "flight.duration_max_s=10", "start.spread_deg=0"]
     settings = [word for key in keys for word in ("--set", key)]
-    result = run("sea_trial", *settings, "--seed", "7", "--no-report", "--jobs", "1", "--out", tmp_path / "run")
+    result = run_here("sea_trial", *settings, "--seed", "7", "--no-report", "--jobs", "1", "--out", tmp_path / "run")
     assert result.returncode == 1, result.stderr
     assert "1 flights planned, 1 done" in result.stdout
     manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))

@@ -74,7 +74,7 @@ def test_outputs_inputs_and_autopilots_are_left_out_and_other_systems_stay(probe
     assert config.find("output") is None
     assert config.find("input") is None
     assert config.find("autopilot") is None
-    # "map" has "ap" in it and is none; nor is a system of utilities.
+    # "map" has "ap" in it and is no autopilot; nor is a system of utilities.
     names = [system.get("name") for system in config.findall("system")]
     assert names == ["GNCUtilities", "map of flaps", "The model's own autopilot, off"]
 

@@ -5,25 +5,11 @@ import math
 import numpy as np
 import pytest
 from bounds_cases import LIMIT, fastest, time_of
-from gnc_cases import (
-    HEADING_RATE_MAX,
-    LOOK_AHEAD,
-    SPEED,
-    examples,
-    fly,
-    make_guidance,
-    make_reference,
-    paper_oscillation,
-)
+from gnc_cases import HEADING_RATE_MAX, LOOK_AHEAD, SPEED, examples, fly, make_guidance, make_reference, paper_oscillation
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.analysis.bounds import (
-    convergence_time,
-    fastest_within,
-    heading_rate_bound,
-    heading_rate_bound_least,
-)
+from gnc.analysis.bounds import convergence_time, fastest_within, heading_rate_bound, heading_rate_bound_least
 from gnc.analysis.worst_case_search import heading_rates
 from gnc.errors import InfeasibleError
 from gnc.laws.cascade import CascadeLaw

@@ -19,7 +19,7 @@ READ = (
     "fcs/throttle-cmd-norm", "autopilot/throttle-command", "propulsion/engine/thrust-lbs", "position/h-sl-ft", "velocities/vt-fps",
     "autopilot/heading-rate-rad_sec",
 )  # fmt: skip
-LEFT, RIGHT, LEFT_MIXED, RIGHT_MIXED, THROTTLE, THROTTLE_WANTED, THRUST, ALTITUDE, AIRSPEED, HEADING_RATE = range(len(READ))
+LEFT, RIGHT, LEFT_MIXED, RIGHT_MIXED, THROTTLE, THROTTLE_DEMANDED, THRUST, ALTITUDE, AIRSPEED, HEADING_RATE = range(len(READ))
 AT = 3.0
 
 
@@ -65,7 +65,7 @@ def test_a_throttle_that_sticks_stays_at_trim_and_the_turn_costs_airspeed_alone(
     log = fly(failable, x8_schedule.level(MIDDLE), 25.0, "throttle")
     failed = round(AT / TIME_STEP) + 1
     np.testing.assert_array_equal(log[failed:, THROTTLE], log[0, THROTTLE])
-    assert np.ptp(log[failed:, THROTTLE_WANTED]) > 0.01  # the autopilot asks for more
+    assert np.ptp(log[failed:, THROTTLE_DEMANDED]) > 0.01  # the autopilot asks for more
     # A turn has more drag: slower than the trim, by 0.14 m/s when measured; altitude and heading rate are the elevons' work.
     assert 0.05 < (log[0, AIRSPEED] - log[-1, AIRSPEED]) * FOOT < 0.5
     assert log[-1, ALTITUDE] * FOOT == pytest.approx(log[0, ALTITUDE] * FOOT, abs=0.1)

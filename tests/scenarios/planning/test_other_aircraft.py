@@ -19,7 +19,8 @@ from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
-SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]"]
+# At 100 m, the altitude of the designs that other tests have too.
+SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]", "plume.source_height_m=100.0"]
 
 # Two crossings, right after settling, are too few for means over them.
 LOOSE = ["criteria.crossing_interval_error=0.1", "criteria.tracking_error_rms_m=5.0"]
@@ -103,7 +104,8 @@ def test_flights_that_were_refused_are_done_and_are_not_tried_again(refuse, tmp_
     assert [report for report in told if report[0] == "flying"] == [("flying", 1, 1)]
 
 
-def test_the_kinematic_vehicle_flies_as_the_aircraft_that_is_named_would(tmp_path):
+def test_the_kinematic_vehicle_flies_as_the_aircraft_that_is_named_would(designs, tmp_path):
+    designs("aerosonde")
     out = tmp_path / "run"
     assert run(out, "fidelity=kinematic", "aircraft=aerosonde", *LOOSE).all_met
     flown = pd.read_parquet(out / "flights" / "nu_0.50.parquet")
@@ -122,9 +124,10 @@ def test_the_kinematic_vehicle_alone_needs_no_design(refuse, tmp_path):
     assert run(tmp_path / "run", "fidelity=kinematic", *LOOSE).all_met
 
 
-def test_aircraft_that_differ_from_flight_to_flight_are_refused(tmp_path):
+def test_aircraft_that_differ_from_flight_to_flight_are_refused(designs, tmp_path):
+    designs("x8")
     variants = 'comparison={ nu = [0.5], variants = [{ name = "other", set = { aircraft = "aerosonde" } }] }'
-    scenario = load_study("sweep_nu", ["sweep.nu=[0.5]", variants])
+    scenario = load_study("sweep_nu", [*SHORT, variants])
     with pytest.raises(InputError, match="flights differ in aircraft"):
         run_study(scenario, "x", tmp_path / "run")
 

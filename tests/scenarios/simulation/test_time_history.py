@@ -11,10 +11,10 @@ from tests.run_tables import history_in
 MET, UNMET = {"criteria_met": True}, {"criteria_met": False}
 
 
-@pytest.mark.parametrize(("planned", "wanted"), [(1, 1), (7, 3), (100, 7), (20, 20), (5, 200), (1000, 1), (10, 0)])
-def test_as_many_are_kept_as_are_asked_for_evenly_among_all(planned, wanted):
-    kept = [number for number in range(planned) if keeps_history(Task(number=number), planned=planned, kept=wanted, row=MET)]
-    assert len(kept) == min(planned, wanted)
+@pytest.mark.parametrize(("planned", "asked"), [(1, 1), (7, 3), (100, 7), (20, 20), (5, 200), (1000, 1), (10, 0)])
+def test_as_many_are_kept_as_are_asked_for_evenly_among_all(planned, asked):
+    kept = [number for number in range(planned) if keeps_history(Task(number=number), planned=planned, kept=asked, row=MET)]
+    assert len(kept) == min(planned, asked)
     if len(kept) > 1:
         # Every so many: two gaps differ by one at most.
         assert np.ptp(np.diff(kept)) <= 1

@@ -10,100 +10,18 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from report_parts import blocks_of
+from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
 from reports.document.blocks import FlightPicker, Table, Text
-from reports.document.chart import Chart, Line, Panel
-from reports.flights.selection import PICKED_MAX, picked_flights
-from reports.flights.single_flight import flight_charts
-from reports.flights.trial_charts import trial_charts
 from reports.flights.trial_tables import FAILED_MAX
 from reports.registry import content
-from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
 from reports.run.trials import Kind, Trial, read_trials
-from scenarios.schema.experiment import TrialList
 from scenarios.schema.load import OPERATIONAL, bases, load_study
 from scenarios.schema.overrides import given_keys
 from scenarios.studies.manifest import parameters
-from scenarios.studies.registry import run_study
-
-# Both settle and cross a few times, within some 150 s; after that the vessel of the second turns, which takes it 40 s at most.
-STEADY = """
-study = "sea"
-title = "Steady"
-fidelity = "kinematic"
-flights = 2
-draws = [{ key = "wind.speed_mps", uniform = [2.0, 4.0] }]
-[flight]
-crossings = 3
-[criteria]
-crossing_interval_error = 0.0321
-"""
-TURNS = """
-study = "sea"
-title = "Turns"
-fidelity = "kinematic"
-flights = 2
-[wind]
-speed_mps = 3.0
-[reports]
-interval_s = [2.0, 10.0]
-[following]
-vessel_acceleration_mps2 = 0.1
-[[draws]]
-key = "vessel.manoeuvres"
-choice = [[{ at_s = 150.0, turn_deg = 20.0, turn_rate_deg_s = 0.5 }], [{ at_s = 150.0, turn_deg = -10.0, turn_rate_deg_s = 0.5 }]]
-[flight]
-crossings = 0
-duration_max_s = 220.0
-[criteria]
-settles = false
-"""
-
-
-@pytest.fixture(scope="module")
-def run_path(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("trials")
-    for name, text in (("steady", STEADY), ("turns", TURNS)):
-        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
-    study = TrialList(study="trials", title="Small", trials=[str(folder / "steady.toml"), str(folder / "turns.toml")])
-    run_study(study, "small", folder / "run")
-    return folder / "run"
-
-
-@pytest.fixture(scope="module")
-def run(run_path):
-    return read_run(run_path)
-
-
-@pytest.fixture(scope="module")
-def report(run):
-    return content(run)
-
-
-def with_values(run, number, **values):
-    """Return a run with other values in one row of its summary."""
-    summary = run.summary.copy()
-    for key, value in values.items():
-        summary.loc[number, key] = value
-    return replace(run, summary=summary)
-
-
-def blocks_of(report, kind, anchor):
-    (section,) = (section for section in report.sections if section.anchor == anchor)
-    return [block for block in section.blocks if isinstance(block, kind)]
-
-
-def charts_of(report):
-    blocks = [block for section in report.sections for block in section.blocks]
-    flights = [flight for block in blocks if isinstance(block, FlightPicker) for flight in block.flights]
-    return [*(block for block in blocks if isinstance(block, Chart)), *(chart for flight in flights for chart in flight.charts)]
-
-
-def rows_of(report, title):
-    """Return the cells of a trial in the tables of all trials, but for its title."""
-    return [row[1:] for table in blocks_of(report, Table, "trials") for row in table.rows if row[0] == title]
 
 
 def test_trials_are_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
@@ -152,12 +70,6 @@ def test_of_nothing_flown_nothing_is_claimed(run):
     assert (verdict.holds, verdict.headline) == (False, "Nothing was flown")
 
 
-def with_criterion(run, trial, key, value):
-    manifest = json.loads(json.dumps(run.manifest))
-    manifest["trials"][trial]["criteria"][key] = value
-    return replace(run, manifest=manifest)
-
-
 def test_the_limits_shown_are_those_of_the_manifest(run, report):
     # 0.0321 stands in the scenario above.
     asked = {row[0]: row for row in rows_of(report, "Steady")[1:]}
@@ -189,18 +101,6 @@ def test_a_criterion_that_the_report_does_not_know_is_shown_all_the_same(run):
     assert ["loops per hour", "7", "see the flights that failed", "0"] in rows
 
 
-def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(run_path, tmp_path):
-    path = shutil.copytree(run_path, tmp_path / "copy")
-    (path / "flights" / "steady_00000.parquet").unlink()
-    bare = read_run(path)
-    shown = [str(row["flight_id"]) for _, row, _ in picked_flights(read_trials(bare))]
-    assert sorted(shown) == ["steady_00001", "turns_00000", "turns_00001"]
-    # A flight with a violation is shown whatever is left of it; the page says that it has no time history.
-    deep = content(with_values(bare, 0, keepout_violations=1, keepout_depth_m=0.5, criteria_met=False))
-    (picker,) = blocks_of(deep, FlightPicker, "flights")
-    assert (picker.flights[0].flight_id, picker.flights[0].charts) == ("steady_00000", [])
-
-
 def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run_path, tmp_path):
     path = shutil.copytree(run_path, tmp_path / "copy")
     shutil.rmtree(path / "flights")
@@ -210,51 +110,6 @@ def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run
     assert not report.verdict.complete
     assert "Turns: 2 of 2 not flown yet" in report.verdict.failures
     assert [section.anchor for section in report.sections if section.anchor in ("trial1", "trial2", "flights")] == ["trial1"]
-
-
-def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
-    for trial in read_trials(run):
-        for _, row in trial.rows.iterrows():
-            tracks = flight_charts(run, row, trial.source_height)[0]
-            lines = {line.label: line for line in tracks.panels[0].lines}
-            uav, closest = lines["UAV"], lines["closest"]
-            # The summary's bearing from the plume's axis counts clockwise, so that it is positive to the right of the axis.
-            aspect, distance = math.radians(row["start_aspect_deg"]), row["start_distance_m"]
-            assert uav.x[0] == pytest.approx(distance * math.sin(aspect), abs=1e-6)
-            assert uav.y[0] == pytest.approx(distance * math.cos(aspect), abs=1e-6)
-            # The flight is level with the funnel. Between samples, 0.1 s apart at 28 m/s at most, the summary interpolates.
-            assert math.hypot(closest.x[0], closest.y[0]) == pytest.approx(row["min_distance_m"], abs=0.02)
-
-
-def test_flights_cross_the_axis_where_the_trial_found_crossings(run):
-    trial = read_trials(run)[0]
-    row = trial.rows.iloc[0]
-    tracks, histories = flight_charts(run, row, trial.source_height)
-    uav = next(line for line in tracks.panels[0].lines if line.label == "UAV")
-    time = next(line for line in histories.panels[0].lines if line.label == "flown").x
-    crossings = run.crossings_of(str(row["flight_id"]))
-    assert len(crossings) == 3
-    # Interpolated over up to 0.2 s of turns of up to 1 g: 9.81 0.2^2 / 8, 0.05 m.
-    assert np.interp(crossings["time_s"], time, uav.x) == pytest.approx(np.zeros(3), abs=0.05)
-    assert np.interp(crossings["time_s"], time, uav.y) == pytest.approx(crossings["axis_distance_m"].to_numpy(), abs=0.05)
-
-
-def test_manoeuvres_are_named_as_the_vessel_was_seen_to_turn(run):
-    trial = read_trials(run)[1]
-    (chart,) = trial_charts(trial)
-    names = [name for _, name in chart.panels[1].y_names]
-    assert names == ["", ""]
-    assert [name for _, name in chart.panels[0].y_names] == ["20° to starboard at 0.5°/s", "10° to port at 0.5°/s"]
-    for flight_id, turned in zip(trial.rows["flight_id"], (20.0, -10.0), strict=True):
-        history = run.history(str(flight_id))
-        courses = [
-            math.degrees(math.atan2(history["vessel_velocity_east_mps"].iloc[i], history["vessel_velocity_north_mps"].iloc[i]))
-            for i in (0, -1)
-        ]
-        assert courses[1] - courses[0] == pytest.approx(turned, abs=1e-6)
-    # One marker per flight, in rows a unit apart of which the first manoeuvre's is the upper one.
-    marks = next(line for line in chart.panels[1].lines if line.style == "points")
-    assert list(marks.y) == [1.0, 0.0]
 
 
 @pytest.mark.parametrize(
@@ -274,16 +129,6 @@ def test_a_trial_is_known_by_what_it_holds_not_by_its_name(run, name, kind):
     assert Trial(run=run, key="any", name="trial1", config=config, rows=run.summary).kind is kind
 
 
-@pytest.mark.parametrize("kind", [kind for kind in Kind if kind is not Kind.SWEEP])
-def test_every_kind_of_trial_has_figures_of_any_run(run, kind, monkeypatch):
-    monkeypatch.setattr(Trial, "kind", kind)
-    for trial in read_trials(run):
-        charts = trial_charts(trial)
-        # No vessel manoeuvres, and so no crossing resumes, but there is always a closest approach to show.
-        assert charts
-        assert all(len(line.x) for chart in charts for panel in chart.panels for line in panel.lines)
-
-
 def test_a_long_list_of_failed_flights_is_cut_and_says_so(run):
     count = FAILED_MAX + 7
     row = run.summary.iloc[[0]].assign(criteria_met=False)
@@ -294,13 +139,6 @@ def test_a_long_list_of_failed_flights_is_cut_and_says_so(run):
     assert len(table.rows) == FAILED_MAX
     assert f"{count} flights failed" in text.text
     assert "7 more are in summary.csv" in text.text
-
-
-def test_no_more_flights_are_shown_than_stated_and_every_trial_has_its_share(run):
-    trials = [replace(trial, key=f"{trial.key}{i}") for i in range(5) for trial in read_trials(run)]
-    picked = picked_flights(trials)
-    assert len(picked) == PICKED_MAX
-    assert {trial.key for trial, _, _ in picked} == {trial.key for trial in trials}
 
 
 def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
@@ -324,18 +162,6 @@ def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
     assert listed["vessel.manoeuvres"]["default"] == []
 
 
-def test_an_ordinate_of_names_is_marked_alike_on_screen_and_in_print():
-    line = Line(x=np.array([0.0, 1.0]), y=np.array([0.0, 1.0]), label="", colour="blue")
-    names = [(0.0, "approach"), (1.0, "tracking")]
-    chart = Chart(
-        name="c", caption="", panels=[Panel(x_label="Time [s]", y_label="Mode [-]", lines=[line], y_names=names)]
-    )  # fmt: skip
-    printed = matplotlib_charts.draw(chart).axes[0]
-    assert [(tick, text.get_text()) for tick, text in zip(printed.get_yticks(), printed.get_yticklabels(), strict=True)] == names
-    screen = plotly_charts.draw(chart).layout.yaxis
-    assert list(zip(screen.tickvals, screen.ticktext, strict=True)) == names
-
-
 def test_a_flight_that_lost_its_aircraft_has_not_met_whatever_its_criteria_allow(run):
     report = content(with_values(run, 1, mode_at_end="ditched"))
     # Three of four kept it: nothing that must never happen did, but not everything is as it should be.
@@ -343,19 +169,6 @@ def test_a_flight_that_lost_its_aircraft_has_not_met_whatever_its_criteria_allow
     assert (report.verdict.holds, report.verdict.complete, report.verdict.failures) == (True, False, [])
     assert ("Flights that lost the aircraft", "1", "") in report.verdict.figures
     assert rows_of(report, "Steady")[0][-2:] == ["1", "1 of 2"]
-
-
-def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):
-    manifest = json.loads(json.dumps(run.manifest))
-    manifest["trials"]["steady"]["sweep"] = {"wind.speed_mps": [2.0, 4.0]}
-    manifest["trials"]["turns"]["sweep"] = {"turbulence.level": ["none", "light"]}
-    draws = run.draws.assign(**{"wind.speed_mps": [2.0, 4.0, 3.0, 3.0], "turbulence.level": ["none", "none", "none", "light"]})
-    report = content(replace(run, manifest=manifest, draws=draws))
-    assert [row[0] for row in blocks_of(report, Table, "trial1")[0].rows] == ["Wind speed 2 m/s", "Wind speed 4 m/s"]
-    charts = blocks_of(report, Chart, "trial1")
-    assert {panel.x_label for chart in charts for panel in chart.panels} == {"Wind speed [m/s]"}
-    (words,) = blocks_of(report, Chart, "trial2")
-    assert [name for _, name in words.panels[0].y_names] == ["none", "light"]
 
 
 def test_many_comparisons_have_a_row_for_each_variant(run):

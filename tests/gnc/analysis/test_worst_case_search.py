@@ -1,0 +1,118 @@
+"""The search for the worst states of the cascade law's command, and how nearly its bound is reached."""
+
+import math
+
+import numpy as np
+import pytest
+from bounds_cases import LIMIT, distances, fastest, look_aheads, steering
+from gnc_cases import LOOK_AHEAD, SPEED, courses, examples, relative
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from gnc.analysis.worst_case_search import heading_rates, largest_heading_rate, tightness
+from gnc.errors import InfeasibleError
+from gnc.laws.cascade import cascade_law
+from gnc.laws.delta import look_ahead, relative_velocity
+
+DESIGNS = {
+    "as flown": (LOOK_AHEAD, 0.497, 1.5, 0.4),
+    "close to the shortest R": (look_ahead(0.005, 50.5), 0.497, 1.5, 0.4),
+    "reference in a gentle circle": (look_ahead(0.005, 200.0), 0.15, 1.5, 0.1),
+    "long look-ahead": (look_ahead(0.01, 1000.0), 0.2, 1.5, 0.1),
+    "medium look-ahead": (look_ahead(0.01, 600.0), 0.3, 1.5, 0.1),
+    "slow reference": (look_ahead(0.001, 260.0), 0.05, 1.5, 0.1),
+    "steep epsilon": (look_ahead(0.1, 100.0), 0.3, 1.5, 0.05),
+}
+
+
+def design(name):
+    if name in DESIGNS:
+        return DESIGNS[name]
+    reserve = float(name.removeprefix("fastest with a reserve of "))
+    found = fastest(reserve)
+    return found.look_ahead, (1.0 - reserve) * LIMIT, found.gain, found.steering_max
+
+
+@pytest.mark.parametrize("name", [*DESIGNS, *(f"fastest with a reserve of {reserve}" for reserve in (0.1, 0.3, 0.6))])
+def test_a_hundred_thousand_adverse_states_reach_the_bound_and_do_not_exceed_it(name):
+    parameters, turn, gain, steering_max = design(name)
+    found = tightness(
+        parameters,
+        speed=SPEED,
+        reference_heading_rate_max=turn,
+        gain=gain,
+        steering_max=steering_max,
+        samples=100_000,
+        generator=np.random.default_rng(14),
+    )
+    assert found.largest <= found.bound
+    # The bound may lie 1e-4 above the largest omega_rho. The search finds that to 1e-6.
+    assert found.ratio <= 1.0 + 1.1e-4
+
+
+def test_where_h_saturates_late_the_bound_is_still_one_but_no_longer_reached():
+    # h of 2.8 rad/s at a gain of 1.5 1/s saturates at phi = 1.87 rad, beyond the pi/2 at which omega_rho is largest.
+    found = tightness(
+        LOOK_AHEAD,
+        speed=SPEED,
+        reference_heading_rate_max=0.497,
+        gain=1.5,
+        steering_max=2.8,
+        samples=50_000,
+        generator=np.random.default_rng(15),
+    )
+    # Measured: 1.0067.
+    assert 1.005 < found.ratio < 1.008
+
+
+@examples(300)
+@given(
+    parameters=look_aheads(),
+    distance=distances,
+    direction=courses,
+    reference_course=courses,
+    course=courses,
+    turn=st.floats(-1.0, 1.0),
+    gain=st.floats(0.1, 5.0),
+    steering_max=steering,
+)
+def test_the_worst_case_search_commands_what_the_guidance_does(
+    parameters, distance, direction, reference_course, course, turn, gain, steering_max
+):
+    north, east = distance * math.cos(direction), distance * math.sin(direction)
+    state = relative([north, east, reference_course, 0.0, 0.0, course], parameters)
+    # At half a turn the sign of h is a matter of rounding.
+    assume(abs(state.phi) < math.pi - 1e-6)
+    _, omega_rho = relative_velocity(parameters, state, SPEED, SPEED, turn)
+    vectors = heading_rates(
+        parameters,
+        north=north,
+        east=east,
+        reference_course=reference_course,
+        course=course,
+        speed=SPEED,
+        reference_heading_rate=turn,
+        gain=gain,
+        steering_max=steering_max,
+    )
+    # Roundings of z, amplified by 1/(1 - sigma) = 100 twice, in commands of up to 1,000 rad/s.
+    assert float(vectors) == pytest.approx(cascade_law(state.phi, omega_rho, gain, steering_max), rel=1e-9, abs=1e-9)
+
+
+def test_the_search_is_the_generators_alone():
+    search = {"speed": SPEED, "reference_heading_rate_max": 0.497, "gain": 1.5, "steering_max": 0.4, "samples": 1000}
+    first, second = (largest_heading_rate(LOOK_AHEAD, **search, generator=np.random.default_rng(3)) for _ in range(2))
+    assert first == second
+
+
+def test_a_search_without_samples_is_refused():
+    with pytest.raises(InfeasibleError, match="samples is 0; at least 1"):
+        largest_heading_rate(
+            LOOK_AHEAD,
+            speed=SPEED,
+            reference_heading_rate_max=0.5,
+            gain=1.5,
+            steering_max=0.4,
+            samples=0,
+            generator=np.random.default_rng(0),
+        )

@@ -1,0 +1,29 @@
+"""Two made-up studies, in one of which all trajectories converged, and their reports."""
+
+import pytest
+from convergence_runs import TRAJECTORIES, write_convergence_run
+
+from reports.registry import content
+from reports.run.run_data import read_run
+
+FAILURES = [("lyapunov", 3, "time_up"), ("cascade", 7, "steps_up"), ("cascade", 200, "not_finite")]
+
+
+@pytest.fixture(scope="session")
+def converged_path(tmp_path_factory):
+    return write_convergence_run(tmp_path_factory.mktemp("converged") / "run", TRAJECTORIES)
+
+
+@pytest.fixture(scope="session")
+def failed_path(tmp_path_factory):
+    return write_convergence_run(tmp_path_factory.mktemp("failed") / "run", TRAJECTORIES, failures=FAILURES, cut_failures=40)
+
+
+@pytest.fixture(scope="session")
+def converged(converged_path):
+    return content(read_run(converged_path))
+
+
+@pytest.fixture(scope="session")
+def failed(failed_path):
+    return content(read_run(failed_path))

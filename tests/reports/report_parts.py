@@ -1,0 +1,35 @@
+"""What the tests of reports look up in a report."""
+
+import re
+
+from reports.build import build_reports
+from reports.document.chart import Chart
+
+
+def built(path):
+    """Build both reports of a run and return the HTML, once it is known to load nothing and to link to what it holds."""
+    html, pdf = build_reports(path)
+    text = html.read_text(encoding="utf-8")
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert not re.search(r"<(script|link|img)[^>]+(src|href)=", text)
+    for anchor in re.findall(r'href="#(\w+)"', text):
+        assert f'id="{anchor}"' in text
+    return text
+
+
+def blocks_of(report, kind, anchor=None):
+    """Return the blocks of a kind, of the whole report or of one section."""
+    sections = [section for section in report.sections if anchor in (None, section.anchor)]
+    return [block for section in sections for block in section.blocks if isinstance(block, kind)]
+
+
+def named_charts(report):
+    """Return the charts outside the flights by name."""
+    return {chart.name: chart for chart in blocks_of(report, Chart)}
+
+
+def assert_axes_read_quantity_and_unit(charts):
+    for chart in charts:
+        for panel in chart.panels:
+            for label in (panel.x_label, panel.y_label):
+                assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)

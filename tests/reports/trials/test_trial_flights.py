@@ -1,0 +1,120 @@
+"""Figures of the flights of trials, and which flights have any."""
+
+import json
+import math
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from report_parts import blocks_of
+from trial_runs import with_values
+
+from reports.document.blocks import FlightPicker, Table
+from reports.document.chart import Chart, Line, Panel
+from reports.flights.selection import PICKED_MAX, picked_flights
+from reports.flights.single_flight import flight_charts
+from reports.flights.trial_charts import trial_charts
+from reports.registry import content
+from reports.render import matplotlib_charts, plotly_charts
+from reports.run.run_data import read_run
+from reports.run.trials import Kind, Trial, read_trials
+
+
+def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(run_path, tmp_path):
+    path = shutil.copytree(run_path, tmp_path / "copy")
+    (path / "flights" / "steady_00000.parquet").unlink()
+    bare = read_run(path)
+    shown = [str(row["flight_id"]) for _, row, _ in picked_flights(read_trials(bare))]
+    assert sorted(shown) == ["steady_00001", "turns_00000", "turns_00001"]
+    # A flight with a violation is shown whatever is left of it; the page says that it has no time history.
+    deep = content(with_values(bare, 0, keepout_violations=1, keepout_depth_m=0.5, criteria_met=False))
+    (picker,) = blocks_of(deep, FlightPicker, "flights")
+    assert (picker.flights[0].flight_id, picker.flights[0].charts) == ("steady_00000", [])
+
+
+def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
+    for trial in read_trials(run):
+        for _, row in trial.rows.iterrows():
+            tracks = flight_charts(run, row, trial.source_height)[0]
+            lines = {line.label: line for line in tracks.panels[0].lines}
+            uav, closest = lines["UAV"], lines["closest"]
+            # The summary's bearing from the plume's axis counts clockwise, so that it is positive to the right of the axis.
+            aspect, distance = math.radians(row["start_aspect_deg"]), row["start_distance_m"]
+            assert uav.x[0] == pytest.approx(distance * math.sin(aspect), abs=1e-6)
+            assert uav.y[0] == pytest.approx(distance * math.cos(aspect), abs=1e-6)
+            # The flight is level with the funnel. Between samples, 0.1 s apart at 28 m/s at most, the summary interpolates.
+            assert math.hypot(closest.x[0], closest.y[0]) == pytest.approx(row["min_distance_m"], abs=0.02)
+
+
+def test_flights_cross_the_axis_where_the_trial_found_crossings(run):
+    trial = read_trials(run)[0]
+    row = trial.rows.iloc[0]
+    tracks, histories = flight_charts(run, row, trial.source_height)
+    uav = next(line for line in tracks.panels[0].lines if line.label == "UAV")
+    time = next(line for line in histories.panels[0].lines if line.label == "flown").x
+    crossings = run.crossings_of(str(row["flight_id"]))
+    assert len(crossings) == 3
+    # Interpolated over up to 0.2 s of turns of up to 1 g: 9.81 0.2^2 / 8, 0.05 m.
+    assert np.interp(crossings["time_s"], time, uav.x) == pytest.approx(np.zeros(3), abs=0.05)
+    assert np.interp(crossings["time_s"], time, uav.y) == pytest.approx(crossings["axis_distance_m"].to_numpy(), abs=0.05)
+
+
+def test_manoeuvres_are_named_as_the_vessel_was_seen_to_turn(run):
+    trial = read_trials(run)[1]
+    (chart,) = trial_charts(trial)
+    names = [name for _, name in chart.panels[1].y_names]
+    assert names == ["", ""]
+    assert [name for _, name in chart.panels[0].y_names] == ["20° to starboard at 0.5°/s", "10° to port at 0.5°/s"]
+    for flight_id, turned in zip(trial.rows["flight_id"], (20.0, -10.0), strict=True):
+        history = run.history(str(flight_id))
+        courses = [
+            math.degrees(math.atan2(history["vessel_velocity_east_mps"].iloc[i], history["vessel_velocity_north_mps"].iloc[i]))
+            for i in (0, -1)
+        ]
+        assert courses[1] - courses[0] == pytest.approx(turned, abs=1e-6)
+    # One marker per flight, in rows a unit apart of which the first manoeuvre's is the upper one.
+    marks = next(line for line in chart.panels[1].lines if line.style == "points")
+    assert list(marks.y) == [1.0, 0.0]
+
+
+@pytest.mark.parametrize("kind", [kind for kind in Kind if kind is not Kind.SWEEP])
+def test_every_kind_of_trial_has_figures_of_any_run(run, kind, monkeypatch):
+    monkeypatch.setattr(Trial, "kind", kind)
+    for trial in read_trials(run):
+        charts = trial_charts(trial)
+        # No vessel manoeuvres, and so no crossing resumes, but there is always a closest approach to show.
+        assert charts
+        assert all(len(line.x) for chart in charts for panel in chart.panels for line in panel.lines)
+
+
+def test_no_more_flights_are_shown_than_stated_and_every_trial_has_its_share(run):
+    trials = [replace(trial, key=f"{trial.key}{i}") for i in range(5) for trial in read_trials(run)]
+    picked = picked_flights(trials)
+    assert len(picked) == PICKED_MAX
+    assert {trial.key for trial, _, _ in picked} == {trial.key for trial in trials}
+
+
+def test_an_ordinate_of_names_is_marked_alike_on_screen_and_in_print():
+    line = Line(x=np.array([0.0, 1.0]), y=np.array([0.0, 1.0]), label="", colour="blue")
+    names = [(0.0, "approach"), (1.0, "tracking")]
+    chart = Chart(
+        name="c", caption="", panels=[Panel(x_label="Time [s]", y_label="Mode [-]", lines=[line], y_names=names)]
+    )  # fmt: skip
+    printed = matplotlib_charts.draw(chart).axes[0]
+    assert [(tick, text.get_text()) for tick, text in zip(printed.get_yticks(), printed.get_yticklabels(), strict=True)] == names
+    screen = plotly_charts.draw(chart).layout.yaxis
+    assert list(zip(screen.tickvals, screen.ticktext, strict=True)) == names
+
+
+def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):
+    manifest = json.loads(json.dumps(run.manifest))
+    manifest["trials"]["steady"]["sweep"] = {"wind.speed_mps": [2.0, 4.0]}
+    manifest["trials"]["turns"]["sweep"] = {"turbulence.level": ["none", "light"]}
+    draws = run.draws.assign(**{"wind.speed_mps": [2.0, 4.0, 3.0, 3.0], "turbulence.level": ["none", "none", "none", "light"]})
+    report = content(replace(run, manifest=manifest, draws=draws))
+    assert [row[0] for row in blocks_of(report, Table, "trial1")[0].rows] == ["Wind speed 2 m/s", "Wind speed 4 m/s"]
+    charts = blocks_of(report, Chart, "trial1")
+    assert {panel.x_label for chart in charts for panel in chart.panels} == {"Wind speed [m/s]"}
+    (words,) = blocks_of(report, Chart, "trial2")
+    assert [name for _, name in words.panels[0].y_names] == ["none", "light"]
