@@ -8,13 +8,13 @@ import numpy as np
 from scenarios.search.found import Found
 from scenarios.search.method import SearchSettings, search_method
 from scenarios.search.space import Array, Space
-from scenarios.search.starts import Starts
+from scenarios.search.starts import WORTHWHILE, Starts
 
 _FIRST_STEP, _SHORTEST_STEP = 0.15, 0.005
 """Steps, one sigma of each coordinate [-]; a search ends below the shortest."""
 
 _STUCK = 12
-"""Generations in a row without a better point, after which it begins anew."""
+"""Generations in a row without a point that is better by a worthwhile amount, after which it begins anew."""
 
 _LEAST_COORDINATES = 2
 """Of a space that CMA-ES can search."""
@@ -74,12 +74,11 @@ class CovarianceMatrixAdaptation:
         """Move and shape the distribution; begin anew where it has become narrow or nothing gets better."""
         self._strategy.tell(self._asked, clearances.tolist())
         i = int(np.argmin(clearances))
+        self._stale = 0 if clearances[i] < self._least - WORTHWHILE else self._stale + 1
         if clearances[i] < self._least:
-            self._least, self._stale = float(clearances[i]), 0
+            self._least = float(clearances[i])
             self._best = self._start.copy()
             self._best[self._free] = self._asked[i]
-        else:
-            self._stale += 1
         if self._stale >= _STUCK or self._strategy.sigma < _SHORTEST_STEP or self._strategy.stop():
             self._starts.ended(self._best)
             self._strategy = None

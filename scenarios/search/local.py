@@ -7,7 +7,7 @@ import numpy as np
 from scenarios.search.found import Found
 from scenarios.search.method import SearchSettings, search_method
 from scenarios.search.space import Array, Space
-from scenarios.search.starts import Starts
+from scenarios.search.starts import WORTHWHILE, Starts
 
 _BATCH = 8
 """Points that are tried from one place, before the step follows from what came of them."""
@@ -16,7 +16,7 @@ _FIRST_STEP, _LONGEST_STEP, _SHORTEST_STEP = 0.2, 0.4, 0.01
 """Steps, one sigma of each coordinate [-]; a climb ends below the shortest."""
 
 _LONGER, _SHORTER = 1.3, 0.75
-"""Factors of the step after a batch with a better point, and after one without; one success makes up for one failure."""
+"""Factors of the step after a batch with a point that is better by a worthwhile amount, and after one without."""
 
 _MOVED = 0.25
 """Share of the coordinates that a step changes [-]: a few at a time, or one that matters is lost among those that do not."""
@@ -79,10 +79,10 @@ class LocalClimb:
     def tell(self, clearances: Array) -> None:
         """Go to the best of them if it is better; end the climb where steps have become short."""
         i = int(np.argmin(clearances))
-        better = bool(clearances[i] < self._least)
-        if better:
+        worthwhile = bool(clearances[i] < self._least - WORTHWHILE)
+        if clearances[i] < self._least:
             self._best, self._least = self._proposed[i], float(clearances[i])
-        self._step = min(self._step * (_LONGER if better else _SHORTER), _LONGEST_STEP)
+        self._step = min(self._step * (_LONGER if worthwhile else _SHORTER), _LONGEST_STEP)
         if self._step < _SHORTEST_STEP and self._best is not None:
             self._starts.ended(self._best)
             self._best = None

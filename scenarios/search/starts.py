@@ -9,6 +9,10 @@ _RANDOM_EVERY = 4
 """Every how manieth start is a random point: what no method has found yet is found from there alone."""
 
 
+WORTHWHILE = 0.1
+"""Improvement below which a search around a point counts as stuck, and looks for another place [m]."""
+
+
 class Starts:
     """The starting points of a method, one after the other.
 

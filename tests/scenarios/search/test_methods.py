@@ -47,8 +47,8 @@ CENTRE = np.linspace(0.1, 0.9, 10)
 
 
 def bowl(point):
-    """A bowl in ten dimensions whose sides are of different steepness: 0 at its centre."""
-    return float(np.linalg.norm((point - CENTRE) * np.linspace(0.5, 2.0, 10)))
+    """A bowl in ten dimensions whose sides are of different steepness: 0 m at its centre."""
+    return 100.0 * float(np.linalg.norm((point - CENTRE) * np.linspace(0.5, 2.0, 10)))
 
 
 def corner(point):
@@ -60,8 +60,8 @@ def corner(point):
 @pytest.mark.parametrize("method", ["differential_evolution", "local", "cma"])
 def test_a_method_that_learns_finds_the_centre_of_a_bowl_that_random_points_miss(method, seed):
     # 1,920 points: the share of the cube within 0.15 of the centre, by the volume of an ellipsoid, is 7e-9.
-    assert least_of_random(BOWL, bowl, seed) > 0.25
-    assert least((method,), BOWL, bowl, seed=seed)[0] < 0.15
+    assert least_of_random(BOWL, bowl, seed) > 25.0
+    assert least((method,), BOWL, bowl, seed=seed)[0] < 15.0
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -74,8 +74,8 @@ def test_corner_sampling_finds_a_corner_that_random_points_miss(seed):
 def rare(point):
     """Three coordinates that matter only with the last choice, and there are to be at a corner, at one time."""
     if point[0] < 2.0 / 3.0:
-        return 5.0 + float(point[1])
-    return 4.0 - 2.0 * float(point[1] + point[2]) + 20.0 * abs(float(point[3] - point[4]))
+        return 50.0 + float(point[1])
+    return 40.0 - 20.0 * float(point[1] + point[2]) + 200.0 * abs(float(point[3] - point[4]))
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -84,8 +84,8 @@ def test_methods_in_turn_find_two_events_at_one_time_with_one_of_the_choices(see
     space = space_of(Coordinate(choices=THIRDS), *[Coordinate()] * 2, time, time, *[Coordinate()] * 10)
     # The least is 0. A random point has the choice in 1 of 3, both quantities in the last 5 % in 1 of 400, and times within 0.01 of
     # each other in 1 of 50.
-    assert least_of_random(space, rare, seed) > 0.2
-    assert least(METHODS, space, rare, seed=seed)[0] < 0.02
+    assert least_of_random(space, rare, seed) > 2.0
+    assert least(METHODS, space, rare, seed=seed)[0] < 0.2
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -104,12 +104,12 @@ def test_a_search_around_a_point_begins_at_the_worst_that_others_found(method):
     space = space_of(*[Coordinate()] * 6, time, time)
 
     def needle(point):
-        return 1.0 if (point[:6] < 0.8).any() else float(np.abs(point[6:] - 0.37).max()) - 1.0
+        return 100.0 if (point[:6] < 0.8).any() else 100.0 * float(np.abs(point[6:] - 0.37).max()) - 100.0
 
     alone = least((method,), space, needle, turns=2)[0]
     together = least(("corners", method), space, needle, turns=40)[0]
-    assert alone == 1.0
-    assert together < -0.99
+    assert alone == 100.0
+    assert together < -99.0
 
 
 @pytest.mark.parametrize("method", ["differential_evolution", "local", "cma"])
