@@ -202,6 +202,33 @@ def clock(monkeypatch):
     monkeypatch.setattr(falsification, "time", SimpleNamespace(monotonic=lambda: float(next(ticks))))
 
 
+OWN_METHOD = """
+class Centre:
+    exhausted = False
+
+    def __init__(self, space, settings, generator):
+        self.space, self.generator = space, generator
+
+    def ask(self, found, room):
+        return 0.4 + 0.2 * self.generator.random((min(room, 5), self.space.dimension))
+
+    def tell(self, clearances):
+        pass
+"""
+
+
+def test_a_method_of_ones_own_takes_its_turns(search, tmp_path):
+    (tmp_path / "own.py").write_text(OWN_METHOD, encoding="utf-8")
+    name = str(tmp_path / "own.py:Centre")
+    out = tmp_path / "run"
+    run(search, out, f'search.methods=["corners","{name}"]', "search.generations=3", "search.confirmations=0")
+    searched, repeats = tables(out)
+    assert searched["search_method"].value_counts().to_dict() == {"corners": 2 * POPULATION, name: 2 * POPULATION}
+    assert searched[searched["search_method"] == name]["start.range_m"].between(400.0 + 0.4 * 800.0, 400.0 + 0.6 * 800.0).all()
+    assert not len(repeats)
+    assert list(manifest(out)["plugins"]) == [name]
+
+
 def test_a_search_by_time_ends_after_it_and_a_resumed_one_continues_for_as_long(search, tmp_path, monkeypatch):
     clock(monkeypatch)
     out = tmp_path / "run"
@@ -227,6 +254,11 @@ def test_its_report_says_what_was_found(found, tmp_path):
     text = html.read_text(encoding="utf-8")
     least = pd.read_csv(found / "summary.csv")["min_distance_m"].min() - 200.0
     assert f"The closest that it found stayed {least:.1f} m outside the keep-out area." in text
+    for words in ("corner sampling", "differential evolution", "local climb", "CMA-ES", "repeated with fresh noise"):
+        assert words in text
+    worst = manifest(found)["search"]["worst"]
+    assert all(entry["flight_id"] in text for entry in worst)
+    assert f"0 of {CONFIRMATIONS}" in text
     assert pdf.read_bytes().startswith(b"%PDF")
     assert manifest(found)["worst_clearance_m"] == pytest.approx(least, rel=1e-12)
 
