@@ -71,7 +71,7 @@ class CovarianceMatrixAdaptation:
         self._strategy = cma.CMAEvolutionStrategy(self._start[self._free].tolist(), _FIRST_STEP, options)
 
     def tell(self, clearances: Array) -> None:
-        """Move and shape the distribution; begin anew where it has become narrow or nothing gets better."""
+        """Move and shape the distribution; begin anew after a violation, or where it is narrow or nothing gets better."""
         self._strategy.tell(self._asked, clearances.tolist())
         i = int(np.argmin(clearances))
         self._stale = 0 if clearances[i] < self._least - WORTHWHILE else self._stale + 1
@@ -79,6 +79,7 @@ class CovarianceMatrixAdaptation:
             self._least = float(clearances[i])
             self._best = self._start.copy()
             self._best[self._free] = self._asked[i]
-        if self._stale >= _STUCK or self._strategy.sigma < _SHORTEST_STEP or self._strategy.stop():
+        stuck = self._stale >= _STUCK or self._strategy.sigma < _SHORTEST_STEP
+        if self._least < 0.0 or stuck or self._strategy.stop():
             self._starts.ended(self._best)
             self._strategy = None

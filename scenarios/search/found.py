@@ -31,9 +31,19 @@ class Found:
         self._clearances += np.asarray(clearances, dtype=np.float64).tolist()
 
     def worst(self, apart_from: Sequence[Array] = ()) -> tuple[Array, float] | None:
-        """Return the point of least clearance that is not like any of some others, and its clearance; None without one."""
+        """Return the point from which another violation may be near, and its clearance; None without one.
+
+        That is the one of least clearance that neither violates nor is like a point that does: what is found there is known.
+
+        Parameters
+        ----------
+        apart_from : points that it must not be like either
+        """
+        violating = [point for point, clearance in zip(self._points, self._clearances, strict=True) if clearance < 0.0]
         for i in self._order():
-            if not any(self._space.alike(self._points[i], other) for other in apart_from):
+            if self._clearances[i] >= 0.0 and not any(
+                self._space.alike(self._points[i], other) for other in (*apart_from, *violating)
+            ):
                 return self._points[i], self._clearances[i]
         return None
 

@@ -1,4 +1,4 @@
-"""A local climb: random steps from one of the worst points, longer after a success and shorter after a failure."""
+"""A local climb to a violation: random steps from one of the worst points, longer after a success, shorter after a failure."""
 
 import math
 
@@ -30,7 +30,7 @@ _AT_ONE_TIME = 0.05
 
 @search_method("local")
 class LocalClimb:
-    """Climbs, one after the other, each until its steps become short.
+    """Climbs, one after the other, each until it finds a violation or its steps become short.
 
     Parameters
     ----------
@@ -77,12 +77,12 @@ class LocalClimb:
         return self._space.at_one_time(point, generator) if generator.random() < _AT_ONE_TIME else point
 
     def tell(self, clearances: Array) -> None:
-        """Go to the best of them if it is better; end the climb where steps have become short."""
+        """Go to the best of them if it is better; end the climb at a violation, or where steps have become short."""
         i = int(np.argmin(clearances))
         worthwhile = bool(clearances[i] < self._least - WORTHWHILE)
         if clearances[i] < self._least:
             self._best, self._least = self._proposed[i], float(clearances[i])
         self._step = min(self._step * (_LONGER if worthwhile else _SHORTER), _LONGEST_STEP)
-        if self._step < _SHORTEST_STEP and self._best is not None:
+        if self._best is not None and (self._least < 0.0 or self._step < _SHORTEST_STEP):
             self._starts.ended(self._best)
             self._best = None

@@ -1,4 +1,4 @@
-"""Where a method that searches around one point begins: at the worst that is known, each time at another."""
+"""Where a method that searches around one point begins: at the worst that does not violate yet, each time at another."""
 
 import numpy as np
 

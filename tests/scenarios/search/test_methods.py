@@ -104,12 +104,28 @@ def test_a_search_around_a_point_begins_at_the_worst_that_others_found(method):
     space = space_of(*[Coordinate()] * 6, time, time)
 
     def needle(point):
-        return 100.0 if (point[:6] < 0.8).any() else 100.0 * float(np.abs(point[6:] - 0.37).max()) - 100.0
+        return 200.0 if (point[:6] < 0.8).any() else 100.0 * float(np.abs(point[6:] - 0.37).max())
 
     alone = least((method,), space, needle, turns=2)[0]
     together = least(("corners", method), space, needle, turns=40)[0]
-    assert alone == 100.0
-    assert together < -99.0
+    assert alone == 200.0
+    assert together < 1.0
+
+
+@pytest.mark.parametrize("method", ["local", "cma"])
+def test_a_search_around_a_point_that_has_found_a_violation_looks_for_another_one(method):
+    # Two pits with violations; from a point between them either is found, and then the other one.
+    pits = np.full(6, 0.2), np.full(6, 0.8)
+    space = space_of(*[Coordinate()] * 6)
+
+    def depth(point, pit):
+        return 100.0 * float(np.linalg.norm(point - pit)) - 10.0
+
+    _, tried = least((method,), space, lambda point: min(depth(point, pit) for pit in pits), turns=150)
+    violating = [[depth(point, pit) < 0.0 for point in tried] for pit in pits]
+    assert all(any(of) for of in violating)
+    # Once a pit is known no point of it is a start any more: it takes a few flights, not most of them.
+    assert sum(map(sum, violating)) < 0.2 * len(tried)
 
 
 @pytest.mark.parametrize("method", ["differential_evolution", "local", "cma"])

@@ -57,3 +57,7 @@ def test_the_worst_point_apart_from_those_that_were_used_is_one_unlike_them():
     assert found.worst()[1] == 1.0
     assert found.worst(apart_from=[point(0.1, 0.1)])[1] == 3.0
     assert found.worst(apart_from=[point(0.1, 0.1), point(0.9, 0.9)]) is None
+    # What violates is known, and so is what is like it.
+    found.add(np.array([[0.9, 0.88]]), [-1.0])
+    assert found.worst(apart_from=[point(0.1, 0.1)]) is None
+    assert found.worst()[1] == 1.0
