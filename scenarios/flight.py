@@ -83,7 +83,7 @@ class FlightWork:
         InputError : a sampled value is out of range
         """
         experiment, number = self.located(task.number)
-        return experiment.request(number, task.point)
+        return experiment.request(number, task.point, seed=task.seed)
 
     def fly(self, task: Task) -> Result:
         """Plan, fly, measure and record one flight."""
@@ -94,7 +94,7 @@ class FlightWork:
             request = self.request(task)
             row |= _request_row(request)
             named = {key: row[key] for key in ("flight_id", "trial", "variant")}
-            tables[DRAWS] = [named | {"nu": row.get("nu")} | _plain(request.inputs)]
+            tables[DRAWS] = [named | {"nu": row.get("nu")} | dict(task.labels) | _plain(request.inputs)]
             if self.refusal and request.scenario.fidelity == "six_dof":
                 return self._result(task, row | unflown(Outcome.TRIM_FAILED, self.refusal), tables)
             plan = self.plan(request)

@@ -5,78 +5,174 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from reports.document.blocks import Block, Section, Table, Text
+from reports.document.blocks import Block, Heading, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel
-from reports.run.columns import clearance
+from reports.run.columns import clearance, violated
 from reports.run.run_data import RunData
 
 _POINTS_MAX = 4000
-"""Flights that are shown, at most: an even sample of more."""
+"""Flights that are shown, at most: the worst, and an even sample of the others."""
+
+_LISTED_MAX = 12
+"""Violations that are listed by name, at most."""
+
+_COLOURS = ("sky", "orange", "green", "purple", "blue", "black")
+"""Of the methods, in the order in which they first proposed a flight."""
+
+_IN_WORDS = {
+    "corners": "corner sampling",
+    "differential_evolution": "differential evolution",
+    "local": "local climb",
+    "cma": "CMA-ES",
+    "confirmation": "repeated with fresh noise",
+}
 
 
 def falsification_sections(run: RunData) -> list[Section]:
     """Return the section of a run that searched for the worst flight, and none of any other."""
     config = next(iter(run.manifest["trials"].values()))
-    flown = run.summary[run.summary["min_distance_m"].notna()]
-    if config.get("study") != "falsify" or not len(flown):
+    search = run.manifest.get("search")
+    flights = _searched(run)
+    if config.get("study") != "falsify" or search is None or not len(flights):
         return []
     blocks: list[Block] = [
-        Text(_in_words(config, flown)),
-        search_chart(flown, int(config["search"]["population"])),
-        worst_table(flown, int(config["search"]["kept"])),
+        Text(_in_words(config, search, flights)),
+        search_chart(flights),
+        method_table(flights),
+        Heading("Worst flights"),
+        Text(_about_worst(config, search)),
+        worst_table(flights, search["worst"]),
     ]
     return [Section(anchor="search", title="Worst-case search", nav_title="Search", blocks=blocks)]
 
 
-def _in_words(config: dict[str, Any], flown: pd.DataFrame) -> str:
-    search = config["search"]
-    least = float(np.min(clearance(flown)))
+def _searched(run: RunData) -> pd.DataFrame:
+    """Return the flights that have a closest approach, each with the method that proposed it."""
+    flown = run.summary[run.summary["min_distance_m"].notna()]
+    if "search_method" not in run.draws:
+        return flown.assign(search_method="", confirms="")
+    labels = run.draws[["flight_id", "search_method", "confirms"]]
+    found = flown.merge(labels, on="flight_id", how="left")
+    return found.fillna({"search_method": "", "confirms": ""})
+
+
+def method_name(name: str) -> str:
+    """Return what a search method is called."""
+    return _IN_WORDS.get(name, name.rpartition(":")[2].replace("_", " "))
+
+
+def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFrame) -> str:
+    settings = config["search"]
+    searched = flights[flights["confirms"] == ""]
+    distance = clearance(flights)
+    least, inside = float(np.min(distance)), int(violated(flights).sum())
     found = (
         f"The closest that it found stayed {least:.1f} m outside the keep-out area."
         if least >= 0.0
-        else f"The worst that it found came {-least:.1f} m into the keep-out area."
+        else f"{inside:,} of the flights violated the keep-out area, the deepest by {-least:.1f} m."
     )
+    methods = ", ".join(map(method_name, settings["methods"]))
+    budget = (
+        f"{settings['generations'] + 1} turns of {settings['population']} points"
+        if settings["time_s"] is None
+        else f"turns of {settings['population']} points for {settings['time_s']:g} s"
+    )
+    beyond = search["proposed"] - len(searched)
+    left_out = f"; {beyond:,} more points were not flown, as they lie beyond what the scenario declares" if beyond > 0 else ""
     return (
-        f"Differential evolution over {len(config['draws'])} inputs within their declared ranges: up to {search['population']}"
-        f" flights a generation, {search['generations']} generations after a Sobol sequence. {found} A search finds the worst"
-        " flight within its budget and proves no bound. The worst flights are in the directory worst/, as scenario files that"
-        " replay them identically."
+        f"A search over {len(config['draws'])} inputs within their declared ranges by {methods}: {budget}, {len(searched):,}"
+        f" flights{left_out}. {found} A search finds the worst flight within its budget and proves no bound."
     )
 
 
-def search_chart(flown: pd.DataFrame, population: int) -> Chart:
-    """Return how close to the keep-out area each flight came, in the order of the search, and the closest so far."""
-    number, distance = np.arange(len(flown), dtype=np.float64), clearance(flown)
-    every = max(1, -(-len(flown) // _POINTS_MAX))
-    median = pd.Series(distance).rolling(population, min_periods=1).median().to_numpy()
-    lines = [
-        Line(x=number[::every], y=distance[::every], label="a flight", colour="sky", style="points"),
-        Line(x=number, y=median, label="median of as many flights as a generation has", colour="orange"),
-        Line(x=number, y=np.minimum.accumulate(distance), label="closest so far", colour="blue"),
+def _about_worst(config: dict[str, Any], search: dict[str, Any]) -> str:
+    settings, worst = config["search"], search["worst"]
+    repeats = (
+        f" Each was repeated {settings['confirmations']} times with fresh noise, gusts and reports: where few of these violate the"
+        " keep-out area, it took a particular realisation."
+        if settings["confirmations"]
+        else ""
+    )
+    violations = [entry["flight_id"] for entry in search["violations"]]
+    more = f" and {len(violations) - _LISTED_MAX:,} more, which the manifest lists" if len(violations) > _LISTED_MAX else ""
+    listed = f" Violations, the worst first: {', '.join(violations[:_LISTED_MAX])}{more}." if violations else ""
+    return (
+        f"The {len(worst)} closest flights that differ from one another; they are in the directory worst/, as scenario files that"
+        f" replay them identically.{repeats}{listed}"
+    )
+
+
+def search_chart(flights: pd.DataFrame) -> Chart:
+    """Return how close to the keep-out area each flight came, by method in the order of the search, and the closest so far."""
+    number, distance = np.arange(len(flights), dtype=np.float64), clearance(flights)
+    methods = list(dict.fromkeys(flights["search_method"]))
+    shown = np.zeros(len(flights), dtype=np.bool_)
+    shown[:: max(1, -(-len(flights) // _POINTS_MAX))] = True
+    shown |= violated(flights)
+    lines = []
+    for i, name in enumerate(methods):
+        points = shown & (flights["search_method"] == name).to_numpy()
+        label = method_name(name) or "a flight"
+        lines.append(Line(x=number[points], y=distance[points], label=label, colour=_COLOURS[i % len(_COLOURS)], style="points"))
+    lines += [
+        Line(x=number, y=np.minimum.accumulate(distance), label="closest so far", colour="grey"),
         Line(x=number[[0, -1]], y=np.zeros(2), label="r_min", colour="vermillion", style="dash"),
     ]
-    panel = Panel(x_label="Flights so far [-]", y_label="Distance kept beyond r_min [m]", lines=lines)
-    return Chart(name="search", caption="Closest approach of each flight, in the order of the search.", panels=[panel])
+    # Flights that stay far away say nothing of the worst.
+    highest = float(np.quantile(distance, 0.9))
+    least = min(0.0, float(distance.min()))
+    room = 0.06 * (highest - least)
+    panel = Panel(
+        x_label="Flights so far [-]",
+        y_label="Distance kept beyond r_min [m]",
+        lines=lines,
+        y_range=(least - room, highest + room),
+    )
+    caption = "Closest approach of each flight, in the order of the search; the tenth that stayed farthest away is left out."
+    return Chart(name="search", caption=caption, panels=[panel])
 
 
-def worst_table(flown: pd.DataFrame, kept: int) -> Table:
+def method_table(flights: pd.DataFrame) -> Table:
+    """Return what each method has found."""
+    rows = []
+    for name in dict.fromkeys(flights["search_method"]):
+        own = flights[flights["search_method"] == name]
+        inside = np.flatnonzero(violated(own))
+        first = str(own["flight_id"].iloc[inside[0]]) if len(inside) else "–"
+        least = f"{float(np.min(clearance(own))):.1f}"
+        rows.append([method_name(name) or "any", f"{len(own):,}", f"{len(inside):,}", first, least])
+    head = ["Method", "Flights", "Violations", "First violation", "Closest beyond r_min [m]"]
+    return Table(head=head, rows=rows, widths=[1.6, 0.8, 0.8, 1.4, 1.4], left_columns=1)
+
+
+def worst_table(flights: pd.DataFrame, worst: list[dict[str, Any]]) -> Table:
     """Return the flights that came closest, the worst first."""
-    order = np.argsort(clearance(flown), kind="stable")[:kept]
-    rows = [
-        [
-            str(i),
-            str(row["flight_id"]),
-            f"{float(row['min_distance_m'] - row['keepout_radius_m']):.1f}",
-            f"{float(row['keepout_margin_m']):.1f}",
-            f"{float(row['nu_min']):.2f} to {float(row['nu_max']):.2f}",
-            f"{float(row['wind_speed_mps']):.1f}",
-            str(row["turbulence"]),
-            f"{float(row['start_distance_m']):.0f}",
-            f"{float(row['guard_time_s']):.1f}",
-        ]
-        for i, (_, row) in enumerate(flown.iloc[order].iterrows(), start=1)
-    ]
+    by_name = flights.set_index("flight_id")
+    rows = []
+    for i, entry in enumerate(worst, start=1):
+        if entry["flight_id"] not in by_name.index:
+            continue
+        row = by_name.loc[entry["flight_id"]]
+        repeats, nearest = entry["confirmations"], entry["confirmations_nearest_m"]
+        rows.append(
+            [
+                str(i),
+                str(entry["flight_id"]),
+                method_name(entry["method"]),
+                f"{entry['clearance_m']:.1f}",
+                f"{entry['confirmations_violating']} of {repeats}" if repeats else "–",
+                f"{nearest:.1f}" if nearest is not None else "–",
+                f"{float(row['keepout_margin_m']):.1f}",
+                str(row["fault"]).replace("_", " "),
+                f"{float(row['nu_min']):.2f}–{float(row['nu_max']):.2f}",
+                f"{float(row['wind_speed_mps']):.1f}",
+                str(row["turbulence"]),
+                f"{float(row['guard_time_s']):.1f}",
+            ]
+        )
     head = [
-        "", "Flight", "Beyond r_min [m]", "Planned margin [m]", "ν", "Wind [m/s]", "Turbulence", "Start [m]", "Guard [s]",
+        "", "Flight", "Method", "Beyond r_min [m]", "Repeats that violate", "Closest of them [m]", "Planned margin [m]", "Fault",
+        "ν", "Wind [m/s]", "Turbulence", "Guard [s]",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[0.3, 1.7, 1.0, 1.0, 1.2, 0.8, 1.0, 0.8, 0.8], left_columns=2)
+    widths = [0.3, 1.5, 1.2, 0.8, 0.9, 0.9, 0.8, 1.2, 1.3, 0.7, 1.0, 0.7]
+    return Table(head=head, rows=rows, widths=widths, left_columns=3)

@@ -7,7 +7,7 @@ import platform
 from collections.abc import Mapping
 from pathlib import Path
 
-_PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic")
+_PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic", "cma")
 _SOURCE = ("aircraft", "common", "gnc", "innerloop", "scenarios")
 
 

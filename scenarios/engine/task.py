@@ -19,12 +19,16 @@ class Task:
         the number
     recorded : whether its time history is written in any case
     every_step : whether the time history has every step of the guidance
+    seed : of its noise, if the study chooses it; otherwise it follows from the number and the random variables
+    labels : columns and values that the study adds to the table of inputs
     """
 
     number: int
     point: tuple[float, ...] = ()
     recorded: bool = False
     every_step: bool = False
+    seed: int | None = None
+    labels: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

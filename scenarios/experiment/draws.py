@@ -65,19 +65,6 @@ def sampled_flight(trial: str, scenario: Scenario, number: int, point: Sequence[
     )
 
 
-def speed_ratio_excess(scenario: Scenario, point: Sequence[float]) -> float:
-    """Return how far outside ``scenario.speed_ratio`` the flight at a point gets; such flights are sampled again [-].
-
-    Parameters
-    ----------
-    scenario : a trial
-    point : as of ``sampled_flight``
-    """
-    flight = with_values(scenario, _values_at(scenario.draws, point))
-    (low, high), (least, most) = scenario.speed_ratio, speed_ratios(flight)
-    return max(0.0, low - least, most - high)
-
-
 def speed_ratios(flight: Scenario) -> tuple[float, float]:
     """Return a flight's least and greatest speed ratio [-]."""
     wind, speed = apparent_wind(flight, vessel_of(flight)), flight.guidance.airspeed_mps
@@ -104,7 +91,8 @@ def value_at(draw: DrawConfig, share: float) -> object:
     return min(max(value, draw.within[0]), draw.within[1]) if draw.within else value
 
 
-def _values_at(draws: Sequence[DrawConfig], point: Sequence[float]) -> dict[str, object]:
+def values_at(draws: Sequence[DrawConfig], point: Sequence[float]) -> dict[str, object]:
+    """Return the values of random variables, by key, for their positions from 0 to 1."""
     return {draw.key: value_at(draw, share) for draw, share in zip(draws, point, strict=True)}
 
 
@@ -122,7 +110,7 @@ def _tried(
 ) -> Iterator[dict[str, object]]:
     """Yield what to try for a flight, one after the other."""
     if point:
-        yield _values_at(draws, point)
+        yield values_at(draws, point)
     for _ in range(_TRIES):
         values: dict[str, object] = {}
         remainder = number

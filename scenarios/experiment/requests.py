@@ -98,13 +98,14 @@ class Experiment:
         """Return the number of a flight among those of its point."""
         return self._point(number)[1]
 
-    def request(self, number: int, at: Sequence[float] = ()) -> FlightRequest:
+    def request(self, number: int, at: Sequence[float] = (), *, seed: int | None = None) -> FlightRequest:
         """Return a flight.
 
         Parameters
         ----------
         number : of the flight, from 0
         at : position of each random variable in its distribution, from 0 to 1; at random if it is empty
+        seed : instead of the one that follows from the number and the random variables
 
         Raises
         ------
@@ -114,11 +115,20 @@ class Experiment:
         flight_id, variant = self.named(number)
         if point.scenario.draws:
             sampled = sampled_flight(self.name, point.scenario, index, at)
-            scenario, seed, inputs = sampled.scenario, sampled.seed, point.inputs | sampled.values
+            scenario, own, inputs = sampled.scenario, sampled.seed, point.inputs | sampled.values
         else:
             scenario, inputs = point.scenario, point.inputs
-            seed = self._seed(point, index) if scenario.flight_seed is None else scenario.flight_seed
-        return FlightRequest(flight_id=flight_id, trial=self.name, variant=variant, scenario=scenario, seed=seed, inputs=inputs)
+            own = self._seed(point, index) if scenario.flight_seed is None else scenario.flight_seed
+        if seed is not None and "flight_seed" in inputs:
+            inputs = inputs | {"flight_seed": seed}
+        return FlightRequest(
+            flight_id=flight_id,
+            trial=self.name,
+            variant=variant,
+            scenario=scenario,
+            seed=own if seed is None else seed,
+            inputs=inputs,
+        )
 
     def settings(self) -> Iterator[Scenario]:
         """Yield every kind of flight, as far as autopilot and margins depend on it: choices of guidance and turbulence apart."""

@@ -28,3 +28,6 @@ INTERVENTION_COLUMNS = (*_FLIGHT, "time_s", "duration_s", "distance_min_m", "los
 
 INPUT_COLUMNS = (*_FLIGHT, "nu")
 """Of ``draws.csv``, before the keys that differ from flight to flight: a row per flight."""
+
+SEARCH_COLUMNS = ("search_method", "confirms")
+"""Of ``draws.csv`` of a search, between these: the method that proposed the flight, or the flight that it repeats."""

@@ -200,6 +200,12 @@ RULES = (
     Rule(keys=("sampling",), acts=lambda s: s.study == "monte_carlo" and bool(s.draws),
          user="a Monte Carlo study with random variables: set study to 'monte_carlo', and give draws"),
     Rule(keys=("search.",), acts=lambda s: s.study == "falsify", user="a search: set study to 'falsify'"),
+    Rule(keys=("search.generations",), acts=lambda s: s.search.time_s is None,
+         user="a search without a time: leave search.time_s out"),
+    Rule(keys=("search.mutation", "search.recombination"), acts=lambda s: "differential_evolution" in s.search.methods,
+         user="differential evolution: put 'differential_evolution' into search.methods"),
+    Rule(keys=("search.restarts",), acts=lambda s: s.search.methods != ("corners",),
+         user="methods that may become stuck: put 'local' or 'cma' into search.methods"),
     Rule(keys=("flights",), acts=lambda s: s.study != "falsify", user="other studies; a search flies search.population"
          " times search.generations"),
     Rule(keys=("speed_ratio",), acts=lambda s: bool(s.draws), user="random variables: give draws"),

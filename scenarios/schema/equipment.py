@@ -1,8 +1,8 @@
 """What a scenario file may say of equipment: the vessel's reports, sensors, faults, payload. What is absent is ideal."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from scenarios.schema.section import NonNegative, Positive, Section, check_ordered
 
@@ -55,11 +55,17 @@ class FaultConfig(Section):
     kind: Annotated[str, Field(pattern=r"^[a-z_0-9]+$")] = "none"
     """none, vessel_data, satellite_navigation, engine, or the name of an actuator of the aircraft (the error lists them)."""
     at_s: tuple[NonNegative, NonNegative] = (100.0, 250.0)
-    """Earliest and latest time; sampled in between [s]."""
+    """Earliest and latest time, sampled in between; or one number, the time [s]."""
     vessel_data_s: Positive = 60.0
     """How long vessel data are lost [s]."""
     satellite_navigation_s: Positive = 10.0
     """How long satellite navigation is lost [s]; any other fault is for good."""
+
+    @field_validator("at_s", mode="before")
+    @classmethod
+    def _one_time(cls, given: Any) -> Any:
+        """Take a number for the range that holds it alone, so that a random variable can set the time."""
+        return (given, given) if isinstance(given, int | float) and not isinstance(given, bool) else given
 
     @model_validator(mode="after")
     def _ordered(self) -> "FaultConfig":

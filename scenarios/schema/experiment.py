@@ -2,11 +2,16 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, RootModel, model_validator
+from pydantic import Field, RootModel, field_validator, model_validator
 
+from common.registry import PluginError
 from scenarios.schema.section import Fraction, NonNegative, Positive, Range, Section, Seed, check_ordered
+from scenarios.search.method import SEARCH_METHODS
 
 Sampling = Literal["sobol", "latin_hypercube", "random"]
+
+FLIGHTS_MAX = 1_000_000
+"""Largest number of flights of one scenario [-]."""
 
 NU_MAX = 10.0
 """Largest speed ratio of a sweep [-]; from 1 on there is no solution, and the flight is a row that says so."""
@@ -131,18 +136,50 @@ class StatisticsConfig(Section):
 
 
 class SearchConfig(Section):
-    """A search by differential evolution over the ranges of the random variables."""
+    """A search over the ranges of the random variables, by methods that take turns."""
 
+    methods: Annotated[tuple[str, ...], Field(min_length=1)] = ("corners", "differential_evolution", "local", "cma")
+    """Search methods, in the order of their turns; each by its name or FILE.py:NAME."""
     population: Annotated[int, Field(ge=8, le=10_000)] = 64
-    """Flights of a generation [-]."""
+    """Flights of a turn, and members of differential evolution [-]."""
     generations: Annotated[int, Field(ge=0, le=10_000)] = 30
-    """Generations after the first, which is a Sobol sequence [-]."""
+    """Turns after the first, of all methods together [-]."""
+    time_s: Positive | None = None
+    """Time after which no further batch is flown, instead of a number of generations [s]; a resumed run has it anew."""
+    restarts: Annotated[int, Field(ge=0, le=100_000)] = 100
+    """How often a method that is stuck begins anew, from another of the worst flights or from a random one [-]."""
     mutation: tuple[Positive, Positive] = (0.5, 1.0)
-    """Range of the differential weight, sampled anew for each generation [-]."""
+    """Range of differential evolution's weight, sampled anew for each generation [-]."""
     recombination: Fraction = 0.7
-    """Probability with which a key comes from the mutant [-]."""
+    """Probability with which differential evolution takes a key from the mutant [-]."""
     kept: Annotated[int, Field(ge=1, le=1000)] = 10
-    """Worst flights that are kept as scenario files [-]."""
+    """Worst flights, unlike one another, that are kept as scenario files and confirmed [-]."""
+    confirmations: Annotated[int, Field(ge=0, le=1000)] = 8
+    """Flights with fresh noise that repeat each of them [-]."""
+
+    @field_validator("methods")
+    @classmethod
+    def _known(cls, methods: tuple[str, ...]) -> tuple[str, ...]:
+        for name in methods:
+            try:
+                SEARCH_METHODS.get(name)
+            except PluginError as error:
+                raise ValueError(str(error)) from None
+        if len(set(methods)) < len(methods):
+            raise ValueError(f"methods is {list(methods)}; name each method once")
+        return methods
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "SearchConfig":
+        check_ordered("mutation", self.mutation)
+        return self
+
+    @property
+    def flights_max(self) -> int:
+        """Return the largest number of flights of the search, confirmations apart; those by time are numbered up to it."""
+        if self.time_s is None:
+            return self.population * (self.generations + 1)
+        return FLIGHTS_MAX // (1 + self.confirmations)
 
 
 class TrialList(Section):

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from scenarios.schema.equipment import FaultConfig, KinematicConfig, SensorsConfig, VesselReportsConfig
 from scenarios.schema.experiment import (
+    FLIGHTS_MAX,
     CaseConfig,
     ComparisonConfig,
     DrawConfig,
@@ -40,7 +41,7 @@ class Scenario(Section):
     fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
     """The aircraft in six degrees of freedom, the paper's kinematic vehicle, or one after the other."""
     seed: Seed = 1
-    flights: Annotated[int, Field(ge=1, le=1_000_000)] = 1
+    flights: Annotated[int, Field(ge=1, le=FLIGHTS_MAX)] = 1
     """Flights of each point of the experiment, each with a seed and a sample of the random variables of its own."""
     flight_seed: Seed | None = None
     """Of start, air and noise; each flight has its own, from seed, name and number, if it is not given."""
@@ -186,6 +187,11 @@ class Scenario(Section):
         if self.study == "falsify" and (self.sweep.root or self.cases or self.comparison.variants or self.fidelity == "both"):
             raise ValueError(
                 "study is 'falsify' beside a sweep, cases, a comparison or two vehicles; it searches one point: remove them"
+            )
+        if self.study == "falsify" and (most := self.search.flights_max) * (1 + self.search.confirmations) > FLIGHTS_MAX:
+            raise ValueError(
+                f"search.population and search.generations make {most} flights, with search.confirmations of each numbered up to"
+                f" {most * (1 + self.search.confirmations)}; the most is {FLIGHTS_MAX}: make one of them smaller"
             )
         keys = [draw.key for draw in self.draws]
         for key in keys:

@@ -1,34 +1,47 @@
 """A search for the flight that comes closest to the vessel, within the declared ranges."""
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
+import time
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
-from scipy.optimize import Bounds, differential_evolution
-from scipy.stats import qmc
 
-from common.run_layout import SUMMARY, WORST
+from common.run_layout import DRAWS, SUMMARY, WORST
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, StudySummary
-from scenarios.engine.task import Row, Task
-from scenarios.experiment.draws import speed_ratio_excess
+from scenarios.engine.task import Task
+from scenarios.errors import InputError
 from scenarios.experiment.scenario_file import scenario_file
+from scenarios.experiment.search_space import search_space
+from scenarios.metrics.columns import INPUT_COLUMNS, SEARCH_COLUMNS
 from scenarios.schema.scenario import Scenario
+from scenarios.search.method import SearchSettings
+from scenarios.search.space import Array
+from scenarios.search.turns import methods_named, search_in_turns
 from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.search_results import (
+    CONFIRMATION,
+    UNFLOWN,
+    SearchedFlight,
+    clearance,
+    search_lines,
+    search_manifest,
+    searched_flights,
+    worst_flights,
+)
 from scenarios.studies.study import study
 
-UNFLOWN = 1e6
-"""Clearance of a flight that has none, because it was not flown [m]: no optimum, and finite, as the search needs it."""
-
-Array = npt.NDArray[np.float64]
+_SAME_POINT = 1e-9
+"""Largest difference of a coordinate of one point that was worked out twice [-]."""
 
 
 @study("falsify")
 class FalsificationStudy(FlightStudy):
-    """Generations of flights, each from the worst of those before by differential evolution.
+    """Batches of flights, each where a search method proposes them; the worst are flown again with fresh noise.
+
+    Flights of the search are numbered from 0; after the largest number that one may have come the confirmations, in the order of
+    the flights that they repeat, so that a run that is resumed finds them whatever it has flown in between.
 
     Parameters
     ----------
@@ -42,90 +55,151 @@ class FalsificationStudy(FlightStudy):
     """
 
     def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
-        flights = scenario.search.population * (scenario.search.generations + 1)
-        searched = {trial: of.model_copy(update={"flights": flights}) for trial, of in trials.items()}
-        super().__init__(scenario.model_copy(update={"flights": flights}), name, searched, overrides=overrides)
         self._search, self._seed = scenario.search, scenario.seed
+        numbers = self._search.flights_max * (1 + self._search.confirmations)
+        searched = {trial: of.model_copy(update={"flights": numbers}) for trial, of in trials.items()}
+        super().__init__(scenario.model_copy(update={"flights": numbers}), name, searched, overrides=overrides)
+        ((self._trial, self._scenario),) = self.trials.items()
+        self._space = search_space(self._scenario)
+        # Of the numbers most stand for no flight, of which no time history is kept.
+        self.histories *= 1 + self._search.confirmations
+        keys = [key for key in self.tables[DRAWS] if key not in INPUT_COLUMNS]
+        self.tables[DRAWS] = (*INPUT_COLUMNS, *SEARCH_COLUMNS, *keys)
         self._tasks: list[Task] = []
+        self._proposed = 0
+        self._plan(self._search.flights_max if self._search.time_s is None else 0)
+
+    def _plan(self, searched: int) -> None:
+        """Take the number of flights that the search will have, as far as it is known."""
+        self.flights = {self._trial: searched + self._search.confirmations * min(self._search.kept, searched)}
 
     def task(self, number: int) -> Task:
         """Return the task of a flight, at the point that the search gave it."""
         return self._tasks[number]
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Have one generation flown after the other; keep the worst flights."""
-        ((_, scenario),) = self.trials.items()
-        dimension = len(scenario.draws)
-        first: Array = qmc.Sobol(dimension, scramble=True, rng=self._seed).random(_power_of_two(self._search.population))
-
-        def clearances(_: object, points: Iterable[Array]) -> list[float]:
-            return self._clearances(points, fly, journal)
-
-        differential_evolution(
-            _not_called,
-            Bounds(np.zeros(dimension), np.ones(dimension)),
-            init=first[: self._search.population],
-            maxiter=self._search.generations,
-            mutation=self._search.mutation,
-            recombination=self._search.recombination,
-            rng=self._seed,
-            # The search ends by its generations alone.
-            tol=0.0,
-            atol=-1.0,
-            polish=False,
-            updating="deferred",
-            workers=clearances,
+        """Search; then keep the worst flights, and fly them again with fresh noise."""
+        search, timer = self._search, _Timer(self._search.time_s, journal)
+        settings = SearchSettings(
+            population=search.population,
+            mutation=search.mutation,
+            recombination=search.recombination,
+            restarts=search.restarts,
         )
-        self.flights = dict.fromkeys(self.flights, len(self._tasks))
-        self._keep_worst(fly, run, journal)
 
-    def _clearances(self, points: Iterable[Array], fly: Fly, journal: Journal) -> list[float]:
+        def attempt(method: str, points: Array) -> Array:
+            return self._clearances(method, points, fly, journal, timer)
+
+        search_in_turns(
+            methods_named(search.methods, self._space, settings, self._seed),
+            self._space,
+            attempt,
+            population=search.population,
+            turns=None if search.time_s else search.generations + 1,
+            within_time=lambda: timer.left and self._has_room,
+        )
+        self.flights = {self._trial: len(self._tasks)}
+        worst = worst_flights(searched_flights(journal), self._space, journal, search.kept)
+        self._keep(worst, fly, run, journal)
+        self._confirm(worst, fly, journal)
+
+    @property
+    def _has_room(self) -> bool:
+        """Return whether there are numbers for another batch of a search by time; one by generations has them."""
+        return self._search.time_s is None or len(self._tasks) + self._search.population <= self._search.flights_max
+
+    def _clearances(self, method: str, points: Array, fly: Fly, journal: Journal, timer: "_Timer") -> Array:
         """Return how far from the keep-out area flights at these points stay at their closest [m].
 
-        What leaves the declared range of speed ratios is not flown, and counts the worse the farther it does.
+        What leaves the declared ranges is not flown, and counts the worse the farther it does.
         """
-        ((_, scenario),) = self.trials.items()
-        first, chosen = len(self._tasks), [tuple(map(float, point)) for point in points]
-        excesses = [speed_ratio_excess(scenario, point) for point in chosen]
+        chosen = [tuple(map(float, point)) for point in points]
+        excesses = [self._space.beyond(np.array(point)) for point in chosen]
         within = [point for point, excess in zip(chosen, excesses, strict=True) if not excess]
-        self._tasks += [Task(number=first + i, point=point) for i, point in enumerate(within)]
-        fly(self._tasks[first:])
-        flown = (_clearance(row) for row in journal.rows(SUMMARY, first=first, below=len(self._tasks)))
-        return [UNFLOWN * (1.0 + excess) if excess else next(flown) for excess in excesses]
+        first, labels = len(self._tasks), (("search_method", method), ("confirms", ""))
+        self._tasks += [Task(number=first + i, point=point, labels=labels) for i, point in enumerate(within)]
+        self._proposed += len(points)
+        if self._search.time_s is not None:
+            self._plan(len(self._tasks))
+        batch = self._tasks[first:]
+        timer.before(batch)
+        fly(batch)
+        for task in batch:
+            self._check_point(task, journal)
+        flown = (clearance(row) for row in journal.rows(SUMMARY, first=first, below=len(self._tasks)))
+        return np.array([UNFLOWN * (1.0 + excess) if excess else next(flown) for excess in excesses])
 
-    def _keep_worst(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
+    @staticmethod
+    def _check_point(task: Task, journal: Journal) -> None:
+        before = journal.task(task.number).point
+        if len(before) != len(task.point) or not np.allclose(before, task.point, rtol=0.0, atol=_SAME_POINT):
+            raise InputError(
+                f"flight {task.number} of the run to be resumed was not flown at the point that this search proposes, as after a"
+                " flight whose process was lost: start a new run in another --out"
+            )
+
+    def _keep(self, worst: Sequence[SearchedFlight], fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Write scenario files of the worst flights, and have those recorded that have no time history."""
-        flown = [(_clearance(row), number, row) for number, row in journal.numbered(SUMMARY)]
-        worst = sorted(flown, key=lambda entry: entry[:2])[: self._search.kept]
-        ((trial, scenario),) = self.trials.items()
-        experiment = self.experiments[trial]
-        for rank, (clearance, number, row) in enumerate(worst, start=1):
-            request = experiment.request(number, self._tasks[number].point)
-            title = f"{scenario.title}: number {rank}, {clearance:.2f} m from the keep-out area"
-            run.write_bytes(f"{WORST}/{rank:02d}_{row['flight_id']}.toml", scenario_file(request, title=title))
-        fly(self.unrecorded([number for _, number, _ in worst], run, journal))
+        experiment = self.experiments[self._trial]
+        for path in (run.path / WORST).glob("*.toml"):
+            # Of a run that is resumed: what was among the worst may not be any more.
+            path.unlink()
+        for rank, flight in enumerate(worst, start=1):
+            request = experiment.request(flight.number, self._tasks[flight.number].point)
+            title = f"{self._scenario.title}: number {rank}, {flight.clearance:.2f} m from the keep-out area"
+            run.write_bytes(f"{WORST}/{rank:02d}_{flight.flight_id}.toml", scenario_file(request, title=title))
+        fly(self.unrecorded([flight.number for flight in worst], run, journal))
+
+    def _confirm(self, worst: Sequence[SearchedFlight], fly: Fly, journal: Journal) -> None:
+        """Fly the worst flights again with fresh noise."""
+        repeats, first = self._search.confirmations, self._search.flights_max
+        confirming = [
+            Task(
+                number=(number := first + flight.number * repeats + i),
+                point=self._tasks[flight.number].point,
+                seed=int(np.random.SeedSequence([self._seed, number]).generate_state(1)[0]),
+                labels=(("search_method", CONFIRMATION), ("confirms", flight.flight_id)),
+            )
+            for flight in worst
+            for i in range(repeats)
+        ]
+        # Beside those that a run before this one has flown, of flights that are not among the worst any more.
+        numbers = {task.number for task in confirming} | {number for number in journal.done() if number >= first}
+        self.flights = {self._trial: len(self._tasks) + len(numbers)}
+        fly(confirming)
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return what the search has found."""
         found = super().summary(journal)
-        clearances = [(_clearance(row), row["flight_id"]) for row in journal.rows(SUMMARY)]
-        if not clearances:
+        flights = searched_flights(journal)
+        if not flights:
             return found
-        least, flight_id = min(clearances)
-        line = f"closest: {flight_id}, {least:.2f} m from the keep-out area; the worst are in {WORST}/, as scenarios to fly again"
-        manifest = found.manifest | {"worst_flight": flight_id, "worst_clearance_m": least}
-        return replace(found, lines=[*found.lines, line], manifest=manifest)
+        worst = worst_flights(flights, self._space, journal, self._search.kept)
+        search = search_manifest(flights, worst) | {"proposed": self._proposed}
+        least = min(flights, key=lambda flight: flight.clearance)
+        manifest = {"search": search, "worst_flight": least.flight_id, "worst_clearance_m": least.clearance}
+        return replace(found, lines=[*found.lines, *search_lines(search)], manifest=found.manifest | manifest)
 
 
-def _clearance(row: Row) -> float:
-    """Return how far from the keep-out area a flight stayed at its closest [m]."""
-    return float(row["min_distance_m"] - row["keepout_radius_m"]) if "min_distance_m" in row else UNFLOWN
+class _Timer:
+    """The time that a search may take: it runs from the first flight that is not in the journal yet.
 
+    Parameters
+    ----------
+    limit : how long it may take; None for any time [s]
+    journal : with the flights that a run before this one has flown
+    """
 
-def _power_of_two(least: int) -> int:
-    return 1 << math.ceil(math.log2(least))
+    def __init__(self, limit: float | None, journal: Journal) -> None:
+        self._limit, self._done = limit, journal.done()
+        self._began: float | None = None
 
+    def before(self, tasks: Sequence[Task]) -> None:
+        """Take the tasks that are about to be flown."""
+        if self._began is None and any(task.number not in self._done for task in tasks):
+            self._began = time.monotonic()
 
-def _not_called(_: Array) -> float:
-    """Stand for the figure that is searched: whole generations are flown at once, by ``workers``."""
-    raise NotImplementedError
+    @property
+    def left(self) -> bool:
+        """Return whether there is time left."""
+        return self._limit is None or self._began is None or time.monotonic() - self._began < self._limit

@@ -1,6 +1,7 @@
 """Replay of one flight of a run, from its manifest, with every step of the guidance recorded."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -89,7 +90,8 @@ class Replay:
             if name == trial:
                 break
             before += Experiment(name, checked({**config, "study": "flights"}, Scenario)).flights
-        self._task = Task(number=task.number - before, point=task.point)
+        # Of a flight that the study gave a seed of its own, the row has it.
+        self._task = Task(number=task.number - before, point=task.point, seed=self._row.get("seed"))
         return study
 
     def initial_manifest(self) -> dict[str, Any]:
@@ -105,7 +107,7 @@ class Replay:
 
     def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
         """Fly the flight."""
-        fly([Task(number=self._task.number, point=self._task.point, every_step=True)])
+        fly([replace(self._task, every_step=True)])
 
     def postprocess(self, _run: RunDirectory, _journal: Journal, _progress: Progress) -> None:
         """Do nothing: a replay has only tables and its time history."""

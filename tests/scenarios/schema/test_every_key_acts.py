@@ -46,6 +46,7 @@ VALUES = {
     "statistics.confidence": 0.9, "statistics.violation_upper": 0.1, "statistics.distance_quantile_width_m": 1.0,
     "statistics.distance_quantile": 0.05,
     "search.population": 8, "search.generations": 1, "search.mutation": [0.4, 0.6], "search.recombination": 0.5, "search.kept": 1,
+    "search.methods": ["local"], "search.time_s": 5.0, "search.restarts": 3, "search.confirmations": 1,
     "vessel.speed_mps": 7.0, "vessel.speed_ratio": 0.3, "vessel.course_deg": 40.0,
     "vessel.manoeuvres": [{"at_s": 20.0, "turn_deg": 30.0}],
     "vessel.manoeuvres.0.at_s": 50.0, "vessel.manoeuvres.0.turn_deg": 30.0, "vessel.manoeuvres.0.turn_rate_deg_s": 1.0,

@@ -22,6 +22,11 @@ def test_a_passing_fault_lasts_from_its_beginning_to_its_end(kind, lasts):
     assert not fault.lasts(SATELLITES if kind == VESSEL_DATA else VESSEL_DATA, fault.begins)
 
 
+def test_one_number_is_the_time_of_a_fault():
+    assert FaultConfig.model_validate({"at_s": 120}).at_s == (120.0, 120.0)
+    assert sampled_fault(FaultConfig.model_validate({"kind": SATELLITES, "at_s": 120.5}), generator()).begins == 120.5
+
+
 def test_a_part_fails_for_good():
     fault = sampled_fault(FaultConfig(kind="engine"), generator())
     assert fault.of_aircraft()

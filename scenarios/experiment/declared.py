@@ -1,0 +1,44 @@
+"""How far the flight at a point leaves what its scenario declares."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from scenarios.errors import InputError
+from scenarios.experiment.draws import speed_ratios, values_at
+from scenarios.schema.load import with_values
+from scenarios.schema.scenario import Scenario
+from scenarios.world.vessel import TRACK_STEP, ManoeuvringVessel
+from scenarios.world.world import vessel_of
+
+_ROUNDING = 1e-3
+"""Relative error of an acceleration that is taken from a table of velocities [-]."""
+
+
+def beyond_declared(scenario: Scenario, point: Sequence[float]) -> float:
+    """Return how far a flight leaves the declared speed ratios and the declared acceleration of the vessel [-].
+
+    The acceleration counts relative to ``following.vessel_acceleration_mps2``, changes of speed and of course together, where
+    that is not 0. A flight whose values contradict each other, such as manoeuvres that are not in their order, counts as 1.
+
+    Parameters
+    ----------
+    scenario : a trial
+    point : position of each random variable in its distribution, from 0 to 1
+    """
+    try:
+        flight = with_values(scenario, values_at(scenario.draws, point))
+    except InputError:
+        return 1.0
+    (low, high), (least, most) = flight.speed_ratio, speed_ratios(flight)
+    return max(0.0, low - least, most - high, _acceleration_excess(flight))
+
+
+def _acceleration_excess(flight: Scenario) -> float:
+    declared = flight.following.vessel_acceleration_mps2
+    vessel = vessel_of(flight)
+    if declared == 0.0 or not isinstance(vessel, ManoeuvringVessel):
+        return 0.0
+    velocity, _ = vessel.samples
+    largest = float(np.hypot(*np.diff(velocity, axis=0).T).max()) / TRACK_STEP
+    return max(0.0, largest / declared - 1.0 - _ROUNDING)

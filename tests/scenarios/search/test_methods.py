@@ -1,0 +1,190 @@
+"""Each search method, and all in turn, on problems with a known minimum that random sampling of the same budget misses."""
+
+import numpy as np
+import pytest
+
+from common.registry import PluginError
+from scenarios.search.coordinate import Coordinate
+from scenarios.search.method import SEARCH_METHODS, SearchSettings
+from scenarios.search.space import Space
+from scenarios.search.turns import methods_named, search_in_turns
+
+METHODS = ("corners", "differential_evolution", "local", "cma")
+
+POPULATION, TURNS = 32, 60
+
+THIRDS = (0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0)
+
+
+def space_of(*coordinates, **given):
+    return Space(coordinates=coordinates, **given)
+
+
+def least(methods, space, problem, *, seed=1, turns=TURNS, population=POPULATION):
+    """Return the least value of a problem that methods find, and the points that they tried."""
+    tried = []
+
+    def attempt(_, points):
+        assert points.shape[1] == space.dimension
+        assert ((points >= 0.0) & (points <= 1.0)).all()
+        tried.extend(points)
+        return np.array([problem(point) for point in points])
+
+    settings = SearchSettings(population=population)
+    search_in_turns(methods_named(methods, space, settings, seed), space, attempt, population=population, turns=turns)
+    assert len(tried) <= turns * population
+    return min(problem(point) for point in tried), np.array(tried)
+
+
+def least_of_random(space, problem, seed):
+    points = np.random.default_rng(seed).random((TURNS * POPULATION, space.dimension))
+    return min(problem(point) for point in points)
+
+
+BOWL = space_of(*[Coordinate()] * 10)
+
+CENTRE = np.linspace(0.1, 0.9, 10)
+
+
+def bowl(point):
+    """A bowl in ten dimensions whose sides are of different steepness: 0 m at its centre."""
+    return 100.0 * float(np.linalg.norm((point - CENTRE) * np.linspace(0.5, 2.0, 10)))
+
+
+def corner(point):
+    """1 but for a corner: below 0 where five of ten quantities are within a twentieth of an end."""
+    return 1.0 if (point[:5] < 0.95).any() else -float(point[:5].min())
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("method", ["differential_evolution", "local", "cma"])
+def test_a_method_that_learns_finds_the_centre_of_a_bowl_that_random_points_miss(method, seed):
+    # 1,920 points: the share of the cube within 0.15 of the centre, by the volume of an ellipsoid, is 7e-9.
+    assert least_of_random(BOWL, bowl, seed) > 25.0
+    assert least((method,), BOWL, bowl, seed=seed)[0] < 15.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_corner_sampling_finds_a_corner_that_random_points_miss(seed):
+    # A random point is in the corner with a probability of 0.05^5 = 3e-7, one of these with about 0.4^5 = 0.01.
+    assert least_of_random(BOWL, corner, seed) == 1.0
+    assert least(("corners",), BOWL, corner, seed=seed)[0] == -1.0
+
+
+def rare(point):
+    """Three coordinates that matter only with the last choice, and there are to be at a corner, at one time."""
+    if point[0] < 2.0 / 3.0:
+        return 50.0 + float(point[1])
+    return 40.0 - 20.0 * float(point[1] + point[2]) + 200.0 * abs(float(point[3] - point[4]))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_methods_in_turn_find_two_events_at_one_time_with_one_of_the_choices(seed):
+    time = Coordinate(time_range=(0.0, 100.0))
+    space = space_of(Coordinate(choices=THIRDS), *[Coordinate()] * 2, time, time, *[Coordinate()] * 10)
+    # The least is 0. A random point has the choice in 1 of 3, both quantities in the last 5 % in 1 of 400, and times within 0.01 of
+    # each other in 1 of 50.
+    assert least_of_random(space, rare, seed) > 2.0
+    assert least(METHODS, space, rare, seed=seed)[0] < 0.2
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_method_goes_the_same_way_with_the_same_seed_and_another_with_another(method):
+    def points(seed):
+        return least((method,), BOWL, bowl, seed=seed, turns=6)[1]
+
+    np.testing.assert_array_equal(points(1), points(1))
+    assert not np.array_equal(points(1), points(2))
+
+
+@pytest.mark.parametrize("method", ["local", "cma"])
+def test_a_search_around_a_point_begins_at_the_worst_that_others_found(method):
+    # A needle: nothing leads to it, but the corners find it, and it is the deeper the nearer the quantities that have no end are.
+    time = Coordinate(time_range=(0.0, 1.0))
+    space = space_of(*[Coordinate()] * 6, time, time)
+
+    def needle(point):
+        return 200.0 if (point[:6] < 0.8).any() else 100.0 * float(np.abs(point[6:] - 0.37).max())
+
+    alone = least((method,), space, needle, turns=2)[0]
+    together = least(("corners", method), space, needle, turns=40)[0]
+    assert alone == 200.0
+    assert together < 1.0
+
+
+@pytest.mark.parametrize("method", ["local", "cma"])
+def test_a_search_around_a_point_that_has_found_a_violation_looks_for_another_one(method):
+    # Two pits with violations; from a point between them either is found, and then the other one.
+    pits = np.full(6, 0.2), np.full(6, 0.8)
+    space = space_of(*[Coordinate()] * 6)
+
+    def depth(point, pit):
+        return 100.0 * float(np.linalg.norm(point - pit)) - 10.0
+
+    _, tried = least((method,), space, lambda point: min(depth(point, pit) for pit in pits), turns=150)
+    violating = [[depth(point, pit) < 0.0 for point in tried] for pit in pits]
+    assert all(any(of) for of in violating)
+    # Once a pit is known no point of it is a start any more: it takes a few flights, not most of them.
+    assert sum(map(sum, violating)) < 0.2 * len(tried)
+
+
+@pytest.mark.parametrize("method", ["differential_evolution", "local", "cma"])
+def test_a_method_that_is_stuck_begins_anew_as_often_as_it_may(method):
+    methods = methods_named((method,), BOWL, SearchSettings(population=16, restarts=2), 1)
+    generator = np.random.default_rng(1)
+
+    def chance(_, points):
+        tried.extend(points)
+        return generator.random(len(points))
+
+    tried = []
+    search_in_turns(methods, BOWL, chance, population=16, turns=10_000)
+    # Where nothing leads to anything better, a start is given up after some batches, and after three the search ends by itself.
+    assert methods[method].exhausted
+    assert 300 < len(tried) < 2000
+
+
+def test_what_lies_beyond_the_declared_ranges_is_avoided_by_all_that_propose_freely():
+    space = space_of(*[Coordinate()] * 4, beyond=lambda point: max(0.0, float(point.sum()) - 2.0))
+    for method in ("corners", "local"):
+        _, tried = least((method,), space, lambda point: -float(point.sum()), turns=10)
+        assert (tried.sum(axis=1) <= 2.0).all()
+        assert tried.sum(axis=1).max() > 1.9
+
+
+def test_corners_take_every_choice_equally_often_and_put_quantities_at_their_ends():
+    space = space_of(Coordinate(choices=THIRDS), Coordinate(), Coordinate(circle=True), Coordinate(time_range=(0.0, 9.0)))
+    _, tried = least(("corners",), space, lambda _: 0.0, turns=15)
+    values, counts = np.unique(tried[:, 0], return_counts=True)
+    np.testing.assert_allclose(values, [1.0 / 6.0, 0.5, 5.0 / 6.0])
+    assert counts.tolist() == [160, 160, 160]
+    ends = ((tried == 0.0) | (tried == 1.0)).mean(axis=0)
+    # 0.8 in the mean of the shares, with a standard deviation of 0.02; a course and a time have no ends.
+    assert ends[1] == pytest.approx(0.8, abs=0.06)
+    assert ends[2:].tolist() == [0.0, 0.0]
+
+
+def test_cma_leaves_choices_as_they_are_and_has_nothing_to_search_without_two_quantities():
+    space = space_of(Coordinate(choices=THIRDS), *[Coordinate()] * 3)
+    _, tried = least(("cma",), space, lambda point: float(point[1]), turns=2)
+    assert len(np.unique(tried[:, 0])) == 1
+    narrow = space_of(Coordinate(choices=THIRDS), Coordinate())
+    methods = methods_named(("cma",), narrow, SearchSettings(population=16), 1)
+    assert len(search_in_turns(methods, narrow, lambda _, points: points[:, 0], population=16, turns=5)) == 0
+
+
+def test_a_search_ends_when_its_time_is_over():
+    batches = []
+
+    def attempt(_, points):
+        batches.append(len(points))
+        return points[:, 0]
+
+    methods = methods_named(METHODS, BOWL, SearchSettings(population=POPULATION), 1)
+    search_in_turns(methods, BOWL, attempt, population=POPULATION, turns=None, within_time=lambda: len(batches) < 7)
+    assert len(batches) == 7
+
+
+def test_an_unknown_method_is_refused_with_the_name_that_was_meant():
+    with pytest.raises(PluginError, match=r"unknown search method 'corner'; did you mean 'corners'\? known are cma, corners, diff"):
+        SEARCH_METHODS.get("corner")
