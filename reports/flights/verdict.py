@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pandas as pd
 
+from common.binomial import percent
 from reports.document.blocks import Verdict
 from reports.document.tables import limit, number, vehicles_flown
 from reports.flights.criteria import MEASURED, Criterion, criteria_of
-from reports.monte_carlo.tables import percent
 from reports.run.columns import clearance, column, largest, lost, measured, met, total, violated
 from reports.run.run_data import RunData
 from reports.run.trials import Trial

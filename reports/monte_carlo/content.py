@@ -2,10 +2,11 @@
 
 from typing import Any
 
+from common.binomial import percent
 from reports.document.blocks import Block, Heading, Section, Text
 from reports.monte_carlo.driver_charts import driver_charts, scatter_charts
 from reports.monte_carlo.spread_charts import spread_charts
-from reports.monte_carlo.tables import ending_table, left_out_rows, percent, quantile_table, violation_table
+from reports.monte_carlo.tables import ending_table, left_out_rows, quantile_table, violation_table
 from reports.run.run_data import RunData
 
 

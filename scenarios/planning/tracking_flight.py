@@ -59,14 +59,19 @@ def tracking_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehicl
     oscillation = oscillation_at(g, scenario.reference, nu)
     axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
     rule = distance_by_paper if g.placement == "paper" else distance_exact
-    distance = rule(oscillation, axis, radius + g.tracking_allowance_m)
+    if scenario.keepout.shape == "cylinder":
+        # As far off horizontally as a level plume's.
+        level = PlumeAxis(heading=axis.heading)
+        distance = rule(oscillation, level, radius + g.tracking_allowance_m) / math.cos(axis.elevation)
+    else:
+        distance = rule(oscillation, axis, radius + g.tracking_allowance_m)
     ahead, right, above = centre_of_oscillation(distance, axis)
     steering = plan_steering(scenario, omega_max(g), oscillation.amplitude)
     start = sampled_start(scenario.start, np.random.default_rng(seed), course=course, axis=plume.axis(0.0))
     guard = None
     guarded = radius + GUARD_FRACTION * g.tracking_allowance_m
-    # The disc that the keep-out sphere cuts out at the height of the flight.
-    disc = math.sqrt(max(0.0, guarded**2 - above**2))
+    # The disc that the keep-out area cuts out at the height of the flight.
+    disc = guarded if scenario.keepout.shape == "cylinder" else math.sqrt(max(0.0, guarded**2 - above**2))
     if g.keepout_guard and disc > 0.0:
         guard = guard_parameters(scenario, setup.reversal, disc)
         check_start(start, guard, through_air=(v_north, v_east), airspeed=g.airspeed_mps, allowance=0.0, keepout_radius=radius)

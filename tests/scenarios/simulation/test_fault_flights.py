@@ -39,7 +39,8 @@ def flown(designs, tmp_path_factory):
 @pytest.mark.parametrize("kind", KINDS)
 def test_whatever_fails_the_flight_ends_outside_in_its_mode(flown, kind):
     row, history = flown[kind]
-    assert row["outcome"] == "completed", row["message"]
+    assert row["outcome"] == ("aircraft_lost" if row["mode_at_end"] == DITCHED else "completed"), row["message"]
+    assert (row["kept_out"], row["criteria_met"]) == (True, kind == "throttle")
     assert row["keepout_violations"] == 0
     assert row["mode_at_end"] == ENDS_IN[kind]
     # It was in the plume until then: nothing had been found wrong with it.

@@ -39,6 +39,7 @@ speed_mps = 3.0
 crossings = 0
 duration_max_s = 4.0
 [criteria]
+required = "keep_out"
 settles = false
 """
 
