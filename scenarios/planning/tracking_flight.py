@@ -7,12 +7,12 @@ import numpy as np
 from gnc.airspeed.along_track import AlongTrackTrim
 from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
 from gnc.parameters import GuardParameters, GuidanceParameters
-from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
+from gnc.reference.placement import PlumeAxis, centre_of_oscillation
 from scenarios.planning.bounded_steering import Steering, plan_steering
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.guidance import approach_parameters, guard_parameters, plan_interval, tracking_parameters
 from scenarios.planning.limits import omega_max
-from scenarios.planning.reference import circle, joined_orbit, oscillation_at
+from scenarios.planning.reference import circle, joined_orbit, oscillation_at, placed_distance
 from scenarios.planning.start import check_start, placed, sampled_start
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -58,13 +58,7 @@ def tracking_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehicl
     nu = scenario.nu_over_ground
     oscillation = oscillation_at(g, scenario.reference, nu)
     axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
-    rule = distance_by_paper if g.placement == "paper" else distance_exact
-    if scenario.keepout.shape == "cylinder":
-        # As far off horizontally as a level plume's.
-        level = PlumeAxis(heading=axis.heading)
-        distance = rule(oscillation, level, radius + g.tracking_allowance_m) / math.cos(axis.elevation)
-    else:
-        distance = rule(oscillation, axis, radius + g.tracking_allowance_m)
+    distance = placed_distance(scenario, oscillation, axis)
     ahead, right, above = centre_of_oscillation(distance, axis)
     steering = plan_steering(scenario, omega_max(g), oscillation.amplitude)
     start = sampled_start(scenario.start, np.random.default_rng(seed), course=course, axis=plume.axis(0.0))

@@ -73,7 +73,7 @@ class Ending:
                 return f"{self._fault} at {self._end:.1f} s"
             case Outcome.AIRCRAFT_LOST:
                 what = "came down on the sea" if self._ditched else f"was still {self.mode} towards the sea"
-                return f"the aircraft is lost: it {what} at {self._end:.1f} s, {self._crossings()}"
+                return f"it {what} at {self._end:.1f} s, {self._crossings()}"
             case Outcome.NOT_SETTLED | Outcome.INCOMPLETE:
                 return self._shortfall()
         return ""

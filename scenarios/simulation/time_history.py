@@ -11,7 +11,6 @@ from scenarios.engine.task import Row, Task
 from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.record import MEANINGS, unit_of
 
-
 UNFINISHED = (Outcome.NOT_SETTLED.value, Outcome.INCOMPLETE.value)
 """Outcomes of missions that were not completed though the aircraft came through."""
 

@@ -18,6 +18,7 @@ from scenarios.flight import FlightWork
 from scenarios.metrics.columns import CROSSING_COLUMNS, INPUT_COLUMNS, INTERVENTION_COLUMNS, SUMMARY_COLUMNS
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
+from scenarios.planning.theory import theory_over_speed_ratio
 from scenarios.schema.experiment import TrialList
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation.time_history import UNFINISHED
@@ -80,6 +81,7 @@ class FlightStudy:
             "modes": [mode.value for mode in Mode],
             "trial_parameters": {trial: parameters(of) for trial, of in self.trials.items()},
             "sampled_at_random": self._sampled_at_random(),
+            "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},
             "plugins": self.plugins,
         }
 

@@ -40,7 +40,7 @@ def ended(*, asked=0, flown=12, settled=80.0, mode=Mode.TRACKING, fault=Fault.NO
         (
             {"asked": 30, "fault": Fault.THRUST_LOST, "mode": Mode.GLIDING, "sample": ON_THE_WATER},
             Outcome.AIRCRAFT_LOST,
-            "the aircraft is lost: it came down on the sea at 300.0 s, after 12 of 30 crossings",
+            "it came down on the sea at 300.0 s, after 12 of 30 crossings",
         ),
         ({"mode": Mode.GLIDING, "flown": 0}, Outcome.AIRCRAFT_LOST, "it was still gliding towards the sea at 300.0 s"),
         ({"mode": Mode.TERMINATING, "settled": math.nan}, Outcome.AIRCRAFT_LOST, "before it had settled"),
