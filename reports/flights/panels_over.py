@@ -59,15 +59,19 @@ class PanelsOver:
 
     def distances(self) -> Panel | None:
         """Return the distances of the crossings and the closest approach."""
+        closest = "closest approach, horizontal" if self._trial.shape == "cylinder" else "closest approach, whole flight"
         lines = [
             self._limit("keepout_radius_m", f"r_min of the keep-out {self._trial.shape}"),
             self._theory("r_co_m", "centre of oscillation r_CO", "grey"),
             self._points("crossing_distance_mean_m", "crossings, mean", "blue"),
             self._points("crossing_distance_min_m", "crossings, closest", "sky", "diamonds"),
-            self._points("min_distance_m", "closest approach, whole flight", "green"),
+            self._points(
+                "min_distance_m",
+                closest,
+                "green",
+            ),
         ]
-        where = "Horizontal distance from the funnel [m]" if self._trial.shape == "cylinder" else "Distance from the funnel [m]"
-        return self._panel(where, lines)
+        return self._panel("Distance from the funnel [m]", lines)
 
     def command(self) -> Panel | None:
         """Return the largest commanded heading rate, and its limit."""

@@ -14,6 +14,9 @@ from scenarios.simulation.outcome import Outcome
 NOT_MET_SHOWN = 20
 """Flights that did not meet every criterion and are named on the console, at most."""
 
+_MEASURED_FROM = {"sphere": "from the centre of the keep-out sphere", "cylinder": "horizontally, from the axis of the cylinder"}
+"""What distances are measured from, by the shape of the keep-out area."""
+
 
 @dataclass(slots=True, kw_only=True)
 class FlightCounts:
@@ -29,6 +32,7 @@ class FlightCounts:
     outcomes : number of flights by their outcome
     required : number of flights by what exit status 0 requires of them
     keepout_violations : number of keep-out violations
+    shapes : number of flights by the shape of their keep-out area, which distances are measured from
     nearest : closest approach to the vessel, infinite if no flight is done [m]
     duration : of all flights [s]
     unflown_manoeuvres : number of flights that ended before a manoeuvre of their vessel began
@@ -44,6 +48,7 @@ class FlightCounts:
     outcomes: Counter[str] = field(default_factory=Counter)
     required: Counter[str] = field(default_factory=Counter)
     keepout_violations: int = 0
+    shapes: Counter[str] = field(default_factory=Counter)
     nearest: float = math.inf
     duration: float = 0.0
     unflown_manoeuvres: int = 0
@@ -67,6 +72,8 @@ class FlightCounts:
         self.required[required] += 1
         self.passed += kept_out if required == "keep_out" else bool(row["criteria_met"])
         self.keepout_violations += int(row.get("keepout_violations", 0))
+        if "keepout_shape" in row:
+            self.shapes[row["keepout_shape"]] += 1
         self.nearest = min(self.nearest, row.get("min_distance_m", math.inf))
         self.duration += row.get("duration_s", 0.0)
         self.unflown_manoeuvres += row.get("manoeuvres_unflown", 0) > 0
@@ -92,7 +99,8 @@ class FlightCounts:
         if math.isinf(self.nearest):
             return counts
         kept = f"{self.kept_out} of {self.flown} kept out, {self.keepout_violations} keep-out violations"
-        return f"{counts}; {kept}, closest approach {self.nearest:.1f} m"
+        about = f" ({_MEASURED_FROM[next(iter(self.shapes))]})" if len(self.shapes) == 1 else ""
+        return f"{counts}; {kept}, closest approach {self.nearest:.1f} m{about}"
 
     def bound_line(self) -> str:
         """Return the bound on the probability of a keep-out violation, if flights are a random sample; none of a search."""

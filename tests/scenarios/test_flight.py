@@ -127,3 +127,24 @@ def test_a_flight_whose_process_was_lost_is_a_row():
     (row,) = result.tables["summary.csv"]
     named = {"flight_id": "trial_00000", "trial": "trial", "variant": "study"}
     assert row == named | {"outcome": "failed", "message": "why", "criteria_met": False}
+
+
+@pytest.mark.parametrize("mission", ["track", "follow"])
+def test_beside_a_plume_that_rises_steeply_a_cylinder_is_kept_out_of_horizontally(mission):
+    steep = {
+        "guidance": {"mission": mission}, "plume": {"elevation_deg": 60.0}, "flight": {"crossings": 4}, "wind": {"speed_mps": 0.0},
+        "start": ASTERN,
+    }  # fmt: skip
+    cylinder = fly(**steep, keepout={"shape": "cylinder"}).row
+    assert (cylinder["outcome"], cylinder["keepout_violations"], cylinder["keepout_shape"]) == ("completed", 0, "cylinder")
+    # Its distance is the horizontal one, and the orbit comes as near to r_min as over a level plume: within the margin.
+    assert cylinder["min_distance_m"] == cylinder["horizontal_distance_min_m"]
+    assert 200.0 <= cylinder["min_distance_m"] < 230.0
+    sphere = fly(**steep).row
+    assert (sphere["outcome"], sphere["keepout_violations"], sphere["keepout_shape"]) == ("completed", 0, "sphere")
+    assert sphere["min_distance_m"] >= 200.0
+    if mission == "track":
+        # Issue: at 60 degrees the UAV passes 80 m beside the funnel, outside the sphere.
+        assert sphere["horizontal_distance_min_m"] < 130.0
+    # A steered reference keeps off horizontally whatever the shape: outside of either.
+    assert sphere["horizontal_distance_min_m"] <= sphere["min_distance_m"]

@@ -27,6 +27,12 @@ def test_flights_are_counted_as_planned_flown_completed_and_met():
         "6 planned, 3 flown, 2 completed, 1 met every criterion, 1 lost the aircraft; 2 of 3 kept out, 2 keep-out violations,"
         " closest approach 190.0 m"
     )
+    # A distance says what it is measured from.
+    for shape, words in (
+        ("sphere", "190.0 m (from the centre of the keep-out sphere)"),
+        ("cylinder", "190.0 m (horizontally, from"),
+    ):
+        assert words in FlightCounts.of(({**each, "keepout_shape": shape} for each in ROWS), planned=6).line()
     assert counts.not_met_lines("  ") == ["  f1: completed: why 1", "  f2: infeasible: why 2", "  f3: aircraft_lost: why 3"]
     # Every outcome is named, also those that no flight had.
     manifest = counts.manifest()
