@@ -16,8 +16,8 @@ _ON_THE_WATER = 2.0
 _LOST = (Mode.GLIDING, Mode.TERMINATING)
 """Modes from which an aircraft does not come back: it glides, or flies away from the vessel, until it is down."""
 
-_GIVEN_UP = (Mode.HOLDING, Mode.OUTRUN, Mode.NO_PLUME)
-"""Modes in which the plume is no longer being crossed."""
+_GIVEN_UP = (Mode.OUTRUN, Mode.NO_PLUME)
+"""Modes in which the plume is no longer crossed; a flight that holds off resumes with the next report."""
 
 
 class Ending:

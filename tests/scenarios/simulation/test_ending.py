@@ -28,8 +28,10 @@ def ended(*, asked=0, flown=12, settled=80.0, mode=Mode.TRACKING, fault=Fault.NO
     [
         ({}, Outcome.COMPLETED, ""),
         ({"asked": 12}, Outcome.COMPLETED, ""),
+        # Such a flight is on its way back to its orbit, or waits for the next report.
         ({"mode": Mode.APPROACH}, Outcome.COMPLETED, ""),
-        ({"asked": 12, "mode": Mode.HOLDING}, Outcome.COMPLETED, ""),
+        ({"mode": Mode.HOLDING}, Outcome.COMPLETED, ""),
+        ({"asked": 12, "mode": Mode.OUTRUN}, Outcome.COMPLETED, ""),
         ({"vessel": False, "settled": math.nan, "flown": 0}, Outcome.COMPLETED, ""),
         ({"settled": math.nan, "flown": 0}, Outcome.NOT_SETTLED, "did not settle within 300 s"),
         ({"settled": math.nan, "mode": Mode.OUTRUN}, Outcome.NOT_SETTLED, "did not settle within 300 s, and ended outrun"),
