@@ -196,3 +196,23 @@ def test_what_happened_is_told_in_lines(listed, tmp_path):
     ]
     assert lines[3] == "exit status: 0 if every flight kept out, as required of it; 0 of 2 did"
     assert lines[4].startswith("    one_00000: infeasible: the vessel moves at up to")
+
+
+def test_manoeuvres_that_overlap_in_every_flight_are_refused_before_any_is_flown(tmp_path):
+    path = tmp_path / "two.toml"
+    turns = "[{ at_s = 10.0, turn_deg = 90.0 }, { at_s = 60.0, turn_deg = 90.0 }]"
+    path.write_text(f'title = "two"\nfidelity = "kinematic"\n[vessel]\nmanoeuvres = {turns}\n', encoding="utf-8")
+    with pytest.raises(InputError, match=r"vessel\.manoeuvres\.1 begins at 60 s, before an earlier one has ended, at 190 s"):
+        run(path, tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_manoeuvre_after_the_end_of_the_flight_is_warned_of(tmp_path):
+    path = tmp_path / "late.toml"
+    late = "[{ at_s = 500.0, turn_deg = 90.0 }]"
+    path.write_text(
+        f'title = "late"\nfidelity = "kinematic"\nflight = {{ crossings = 0, duration_max_s = 8.0 }}\nvessel.manoeuvres = {late}\n',
+        encoding="utf-8",
+    )
+    lines = run(path, tmp_path / "run").summary.lines
+    assert lines[-1].startswith("warning: in 1 flight a manoeuvre of the vessel begins after the end of the flight")
