@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from trial_runs import blocks_of, rows_of, small_trials, with_values
 
 from reports.build import build_reports
 from reports.document.blocks import FlightPicker, Table, Text
@@ -22,54 +23,14 @@ from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
 from reports.run.trials import Kind, Trial, read_trials
-from scenarios.schema.experiment import TrialList
 from scenarios.schema.load import OPERATIONAL, bases, load_study
 from scenarios.schema.overrides import given_keys
 from scenarios.studies.manifest import parameters
-from scenarios.studies.registry import run_study
-
-# Both settle and cross a few times, within some 150 s; after that the vessel of the second turns, which takes it 40 s at most.
-STEADY = """
-study = "sea"
-title = "Steady"
-fidelity = "kinematic"
-flights = 2
-draws = [{ key = "wind.speed_mps", uniform = [2.0, 4.0] }]
-[flight]
-crossings = 3
-[criteria]
-crossing_interval_error = 0.0321
-"""
-TURNS = """
-study = "sea"
-title = "Turns"
-fidelity = "kinematic"
-flights = 2
-[wind]
-speed_mps = 3.0
-[reports]
-interval_s = [2.0, 10.0]
-[following]
-vessel_acceleration_mps2 = 0.1
-[[draws]]
-key = "vessel.manoeuvres"
-choice = [[{ at_s = 150.0, turn_deg = 20.0, turn_rate_deg_s = 0.5 }], [{ at_s = 150.0, turn_deg = -10.0, turn_rate_deg_s = 0.5 }]]
-[flight]
-crossings = 0
-duration_max_s = 220.0
-[criteria]
-settles = false
-"""
 
 
 @pytest.fixture(scope="module")
 def run_path(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("trials")
-    for name, text in (("steady", STEADY), ("turns", TURNS)):
-        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
-    study = TrialList(study="trials", title="Small", trials=[str(folder / "steady.toml"), str(folder / "turns.toml")])
-    run_study(study, "small", folder / "run")
-    return folder / "run"
+    return small_trials(tmp_path_factory.mktemp("trials"))
 
 
 @pytest.fixture(scope="module")
@@ -82,28 +43,10 @@ def report(run):
     return content(run)
 
 
-def with_values(run, number, **values):
-    """Return a run with other values in one row of its summary."""
-    summary = run.summary.copy()
-    for key, value in values.items():
-        summary.loc[number, key] = value
-    return replace(run, summary=summary)
-
-
-def blocks_of(report, kind, anchor):
-    (section,) = (section for section in report.sections if section.anchor == anchor)
-    return [block for block in section.blocks if isinstance(block, kind)]
-
-
 def charts_of(report):
     blocks = [block for section in report.sections for block in section.blocks]
     flights = [flight for block in blocks if isinstance(block, FlightPicker) for flight in block.flights]
     return [*(block for block in blocks if isinstance(block, Chart)), *(chart for flight in flights for chart in flight.charts)]
-
-
-def rows_of(report, title):
-    """Return the cells of a trial in the tables of all trials, but for its title."""
-    return [row[1:] for table in blocks_of(report, Table, "trials") for row in table.rows if row[0] == title]
 
 
 def test_trials_are_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
@@ -130,20 +73,6 @@ def test_every_axis_of_trials_reads_quantity_and_unit_and_every_chart_shows_some
             assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)
             for label in (panel.x_label, panel.y_label):
                 assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)
-
-
-def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
-    assert content(run).verdict.headline.startswith("No keep-out violation in 4 flights (")
-    assert content(run).verdict.holds
-    judged = content(with_values(run, 3, keepout_violations=2, keepout_depth_m=1.5, min_distance_m=198.5, criteria_met=False))
-    assert not judged.verdict.holds
-    assert judged.verdict.headline == "Keep-out violations in 1 of 4 flights, 2 in all"
-    assert ("Closest approach, from the keep-out sphere's centre", "198.5 m", "≥ 200 m") in judged.verdict.figures
-    assert judged.verdict.failures == ["turns_00001: completed; "]
-    (picker,) = blocks_of(judged, FlightPicker, "flights")
-    assert "deepest keep-out violation" in next(flight.title for flight in picker.flights if flight.flight_id == "turns_00001")
-    # Keep-out violations and the closest approach, from r_min too, are in the trial's row.
-    assert rows_of(judged, "Turns")[0][7:10] == ["2", "198.5", "-1.5"]
 
 
 def test_of_nothing_flown_nothing_is_claimed(run):
@@ -334,86 +263,6 @@ def test_an_ordinate_of_names_is_marked_alike_on_screen_and_in_print():
     assert [(tick, text.get_text()) for tick, text in zip(printed.get_yticks(), printed.get_yticklabels(), strict=True)] == names
     screen = plotly_charts.draw(chart).layout.yaxis
     assert list(zip(screen.tickvals, screen.ticktext, strict=True)) == names
-
-
-LOST = {"outcome": "aircraft_lost", "mode_at_end": "ditched", "criteria_met": False, "message": "it came down on the sea"}
-
-
-def test_a_flight_that_lost_its_aircraft_fails_a_run_of_which_it_is_required_to_complete(run):
-    report = content(with_values(run, 1, **LOST))
-    assert report.verdict.headline.startswith("1 lost the aircraft, of 4 flights. No keep-out violation in 4 flights (")
-    assert (report.verdict.holds, report.verdict.complete) == (False, False)
-    assert report.verdict.failures == ["steady_00001: aircraft lost; it came down on the sea"]
-    # Planned, flown, completed, met, lost, kept out.
-    assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "2"]
-
-
-def test_where_a_fault_is_flown_on_purpose_a_lost_aircraft_is_shown_and_keeping_out_judged(run):
-    report = content(with_values(run, 1, required="keep_out", **LOST))
-    # Amber: nothing that must never happen did, but not every flight is met.
-    assert (report.verdict.holds, report.verdict.complete) == (True, False)
-    assert report.verdict.headline.endswith("; of 4, 1 lost the aircraft")
-    assert (
-        "required to keep out, not to complete: 1 kept out, 0 completed. The exit status is about the first."
-        in report.verdict.detail
-    )
-    assert ("Aircraft lost", "1", "") in report.verdict.figures
-    assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "2"]
-
-
-def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
-    values = {"outcome": "incomplete", "message": "flew 1 of 3 crossings", "criteria_met": False}
-    report = content(with_values(run, 0, **values))
-    assert (report.verdict.holds, report.verdict.complete) == (True, False)
-    assert report.verdict.headline.endswith("; of 4, 1 did not complete the mission")
-    assert report.verdict.failures == ["steady_00000: incomplete; flew 1 of 3 crossings"]
-
-
-def test_flights_that_are_not_flown_yet_are_not_failed_ones(run):
-    manifest = json.loads(json.dumps(run.manifest)) | {"flights_planned": 200, "state": "interrupted"}
-    manifest["trial_flights"] = {"steady": 198, "turns": 2}
-    report = content(replace(run, manifest=manifest))
-    assert report.verdict.headline.endswith("; of 200, 196 not flown yet")
-    assert report.verdict.failures == ["Steady: 196 of 198 not flown yet"]
-    assert "200 planned, 4 flown, 4 completed, 4 met every criterion" in report.verdict.detail
-    assert (report.verdict.holds, report.verdict.complete) == (True, False)
-    assert rows_of(report, "Steady")[0][:4] == ["198", "2", "2", "2"]
-    assert "failed" not in {section.anchor for section in report.sections}
-
-
-def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
-    verdict = content(run).verdict
-    # Clopper and Pearson, none of four: 1 - 0.05^(1/4).
-    assert "at most 52.7 % of such flights at 95 % confidence" in verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
-    texts = [verdict.headline, verdict.detail, *verdict.failures, *(text for figure in verdict.figures for text in figure)]
-    assert not any(re.search(r"\bsafe", text, re.IGNORECASE) for text in texts)
-    # Those of a search are no random sample: no bound follows from them.
-    manifest = run.manifest | {"sampled_at_random": {"steady": False, "turns": True}}
-    chosen = content(replace(run, manifest=manifest)).verdict
-    assert "confidence" not in chosen.headline
-    assert "No bound on a probability follows from these flights" in chosen.detail
-
-
-def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
-    report = content(with_values(run, 2, tracking_error_rms_m=107.0, guard_lost_s=3.2, guard_interventions=1, manoeuvres_unflown=1))
-    (tracking,) = (value for name, value, _ in report.verdict.figures if "99" in name)
-    assert tracking.endswith(", 107 m")
-    assert report.verdict.failures == [
-        "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",
-        "In 1 flight a manoeuvre of the vessel begins after the end of the flight, and was never flown.",
-    ]
-
-
-def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run):
-    assert " m from the keep-out sphere's centre, in " in content(run).verdict.detail
-    manifest = json.loads(json.dumps(run.manifest))
-    for trial in manifest["trials"].values():
-        trial["keepout"]["shape"] = "cylinder"
-    report = content(replace(run, manifest=manifest))
-    assert " m horizontal, from the keep-out cylinder's axis, in " in report.verdict.detail
-    # Beside the funnel, far above it: a sphere is narrower there.
-    rising = content(with_values(run, 0, min_distance_m=200.5, horizontal_distance_min_m=80.2)).verdict.detail
-    assert "200.5 m from the keep-out sphere's centre, in steady_00000; 80.2 m horizontally from the funnel" in rising
 
 
 def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):
