@@ -16,7 +16,7 @@ from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.points import STUDY
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
-from scenarios.metrics.criteria import failed_criteria
+from scenarios.metrics.criteria import failed_criteria, kept_out
 from scenarios.metrics.crossings import crossing_rows
 from scenarios.metrics.figures import flight_figures, plan_row
 from scenarios.metrics.relative_state import flight_history
@@ -103,11 +103,12 @@ class FlightWork:
             record = fly(plan, release(plan, self._setup(request)), _payload(request, plan), every_step=task.every_step)
             history = flight_history(plan, record)
             figures, found = flight_figures(plan, record)
-            row |= figures
+            row |= figures | _never_flown(request, figures)
             tables[CROSSINGS] = [named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)]
             tables[INTERVENTIONS] = [named | stretch._asdict() for stretch in record.interventions]
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
+            row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}
         except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
             row |= failure(error)
         return self._result(task, row | {"wall_time_s": time.perf_counter() - began}, tables, history)
@@ -156,6 +157,7 @@ def _request_row(request: FlightRequest) -> Row:
         "fidelity": scenario.fidelity,
         "seed": request.seed,
         "fault": scenario.fault.kind,
+        "required": scenario.criteria.required,
     }
     if scenario.circles:
         return row
@@ -167,6 +169,12 @@ def _request_row(request: FlightRequest) -> Row:
         "turbulence": scenario.turbulence.level,
         "keepout_radius_m": scenario.keepout.radius_m,
     }
+
+
+def _never_flown(request: FlightRequest, figures: Row) -> Row:
+    """Return how many manoeuvres of the vessel begin after the end of the flight, of one that has any."""
+    begins = [manoeuvre.at_s for manoeuvre in request.scenario.vessel.manoeuvres]
+    return {"manoeuvres_unflown": sum(at >= figures["duration_s"] for at in begins)} if begins else {}
 
 
 def _payload(request: FlightRequest, plan: FlightPlan) -> list[Instrument]:

@@ -46,8 +46,8 @@ def command(
 ) -> None:
     """Fly a scenario and write a report.
 
-    Exit status: 0 every flight completed and met its criteria (or every trajectory converged), 1 some did not, 2 bad
-    input, 130 interrupted.
+    Exit status: 0 every flight kept out, completed and met its criteria (or kept out, where the scenario requires no more; or
+    every trajectory converged), 1 some did not, 2 bad input, 130 interrupted.
     """
     from scenarios.engine.executors import ExecutorFactory
     from scenarios.engine.task import Limits

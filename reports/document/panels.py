@@ -80,10 +80,17 @@ def capped(x: Array, y: Array, groups: Sequence[Group], limit: float) -> tuple[l
 
 def level(x: Array, value: float, label: str, colour: str = "vermillion") -> Line:
     """Return a dashed line across a panel whose abscissae are ``x``."""
+    return Line(x=np.array(around(x) or (0.0, 1.0)), y=np.array([value, value]), label=label, colour=colour, style="dash")
+
+
+def around(x: Array) -> tuple[float, float] | None:
+    """Return limits of an axis with room to spare on both sides, also about a single value; None without any."""
     known = x[np.isfinite(x)]
-    low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)
-    spare = 0.04 * (high - low) or 0.05
-    return Line(x=np.array([low - spare, high + spare]), y=np.array([value, value]), label=label, colour=colour, style="dash")
+    if not len(known):
+        return None
+    low, high = float(known.min()), float(known.max())
+    spare = 0.04 * (high - low) or 0.1 * abs(low) or 0.1
+    return low - spare, high + spare
 
 
 def histogram(series: Sequence[tuple[Array, str, str]], x_label: str, upright: Sequence[tuple[float, str]] = ()) -> Panel | None:

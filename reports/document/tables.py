@@ -6,7 +6,6 @@ from typing import Any
 import pandas as pd
 
 from reports.document.blocks import Table
-from reports.run.columns import lost
 from reports.run.run_data import RunData
 
 
@@ -100,9 +99,9 @@ def number(value: Any, pattern: str) -> str:
 
 
 def outcome(row: "pd.Series[Any]") -> str:
-    """Return how a flight ended, in words: "met" only if it kept its aircraft, whatever its criteria allow."""
+    """Return how a flight ended, in words, and why it is not met."""
     if row["criteria_met"]:
-        return f"{row['mode_at_end']}, as its criteria allow" if lost(pd.DataFrame([row]))[0] else "met"
+        return "met"
     ended, message = str(row["outcome"]).replace("_", " "), str(row["message"])
     return f"{ended}: {message}" if message else ended
 

@@ -3,7 +3,6 @@
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Heading, Section, Text, Verdict
 from reports.flights.comparison import comparison_section
-from reports.flights.criteria import criteria_of
 from reports.flights.names import flight_name
 from reports.flights.parameter_tables import parameter_blocks
 from reports.flights.selection import flight_section
@@ -28,7 +27,7 @@ def flights_content(run: RunData) -> tuple[Verdict, list[Section]]:
         _overview(trials),
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
         comparison_section(run, trials),
-        Section(anchor="failed", title="Failed flights", nav_title="Failed", blocks=failed_blocks(run)),
+        Section(anchor="failed", title="Flights that are not met", nav_title="Not met", blocks=failed_blocks(run)),
         flight_section(trials),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
@@ -39,9 +38,13 @@ def flights_content(run: RunData) -> tuple[Verdict, list[Section]]:
 def _overview(trials: list[Trial]) -> Section:
     criteria: list[Block] = [Heading("Criteria beside the keep-out area, and the worst measured values"), criteria_table(trials)]
     if len(trials) == 1:
-        shown = criteria[1:] if criteria_of(trials[0]) else []
-        return Section(anchor="trials", title="Criteria and the worst measured values", nav_title="Criteria", blocks=shown)
-    return Section(anchor="trials", title="Trials", blocks=[trial_table(trials), *criteria])
+        return Section(anchor="trials", title="Criteria and the worst measured values", nav_title="Criteria", blocks=criteria[1:])
+    meaning = (
+        "Completed: the aircraft came through, settled, and flew the crossings that were asked for, or one at least. Met: it kept"
+        " out, completed, and met every other criterion. Kept out: known to have kept out to its end. Distances are from the"
+        " keep-out sphere's centre, or horizontal where the keep-out area is a cylinder."
+    )
+    return Section(anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), *criteria])
 
 
 def _trial(trial: Trial, *, only: bool) -> Section:

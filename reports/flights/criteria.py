@@ -8,10 +8,8 @@ import numpy as np
 import pandas as pd
 
 from reports.document.tables import limit
-from reports.run.columns import Array, column, interval_error
+from reports.run.columns import Array, column, completed, count, interval_error
 from reports.run.trials import Trial
-
-_COMPLETED = "completed"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,15 +74,17 @@ MEASURED = tuple(_MEASURES)
 
 
 def criteria_of(trial: Trial) -> list[Criterion]:
-    """Return the criteria of a trial's configuration beside the keep-out area, in its order."""
-    return [_criterion(trial, key, value) for key, value in trial.criteria.items() if value not in (None, False, [])]
+    """Return the criteria of a trial beside the keep-out area: to complete its mission, and those of its configuration."""
+    listed = {key: value for key, value in trial.criteria.items() if value not in (None, False, [])}
+    return [
+        _mission(trial),
+        *(_criterion(trial, key, value) for key, value in listed.items() if key not in ("required", "settles")),
+    ]
 
 
 def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
     if key in _MEASURES:
         return _figure(trial, key, float(value), _MEASURES[key])
-    if key == "settles":
-        return _settles(trial)
     if key == "modes_at_end":
         return _modes(trial, [str(mode) for mode in value])
     return Criterion(key=key, what=key.replace("_", " "), limit=str(value), worst="see the flights that failed", failed=0)
@@ -106,18 +106,22 @@ def _figure(trial: Trial, key: str, value: float, measure: _Measure) -> Criterio
     )
 
 
-def _settles(trial: Trial) -> Criterion:
-    settled = column(trial.rows, "settling_time_s")
-    done = np.isfinite(settled) & (trial.rows["outcome"] == _COMPLETED).to_numpy()
-    failed = len(done) - int(np.count_nonzero(done))
-    slowest = f"slowest after {np.max(settled[done]):.0f} s" if done.any() else "no flight did"
+def _mission(trial: Trial) -> Criterion:
+    settled, done = column(trial.rows, "settling_time_s"), completed(trial.rows)
     crossings = int(trial.setting("flight.crossings", 0))
+    circles = trial.setting("reference.path") == "circle"
+    ends = [str(outcome).replace("_", " ") for outcome in trial.rows["outcome"][~done]]
+    slowest = np.max(settled[done & np.isfinite(settled)], initial=-np.inf)
+    words = [f"settled after {slowest:.0f} s at the latest"] if np.isfinite(slowest) else []
+    words += [counted(pd.Series(ends))] if ends else []
     return Criterion(
-        key="settles",
-        what=f"Settles and flies {crossings} crossings" if crossings else "Settles",
+        key="mission",
+        what="Keeps its aircraft"
+        if circles
+        else f"Completes its mission: settles, and flies {f'{crossings} crossings' if crossings else 'a crossing at least'}",
         limit="each flight",
-        worst=slowest + (f"; {failed} never" if failed and done.any() else ""),
-        failed=failed,
+        worst="; ".join(words) or "none flown",
+        failed=count(~done),
     )
 
 

@@ -5,12 +5,15 @@ import math
 import numpy as np
 
 from reports.document.chart import Line, Panel, Style
-from reports.document.panels import Group, capped, level, points
+from reports.document.panels import Group, around, capped, level, points
 from reports.monte_carlo.names import input_label
 from reports.run.columns import clearance, column, interval_error, violated
 from reports.run.trials import Trial
 
 CLEARANCE = "Distance kept beyond r_min [m]"
+
+_RATIOS = (-0.02, 1.02)
+"""Speed ratios that a panel shows, however many are flown [-]."""
 
 
 def by_violation(trial: Trial) -> list[Group]:
@@ -29,21 +32,22 @@ class PanelsOver:
     """
 
     def __init__(self, trial: Trial, key: str, groups: list[Group]) -> None:
-        self._trial, self._groups, self._rows = trial, groups, trial.flown
+        self._trial, self._key, self._groups, self._rows = trial, key, groups, trial.flown
         self._x = trial.input(key).reindex(self._rows["flight_id"]).to_numpy(dtype=np.float64)
+        self._span = np.array([0.0, 1.0]) if key == "nu" else self._x
         self._label = "Speed ratio ν [-]" if key == "nu" else input_label(key)
 
     def figure(self, name: str, y_label: str) -> Panel | None:
         """Return a panel of any figure, its criterion if it has one, and those far above all others at its edge."""
         y, limit = column(self._rows, name), self.limit(name)
         lines, top = capped(self._x, y, self._groups, limit)
-        criterion = [] if math.isnan(limit) else [level(self._x, limit, "criterion")]
+        criterion = [] if math.isnan(limit) else [level(self._span, limit, "criterion")]
         return self._panel(y_label, [*lines, *criterion], y_range=(-0.03 * top, top))
 
     def interval_error(self) -> Panel | None:
         """Return the mean crossing interval against its prediction."""
         limit = 100.0 * self.limit("crossing_interval_error")
-        criterion = [] if math.isnan(limit) else [level(self._x, side * limit, "criterion") for side in (1.0, -1.0)]
+        criterion = [] if math.isnan(limit) else [level(self._span, side * limit, "criterion") for side in (1.0, -1.0)]
         return self._panel(
             "Mean interval against π/ω₀ [%]", [*points(self._x, 100.0 * interval_error(self._rows), self._groups), *criterion]
         )
@@ -51,32 +55,36 @@ class PanelsOver:
     def interval(self) -> Panel | None:
         """Return the crossing interval, with bars of one standard deviation, and its prediction."""
         flown = self._points("crossing_interval_mean_s", "flight", "blue", error="crossing_interval_std_s")
-        predicted = self._curve("crossing_interval_predicted_s", "predicted, π/ω₀", "black", "solid")
-        return self._panel("Crossing interval [s]", [predicted, flown])
+        return self._panel("Crossing interval [s]", [self._theory("crossing_interval_predicted_s", "theory, π/ω₀", "black"), flown])
 
     def distances(self) -> Panel | None:
         """Return the distances of the crossings and the closest approach."""
+        closest = "closest approach, horizontal" if self._trial.shape == "cylinder" else "closest approach, whole flight"
         lines = [
-            self._curve("keepout_radius_m", "keep-out radius r_min", "vermillion", "solid"),
-            self._curve("r_co_m", "centre of oscillation r_CO", "grey"),
+            self._limit("keepout_radius_m", f"r_min of the keep-out {self._trial.shape}"),
+            self._theory("r_co_m", "centre of oscillation r_CO", "grey"),
             self._points("crossing_distance_mean_m", "crossings, mean", "blue"),
             self._points("crossing_distance_min_m", "crossings, closest", "sky", "diamonds"),
-            self._points("min_distance_m", "closest approach, whole flight", "green"),
+            self._points(
+                "min_distance_m",
+                closest,
+                "green",
+            ),
         ]
         return self._panel("Distance from the funnel [m]", lines)
 
     def command(self) -> Panel | None:
         """Return the largest commanded heading rate, and its limit."""
         command = self._points("heading_rate_command_max_rad_s", "largest command", "orange")
-        return self._panel("Heading rate [rad/s]", [command, self._curve("heading_rate_limit_rad_s", "ω_max", "vermillion")])
+        return self._panel("Heading rate [rad/s]", [command, self._limit("heading_rate_limit_rad_s", "ω_max")])
 
     def margin(self) -> Panel | None:
         """Return what of the planned margin was left, over the margin if flights differ in it."""
         planned, kept = column(self._rows, "keepout_margin_m"), clearance(self._rows)
         if not np.isfinite(planned).any():
-            return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), level(self._x, 0.0, "r_min", "black")])
+            return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), level(self._span, 0.0, "r_min", "black")])
         if float(np.ptp(planned)) < 1e-6:
-            levels = [level(self._x, 0.0, "r_min", "black"), level(self._x, float(planned[0]), "planned margin", "green")]
+            levels = [level(self._span, 0.0, "r_min", "black"), level(self._span, float(planned[0]), "planned margin", "green")]
             return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), *levels])
         ends = np.array([float(planned.min()), float(planned.max())])
         levels = [level(planned, 0.0, "r_min", "black"), Line(x=ends, y=ends, label="planned margin", colour="green", style="dash")]
@@ -91,12 +99,24 @@ class PanelsOver:
         bars = column(self._rows, error) if error else None
         return Line(x=self._x, y=column(self._rows, name), label=label, colour=colour, style=style, error=bars)
 
-    def _curve(self, name: str, label: str, colour: str, style: Style = "dash") -> Line:
-        """Return a curve to compare with."""
-        order = np.argsort(self._x, kind="stable")
-        return Line(x=self._x[order], y=column(self._rows, name)[order], label=label, colour=colour, style=style)
+    def _theory(self, name: str, label: str, colour: str) -> Line:
+        """Return what theory says: its curve over the speed ratio, however few flights there are; else a mark for each flight."""
+        curve = self._trial.theory(name) if self._key == "nu" else None
+        if curve is None:
+            return Line(x=self._x, y=column(self._rows, name), label=label, colour=colour, style="diamonds")
+        return Line(x=curve[0], y=curve[1], label=label, colour=colour)
+
+    def _limit(self, name: str, label: str) -> Line:
+        """Return a limit of the flights: a level if it is the same for all."""
+        values = column(self._rows, name)
+        if len(values) and np.ptp(values) < 1e-9:
+            return level(self._span, float(values[0]), label)
+        return Line(x=self._x, y=values, label=label, colour="vermillion", style="diamonds")
 
     def _panel(self, y_label: str, lines: list[Line], y_range: tuple[float, float] | None = None) -> Panel | None:
         known = [line for line in lines if np.isfinite(line.y).any()]
         shown = any(line.style in ("points", "diamonds") for line in known)
-        return Panel(x_label=self._label, y_label=y_label, lines=known, y_range=y_range) if shown else None
+        if not shown:
+            return None
+        x_range = _RATIOS if self._key == "nu" else around(self._x)
+        return Panel(x_label=self._label, y_label=y_label, lines=known, x_range=x_range, y_range=y_range)

@@ -10,7 +10,7 @@ from reports.document.blocks import Block, FlightContent, FlightPicker, Section,
 from reports.document.tables import number, outcome
 from reports.flights.names import flight_name
 from reports.flights.single_flight import flight_charts
-from reports.run.columns import clearance, column, lost, met, violated
+from reports.run.columns import clearance, column, met, violated
 from reports.run.trials import Trial
 
 PICKED_MAX = 12
@@ -19,7 +19,7 @@ PICKED_MAX = 12
 SWEPT_MAX = 24
 """Flights of a sweep that are all shown one by one; of longer ones some are."""
 
-_VIOLATION, _FAILED = "deepest keep-out violation", "failed a criterion"
+_VIOLATION, _FAILED = "deepest keep-out violation", "did not meet every criterion"
 
 
 def flight_section(trials: list[Trial]) -> Section:
@@ -31,8 +31,8 @@ def flight_section(trials: list[Trial]) -> Section:
     else:
         flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked_flights(trials)]
         text = (
-            f"{len(flights)} flights: of each trial those with the deepest keep-out violation and with a failed criterion, if there"
-            " are such, the closest approach, and the one whose closest approach is the median."
+            f"{len(flights)} flights: of each trial those with the deepest keep-out violation and with a criterion that is not met,"
+            " if there are such, the closest approach, and the one whose closest approach is the median."
         )
     blocks: list[Block] = [Text(f"{text} In print each has a page at the end."), FlightPicker(flights=flights)]
     return Section(anchor="flights", title="Single flights", nav_title="Flights", blocks=blocks if flights else [])
@@ -48,7 +48,7 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
         flight_id=str(row["flight_id"]),
         label=f"{name} · {state.split(':', maxsplit=1)[0]}",
         title=f"{name}: {state} ({world or 'not flown'})",
-        charts=flight_charts(trial.run, row, trial.source_height),
+        charts=flight_charts(trial, row),
     )
 
 
@@ -71,7 +71,7 @@ def picked_flights(trials: list[Trial]) -> list[tuple[Trial, "pd.Series[Any]", s
 def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     """Yield a trial's flights to look at, the most important first: one of each sort, none twice."""
     rows, flown = trial.rows, trial.flown
-    inside, failed = rows[violated(rows)], rows[~met(rows) & ~lost(rows) & ~violated(rows)]
+    inside, failed = rows[violated(rows)], rows[~met(rows) & ~violated(rows)]
     # Of the others, those that have a time history: they are chosen for their figures.
     recorded = flown[[trial.run.has_history(str(flight_id)) for flight_id in flown["flight_id"]]]
     order = np.argsort(clearance(recorded), kind="stable")
@@ -79,7 +79,9 @@ def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     if len(inside):
         chosen.append((inside.iloc[int(np.argmax(column(inside, "keepout_depth_m")))], _VIOLATION))
     if len(failed):
-        chosen.append((failed.iloc[0], _FAILED))
+        # One to look at, if there is any.
+        shown = failed[[trial.run.has_history(str(flight_id)) for flight_id in failed["flight_id"]]]
+        chosen.append(((shown if len(shown) else failed).iloc[0], _FAILED))
     if len(recorded):
         chosen.append((recorded.iloc[int(order[0])], "closest approach"))
         chosen.append((recorded.iloc[int(order[len(order) // 2])], "median of closest approaches"))

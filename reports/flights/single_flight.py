@@ -11,8 +11,8 @@ import pandas as pd
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, Style, circle
 from reports.run.columns import NOTICEABLE, Array, column
-from reports.run.run_data import RunData
-from reports.run.time_history import about_the_plume, funnel_distance, tracking_error
+from reports.run.time_history import about_the_plume, keepout_distance, tracking_error
+from reports.run.trials import Trial
 
 POINTS_MAX = 1300
 """Points of a curve at most, beside the closest approach."""
@@ -32,27 +32,22 @@ _ERROR_MIN = 0.1
 _TIME = "Time [s]"
 
 
-def flight_charts(run: RunData, row: "pd.Series[Any]", source_height: float) -> list[Chart]:
-    """Return the figures of one flight, or none if it has no time history.
-
-    Parameters
-    ----------
-    run, row : as read from disk; the row of the flight
-    source_height : of the funnel, from where distances count [m]
-    """
-    history = run.history(str(row["flight_id"]))
+def flight_charts(trial: Trial, row: "pd.Series[Any]") -> list[Chart]:
+    """Return the figures of one flight of a trial, given its row; none if it has no time history."""
+    history = trial.run.history(str(row["flight_id"]))
     if history is None or len(history) < 2:
         return []
-    view = _View(run, row, history, source_height)
+    view = _View(trial, row, history)
     return [replace(chart, panels=[in_kilometres(panel) for panel in chart.panels]) for chart in (view.tracks(), view.histories())]
 
 
 class _View:
     """A flight's record, thinned, but with its closest approach, its crossings and the guard's interventions."""
 
-    def __init__(self, run: RunData, row: "pd.Series[Any]", history: pd.DataFrame, source_height: float) -> None:
-        self._row, self._modes, self._source_height = row, run.manifest.get("modes", []), source_height
-        distance = funnel_distance(history, source_height)
+    def __init__(self, trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame) -> None:
+        run, self._trial, self._row, self._source_height = trial.run, trial, row, trial.source_height
+        self._modes = run.manifest.get("modes", [])
+        distance = self._distance_of(history)
         self._vessel = bool(np.isfinite(distance).any())
         nearest = int(np.nanargmin(distance)) if self._vessel else 0
         step = max(1, math.ceil(len(history) / POINTS_MAX))
@@ -74,6 +69,9 @@ class _View:
         curves = {name: np.unwrap(column(history, name)) if name.endswith("_rad") else column(history, name) for name in known}
         at_times = {name: np.interp(times, column(history, "time_s"), curve) for name, curve in curves.items()}
         self._crossings = pd.DataFrame({"time_s": times, **at_times})
+
+    def _distance_of(self, samples: pd.DataFrame) -> Array:
+        return keepout_distance(samples, self._source_height, self._trial.shape)
 
     def _c(self, name: str) -> Array:
         return column(self._h, name)
@@ -146,7 +144,7 @@ class _View:
         panels = [panel for panel in (make() for make in makers) if panel is not None]
         return Chart(
             name="histories",
-            caption="Time histories. Distance is that from the funnel, dashed r_min; of more than"
+            caption=f"Time histories. Distance is {self._trial.measured_from}, dashed r_min; of more than"
             f" {_FAR:g} r_min it is off the panel. Dashed in the panel of the heading rate: ω_max.",
             panels=panels,
             columns=2,
@@ -176,7 +174,7 @@ class _View:
             if time is not None and 0.0 < time <= self._ends[1]
         ]
         lines = [self._line(self._distance), self._level(self._radius, "limit", "vermillion"), *marks]
-        lines += self._marks(lambda samples: (column(samples, "time_s"), funnel_distance(samples, self._source_height)))
+        lines += self._marks(lambda samples: (column(samples, "time_s"), self._distance_of(samples)))
         return Panel(x_label=_TIME, y_label="Distance [m]", lines=lines, y_range=(low, high))
 
     def _tracking_panel(self) -> Panel:

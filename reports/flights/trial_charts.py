@@ -68,7 +68,8 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
         ),
         _chart(
             trial, f"{name}-distance",
-            "Distances from the funnel: of the crossings after settling, and the closest approach of the whole flight.",
+            "Distances from the funnel's mouth: of the crossings after settling, three-dimensional, and the closest approach of the"
+            f" whole flight, {trial.measured_from}.",
             [over.distances()], 0.42,
         ),
         _chart(
@@ -109,10 +110,11 @@ def _distances(trial: Trial) -> list[Chart]:
     counted = histogram([(clearance(trial.flown), "all flights", "blue")], CLEARANCE, [_R_MIN])
     if trial.kind is Kind.APPROACH:
         other = histogram([(column(trial.flown, "settling_time_s"), "", "blue")], "Settling time [s]")
-        caption = "Closest approach of each flight from its first second, beyond r_min, and settling time, of those that settled."
+        shown = "beyond r_min, and settling time, of those that settled."
     else:
         other = PanelsOver(trial, "nu", by_violation(trial)).margin()
-        caption = "Closest approach of each flight from its first second, beyond r_min: counted, and against the planned margin."
+        shown = "beyond r_min: counted, and against the planned margin."
+    caption = f"Closest approach of each flight from its first second, {trial.measured_from}, {shown}"
     return [_chart(trial, "distances", caption, [counted, other], 0.36)]
 
 

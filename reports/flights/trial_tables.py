@@ -6,18 +6,19 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.binomial import CONFIDENCE, percent, upper_bound
 from common.run_layout import SUMMARY
 from reports.document.blocks import Block, Table, Text
 from reports.document.tables import number, outcome
 from reports.flights.criteria import counted, criteria_of
 from reports.flights.names import fault_name
-from reports.run.columns import clearance, column, lost, met, total, violated
+from reports.run.columns import clearance, column, completed, count, kept_out, lost, met, total, violated
 from reports.run.run_data import RunData
-from reports.run.time_history import funnel_distance
+from reports.run.time_history import keepout_distance
 from reports.run.trials import Trial
 
 FAILED_MAX = 40
-"""Failed flights that are listed."""
+"""Flights that are not met and are listed."""
 
 _NOTHING = "–"
 
@@ -63,28 +64,30 @@ def flight_table(
 
 
 def trial_table(trials: list[Trial]) -> Table:
-    """Return a row per trial: its flights, how they kept the keep-out area, and how they ended."""
+    """Return a row per trial: flights as planned, flown, completed and met, how they kept out, and how they ended."""
     rows = []
     for trial in trials:
         flown = trial.flown
-        guarded = int(np.count_nonzero(column(flown, "guard_interventions") > 0.0))
         rows.append([
             trial.title,
-            f"{len(trial.rows)}" + (f" of {trial.planned}" if len(trial.rows) < trial.planned else ""),
+            f"{trial.planned}",
+            f"{len(flown)}",
+            f"{count(completed(trial.rows))}",
+            f"{count(met(trial.rows))}",
+            f"{count(lost(trial.rows))}",
+            f"{count(kept_out(flown))}",
+            percent(upper_bound(count(~kept_out(flown)), len(flown))) if trial.sampled_at_random and len(flown) else _NOTHING,
             f"{total(flown, 'keepout_violations')}",
             number(np.min(column(flown, "min_distance_m"), initial=np.inf) if len(flown) else None, "{:.1f}"),
             number(np.min(clearance(flown)) if len(flown) else None, "{:+.1f}"),
-            f"{guarded}",
-            f"{int(np.count_nonzero(np.isfinite(column(flown, 'settling_time_s'))))}",
+            f"{count(column(flown, 'guard_interventions') > 0.0)}",
             counted(flown["mode_at_end"]) if "mode_at_end" in flown else _NOTHING,
-            f"{int(np.count_nonzero(lost(trial.rows)))}",
-            f"{int(np.count_nonzero(met(trial.rows)))} of {trial.planned}",
         ])  # fmt: skip
     head = [
-        "Trial", "Flights", "Keep-out violations", "Closest [m]", "beyond r_min [m]", "With guard", "Settled", "Mode at the end",
-        "Aircraft lost", "Met",
+        "Trial", "Planned", "Flown", "Completed", "Met", "Aircraft lost", "Kept out", f"Violate, at most ({percent(CONFIDENCE)})",
+        "Keep-out violations", "Closest [m]", "beyond r_min [m]", "With guard", "Mode at the end",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[2.2, 0.8, 1.0, 0.9, 0.9, 0.8, 0.8, 1.5, 0.8, 1.1])
+    return Table(head=head, rows=rows, widths=[2.0, 0.8, 0.7, 1.0, 0.6, 0.8, 0.7, 0.9, 1.0, 0.8, 0.8, 0.7, 1.4], print_size_pt=6.0)
 
 
 def criteria_table(trials: list[Trial]) -> Table:
@@ -93,8 +96,7 @@ def criteria_table(trials: list[Trial]) -> Table:
     for trial in trials:
         listed = criteria_of(trial)
         rows += [[trial.title, c.what, c.limit, c.worst, f"{c.failed}"] for c in listed]
-        rows += [] if listed else [[trial.title, "None, but no keep-out violation and commands within ω_max", "", "", _NOTHING]]
-    head, widths = ["Trial", "Criterion", "Limit", "Worst measured", "Failed"], [1.7, 2.5, 1.2, 1.7, 0.7]
+    head, widths = ["Trial", "Criterion", "Limit", "Worst measured", "Not met"], [1.7, 2.5, 1.2, 1.7, 0.7]
     if len(trials) == 1:
         return Table(head=head[1:], rows=[row[1:] for row in rows], widths=widths[1:], left_columns=3)
     return Table(head=head, rows=rows, widths=widths, left_columns=4)
@@ -111,32 +113,34 @@ def fault_table(trial: Trial) -> Table:
         rows.append([
             fault_name(kind),
             f"{len(members)}",
+            f"{count(kept_out(members))}",
+            f"{count(completed(members))}",
+            f"{count(lost(members))}",
             f"{total(members, 'keepout_violations')}",
             number(float(column(members, "min_distance_m").min()), "{:.1f}"),
             number(min(known, default=None), "{:.1f}") + (f" (of {len(known)})" if known and len(known) < len(closest) else ""),
             f"{column(members, 'end_distance_m').min():.0f} to {column(members, 'end_distance_m').max():.0f}",
-            f"{int(np.count_nonzero(lost(members)))}",
             counted(members["mode_at_end"]),
         ])  # fmt: skip
     head = [
-        "Fault", "Flights", "Keep-out violations", "Closest [m]", "Closest after the fault [m]", "At the end [m]",
-        "Aircraft lost", "Mode at the end",
+        "Fault", "Flights", "Kept out", "Completed", "Aircraft lost", "Keep-out violations", "Closest [m]",
+        "Closest after the fault [m]", "At the end [m]", "Mode at the end",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[1.5, 0.7, 1.0, 0.9, 1.2, 1.2, 0.8, 2.0])
+    return Table(head=head, rows=rows, widths=[1.5, 0.7, 0.7, 1.0, 0.8, 1.0, 0.8, 1.2, 1.1, 1.8])
 
 
 def _closest_after(trial: Trial, row: "pd.Series[Any]") -> float | None:
-    """Return how close a flight came to the funnel from its fault on [m], or None without a fault or a time history."""
+    """Return how close a flight came from its fault on [m], or None without a fault or a time history."""
     history = None if pd.isna(row["fault_time_s"]) else trial.run.history(str(row["flight_id"]))
     if history is None:
         return None
     after = history[history["time_s"] >= row["fault_time_s"]]
-    return float(funnel_distance(after, trial.source_height).min()) if len(after) else None
+    return float(keepout_distance(after, trial.source_height, trial.shape).min()) if len(after) else None
 
 
 def failed_blocks(run: RunData) -> list[Block]:
-    """Return the flights that failed, keep-out violations first, ``FAILED_MAX`` at most, each with its reason."""
-    failed = run.summary[~run.summary["criteria_met"]]
+    """Return the flights that are not met, keep-out violations first, ``FAILED_MAX`` at most, each with its reason."""
+    failed = run.summary[~met(run.summary)]
     if not len(failed):
         return []
     order = np.lexsort((np.arange(len(failed)), -np.nan_to_num(column(failed, "keepout_depth_m")), ~violated(failed)))
@@ -150,8 +154,9 @@ def failed_blocks(run: RunData) -> list[Block]:
         ]
         for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()
     ]
-    head = ["Flight", "ν [-]", "Keep-out violations", "Closest [m]", "How it ended, and the criteria that it failed"]
+    head = ["Flight", "ν [-]", "Keep-out violations", "Closest [m]", "How it ended, and the criteria that are not met"]
     table = Table(head=head, rows=rows, widths=[2.4, 0.5, 0.9, 0.8, 4.0], prose=True, left_columns=5, breakable=True)
     more = len(failed) - len(rows)
-    text = f"{len(failed)} {'flights' if len(failed) > 1 else 'flight'} failed; those with keep-out violations come first."
+    flights = "flights did" if len(failed) > 1 else "flight did"
+    text = f"{len(failed)} {flights} not meet every criterion; those with keep-out violations come first."
     return [Text(text + (f" The first {len(rows)} are listed, {more} more are in {SUMMARY}." if more else "")), table]

@@ -1,52 +1,75 @@
-"""What the flights of a run show, at a glance."""
+"""What the flights of a run show, at a glance: no more than was flown."""
 
 import math
 
 import numpy as np
 import pandas as pd
 
+from common.binomial import CONFIDENCE, percent, upper_bound
 from reports.document.blocks import Verdict
 from reports.document.tables import limit, number, vehicles_flown
 from reports.flights.criteria import MEASURED, Criterion, criteria_of
-from reports.monte_carlo.tables import percent
-from reports.run.columns import clearance, column, largest, lost, measured, met, total, violated
+from reports.run.columns import (
+    clearance,
+    column,
+    completed,
+    count,
+    kept_out,
+    largest,
+    lost,
+    measured,
+    met,
+    passed,
+    total,
+    violated,
+)
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
 _NAMED_MAX = 3
-"""Failed flights of a trial that the verdict names one by one."""
+"""Flights of a trial that are not met and that the verdict names one by one."""
+
+_QUANTILE = 0.99
+"""Fraction of flights whose tracking error is no larger than the one that is shown."""
 
 
 def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
-    """Judge a run by its summary: flights were flown, none violated the keep-out area, and all met their criteria."""
+    """Judge a run by its summary.
+
+    It fails if no flight was flown, if one violated the keep-out area, or if one lost its aircraft that was required to complete.
+    It is complete if every planned flight met every criterion.
+    """
     rows, flown = run.summary, measured(run.summary)
-    violations = total(flown, "keepout_violations")
     planned = int(run.manifest["flights_planned"])
     return Verdict(
-        holds=len(flown) > 0 and violations == 0,
-        complete=int(np.count_nonzero(met(rows))) == planned,
-        headline=_headline(rows, flown, planned),
+        holds=len(flown) > 0 and total(flown, "keepout_violations") == 0 and not np.any(lost(rows) & ~passed(rows)),
+        complete=count(met(rows)) == planned,
+        headline=_headline(run, trials, flown, planned),
         detail=_detail(run, trials, flown, planned),
-        failures=[line for trial in trials for line in _failures(trial)],
-        figures=[*_bound(run), *_figures(trials, flown)],
+        failures=[*(line for trial in trials for line in _not_met(trial)), *_noteworthy(flown)],
+        figures=[*_bound_figure(run, trials, flown), *_figures(trials, flown, planned)],
     )
 
 
-def _headline(rows: pd.DataFrame, flown: pd.DataFrame, planned: int) -> str:
+def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
     if not len(flown):
         return "Nothing was flown"
-    flights = f"{len(flown):,} flight{'s' if len(flown) > 1 else ''}"
+    rows, flights = run.summary, f"{len(flown):,} flight{'s' if len(flown) > 1 else ''}"
     if violations := total(flown, "keepout_violations"):
-        inside = int(np.count_nonzero(violated(flown)))
-        return f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
-    gone = lost(rows) & rows["criteria_met"].to_numpy(dtype=np.bool_)
+        return f"Keep-out violations in {count(violated(flown)):,} of {flights}, {violations:,} in all"
+    bound = _bound(run, trials, flown)
+    shown = f": at most {percent(bound[0])} of such flights at {percent(bound[1])} confidence" if bound else ""
     counts = {
-        "failed a criterion": int(np.count_nonzero(~rows["criteria_met"])),
-        "lost the aircraft, as their criteria allow": int(np.count_nonzero(gone)),
+        "lost the aircraft": count(lost(rows)),
+        "did not complete the mission": count(~completed(flown) & ~lost(flown)),
+        "could not be flown": count(~lost(rows)) - count(~lost(flown)),
+        "failed another criterion": count(completed(rows) & ~met(rows)),
         "not flown yet": planned - len(rows),
     }
-    others = [f"{count:,} {what}" for what, count in counts.items() if count]
-    kept = f"No keep-out violation in {flights} ({hours(flown)})"
+    others = [f"{number_of:,} {what}" for what, number_of in counts.items() if number_of]
+    kept = f"No keep-out violation in {flights} ({hours(flown)}){shown}"
+    if np.any(lost(rows) & ~passed(rows)):
+        return f"{others[0].capitalize()}, of {planned:,} flights{''.join(f', {other}' for other in others[1:])}. {kept}"
     return f"{kept}; of {planned:,}, {', '.join(others)}" if others else f"{kept}; every flight met its criteria"
 
 
@@ -56,70 +79,118 @@ def hours(flown: pd.DataFrame) -> str:
     return f"{time:,.0f} h" if time >= 100.0 else f"{time:.2g} h"
 
 
-def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
-    count = f"{len(trials)} trials, " if len(trials) > 1 else ""
-    fulfilled = int(np.count_nonzero(met(run.summary)))
-    detail = f"{count}{len(run.summary):,} of {planned:,} flights are in this report; {fulfilled:,} met every criterion."
-    if len(flown):
-        closest = flown.iloc[int(np.argmin(clearance(flown)))]
-        detail += (
-            f" Closest approach of any flight, from its first second: {float(closest['min_distance_m']):.1f} m, in"
-            f" {closest['flight_id']}."
-        )
+def _bound(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> tuple[float, float] | None:
+    """Return the bound on the probability of a keep-out violation and its confidence; none where flights are no random sample.
+
+    A Monte Carlo study has its own, which allows for how often it was evaluated.
+    """
     if run.statistics is not None:
-        detail += (
-            f" With {percent(run.statistics['confidence'])} confidence a flight violates the keep-out area with a probability of at"
-            f" most {percent(run.statistics['violation']['pessimistic']['upper'])}."
+        return run.statistics["violation"]["pessimistic"]["upper"], run.statistics["confidence"]
+    if not len(flown) or not all(trial.sampled_at_random for trial in trials):
+        return None
+    return upper_bound(count(~kept_out(flown)), len(flown)), CONFIDENCE
+
+
+def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
+    rows = run.summary
+    several = f"Flights of {len(trials)} trials: " if len(trials) > 1 else ""
+    sentences = [
+        f"{several or 'Flights: '}{planned:,} planned, {len(flown):,} flown, {count(completed(rows)):,} completed,"
+        f" {count(met(rows)):,} met every criterion.",
+        *([_closest(trials, flown)] if len(flown) else []),
+    ]
+    if bound := _bound(run, trials, flown):
+        sentences.append(
+            f"With {percent(bound[1])} confidence a flight sampled as these were violates the keep-out area with a probability of"
+            f" at most {percent(bound[0])}, on average and in this simulation."
         )
     elif len(flown):
-        detail += " No bound on a probability follows from these flights; a Monte Carlo study gives one."
-    detail += f" {vehicles_flown(run)}"
+        sentences.append("No bound on a probability follows from these flights: they are no random sample.")
+    if "required" in rows and (rows["required"] == "keep_out").any():
+        alone = rows[rows["required"] == "keep_out"]
+        sentences.append(
+            f"Of {len(alone):,} flights it is required to keep out, not to complete: {count(kept_out(alone)):,} kept out,"
+            f" {count(completed(alone)):,} completed. The exit status is about the first."
+        )
+    sentences.append(vehicles_flown(run))
     if run.manifest.get("state") != "complete":
-        detail += f" The run is {run.manifest.get('state', 'unfinished')}; continue it with --resume."
-    return detail
+        sentences.append(f"The run is {run.manifest.get('state', 'unfinished')}; continue it with --resume.")
+    return " ".join(sentences)
 
 
-def _failures(trial: Trial) -> list[str]:
-    """Return what failed in a trial: each flight of a few, else each criterion; then flights not flown yet."""
+def _closest(trials: list[Trial], flown: pd.DataFrame) -> str:
+    """Return how close the closest flight came, and to what: the shape of the keep-out area decides what a distance is."""
+    closest = flown.iloc[int(np.argmin(clearance(flown)))]
+    (trial,) = [trial for trial in trials if trial.key == closest["trial"]]
+    words = (
+        f"Closest approach of any flight, from its first second: {float(closest['min_distance_m']):.1f} m"
+        f" {trial.measured_from}, in {closest['flight_id']}"
+    )
+    beside = closest.get("horizontal_distance_min_m", math.nan)
+    if trial.shape == "sphere" and beside < float(closest["min_distance_m"]) - 1.0:
+        words += f"; {float(beside):.1f} m horizontally from the funnel"
+    return f"{words}."
+
+
+def _not_met(trial: Trial) -> list[str]:
+    """Return which flights of a trial are not met: each of a few, else by criterion; then flights not flown yet."""
     rows = trial.rows
-    failed, missing = rows[~rows["criteria_met"]], trial.planned - len(rows)
+    others, missing = rows[~met(rows)], trial.planned - len(rows)
     lines = [f"{trial.title}: {missing} of {trial.planned} not flown yet"] if missing else []
-    if len(failed) <= _NAMED_MAX:
-        named = [f"{row['flight_id']}: {row['outcome'].replace('_', ' ')}; {row['message']}" for _, row in failed.iterrows()]
+    if len(others) <= _NAMED_MAX:
+        named = [f"{row['flight_id']}: {row['outcome'].replace('_', ' ')}; {row['message']}" for _, row in others.iterrows()]
         return [*named, *lines]
-    inside, depth = int(np.count_nonzero(violated(rows))), largest(column(rows, "keepout_depth_m"))
+    inside, depth = count(violated(rows)), largest(column(rows, "keepout_depth_m"))
     parts = [f"{inside} violated the keep-out area, by up to {number(depth, '{:.1f} m')}"] if inside else []
     parts += [f"{c.failed} did not meet “{c.what}, {c.limit}”" for c in criteria_of(trial) if c.failed]
     why = f" ({'; '.join(parts)})" if parts else ""
-    return [f"{trial.title}: {len(failed)} of {trial.planned} failed{why}", *lines]
+    return [f"{trial.title}: {len(others)} of {len(rows)} flights are not met{why}", *lines]
 
 
-def _bound(run: RunData) -> list[tuple[str, str, str]]:
-    """Return the bound on the probability of a keep-out violation, of a study that estimated it."""
-    if run.statistics is None:
+def _noteworthy(flown: pd.DataFrame) -> list[str]:
+    """Return what a reader has to know of the flights, whether or not a criterion asks for it."""
+    lines = []
+    unable = column(flown, "guard_lost_s")
+    if without := count(unable > 0.0):
+        lines.append(
+            f"In {without:,} of {len(flown):,} flights the guard could not hold its own radius, for up to"
+            f" {np.nanmax(unable):.1f} s."
+        )
+    if unflown := count(column(flown, "manoeuvres_unflown") > 0.0):
+        flights = f"{unflown:,} flight{'s' * (unflown > 1)}"
+        lines.append(f"In {flights} a manoeuvre of the vessel begins after the end of the flight, and was never flown.")
+    return lines
+
+
+def _bound_figure(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> list[tuple[str, str, str]]:
+    bound = _bound(run, trials, flown)
+    if bound is None:
         return []
-    name = f"Probability of a keep-out violation in a flight, at most, with {percent(run.statistics['confidence'])} confidence"
-    return [(name, f"{run.statistics['violation']['pessimistic']['upper']:.4g}", "")]
+    name = f"Probability of a keep-out violation in a flight, at most, with {percent(bound[1])} confidence"
+    return [(name, f"{bound[0]:.4g}", "")]
 
 
-def _figures(trials: list[Trial], flown: pd.DataFrame) -> list[tuple[str, str, str]]:
+def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[tuple[str, str, str]]:
     nearest = flown.iloc[int(np.argmin(clearance(flown)))] if len(flown) else None
     limits = column(flown, "heading_rate_limit_rad_s")
     command = largest(column(flown, "heading_rate_command_max_rad_s") / limits)
-    guarded = int(np.count_nonzero(column(flown, "guard_interventions") > 0.0))
-    unable = int(np.count_nonzero(column(flown, "guard_lost_s") > 0.0))
+    guarded, unable = count(column(flown, "guard_interventions") > 0.0), count(column(flown, "guard_lost_s") > 0.0)
     crossings = total(flown, "crossing_count")
     worst = [_worst([criterion for trial in trials for criterion in criteria_of(trial)], key) for key in MEASURED]
     figures = [
-        ("Flights flown", f"{len(flown):,}, {hours(flown)}", ""),
+        ("Flights flown", f"{len(flown):,} of {planned:,}, {hours(flown)}", ""),
+        ("Flights that kept out", f"{count(kept_out(flown)):,} of {len(flown):,}", ""),
+        ("Missions completed", f"{count(completed(flown)):,} of {len(flown):,}", ""),
+        ("Aircraft lost", f"{count(lost(flown)):,}", ""),
         ("Keep-out violations", f"{total(flown, 'keepout_violations'):,}", "0"),
         (
-            "Closest approach",
+            f"Closest approach, {trials[0].measured_from}" if len({trial.shape for trial in trials}) == 1 else "Closest approach",
             "none" if nearest is None else f"{float(nearest['min_distance_m']):.1f} m",
             "" if nearest is None else f"≥ {limit(float(nearest['keepout_radius_m']))} m",
         ),
         *([("Plume crossings after settling", f"{crossings:,}", "")] if crossings else []),
         *(figure for figure in worst if figure),
+        *_tracking(flown),
         ("Heading-rate command over ω_max, worst", "none" if command is None else f"{command:.3f}", "≤ 1"),
     ]
     if any(trial.setting("guidance.tuning") == "bounded" for trial in trials):
@@ -131,9 +202,18 @@ def _figures(trials: list[Trial], flown: pd.DataFrame) -> list[tuple[str, str, s
         figures.append(("Flights in which the guard intervened", f"{guarded:,} of {len(flown):,}", ""))
     if unable:
         figures.append(("Flights in which the guard could not hold its own radius for a while", f"{unable:,}", ""))
-    if gone := int(np.count_nonzero(lost(flown))):
-        figures.append(("Flights that lost the aircraft", f"{gone:,}", ""))
     return figures
+
+
+def _tracking(flown: pd.DataFrame) -> list[tuple[str, str, str]]:
+    """Return the tracking error of nearly all flights that settled, whether or not a criterion asks for it."""
+    errors = column(flown, "tracking_error_rms_m")
+    known = errors[np.isfinite(errors)]
+    if not len(known):
+        return []
+    high = float(np.quantile(known, _QUANTILE))
+    name = f"Tracking error, rms after settling: {percent(_QUANTILE)} quantile, largest"
+    return [(name, f"{high:.3g}, {known.max():.3g} m", "")]
 
 
 def _worst(criteria: list[Criterion], key: str) -> tuple[str, str, str] | None:

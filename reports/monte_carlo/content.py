@@ -2,10 +2,11 @@
 
 from typing import Any
 
+from common.binomial import percent
 from reports.document.blocks import Block, Heading, Section, Text
 from reports.monte_carlo.driver_charts import driver_charts, scatter_charts
 from reports.monte_carlo.spread_charts import spread_charts
-from reports.monte_carlo.tables import ending_table, left_out_rows, percent, quantile_table, violation_table
+from reports.monte_carlo.tables import ending_table, left_out_rows, quantile_table, violation_table
 from reports.run.run_data import RunData
 
 
@@ -59,10 +60,13 @@ def bound_in_words(statistics: dict[str, Any]) -> str:
 
 
 def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
+    cylinder = "keepout_shape" in run.summary and (run.summary["keepout_shape"] == "cylinder").any()
+    where = "horizontal, from the axis of the keep-out cylinder" if cylinder else "from the centre of the keep-out sphere"
     text = (
         f"Quantiles of the flights' figures, each with an interval in brackets that holds that of all such flights with"
         f" {percent(statistics['interval_confidence'])} confidence, whatever the distribution (from order statistics); a dash where"
         " there are too few flights for that side. Keep-out figures count from a flight's first second, the others from settling."
+        f" Distances are {where}."
     )
     return [Text(text), quantile_table(statistics), *spread_charts(run, statistics)]
 

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from common.binomial import percent
 from common.run_layout import SUMMARY
 from reports.document.blocks import Table
 from reports.monte_carlo.names import FIGURES, Figure, input_name
@@ -84,9 +85,3 @@ def left_out_rows(sensitivity: Record) -> list[str]:
     lines = [f"{FIGURES[key].name}: {found['message']}." for key, found in sensitivity.items() if found["message"]]
     reasons = {(key, why) for found in sensitivity.values() if not found["message"] for key, why in found["left_out"].items()}
     return [*lines, *(f"{input_name(key)} has no index: {why}." for key, why in sorted(reasons))]
-
-
-def percent(fraction: float) -> str:
-    """Return a fraction in per cent, to three digits, and to four where it is nearly all. No line breaks before the sign."""
-    digits = 3 if fraction < 0.99 else 4
-    return f"{100.0 * fraction:.{digits}g}\N{NO-BREAK SPACE}%"

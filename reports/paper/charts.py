@@ -11,7 +11,7 @@ from reports.document.chart import Chart, Line, Panel
 from reports.document.tables import kinematic
 from reports.run.columns import Array
 from reports.run.run_data import RunData
-from reports.run.time_history import funnel_distance, thinned, tracking_error
+from reports.run.time_history import keepout_distance, thinned, tracking_error
 
 VEHICLES = ("kinematic", "six_dof")
 """Fidelities, in the order of panels and columns."""
@@ -129,7 +129,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         crossings = run.crossings_of(str(flown.row["flight_id"]))
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
-            Line(x=flown.time, y=funnel_distance(flown.history, source_height), label="UAV", colour="blue"),
+            Line(x=flown.time, y=keepout_distance(flown.history, source_height, "sphere"), label="UAV", colour="blue"),
             _diamonds(
                 crossings["time_s"].to_numpy(dtype=np.float64), crossings["distance_m"].to_numpy(dtype=np.float64), "plume crossing"
             ),

@@ -16,6 +16,7 @@ from reports.paper.bounds import bounds_section
 from reports.paper.charts import VEHICLES, find_flight, sim_1_charts, sim_2_charts, sim_3_charts, vehicle_name
 from reports.paper.checks import DISTANCE_PRINTED, INTERVAL_PRINTED, paper_verdict, rows_by_id
 from reports.run.run_data import RunData
+from reports.run.trials import read_trials
 
 
 def paper_content(run: RunData) -> tuple[Verdict, list[Section]]:
@@ -188,7 +189,7 @@ def _flights(run: RunData) -> FlightPicker:
     elsewhere = {
         case["name"] for case in run.manifest["config"]["cases"] if _is_elsewhere({**case["set"], **case["set_kinematic"]})
     }
-    source_height = float(run.manifest["config"]["plume"]["source_height_m"])
+    (trial,) = read_trials(run)
     flights = []
     for flight_id, row in rows_by_id(run).items():
         fidelity = str(row["fidelity"])
@@ -201,7 +202,7 @@ def _flights(run: RunData) -> FlightPicker:
                 flight_id=flight_id,
                 label=f"{name} · {vehicle_name(run, fidelity)}",
                 title=f"{name}: {vehicle_name(run, fidelity)}",
-                charts=flight_charts(run, row, source_height),
+                charts=flight_charts(trial, row),
             )
         )
     return FlightPicker(flights=flights)

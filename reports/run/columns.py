@@ -10,8 +10,8 @@ Mask = npt.NDArray[np.bool_]
 NOTICEABLE = 1e-3
 """Smallest error of a position [m] or speed [m/s] that is shown."""
 
-_LOST_MODES = ("ditched", "gliding", "terminating")
-"""Modes at the end of a flight whose aircraft does not come back."""
+_COMPLETED, _LOST = "completed", ("aircraft_lost", "diverged")
+"""Outcomes of flights that completed their mission, and of those whose aircraft does not come back."""
 
 
 def column(rows: pd.DataFrame, name: str) -> Array:
@@ -46,16 +46,34 @@ def violated(rows: pd.DataFrame) -> Mask:
 
 
 def lost(rows: pd.DataFrame) -> Mask:
-    """Return which flights lost their aircraft, whether or not their criteria allow that."""
-    gone = rows["outcome"] == "diverged"
-    if "mode_at_end" in rows:
-        gone |= rows["mode_at_end"].isin(_LOST_MODES)
-    return gone.to_numpy(dtype=np.bool_)
+    """Return which flights lost their aircraft, also where a fault was flown on purpose."""
+    return rows["outcome"].isin(_LOST).to_numpy(dtype=np.bool_)
+
+
+def completed(rows: pd.DataFrame) -> Mask:
+    """Return which flights completed their mission."""
+    return (rows["outcome"] == _COMPLETED).to_numpy(dtype=np.bool_)
 
 
 def met(rows: pd.DataFrame) -> Mask:
-    """Return which flights met every criterion and kept their aircraft."""
-    return rows["criteria_met"].to_numpy(dtype=np.bool_) & ~lost(rows)
+    """Return which flights met every criterion: they kept out and completed their mission."""
+    return rows["criteria_met"].to_numpy(dtype=np.bool_)
+
+
+def kept_out(rows: pd.DataFrame) -> Mask:
+    """Return which flights are known to have kept out of the keep-out area to their end."""
+    return rows["kept_out"].to_numpy(dtype=np.bool_) if "kept_out" in rows else np.zeros(len(rows), dtype=np.bool_)
+
+
+def passed(rows: pd.DataFrame) -> Mask:
+    """Return which flights did what exit status 0 requires of them."""
+    alone = (rows["required"] == "keep_out").to_numpy(dtype=np.bool_) if "required" in rows else np.zeros(len(rows), dtype=np.bool_)
+    return np.where(alone, kept_out(rows), met(rows))
+
+
+def count(mask: Mask) -> int:
+    """Return how many flights a mask holds."""
+    return int(np.count_nonzero(mask))
 
 
 def interval_error(rows: pd.DataFrame) -> Array:

@@ -105,8 +105,9 @@ def _table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
     if not path.is_file():
         return pd.DataFrame(columns=columns or ["flight_id"])
     frame = pd.read_csv(path, keep_default_na=False, na_values=[""])
-    if "criteria_met" in frame:
-        frame["criteria_met"] = frame["criteria_met"].astype(str) == "True"
+    for name in ("criteria_met", "kept_out"):
+        if name in frame:
+            frame[name] = frame[name].astype(str) == "True"
     for name in ("message", "outcome"):
         if name in frame:
             frame[name] = ["" if pd.isna(value) else str(value) for value in frame[name]]

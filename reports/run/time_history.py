@@ -15,10 +15,18 @@ def tracking_error(history: pd.DataFrame) -> Array:
     return error
 
 
-def funnel_distance(history: pd.DataFrame, source_height: float) -> Array:
-    """Return the distance from the funnel's mouth at every sample [m]; not a number without a vessel."""
+def keepout_distance(history: pd.DataFrame, source_height: float, shape: str) -> Array:
+    """Return the distance that the keep-out area is about at every sample [m]; not a number without a vessel.
+
+    Parameters
+    ----------
+    history : of the flight
+    source_height : of the funnel's mouth, the centre of a sphere [m]
+    shape : "sphere", or "cylinder" for the horizontal distance from its axis
+    """
     north, east = (column(history, f"{axis}_m") - column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
-    distance: Array = np.sqrt(north**2 + east**2 + (column(history, "altitude_m") - source_height) ** 2)
+    up = np.zeros(len(history)) if shape == "cylinder" else column(history, "altitude_m") - source_height
+    distance: Array = np.sqrt(north**2 + east**2 + up**2)
     return distance
 
 

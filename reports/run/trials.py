@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
-from reports.run.columns import measured
+from reports.run.columns import Array, column, measured
 from reports.run.run_data import RunData
 
 Parameters = dict[str, Any]
@@ -73,6 +74,30 @@ class Trial:
         """Height of the funnel, from where distances count [m]."""
         return float(self.setting("plume.source_height_m"))
 
+    @property
+    def shape(self) -> str:
+        """Shape of its keep-out area: "sphere" or "cylinder"."""
+        return str(self.setting("keepout.shape", "sphere"))
+
+    @property
+    def measured_from(self) -> str:
+        """What a distance is measured from, in words: it says which shape the keep-out area has."""
+        return "horizontal, from the keep-out cylinder's axis" if self.shape == "cylinder" else "from the keep-out sphere's centre"
+
+    @property
+    def sampled_at_random(self) -> bool:
+        """Whether its flights are a random sample, from which a bound on a probability follows."""
+        return bool(self.run.manifest.get("sampled_at_random", {}).get(self.key, False))
+
+    def theory(self, key: str) -> tuple[Array, Array] | None:
+        """Return speed ratios and what theory says of a figure over them; None where flights differ in more than nu."""
+        curves = self.run.manifest.get("theory", {}).get(self.key, {})
+        # In wind the speed ratio through the air is not the one that is swept.
+        over_ground = column(self.flown, "vessel_speed_mps") / float(self.setting("guidance.airspeed_mps"))
+        if key not in curves or not np.allclose(column(self.flown, "nu"), over_ground):
+            return None
+        return np.array(curves["nu"]), np.array(curves[key])
+
     def setting(self, key: str, default: Any = None) -> Any:
         """Return the configured value of a dotted key, or a default where its section or itself is not set."""
         value: Any = self.config
@@ -88,7 +113,7 @@ class Trial:
     def swept(self) -> dict[str, list[Any]]:
         """Return the values of every key that the trial sweeps, in their order."""
         sweep = self.setting("sweep", {})
-        return {key: list(values) for key, values in _leaves(sweep).items() if isinstance(values, list) and len(values) > 1}
+        return {key: list(values) for key, values in _leaves(sweep).items() if isinstance(values, list)}
 
     @property
     def sampled(self) -> list[dict[str, Any]]:

@@ -2,14 +2,10 @@
 
 import math
 
-from gnc.mission.mode import Mode
 from scenarios.engine.task import Row
 from scenarios.schema.flight import CriteriaConfig
-from scenarios.simulation.outcome import DITCHED, Outcome
+from scenarios.simulation.outcome import Outcome
 from scenarios.world.faults import SATELLITES, VESSEL_DATA
-
-_GIVEN_UP = (Mode.GLIDING.value, Mode.TERMINATING.value, DITCHED)
-"""Modes of a flight that is over for its task."""
 
 _ROUNDING = 1.0 + 1e-12
 """By what a command may exceed its limit: rounding alone [-]."""
@@ -21,17 +17,24 @@ Check = tuple[bool, str]
 def failed_criteria(row: Row, criteria: CriteriaConfig) -> list[str]:
     """Return what a flight's row fails, each as a short sentence; empty when all is met.
 
-    Beside the criteria every flight has to keep out, to complete, and not to be given up where nothing of the aircraft has failed:
-    a false alarm would end it without a violation, and measure nothing.
+    Beside the criteria every flight has to keep out and to complete: an aircraft that is lost meets nothing, also where its fault
+    is flown on purpose.
     """
     checks = [_keeps_out(row)] if "keepout_violations" in row else []
     if row["outcome"] != Outcome.COMPLETED.value:
         checks.append((False, row["message"] or "did not complete"))
+        if row["outcome"] == Outcome.AIRCRAFT_LOST.value:
+            checks.append((_part_failed(row), "nothing of the aircraft had failed"))
     else:
         checks += [*_tracking_checks(row, criteria), *_command_checks(row, criteria)]
         if "keepout_violations" in row:
             checks += [*_crossing_checks(row, criteria), *_mission_checks(row, criteria)]
     return [message for met, message in checks if not met]
+
+
+def kept_out(row: Row) -> bool:
+    """Return whether a flight is known to have kept out of the keep-out area to its end."""
+    return bool(row.get("keepout_violations", 1) == 0) and row["outcome"] != Outcome.DIVERGED.value
 
 
 def _keeps_out(row: Row) -> Check:
@@ -92,17 +95,19 @@ def _crossing_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
 
 
 def _mission_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
-    of_aircraft = row["fault"] not in ("none", VESSEL_DATA, SATELLITES)
-    failed = of_aircraft and row["duration_s"] >= row["fault_time_s"]
-    mode = row["mode_at_end"]
-    checks = [(failed or mode not in _GIVEN_UP, f"ended {mode}, though nothing of the aircraft failed")]
+    checks = []
     if criteria.resumes_within_periods is not None:
         periods = row.get("resume_periods", math.nan)
         message = f"crossings resumed {periods:.2f} periods after the last manoeuvre"
         checks.append((periods <= criteria.resumes_within_periods, message))
     if criteria.modes_at_end:
-        checks.append((mode in criteria.modes_at_end, f"ended {mode}"))
+        checks.append((row["mode_at_end"] in criteria.modes_at_end, f"ended {row['mode_at_end']}"))
     return checks
+
+
+def _part_failed(row: Row) -> bool:
+    """Return whether a part of the aircraft had failed; otherwise it was given up on a false alarm."""
+    return row["fault"] not in ("none", VESSEL_DATA, SATELLITES) and bool(row["duration_s"] >= row["fault_time_s"])
 
 
 def _at_most(name: str, value: float, limit: float, unit: str) -> Check:

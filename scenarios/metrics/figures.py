@@ -9,7 +9,7 @@ from common.numeric import rms
 from gnc.mission.mode import Mode
 from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
-from scenarios.metrics.keepout import keepout_figures
+from scenarios.metrics.keepout import closest_approach, keepout_figures
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.record import FlightRecord
 
@@ -44,6 +44,7 @@ def plan_row(plan: FlightPlan) -> Row:
         "omega_0_rad_s": plan.oscillation.omega_0,
         "oscillation_limit": plan.oscillation.limit,
         "r_co_m": plan.centre_distance,
+        "keepout_shape": plan.keepout_shape,
         "keepout_radius_m": plan.keepout_radius,
         "crossing_interval_predicted_s": plan.oscillation.crossing_interval,
         "manoeuvre_end_s": world.vessel.manoeuvres_end,
@@ -96,7 +97,7 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     if plan.world is None:
         return row, []
     position, velocity = _in_vessel_frame(record, plan.source_height)
-    row |= _keepout_figures(plan, record, position)
+    row |= _keepout_figures(plan, record, position, velocity)
     if not settled.any():
         return row, []
     row |= _estimation_figures(plan, record, settled, position)
@@ -142,14 +143,16 @@ def _tracking_figures(plan: FlightPlan, record: FlightRecord, settled: npt.NDArr
     }
 
 
-def _keepout_figures(plan: FlightPlan, record: FlightRecord, position: Array) -> Row:
+def _keepout_figures(plan: FlightPlan, record: FlightRecord, position: Array, velocity: Array) -> Row:
     """Measure the keep-out area and its guard over the whole flight."""
-    keepout = keepout_figures(record.column("time_s"), position, plan.keepout_radius)
+    time = record.column("time_s")
+    keepout = keepout_figures(time, position, velocity, plan.keepout_radius, plan.keepout_shape)
     row: Row = {
         "keepout_violations": keepout.violations,
         "keepout_time_s": keepout.time_inside,
         "keepout_depth_m": keepout.depth,
         "min_distance_m": keepout.distance_min,
+        "horizontal_distance_min_m": closest_approach(time, position[:, :2], velocity[:, :2]),
         "end_distance_m": float(np.linalg.norm(position[-1])),
         "vessel_error_max_m": float(np.max(_vessel_error(record))),
     }

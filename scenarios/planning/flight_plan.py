@@ -11,6 +11,7 @@ from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.planning.bounded_steering import Steering
 from scenarios.planning.limits import omega_max
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.world import Shape
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.world.world import ApparentWind, World
 
@@ -54,7 +55,7 @@ class FlightPlan:
     guidance : parameters of the outer loop
     steering : of the law's look-ahead, and the bound on its demand
     start : of the UAV
-    keepout_radius : r_min [m]
+    keepout_shape, keepout_radius : a sphere about the plume's origin or an upright cylinder through it, and its r_min [m]
     speed_ratio_max : up to which a vessel is followed [-]
     heading_rate_max : omega_max, whether commands are cut at it or not [rad/s]
     duration_max, crossings : when to stop [s, -]
@@ -75,6 +76,7 @@ class FlightPlan:
     guidance: GuidanceParameters
     steering: Steering
     start: Start
+    keepout_shape: Shape
     keepout_radius: float
     speed_ratio_max: float
     heading_rate_max: float
@@ -112,6 +114,7 @@ class FlightPlan:
             guidance=guidance,
             steering=steering,
             start=start,
+            keepout_shape=scenario.keepout.shape,
             keepout_radius=scenario.keepout.radius_m,
             speed_ratio_max=scenario.following.speed_ratio_max,
             heading_rate_max=omega_max(g),
@@ -136,7 +139,7 @@ class FlightPlan:
 
     @property
     def source_height(self) -> float:
-        """Return the height of the keep-out sphere's centre above the sea [m]."""
+        """Return the height of the plume's origin above the sea, where the centre of a keep-out sphere lies [m]."""
         return self.world.source_height if self.world else self.guidance.altitude
 
     def period(self, nu: float) -> float:

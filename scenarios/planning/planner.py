@@ -5,6 +5,7 @@ from scenarios.planning.following_flight import Spreads, following_flight
 from scenarios.planning.tracking_flight import circling_flight, tracking_flight
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.vessel import check_manoeuvres
 
 
 def plan_flight(
@@ -21,8 +22,10 @@ def plan_flight(
 
     Raises
     ------
-    InfeasibleError : the flight has no solution, or starts where no command keeps it out of the keep-out area
+    InfeasibleError : the flight has no solution, or starts where no command keeps it out of the keep-out area, or manoeuvres of
+        its vessel overlap
     """
+    check_manoeuvres(scenario.vessel, scenario.vessel_speed)
     if scenario.circles:
         return circling_flight(scenario, flight_id, seed, setup)
     if scenario.follows:

@@ -8,6 +8,7 @@ import numpy as np
 from gnc.errors import InfeasibleError
 from gnc.reference.circling import CirclingReference
 from gnc.reference.joining import JoinedOrbit
+from gnc.reference.placement import PlumeAxis, distance_by_paper, distance_exact
 from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, ReferenceStart
 from scenarios.planning.limits import omega_max
 from scenarios.schema.guidance import GuidanceConfig, ReferenceConfig
@@ -50,6 +51,16 @@ def orbits(
     ratios = np.linspace(0.0, speed_ratio_max, RATIO_STEPS + 1).tolist()
     oscillations = [oscillation_at(guidance, reference, ratio) for ratio in ratios]
     return tuple(o.period for o in oscillations), tuple(o.half_widths() for o in oscillations)
+
+
+def placed_distance(scenario: Scenario, orbit: Orbit, axis: PlumeAxis) -> float:
+    """Return r_CO [m], at which an orbit keeps the tracking allowance from the keep-out area."""
+    rule = distance_by_paper if scenario.guidance.placement == "paper" else distance_exact
+    distance_min = scenario.keepout.radius_m + scenario.guidance.tracking_allowance_m
+    if scenario.keepout.shape == "sphere":
+        return rule(orbit, axis, distance_min)
+    # As far off horizontally as over a level plume.
+    return rule(orbit, PlumeAxis(heading=axis.heading), distance_min) / math.cos(axis.elevation)
 
 
 def joined_orbit(scenario: Scenario, orbit: Orbit, course: float) -> JoinedOrbit:

@@ -8,12 +8,12 @@ from gnc.airspeed.along_track import AlongTrackTrim
 from gnc.estimation.reachable_set import Tube
 from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
 from gnc.parameters import GuardParameters, GuidanceParameters
-from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
+from gnc.reference.placement import PlumeAxis, centre_of_oscillation
 from scenarios.planning.bounded_steering import Steering, plan_steering
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.guidance import approach_parameters, guard_parameters, plan_interval, tracking_parameters
 from scenarios.planning.limits import omega_max
-from scenarios.planning.reference import circle, joined_orbit, oscillation_at
+from scenarios.planning.reference import circle, joined_orbit, oscillation_at, placed_distance
 from scenarios.planning.start import check_start, placed, sampled_start
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -56,14 +56,13 @@ def tracking_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehicl
     nu = scenario.nu_over_ground
     oscillation = oscillation_at(g, scenario.reference, nu)
     axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
-    rule = distance_by_paper if g.placement == "paper" else distance_exact
-    distance = rule(oscillation, axis, radius + g.tracking_allowance_m)
+    distance = placed_distance(scenario, oscillation, axis)
     ahead, right, above = centre_of_oscillation(distance, axis)
     steering = plan_steering(scenario, omega_max(g), oscillation.amplitude)
     start = sampled_start(scenario.start, np.random.default_rng(seed), course=course, axis=plume.axis(0.0))
     guard = None
-    # The disc that the keep-out sphere cuts out at the height of the flight.
-    disc = math.sqrt(max(0.0, radius**2 - above**2))
+    # The disc that the keep-out area cuts out at the height of the flight.
+    disc = radius if scenario.keepout.shape == "cylinder" else math.sqrt(max(0.0, radius**2 - above**2))
     if g.keepout_guard and disc > 0.0:
         guard = guard_parameters(scenario, setup, disc)
         known = Tube(0.0, 0.0, 0.0, v_north, v_east)

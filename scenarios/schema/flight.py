@@ -1,6 +1,6 @@
 """What a scenario file may say of a flight: where it starts, when it ends, and what it must show."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -45,10 +45,12 @@ class FlightConfig(Section):
 
 
 class CriteriaConfig(Section):
-    """What a flight must show, beside keeping out; ``false`` for what is not judged."""
+    """What a flight must show, beside keeping out and completing its mission; ``false`` for what is not judged."""
 
+    required: Literal["criteria", "keep_out"] = "criteria"
+    """What exit status 0 requires of the flight: every criterion, or keeping out alone, as where a fault is flown on purpose."""
     settles: bool = True
-    """Whether the flight must settle; if not, tracking, airspeed and altitude are not judged."""
+    """Whether tracking, airspeed and altitude are judged after settling; beside a vessel every flight must settle all the same."""
     tracking_error_rms_m: Limit = 1.5
     """Largest rms distance to the reference after settling [m]."""
     airspeed_error_rms_mps: Limit = 0.3

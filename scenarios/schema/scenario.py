@@ -119,6 +119,13 @@ class Scenario(Section):
         ratio = self.vessel.speed_ratio
         return self.vessel.speed_mps / self.guidance.airspeed_mps if ratio is None else ratio
 
+    @property
+    def sampled_at_random(self) -> bool:
+        """Return whether its flights are a random sample: of the random variables, or of starts; those of a search are not."""
+        start = self.start
+        given = start.place_m is not None or (start.range_m is not None and start.aspect_deg is not None)
+        return self.study != "falsify" and not self.cases and (bool(self.draws) or not (given and start.course_deg is not None))
+
     @model_validator(mode="after")
     def _consistent(self) -> "Scenario":
         check_divides("flight.log_rate_hz", self.flight.log_rate_hz, self.guidance.rate_hz)

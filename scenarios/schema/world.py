@@ -6,6 +6,9 @@ from pydantic import Field, model_validator
 
 from scenarios.schema.section import Angle, NonNegative, Positive, Section
 
+Shape = Literal["sphere", "cylinder"]
+"""Shapes of the keep-out area."""
+
 
 class ManoeuvreConfig(Section):
     """A change of the vessel's course or speed, at a steady rate."""
@@ -63,8 +66,10 @@ class PlumeConfig(Section):
 
 
 class KeepoutConfig(Section):
-    """The sphere about the funnel's mouth that the UAV must not enter."""
+    """What the UAV must not enter: a sphere about the funnel's mouth, or an upright cylinder through it."""
 
+    shape: Shape = "sphere"
+    """A sphere, as in the paper, which is narrower above and below; or a cylinder, as wide at every height."""
     radius_m: Annotated[float, Field(ge=10.0, le=10_000.0)] = 200.0
     """r_min [m]."""
 

@@ -4,20 +4,16 @@ import math
 from collections.abc import Sequence
 
 from gnc.compose import compose
-from gnc.estimation.health import Fault
 from gnc.guidance import Guidance
 from scenarios.planning.flight_plan import FlightPlan
+from scenarios.simulation.ending import Ending
 from scenarios.simulation.interventions import interventions
 from scenarios.simulation.onboard import OnboardSensing
-from scenarios.simulation.outcome import DITCHED, Outcome
 from scenarios.simulation.record import FlightRecord
 from scenarios.simulation.recorder import Recorder
 from scenarios.simulation.settling import Settling
 from scenarios.vehicles.payload import Instrument
 from scenarios.vehicles.vehicle import Vehicle
-
-_ON_THE_WATER = 2.0
-"""Altitude below which a gliding vehicle has come down [m]."""
 
 
 def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), *, every_step: bool = False) -> FlightRecord:
@@ -35,7 +31,7 @@ def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), 
     guide, motion_of, advance, reference_of = guidance.step, vehicle.motion, vehicle.advance, recorder.reference
     time_step, log_interval = plan.time_step, plan.log_interval
     record_interval = 1 if every_step else log_interval
-    ending = _Ending(plan, vehicle, guidance)
+    ending = Ending(plan, vehicle, guidance, settling)
     demand_max = command_max = airspeed_error = 0.0
     saturated = step = 0
     guarding: list[tuple[int, float, bool]] = []
@@ -66,8 +62,8 @@ def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), 
     rows = recorder.rows()
     return FlightRecord(
         outcome=ending.outcome,
-        message=ending.explained(settling),
-        mode=DITCHED if ending.ditched else mission.mode.value,
+        message=ending.message,
+        mode=ending.mode,
         settled_at=settling.at,
         interventions=interventions(guarding, time_step),
         columns=recorder.columns,
@@ -78,38 +74,6 @@ def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), 
         heading_rate_command_max=command_max,
         guard_time=len(guarding) * time_step,
     )
-
-
-class _Ending:
-    """Decides when a flight is over, and how it ended."""
-
-    def __init__(self, plan: FlightPlan, vehicle: Vehicle, guidance: Guidance) -> None:
-        self._plan, self._vehicle, self._monitor = plan, vehicle, guidance.monitor
-        demanded = plan.crossings and plan.world is not None
-        self.outcome, self.message = (Outcome.NOT_SETTLED if demanded else Outcome.COMPLETED), ""
-        self.ditched = False
-
-    def reached(self, time: float, sample: tuple[float, ...], *, complete: bool) -> bool:
-        """Return whether the flight is over at a sample."""
-        monitor = self._monitor
-        self.ditched = monitor is not None and monitor.fault is not Fault.NONE and sample[0] < _ON_THE_WATER
-        fault = "" if self.ditched else self._vehicle.fault(sample)
-        if fault:
-            self.outcome, self.message = Outcome.DIVERGED, f"{fault} at {time:.1f} s"
-        elif self.ditched or complete:
-            self.outcome = Outcome.COMPLETED
-        return bool(fault) or self.ditched or complete
-
-    def explained(self, settling: Settling) -> str:
-        """Return why the flight ended, in a sentence; nothing where it completed."""
-        if self.outcome is not Outcome.NOT_SETTLED:
-            return self.message
-        settled = not math.isnan(settling.at)
-        flown = f"flew {settling.crossings} of {self._plan.crossings} crossings after settling" if settled else "did not settle"
-        return (
-            f"{flown} within {self._plan.duration_max:g} s; allow more time (flight.duration_max_s),"
-            " start closer, or see whether the guard holds it off (guidance.keepout_guard)"
-        )
 
 
 def _sensing(plan: FlightPlan, vehicle: Vehicle, guidance: Guidance) -> OnboardSensing | None:

@@ -4,10 +4,17 @@ from enum import Enum
 
 
 class Outcome(Enum):
-    """How a flight ended."""
+    """How a flight ended.
+
+    A flight completed if its aircraft came through, and its mission was flown: it settled, and crossed the plume as often as was
+    asked for, or once at least; one without a vessel only has to last. ``NOT_SETTLED`` and ``INCOMPLETE`` are missions that were
+    not flown; ``AIRCRAFT_LOST`` and ``DIVERGED`` are aircraft that do not come back.
+    """
 
     COMPLETED = "completed"
     NOT_SETTLED = "not_settled"
+    INCOMPLETE = "incomplete"
+    AIRCRAFT_LOST = "aircraft_lost"
     DIVERGED = "diverged"
     INFEASIBLE = "infeasible"
     TRIM_FAILED = "trim_failed"
@@ -15,4 +22,4 @@ class Outcome(Enum):
 
 
 DITCHED = "ditched"
-"""Mode of a flight that came down on the water because of a fault, as its guidance meant to."""
+"""Mode of a flight that came down on the water because of a fault, as its guidance meant to: its aircraft is lost."""

@@ -8,13 +8,18 @@ import pyarrow.parquet as pq
 
 from common.run_layout import time_history_path
 from scenarios.engine.task import Row, Task
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.record import MEANINGS, unit_of
+
+UNFINISHED = (Outcome.NOT_SETTLED.value, Outcome.INCOMPLETE.value)
+"""Outcomes of missions that were not completed though the aircraft came through."""
 
 
 def keeps_history(task: Task, *, planned: int, kept: int, row: Row) -> bool:
     """Return whether the time history of a flight is kept.
 
-    Of all flights an even sample is, and every one that did not meet its criteria.
+    Of all flights an even sample is, and every one that is not known to have kept out, or did not do what is required of it. Of
+    missions that were not completed there may be many: the study chooses among them.
 
     Parameters
     ----------
@@ -23,7 +28,11 @@ def keeps_history(task: Task, *, planned: int, kept: int, row: Row) -> bool:
     row : of the flight in the summary
     """
     sampled = (task.number + 1) * kept // planned > task.number * kept // planned
-    return sampled or task.recorded or task.every_step or not row["criteria_met"]
+    if sampled or task.recorded or task.every_step or not row.get("kept_out", row["criteria_met"]):
+        return True
+    if row["outcome"] in UNFINISHED or row.get("required") == "keep_out":
+        return False
+    return not row["criteria_met"]
 
 
 def history_files(task: Task, history: pd.DataFrame | None, *, planned: int, kept: int, row: Row) -> dict[str, bytes]:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from common.binomial import upper_bound
+
 Array = npt.NDArray[np.float64]
 
 
@@ -25,8 +27,7 @@ class Interval:
 def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
     """Return the exact two-sided interval of a probability; each limit errs with (1 - confidence)/2 at most.
 
-    C. J. Clopper and E. S. Pearson, "The use of confidence or fiducial limits illustrated in the case of the
-    binomial", Biometrika 26 (1934).
+    It is made of two one-sided bounds (``common.binomial``).
 
     Parameters
     ----------
@@ -40,19 +41,6 @@ def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
     tail = 0.5 * (1.0 - confidence)
     high = upper_bound(events, trials, 1.0 - tail)
     return Interval(1.0 - upper_bound(trials - events, trials, 1.0 - tail), high)
-
-
-def upper_bound(events: int, trials: int, confidence: float) -> float:
-    """Return the exact one-sided upper bound of a probability, of Clopper and Pearson [-].
-
-    Parameters and errors are those of ``clopper_pearson``.
-    """
-    from scipy.stats import beta
-
-    _check(confidence)
-    if not 0 <= events <= trials:
-        raise ValueError(f"events are {events} of {trials} trials; there can be 0 to {trials}")
-    return 1.0 if events == trials else float(beta.ppf(confidence, events + 1, trials - events))
 
 
 def quantile_interval(values: Array, probability: float, confidence: float) -> Interval:

@@ -9,6 +9,7 @@ from aircraft.simulation.faults import fault_names
 from aircraft.spec import Envelope
 from common.registry import PluginError, Registry, is_file_part
 from common.spelling import did_you_mean
+from gnc.errors import InfeasibleError
 from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws
@@ -20,7 +21,7 @@ from scenarios.simulation.failure import failure
 from scenarios.vehicles.payload import PAYLOADS
 from scenarios.world.faults import SATELLITES, VESSEL_DATA
 from scenarios.world.plume import PLUME_MODELS
-from scenarios.world.vessel import VESSEL_TRACKS
+from scenarios.world.vessel import VESSEL_TRACKS, check_manoeuvres
 
 _REGISTRIES: dict[str, Registry[Any]] = {
     "reference.shape": REFERENCE_SHAPES,
@@ -37,7 +38,7 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
     Raises
     ------
     InputError : flights that differ in what the autopilot is designed for, an airspeed or a bank that the aircraft cannot fly, a
-        fault that it cannot have, a part that does not exist, a key that cannot be sampled
+        fault that it cannot have, manoeuvres that overlap, a part that does not exist, a key that cannot be sampled
     """
     experiments = list(experiments)
     points = [point.scenario for experiment in experiments for point in experiment.points]
@@ -48,6 +49,7 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
         if envelope is not None and scenario.fidelity == "six_dof":
             check_flyable(scenario.guidance, find_spec(scenario.aircraft).title, envelope)
         _check_fault(scenario)
+        _check_vessel(scenario)
     for experiment in experiments:
         if experiment.scenario.draws:
             for point in experiment.points:
@@ -78,6 +80,16 @@ def _check_fault(scenario: Scenario) -> None:
     for kind in sorted(kinds - known):
         guess = did_you_mean(kind, known)
         raise InputError(f"fault.kind is '{kind}'{guess or ';'} what can fail is {', '.join(sorted(known))}")
+
+
+def _check_vessel(scenario: Scenario) -> None:
+    """Refuse manoeuvres that overlap in every flight; where they are sampled a flight in which they do is not flown."""
+    if any(draw.key.startswith("vessel.") for draw in scenario.draws):
+        return
+    try:
+        check_manoeuvres(scenario.vessel, scenario.vessel_speed)
+    except InfeasibleError as error:
+        raise InputError(str(error)) from None
 
 
 def _check_parts(scenario: Scenario) -> None:

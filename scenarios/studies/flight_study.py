@@ -1,6 +1,5 @@
 """Flights of one scenario, or of a list of trials, as a study."""
 
-import math
 from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -21,8 +20,10 @@ from scenarios.metrics.columns import CROSSING_COLUMNS, INPUT_COLUMNS, INTERVENT
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
+from scenarios.planning.theory import theory_over_speed_ratio
 from scenarios.schema.experiment import TrialList
 from scenarios.schema.scenario import Scenario
+from scenarios.simulation.time_history import UNFINISHED
 from scenarios.studies.checks import check_flights, plugins_explained
 from scenarios.studies.manifest import config_hash, initial_manifest, parameters, plugins
 from scenarios.studies.study import study
@@ -81,8 +82,14 @@ class FlightStudy:
             "config_hash": self.config_hash,
             "modes": [mode.value for mode in Mode],
             "trial_parameters": {trial: parameters(of) for trial, of in self.trials.items()},
+            "sampled_at_random": self._sampled_at_random(),
+            "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},
             "plugins": self.plugins,
         }
+
+    def _sampled_at_random(self) -> dict[str, bool]:
+        """Return of which trials flights are a random sample, from which a bound on a probability follows."""
+        return {trial: scenario.sampled_at_random for trial, scenario in self.trials.items()}
 
     @property
     def planned(self) -> int:
@@ -129,15 +136,18 @@ class FlightStudy:
         fly(self.representative_flights(run, journal))
 
     def representative_flights(self, run: RunDirectory, journal: Journal) -> list[Task]:
-        """Return the closest flight of each trial, and the one whose closest approach is the median, to be recorded."""
+        """Return what is to be recorded of each trial: the closest flight, the median one, and the first unfinished mission."""
         # Figures alone: a hundred thousand rows would be too many.
         distances = {trial: (array("d"), array("q")) for trial in self.trials}
+        unfinished: dict[str, int] = {}
         for number, row in journal.numbered(SUMMARY):
+            if row["outcome"] in UNFINISHED:
+                unfinished.setdefault(row["trial"], number)
             if "min_distance_m" in row:
                 nearest, numbers = distances[row["trial"]]
                 nearest.append(row["min_distance_m"])
                 numbers.append(number)
-        chosen = []
+        chosen = list(unfinished.values())
         for nearest, numbers in distances.values():
             order = np.argsort(nearest, kind="stable")
             chosen += [numbers[i] for i in (order[0], order[len(order) // 2])] if len(order) else []
@@ -170,14 +180,15 @@ class FlightStudy:
         for row in journal.rows(SUMMARY):
             whole.add(row)
             trial_counts[row["trial"]].add(row)
-        lines = [f"{whole.planned} flights planned, {whole.done} done: {whole.completed} completed"]
-        for trial, counts in trial_counts.items():
-            nearest = "" if math.isinf(counts.nearest) else f", nearest {counts.nearest:.1f} m"
-            kept = f"{counts.keepout_violations} keep-out violations{nearest}"
-            lines.append(f"  {trial}: {counts.met} of {counts.planned} met every criterion; {kept}")
+        lines = [f"flights: {whole.line()}"]
+        if len(trial_counts) > 1:
+            lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
+        if whole.flown and all(self._sampled_at_random().values()):
+            lines.append(whole.bound_line())
+        lines += [whole.exit_line(), *whole.not_met_lines("    "), *whole.warnings()]
         return StudySummary(
             done=whole.done,
-            met=whole.met == whole.planned,
-            lines=[*lines, *whole.failed_lines("    ")],
+            met=whole.passed == whole.planned,
+            lines=lines,
             manifest=whole.manifest() | self._sizes() | {"guidance_lag_s": self._manifest.get("guidance_lag_s")},
         )

@@ -98,7 +98,9 @@ class Replay:
         """Return the manifest as written before the flight."""
         manifest = self._study.initial_manifest()
         replayed: dict[str, Any] = {"title": f"{manifest['title']}: replay of {self._flight_id}", "replayed": self._flight_id}
-        one = {"trial_flights": {self._row["trial"]: 1}, "flights_planned": 1}
+        # A flight that was chosen is no random sample.
+        trial = self._row["trial"]
+        one = {"trial_flights": {trial: 1}, "flights_planned": 1, "sampled_at_random": {trial: False}}
         return manifest | replayed | one | {"config_hash": self.config_hash}
 
     def work(self, run: RunDirectory) -> Work:

@@ -6,12 +6,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Self
 
+from common.binomial import CONFIDENCE, percent, upper_bound
 from common.run_layout import SUMMARY
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
 
-FAILED_SHOWN = 20
-"""Failed flights that are named on the console, at most."""
+NOT_MET_SHOWN = 20
+"""Flights that did not meet every criterion and are named on the console, at most."""
+
+_MEASURED_FROM = {"sphere": "from the centre of the keep-out sphere", "cylinder": "horizontally, from the axis of the cylinder"}
+"""What distances are measured from, by the shape of the keep-out area."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -21,20 +25,34 @@ class FlightCounts:
     Attributes
     ----------
     planned : number of planned flights
-    done, met : number of flights that are done, and of those that met every criterion
+    done, flown : number of flights that are done, and of those that were measured
+    kept_out : number of flights that kept out of the keep-out area to their end, as far as it is known
+    met : number of flights that met every criterion: they kept out, completed, and kept their aircraft
+    passed : number of flights that did what exit status 0 requires of them
     outcomes : number of flights by their outcome
+    required : number of flights by what exit status 0 requires of them
     keepout_violations : number of keep-out violations
+    shapes : number of flights by the shape of their keep-out area, which distances are measured from
     nearest : closest approach to the vessel, infinite if no flight is done [m]
-    failed : rows of the first flights that failed a criterion
+    duration : of all flights [s]
+    unflown_manoeuvres : number of flights that ended before a manoeuvre of their vessel began
+    not_met : rows of the first flights that did not meet every criterion
     """
 
     planned: int
     done: int = 0
+    flown: int = 0
+    kept_out: int = 0
     met: int = 0
+    passed: int = 0
     outcomes: Counter[str] = field(default_factory=Counter)
+    required: Counter[str] = field(default_factory=Counter)
     keepout_violations: int = 0
+    shapes: Counter[str] = field(default_factory=Counter)
     nearest: float = math.inf
-    failed: list[Row] = field(default_factory=list)
+    duration: float = 0.0
+    unflown_manoeuvres: int = 0
+    not_met: list[Row] = field(default_factory=list)
 
     @classmethod
     def of(cls, rows: Iterable[Row], planned: int) -> Self:
@@ -46,29 +64,83 @@ class FlightCounts:
 
     def add(self, row: Row) -> None:
         """Count a row."""
+        required, kept_out = row.get("required", "criteria"), bool(row.get("kept_out", False))
         self.done += 1
+        self.flown += "duration_s" in row
+        self.kept_out += kept_out
         self.outcomes[row["outcome"]] += 1
+        self.required[required] += 1
+        self.passed += kept_out if required == "keep_out" else bool(row["criteria_met"])
         self.keepout_violations += int(row.get("keepout_violations", 0))
+        if "keepout_shape" in row:
+            self.shapes[row["keepout_shape"]] += 1
         self.nearest = min(self.nearest, row.get("min_distance_m", math.inf))
+        self.duration += row.get("duration_s", 0.0)
+        self.unflown_manoeuvres += row.get("manoeuvres_unflown", 0) > 0
         if row["criteria_met"]:
             self.met += 1
-        elif len(self.failed) < FAILED_SHOWN:
-            self.failed.append(row)
+        elif len(self.not_met) < NOT_MET_SHOWN:
+            self.not_met.append(row)
 
     @property
     def completed(self) -> int:
-        """Number of flights that completed."""
+        """Number of flights that completed their mission."""
         return self.outcomes[Outcome.COMPLETED.value]
 
-    def failed_lines(self, indent: str) -> list[str]:
-        """Return a line for each of the first flights that failed, and one for the rest."""
-        lines = [f"{indent}{row['flight_id']}: {row['outcome']}: {row['message']}" for row in self.failed]
-        more = self.done - self.met - len(self.failed)
-        return [*lines, f"{indent}and {more} more failed, see {SUMMARY}"] if more else lines
+    @property
+    def lost(self) -> int:
+        """Number of flights whose aircraft was lost."""
+        return self.outcomes[Outcome.AIRCRAFT_LOST.value] + self.outcomes[Outcome.DIVERGED.value]
+
+    def line(self) -> str:
+        """Return the counts in a line: planned, flown, completed, met, and how the keep-out area was kept."""
+        lost = f", {self.lost} lost the aircraft" if self.lost else ""
+        counts = f"{self.planned} planned, {self.flown} flown, {self.completed} completed, {self.met} met every criterion{lost}"
+        if math.isinf(self.nearest):
+            return counts
+        kept = f"{self.kept_out} of {self.flown} kept out, {self.keepout_violations} keep-out violations"
+        about = f" ({_MEASURED_FROM[next(iter(self.shapes))]})" if len(self.shapes) == 1 else ""
+        return f"{counts}; {kept}, closest approach {self.nearest:.1f} m{about}"
+
+    def bound_line(self) -> str:
+        """Return the bound on the probability of a keep-out violation, if flights are a random sample; none of a search."""
+        bound, confidence = (percent(p).replace("\N{NO-BREAK SPACE}", " ") for p in (self._bound, CONFIDENCE))
+        return (
+            f"{self.flown - self.kept_out} of {self.flown} flights ({self.duration / 3600.0:.3g} h) are not known to have kept out:"
+            f" at most {bound} of flights sampled as these were, at {confidence} confidence"
+        )
+
+    @property
+    def _bound(self) -> float:
+        return upper_bound(self.flown - self.kept_out, self.flown)
+
+    def exit_line(self) -> str:
+        """Return what the exit status is about, and how many flights did it."""
+        about = {"criteria": "met every criterion", "keep_out": "kept out"}
+        kinds = [about[kind] for kind in about if self.required[kind]] or ["met every criterion"]
+        return f"exit status: 0 if every flight {' or '.join(kinds)}, as required of it; {self.passed} of {self.planned} did"
+
+    def warnings(self) -> list[str]:
+        """Return what of the scenario had no effect on flights."""
+        if not self.unflown_manoeuvres:
+            return []
+        flights = f"{self.unflown_manoeuvres} flight{'s' * (self.unflown_manoeuvres > 1)}"
+        return [
+            f"warning: in {flights} a manoeuvre of the vessel begins after the end of the flight, and was never flown; let it"
+            " begin earlier (vessel.manoeuvres), or fly longer (flight.duration_max_s, flight.crossings)"
+        ]
+
+    def not_met_lines(self, indent: str) -> list[str]:
+        """Return a line for each of the first flights that did not meet every criterion, and one for the rest."""
+        lines = [f"{indent}{row['flight_id']}: {row['outcome']}: {row['message']}" for row in self.not_met]
+        more = self.done - self.met - len(self.not_met)
+        return [*lines, f"{indent}and {more} more, see {SUMMARY}"] if more else lines
 
     def manifest(self) -> dict[str, Any]:
         """Return the entries of a manifest."""
         return {
             "outcomes": {outcome.value: self.outcomes[outcome.value] for outcome in Outcome},
+            "flights_kept_out": self.kept_out,
             "flights_met_criteria": self.met,
+            "flights_passed": self.passed,
         }

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from common.registry import Registry
+from gnc.errors import InfeasibleError
 from scenarios.schema.world import VesselConfig
 
 TRACK_STEP = 0.05
@@ -66,9 +67,7 @@ class SteadyVessel:
 
 
 class ManoeuvringVessel:
-    """A vessel whose course and speed change at the steady rates of its manoeuvres.
-
-    A manoeuvre that begins before another has ended adds to it.
+    """A vessel whose course and speed change at the steady rates of its manoeuvres, which do not overlap (``check_manoeuvres``).
 
     Parameters
     ----------
@@ -85,7 +84,7 @@ class ManoeuvringVessel:
         times = track_times(duration)
         course = np.full_like(times, math.radians(vessel.course_deg))
         speeds, before = np.full_like(times, speed), speed
-        self.manoeuvres_end = math.nan
+        self.manoeuvres_end = max(manoeuvre_ends(vessel, speed), default=math.nan)
         for m in vessel.manoeuvres:
             turn, rate = math.radians(m.turn_deg), math.radians(m.turn_rate_deg_s)
             since = np.maximum(0.0, times - m.at_s)
@@ -93,8 +92,6 @@ class ManoeuvringVessel:
             change = 0.0 if m.speed_mps is None else m.speed_mps - before
             speeds += np.sign(change) * np.minimum(abs(change), m.acceleration_mps2 * since)
             before += change
-            end = m.at_s + max(abs(turn) / rate, abs(change) / m.acceleration_mps2)
-            self.manoeuvres_end = end if math.isnan(self.manoeuvres_end) else max(self.manoeuvres_end, end)
         speeds = np.maximum(speeds, 0.0)
         velocity = np.stack([speeds * np.cos(course), speeds * np.sin(course)], axis=-1)
         place = np.zeros_like(velocity)
@@ -131,6 +128,33 @@ class ManoeuvringVessel:
         at = _COLUMNS * min(int(time / TRACK_STEP), len(self._table) - 2)
         course, after = self._flat[at + 4], self._flat[at + _COLUMNS + 4]
         return course + (time / TRACK_STEP - at // _COLUMNS) * (after - course)
+
+
+def manoeuvre_ends(vessel: VesselConfig, speed: float) -> list[float]:
+    """Return when each manoeuvre of a vessel ends [s], given its speed before them [m/s]."""
+    ends = []
+    for m in vessel.manoeuvres:
+        change = 0.0 if m.speed_mps is None else m.speed_mps - speed
+        speed += change
+        ends.append(m.at_s + max(abs(m.turn_deg) / m.turn_rate_deg_s, abs(change) / m.acceleration_mps2))
+    return ends
+
+
+def check_manoeuvres(vessel: VesselConfig, speed: float) -> None:
+    """Refuse manoeuvres that overlap: their rates would add up to what none of them says.
+
+    Raises
+    ------
+    InfeasibleError : a manoeuvre begins before an earlier one has ended
+    """
+    end = -math.inf
+    for i, (m, until) in enumerate(zip(vessel.manoeuvres, manoeuvre_ends(vessel, speed), strict=True)):
+        if m.at_s < end - TRACK_STEP:
+            raise InfeasibleError(
+                f"vessel.manoeuvres.{i} begins at {m.at_s:g} s, before an earlier one has ended, at {end:g} s; let it begin later,"
+                " or turn faster (turn_rate_deg_s) or accelerate harder (acceleration_mps2), or make one manoeuvre of both"
+            )
+        end = max(end, until)
 
 
 @vessel_track("manoeuvres")

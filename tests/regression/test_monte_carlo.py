@@ -16,14 +16,17 @@ FLIGHTS = 12
 def directory(tmp_path_factory):
     out = tmp_path_factory.mktemp("monte_carlo") / "run"
     scenario = load_study("monte_carlo", [f"flights={FLIGHTS}", "flight.duration_max_s=110", "histories=1"])
-    assert run_study(scenario, "monte_carlo", out, executor_factory=ExecutorFactory(jobs=2)).all_met
+    run_study(scenario, "monte_carlo", out, executor_factory=ExecutorFactory(jobs=2))
     return out
 
 
 def test_no_flight_enters_the_keep_out_area(directory):
     summary = pd.read_csv(directory / "summary.csv")
     assert len(summary) == FLIGHTS
-    assert (summary["outcome"] == "completed").all()
+    # Not all of them settle within 110 s: those are not met, and keep out all the same.
+    assert set(summary["outcome"]) <= {"completed", "not_settled", "incomplete"}
+    assert (summary["criteria_met"] == (summary["outcome"] == "completed")).all()
+    assert summary["kept_out"].all()
     # Issue: zero violations; r_min is 200 m.
     assert (summary["keepout_violations"] == 0).all()
     assert summary["min_distance_m"].min() >= 200.0

@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -121,7 +122,7 @@ def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
     (table,) = blocks_of(report, Table, "trial1")
     assert "must be below 1" in table.rows[2][-1]
     assert not report.verdict.complete
-    assert report.verdict.headline.endswith("; of 3, 1 failed a criterion")
+    assert report.verdict.headline.endswith("; of 3, 1 could not be flown")
     assert "must be below 1" in report.verdict.failures[0]
     assert "must be below 1" in flights_of(report)[2].title
     assert flights_of(report)[2].charts == []
@@ -256,3 +257,24 @@ def test_a_damaged_run_is_refused_in_one_line(copy, damage, words):
     with pytest.raises(ReportError, match=words) as refusal:
         build_reports(copy)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("flights", [1, 3])
+def test_theory_is_a_curve_over_the_speed_ratio_however_few_flights_there_are(run_path, flights):
+    run = read_run(run_path)
+    report = content(replace(run, summary=run.summary.iloc[:flights]))
+    charts = {chart.name: chart for chart in blocks_of(report, Chart, "trial1")}
+    interval = charts["trial1-nu1-interval"].panels[0]
+    theory, flown = interval.lines
+    assert (theory.label, theory.style) == ("theory, π/ω₀", "solid")
+    assert len(theory.x) > 50
+    assert (theory.x[0], theory.x[-1]) == (0.0, pytest.approx(0.99))
+    # The flights lie on it: their own predictions come from the plan of each.
+    rows = run.summary.iloc[:flights].dropna(subset="crossing_interval_predicted_s")
+    predicted = np.interp(rows["nu"], theory.x, theory.y)
+    assert predicted == pytest.approx(rows["crossing_interval_predicted_s"].to_numpy(), rel=1e-3)
+    # From 0 to 1, also about a single flight.
+    for chart in charts.values():
+        for panel in chart.panels:
+            assert panel.x_range == pytest.approx((-0.02, 1.02))
+    assert len(flown.x) == len(rows)

@@ -21,5 +21,6 @@ spread_deg = {spread}
 crossings = 0
 duration_max_s = {duration}
 [criteria]
+required = "keep_out"
 settles = false
 """

@@ -178,7 +178,7 @@ def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tm
     settings = [word for key in keys for word in ("--set", key)]
     result = run_here("sea_trial", *settings, "--seed", "7", "--no-report", "--jobs", "1", "--out", tmp_path / "run")
     assert result.returncode == 1, result.stderr
-    assert "1 flights planned, 1 done" in result.stdout
+    assert "flights: 1 planned, 1 flown" in result.stdout
     manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
     assert manifest["trials"]["sea_wind"]["seed"] == 7
     summary = pd.read_csv(tmp_path / "run" / "summary.csv")

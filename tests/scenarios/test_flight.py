@@ -35,17 +35,56 @@ def test_what_cannot_be_flown_is_an_infeasible_row_with_one_clear_line(changes, 
 
 
 @pytest.mark.parametrize(
-    ("duration", "words"),
+    ("duration", "outcome", "words"),
     [
-        (20.0, r"did not settle within 20 s; allow more time \(flight\.duration_max_s\)"),
+        (20.0, "not_settled", r"did not settle within 20 s; allow more time \(flight\.duration_max_s\)"),
         # 400 m astern it settles within a minute and a half; 40 crossings take six.
-        (120.0, r"flew [1-9]\d? of 40 crossings after settling within 120 s; allow more time \(flight\.duration_max_s\)"),
+        (
+            120.0,
+            "incomplete",
+            r"flew [1-9]\d? of 40 crossings after settling within 120 s; allow more time \(flight\.duration_max_s\)",
+        ),
     ],
 )
-def test_a_flight_that_has_not_all_its_crossings_in_time_says_so(duration, words):
+def test_a_flight_that_has_not_all_its_crossings_in_time_says_so(duration, outcome, words):
     row = fly(start=ASTERN, flight={"crossings": 40, "duration_max_s": duration}).row
-    assert (row["outcome"], row["criteria_met"]) == ("not_settled", False)
+    assert (row["outcome"], row["criteria_met"], row["kept_out"]) == (outcome, False, True)
     assert re.search(words, row["message"])
+
+
+@pytest.mark.parametrize(
+    ("changed", "outcome", "words"),
+    [
+        ({}, "completed", ""),
+        # Settled, but not yet back at the axis.
+        ({"flight": {"crossings": 0, "duration_max_s": 40.0}}, "not_settled", "did not settle within 40 s"),
+        # Nothing is received from the vessel for a minute at its end: it holds off, until the next report.
+        ({"fault": {"kind": "vessel_data", "at_s": (130.0, 130.0)}}, "completed", ""),
+    ],
+)
+def test_a_flight_for_a_while_completes_if_it_settles_and_crosses(changed, outcome, words):
+    row = fly(
+        **{"start": ASTERN, "flight": {"crossings": 0, "duration_max_s": 160.0}, "criteria": {"settles": False}} | changed
+    ).row
+    assert (row["outcome"], row["criteria_met"]) == (outcome, outcome == "completed"), row["message"]
+    assert words in row["message"]
+
+
+def test_manoeuvres_that_begin_after_the_end_of_the_flight_are_counted():
+    vessel = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 60.0, "turn_deg": 10.0}, {"at_s": 90.0, "turn_deg": 10.0}]}
+    row = fly(start=ASTERN, vessel=vessel, flight={"crossings": 0, "duration_max_s": 90.0}).row
+    assert row["manoeuvres_unflown"] == 1
+    assert "manoeuvres_unflown" not in fly(start=ASTERN, flight={"crossings": 0, "duration_max_s": 20.0}).row
+
+
+def test_a_flight_whose_vessel_has_manoeuvres_that_overlap_is_not_flown():
+    # Each turns by 0.5 deg/s: together they would turn by 1 deg/s, from 80 s on.
+    vessel = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 60.0, "turn_deg": 10.0}, {"at_s": 70.0, "turn_deg": 10.0}]}
+    row = fly(start=ASTERN, vessel=vessel).row
+    assert row["outcome"] == "infeasible"
+    assert row["message"].startswith(
+        "vessel.manoeuvres.1 begins at 70 s, before an earlier one has ended, at 80 s; let it begin later"
+    )
 
 
 @pytest.fixture
@@ -88,3 +127,24 @@ def test_a_flight_whose_process_was_lost_is_a_row():
     (row,) = result.tables["summary.csv"]
     named = {"flight_id": "trial_00000", "trial": "trial", "variant": "study"}
     assert row == named | {"outcome": "failed", "message": "why", "criteria_met": False}
+
+
+@pytest.mark.parametrize("mission", ["track", "follow"])
+def test_beside_a_plume_that_rises_steeply_a_cylinder_is_kept_out_of_horizontally(mission):
+    steep = {
+        "guidance": {"mission": mission}, "plume": {"elevation_deg": 60.0}, "flight": {"crossings": 4}, "wind": {"speed_mps": 0.0},
+        "start": ASTERN,
+    }  # fmt: skip
+    cylinder = fly(**steep, keepout={"shape": "cylinder"}).row
+    assert (cylinder["outcome"], cylinder["keepout_violations"], cylinder["keepout_shape"]) == ("completed", 0, "cylinder")
+    # Its distance is the horizontal one, and the orbit comes as near to r_min as over a level plume: within the margin.
+    assert cylinder["min_distance_m"] == cylinder["horizontal_distance_min_m"]
+    assert 200.0 <= cylinder["min_distance_m"] < 230.0
+    sphere = fly(**steep).row
+    assert (sphere["outcome"], sphere["keepout_violations"], sphere["keepout_shape"]) == ("completed", 0, "sphere")
+    assert sphere["min_distance_m"] >= 200.0
+    if mission == "track":
+        # Issue: at 60 degrees the UAV passes 80 m beside the funnel, outside the sphere.
+        assert sphere["horizontal_distance_min_m"] < 130.0
+    # A steered reference keeps off horizontally whatever the shape: outside of either.
+    assert sphere["horizontal_distance_min_m"] <= sphere["min_distance_m"]

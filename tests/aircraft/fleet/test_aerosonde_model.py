@@ -96,6 +96,26 @@ def test_the_propeller_settles_where_the_published_quadratic_says_and_pulls_as_m
     assert thrust == pytest.approx(bm.thrust(airspeed, speed, density), abs=3e-6 * unit)
 
 
+@pytest.mark.parametrize(("airspeed", "throttle"), [(21.0, 0.3), (25.0, 0.05), (25.0, 0.2), (25.0, 0.4), (30.0, 0.1)])
+def test_with_little_throttle_the_propeller_windmills_and_brakes_as_published(fdm, airspeed, throttle):
+    with fdm.frozen():
+        density = hold(fdm, airspeed, 0.0, 0.0, STILL, STILL, throttle)
+        speed = fdm.read("propulsion/engine/propeller-rpm") * RAD_S_PER_RPM
+        thrust = fdm.read("propulsion/engine/thrust-lbs") * N_PER_LBF
+    # Beyond an advance ratio of 1; with the throttle nearly closed 7.
+    assert airspeed / (speed / (2.0 * math.pi) * bm.PROPELLER_DIAMETER) > 1.0
+    # Steps of up to 0.1 J: (0.1 J)^2/8 of the second derivative, 0.216, is 0.25 % of 0.108 J^2.
+    published = bm.settled_propeller_speed(throttle, airspeed, density)
+    assert speed == pytest.approx(published, rel=1e-3)
+    assert thrust == pytest.approx(bm.thrust(airspeed, published, density), rel=2.5e-3)
+    assert thrust < -10.0
+
+
+def test_the_published_propeller_brakes_by_23_6_newtons_at_a_fifth_of_the_throttle():
+    # Issue: 25 m/s, throttle 0.2, in the authors' own air of 1.2682 kg/m^3.
+    assert bm.thrust(25.0, bm.settled_propeller_speed(0.2, 25.0, 1.2682), 1.2682) == pytest.approx(-23.6, abs=0.05)
+
+
 TRIMS = {
     "slow": {"airspeed": 20.0},
     "middle": {"airspeed": 25.0},

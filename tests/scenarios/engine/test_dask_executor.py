@@ -23,6 +23,7 @@ SETTINGS = [
     "histories=5",
     "flight.duration_max_s=20.0",
     "criteria.settles=false",
+    "criteria.required=keep_out",
 ]
 """The X8 in JSBSim, so that its model has to reach the workers too."""
 

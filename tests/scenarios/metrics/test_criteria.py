@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from scenarios.metrics.criteria import failed_criteria
+from scenarios.metrics.criteria import failed_criteria, kept_out
 from scenarios.schema.flight import CriteriaConfig
 
 GOOD = {
@@ -53,8 +53,7 @@ def test_a_flight_at_every_limit_has_met_them():
         ({"heading_rate_demand_max_rad_s": 0.51}, {"law_within_heading_rate_max": True}, "asked for 0.5100 rad/s, above omega_max"),
         ({"heading_rate_demand_max_rad_s": 0.5}, {"law_beyond_heading_rate_max": True}, "asked for 0.5000 rad/s, within omega_max"),
         ({"resume_periods": 2.1}, {"resumes_within_periods": 2.0}, "crossings resumed 2.10 periods"),
-        ({"mode_at_end": "ditched"}, {"settles": False}, "ended ditched, though nothing of the aircraft failed"),
-        ({"mode_at_end": "gliding", "fault": "vessel_data", "fault_time_s": 50.0}, {}, "ended gliding, though nothing"),
+        ({"outcome": "incomplete", "message": "flew 12 of 30 crossings"}, {"settles": False}, "flew 12 of 30 crossings"),
         ({"mode_at_end": "outrun"}, {"modes_at_end": ("tracking", "holding off")}, "ended outrun"),
     ],
 )
@@ -81,11 +80,23 @@ def test_criteria_can_be_met_and_left_out(changed, criteria):
     assert failed(changed, **criteria) == []
 
 
-def test_a_flight_may_be_given_up_where_a_part_of_the_aircraft_has_failed():
-    given_up = {"mode_at_end": "ditched", "fault": "engine", "fault_time_s": 50.0}
-    assert failed(given_up, settles=False) == []
-    # Given up before anything had failed: a false alarm.
-    assert failed(given_up | {"fault_time_s": 1000.0}, settles=False) == ["ended ditched, though nothing of the aircraft failed"]
+@pytest.mark.parametrize("criteria", [{}, {"required": "keep_out", "settles": False, "modes_at_end": ("ditched",)}])
+def test_a_flight_that_lost_its_aircraft_is_never_met(criteria):
+    lost = {"outcome": "aircraft_lost", "message": "it is lost", "mode_at_end": "ditched", "fault": "engine", "fault_time_s": 50.0}
+    assert failed(lost, **criteria) == ["it is lost"]
+    # Given up before anything had failed, or where nothing of the aircraft fails: a false alarm.
+    assert failed(lost | {"fault_time_s": 1000.0}, **criteria) == ["it is lost", "nothing of the aircraft had failed"]
+    assert failed(lost | {"fault": "vessel_data"}, **criteria) == ["it is lost", "nothing of the aircraft had failed"]
+
+
+def test_a_flight_kept_out_if_it_is_known_to_its_end():
+    assert kept_out(GOOD)
+    # The aircraft is lost, and came down outside.
+    assert kept_out(GOOD | {"outcome": "aircraft_lost"})
+    assert not kept_out(GOOD | {"keepout_violations": 1})
+    # Where one goes that is out of control, and one that was never measured, is not known.
+    assert not kept_out(GOOD | {"outcome": "diverged"})
+    assert not kept_out({"outcome": "failed"})
 
 
 @pytest.mark.parametrize(

@@ -123,15 +123,16 @@ def test_an_axis_that_turns_is_crossed_where_it_is_by_then(plan):
 
 
 def test_a_keep_out_violation_is_counted_from_the_first_second_on(plan):
-    # 250 m off, and for 5 s from 10 s on 190 m; settled only later.
+    # 250 m off, and once, from 10 to 30 s, down to 190 m; settled only later.
     time = np.arange(0.0, 100.05, STEP)
-    distance = np.where((time >= 10.0) & (time < 15.0), 190.0, 250.0)
-    history = weave(plan, distance=distance, east_m=0.0, velocity_east_mps=0.0)
+    phase = np.pi * np.clip((time - 10.0) / 20.0, 0.0, 1.0)
+    distance, closing = 250.0 - 60.0 * np.sin(phase) ** 2, 60.0 * np.sin(2.0 * phase) * np.pi / 20.0
+    history = weave(plan, distance=distance, velocity_north_mps=8.0 + closing, east_m=0.0, velocity_east_mps=0.0)
     row, _ = figures(plan, history, settled_at=50.0)
     assert row["keepout_violations"] == 1
-    # In and out along straight lines between samples: 10 of 60 m of each 0.1 s.
-    assert row["keepout_time_s"] == pytest.approx(4.9 + 2.0 * STEP * 10.0 / 60.0, abs=1e-6)
-    assert row["keepout_depth_m"] == pytest.approx(10.0, abs=1e-9)
+    # Inside while 60 sin^2 exceeds 50 m; the cubic errs by h^4/384 of the fourth derivative, 2e-9 m.
+    assert row["keepout_time_s"] == pytest.approx(20.0 * (1.0 - 2.0 * math.asin(math.sqrt(5.0 / 6.0)) / math.pi), abs=1e-6)
+    assert row["keepout_depth_m"] == pytest.approx(10.0, abs=1e-6)
 
 
 def test_height_counts_for_the_distance(plan):

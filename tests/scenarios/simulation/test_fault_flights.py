@@ -6,6 +6,7 @@ import pytest
 from flight_cases import scenario
 
 from gnc.mission.mode import Mode
+from scenarios.schema.load import load_study
 from scenarios.simulation.outcome import DITCHED
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
@@ -39,7 +40,8 @@ def flown(designs, tmp_path_factory):
 @pytest.mark.parametrize("kind", KINDS)
 def test_whatever_fails_the_flight_ends_outside_in_its_mode(flown, kind):
     row, history = flown[kind]
-    assert row["outcome"] == "completed", row["message"]
+    assert row["outcome"] == ("aircraft_lost" if row["mode_at_end"] == DITCHED else "completed"), row["message"]
+    assert (row["kept_out"], row["criteria_met"]) == (True, kind == "throttle")
     assert row["keepout_violations"] == 0
     assert row["mode_at_end"] == ENDS_IN[kind]
     # It was in the plume until then: nothing had been found wrong with it.
@@ -57,3 +59,19 @@ def test_a_stuck_elevon_is_found_within_seconds_and_the_flight_leads_away_from_t
     # Two turn radii V^2/g at 45 degrees of bank: as much nearer as a turn away may come from any course.
     assert distance[0] - distance.min() < 2.0 * 19.42**2 / 9.80665
     assert distance[-1] > distance[0]
+
+
+@pytest.mark.parametrize(("required", "status"), [("criteria", False), ("keep_out", True)])
+def test_an_aircraft_that_is_lost_before_its_last_crossing_is_not_met_and_decides_the_exit_status(tmp_path, required, status):
+    # Issue: an engine that fails in sea_wind ended in the sea, with "met every criterion" and exit status 0.
+    keys = ["flights=1", "fault.kind=engine", "fault.at_s=[50, 50]", f"criteria.required={required}"]
+    result = run_study(load_study("sea_wind", keys), "sea_wind", tmp_path / "run", overrides=keys)
+    (row,) = rows_of(tmp_path / "run")
+    assert (row["outcome"], row["criteria_met"], row["kept_out"]) == ("aircraft_lost", False, True)
+    assert row["message"].startswith("it came down on the sea at ")
+    assert result.all_met == status
+    assert result.summary.lines[0].startswith(
+        "flights: 1 planned, 1 flown, 0 completed, 0 met every criterion, 1 lost the aircraft;"
+    )
+    about = "kept out" if required == "keep_out" else "met every criterion"
+    assert f"exit status: 0 if every flight {about}, as required of it; {int(status)} of 1 did" in result.summary.lines

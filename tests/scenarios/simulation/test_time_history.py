@@ -8,7 +8,7 @@ from scenarios.engine.task import Result, Task
 from scenarios.simulation.time_history import history_files, keeps_history
 from tests.run_tables import history_in
 
-MET, UNMET = {"criteria_met": True}, {"criteria_met": False}
+MET, UNMET = {"outcome": "completed", "criteria_met": True}, {"outcome": "failed", "criteria_met": False}
 
 
 @pytest.mark.parametrize(("planned", "asked"), [(1, 1), (7, 3), (100, 7), (20, 20), (5, 200), (1000, 1), (10, 0)])
@@ -25,6 +25,23 @@ def test_flights_that_failed_or_are_to_be_recorded_are_kept_beside_them():
     assert keeps_history(Task(number=3), **few, row=UNMET)
     assert keeps_history(Task(number=3, recorded=True), **few, row=MET)
     assert not keeps_history(Task(number=3), **few, row=MET)
+
+
+@pytest.mark.parametrize(
+    ("row", "kept"),
+    [
+        ({"outcome": "completed", "kept_out": True}, True),
+        ({"outcome": "aircraft_lost", "kept_out": True}, True),
+        # There may be many: the study chooses among them.
+        ({"outcome": "not_settled", "kept_out": True}, False),
+        ({"outcome": "incomplete", "kept_out": True}, False),
+        ({"outcome": "incomplete", "kept_out": False}, True),
+        ({"outcome": "aircraft_lost", "kept_out": True, "required": "keep_out"}, False),
+        ({"outcome": "aircraft_lost", "kept_out": False, "required": "keep_out"}, True),
+    ],
+)
+def test_of_flights_that_are_not_met_those_are_kept_that_did_not_do_what_is_required(row, kept):
+    assert keeps_history(Task(number=3), planned=10, kept=0, row=UNMET | row) == kept
 
 
 def test_a_history_comes_back_from_its_file_exactly():

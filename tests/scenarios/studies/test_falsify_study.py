@@ -49,6 +49,7 @@ interval_s = [1.0, 2.0]
 crossings = 0
 duration_max_s = 4.0
 [criteria]
+required = "keep_out"
 settles = false
 """
 

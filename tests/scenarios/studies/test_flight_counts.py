@@ -1,34 +1,72 @@
 """Counts of the flights of a study."""
 
+import pytest
+
 from scenarios.simulation.outcome import Outcome
 from scenarios.studies.summary import FlightCounts
 
 
 def row(number, outcome="completed", *, met=True, **figures):
-    return {"flight_id": f"f{number}", "outcome": outcome, "message": f"why {number}", "criteria_met": met, **figures}
+    flown = {"duration_s": 1800.0, "kept_out": True, "keepout_violations": 0} if outcome not in ("infeasible", "failed") else {}
+    return {"flight_id": f"f{number}", "outcome": outcome, "message": f"why {number}", "criteria_met": met, **flown, **figures}
 
 
-def test_flights_are_counted_by_their_outcome_and_whether_they_met_their_criteria():
-    counts = FlightCounts.of(
-        [
-            row(0, min_distance_m=230.0, keepout_violations=0),
-            row(1, met=False, min_distance_m=190.0, keepout_violations=2),
-            row(2, "infeasible", met=False),
-            row(3, min_distance_m=210.0, keepout_violations=1),
-        ],
-        planned=5,
+ROWS = [
+    row(0, min_distance_m=230.0),
+    row(1, met=False, min_distance_m=190.0, keepout_violations=2, kept_out=False),
+    row(2, "infeasible", met=False),
+    row(3, "aircraft_lost", met=False, min_distance_m=210.0),
+]
+
+
+def test_flights_are_counted_as_planned_flown_completed_and_met():
+    counts = FlightCounts.of(ROWS, planned=6)
+    assert (counts.planned, counts.done, counts.flown, counts.completed, counts.met, counts.lost) == (6, 4, 3, 2, 1, 1)
+    assert (counts.kept_out, counts.keepout_violations, counts.nearest) == (2, 2, 190.0)
+    assert counts.line() == (
+        "6 planned, 3 flown, 2 completed, 1 met every criterion, 1 lost the aircraft; 2 of 3 kept out, 2 keep-out violations,"
+        " closest approach 190.0 m"
     )
-    assert (counts.planned, counts.done, counts.completed, counts.met) == (5, 4, 3, 2)
-    assert (counts.keepout_violations, counts.nearest) == (3, 190.0)
-    assert counts.failed_lines("  ") == ["  f1: completed: why 1", "  f2: infeasible: why 2"]
+    # A distance says what it is measured from.
+    for shape, words in (
+        ("sphere", "190.0 m (from the centre of the keep-out sphere)"),
+        ("cylinder", "190.0 m (horizontally, from"),
+    ):
+        assert words in FlightCounts.of(({**each, "keepout_shape": shape} for each in ROWS), planned=6).line()
+    assert counts.not_met_lines("  ") == ["  f1: completed: why 1", "  f2: infeasible: why 2", "  f3: aircraft_lost: why 3"]
     # Every outcome is named, also those that no flight had.
-    assert set(counts.manifest()["outcomes"]) == {outcome.value for outcome in Outcome}
-    assert counts.manifest()["outcomes"]["infeasible"] == 1
-    assert counts.manifest()["flights_met_criteria"] == 2
+    manifest = counts.manifest()
+    assert set(manifest["outcomes"]) == {outcome.value for outcome in Outcome}
+    assert (manifest["outcomes"]["infeasible"], manifest["flights_met_criteria"], manifest["flights_kept_out"]) == (1, 1, 2)
 
 
-def test_of_many_failed_flights_the_first_are_named_and_the_rest_counted():
-    lines = FlightCounts.of((row(i, met=False) for i in range(10_000)), planned=10_000).failed_lines("")
+def test_the_exit_status_is_about_every_criterion_unless_keeping_out_alone_is_required():
+    every = FlightCounts.of(ROWS, planned=4)
+    assert every.passed == 1
+    assert every.exit_line() == "exit status: 0 if every flight met every criterion, as required of it; 1 of 4 did"
+    alone = FlightCounts.of(({**each, "required": "keep_out"} for each in ROWS), planned=4)
+    # The flight that lost its aircraft kept out; that which was never flown did not.
+    assert alone.passed == alone.kept_out == 2
+    assert alone.exit_line() == "exit status: 0 if every flight kept out, as required of it; 2 of 4 did"
+
+
+def test_a_bound_follows_from_the_flights_that_were_flown():
+    counts = FlightCounts.of([row(i, min_distance_m=201.0) for i in range(64)], planned=200)
+    # The rule of three: 1 - 0.05^(1/64) = 4.57 %.
+    assert counts.bound_line() == (
+        "0 of 64 flights (32 h) are not known to have kept out: at most 4.57 % of flights sampled as these were, at 95 % confidence"
+    )
+
+
+@pytest.mark.parametrize(("unflown", "lines"), [({}, 0), ({"manoeuvres_unflown": 0}, 0), ({"manoeuvres_unflown": 2}, 1)])
+def test_manoeuvres_that_were_never_flown_are_warned_of(unflown, lines):
+    found = FlightCounts.of([row(0, **unflown)], planned=1).warnings()
+    assert len(found) == lines
+    assert all(line.startswith("warning: in 1 flight a manoeuvre of the vessel begins after the end") for line in found)
+
+
+def test_of_many_flights_that_are_not_met_the_first_are_named_and_the_rest_counted():
+    lines = FlightCounts.of((row(i, met=False) for i in range(10_000)), planned=10_000).not_met_lines("")
     assert len(lines) == 21
     assert lines[0] == "f0: completed: why 0"
-    assert lines[-1] == "and 9980 more failed, see summary.csv"
+    assert lines[-1] == "and 9980 more, see summary.csv"

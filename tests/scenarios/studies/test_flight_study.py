@@ -87,18 +87,20 @@ def test_a_key_of_the_trials_is_set_in_every_one(listed, tmp_path):
     assert {trial["seed"] for trial in manifest["trials"].values()} == {5}
     assert {trial["keepout"]["radius_m"] for trial in manifest["trials"].values()} == {150.0}
     assert manifest["flights_planned"] == 2
-    assert manifest["flights_met_criteria"] == 2
+    # 8 s are too short to settle, which is not required of these trials.
+    assert [manifest[f"flights_{count}"] for count in ("kept_out", "passed", "met_criteria")] == [2, 2, 0]
 
 
 def test_a_run_that_is_to_keep_no_history_keeps_those_that_tell_most(listed, whole, tmp_path):
-    # Of each trial the closest flight and the median one; they are flown again for it, and their rows are as they were.
+    # Of each trial the closest flight, the median one, and the first that did not settle; they are flown again for it, and their
+    # rows are as they were.
     assert run(listed, tmp_path / "run", "histories=0").all_met
     assert same(whole, tmp_path / "run")
     told = set()
     for _, flights in pd.read_csv(whole / "summary.csv").groupby("trial"):
         nearest_first = list(flights.sort_values("min_distance_m")["flight_id"])
         # Of four, the median is taken to be the third: half of all are nearer.
-        told |= {f"{nearest_first[0]}.parquet", f"{nearest_first[2]}.parquet"}
+        told |= {f"{nearest_first[0]}.parquet", f"{nearest_first[2]}.parquet", f"{flights['flight_id'].iloc[0]}.parquet"}
     kept = tmp_path / "run" / "flights"
     assert {path.name for path in kept.iterdir()} == told
     for name in told:
@@ -188,6 +190,29 @@ def test_trials_that_need_different_autopilots_are_refused(tmp_path):
 
 def test_what_happened_is_told_in_lines(listed, tmp_path):
     lines = run(listed, tmp_path / "run", "share=0.1", "vessel.speed_mps=19.4", "speed_ratio=[0, 9]").summary.lines
-    assert lines[0] == "2 flights planned, 2 done: 0 completed"
-    assert lines[1].startswith("  one: 0 of 1 met every criterion; 0 keep-out violations")
-    assert lines[3].startswith("    one_00000: infeasible: the vessel moves at up to")
+    assert lines[:3] == [
+        "flights: 2 planned, 0 flown, 0 completed, 0 met every criterion",
+        *(f"  {trial}: 1 planned, 0 flown, 0 completed, 0 met every criterion" for trial in ("one", "two")),
+    ]
+    assert lines[3] == "exit status: 0 if every flight kept out, as required of it; 0 of 2 did"
+    assert lines[4].startswith("    one_00000: infeasible: the vessel moves at up to")
+
+
+def test_manoeuvres_that_overlap_in_every_flight_are_refused_before_any_is_flown(tmp_path):
+    path = tmp_path / "two.toml"
+    turns = "[{ at_s = 10.0, turn_deg = 90.0 }, { at_s = 60.0, turn_deg = 90.0 }]"
+    path.write_text(f'title = "two"\nfidelity = "kinematic"\n[vessel]\nmanoeuvres = {turns}\n', encoding="utf-8")
+    with pytest.raises(InputError, match=r"vessel\.manoeuvres\.1 begins at 60 s, before an earlier one has ended, at 190 s"):
+        run(path, tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_manoeuvre_after_the_end_of_the_flight_is_warned_of(tmp_path):
+    path = tmp_path / "late.toml"
+    late = "[{ at_s = 500.0, turn_deg = 90.0 }]"
+    path.write_text(
+        f'title = "late"\nfidelity = "kinematic"\nflight = {{ crossings = 0, duration_max_s = 8.0 }}\nvessel.manoeuvres = {late}\n',
+        encoding="utf-8",
+    )
+    lines = run(path, tmp_path / "run").summary.lines
+    assert lines[-1].startswith("warning: in 1 flight a manoeuvre of the vessel begins after the end of the flight")

@@ -16,7 +16,9 @@ SHORT = [
     "turbulence.level=none",
     "turbulence.gusts=0",
     "turbulence.gust_speed_mps=0",
+    # Too short to settle.
     "flight.duration_max_s=6.0",
+    "criteria.required=keep_out",
     "histories=5",
     # All of them within the range, so that every flight is at its point; vessels at 2 m/s and more make an apparent wind.
     "speed_ratio=[0.0, 5.0]",

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from gnc.errors import InfeasibleError
 from scenarios.schema.world import VesselConfig
-from scenarios.world.vessel import TRACK_STEP, ManoeuvringVessel, SteadyVessel, sampled, track_times
+from scenarios.world.vessel import TRACK_STEP, ManoeuvringVessel, SteadyVessel, check_manoeuvres, sampled, track_times
 
 
 def track(vessel, duration=600.0):
@@ -78,3 +79,22 @@ def test_a_track_goes_on_somewhat_beyond_its_duration():
     times = track_times(10.0)
     assert times[-2] > 10.0
     np.testing.assert_allclose(np.diff(times), TRACK_STEP, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("second", "words"),
+    [
+        ({"at_s": 99.0, "turn_deg": 90.0}, "begins at 99 s, before an earlier one has ended, at 190 s"),
+        # From 11 m/s, which the first one ends with, not from 8.
+        ({"at_s": 195.0, "speed_mps": 8.0}, None),
+        ({"at_s": 190.0, "turn_deg": -90.0}, None),
+    ],
+)
+def test_manoeuvres_that_overlap_are_refused(second, words):
+    first = {"at_s": 10.0, "turn_deg": 90.0, "turn_rate_deg_s": 0.5, "speed_mps": 11.0}
+    config = VesselConfig.model_validate({"speed_mps": 8.0, "manoeuvres": [first, second]})
+    if words is None:
+        check_manoeuvres(config, config.speed_mps)
+        return
+    with pytest.raises(InfeasibleError, match=words):
+        check_manoeuvres(config, config.speed_mps)

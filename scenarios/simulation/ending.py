@@ -1,0 +1,99 @@
+"""When a flight is over, and how it ended."""
+
+import math
+
+from gnc.estimation.health import Fault
+from gnc.guidance import Guidance
+from gnc.mission.mode import Mode
+from scenarios.planning.flight_plan import FlightPlan
+from scenarios.simulation.outcome import DITCHED, Outcome
+from scenarios.simulation.settling import Settling
+from scenarios.vehicles.vehicle import Vehicle
+
+_ON_THE_WATER = 2.0
+"""Altitude below which a gliding vehicle has come down [m]."""
+
+_LOST = (Mode.GLIDING, Mode.TERMINATING)
+"""Modes from which an aircraft does not come back: it glides, or flies away from the vessel, until it is down."""
+
+_GIVEN_UP = (Mode.OUTRUN, Mode.NO_PLUME)
+"""Modes in which the plume is no longer crossed; a flight that holds off resumes with the next report."""
+
+
+class Ending:
+    """Decides when a flight is over, and how it ended.
+
+    Parameters
+    ----------
+    plan, vehicle, guidance, settling : of the flight
+
+    Attributes
+    ----------
+    outcome, message : in a word, and why in a sentence; nothing to say where it completed
+    """
+
+    def __init__(self, plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, settling: Settling) -> None:
+        self._plan, self._vehicle, self._guidance, self._settling = plan, vehicle, guidance, settling
+        self._ditched, self._fault, self._end = False, "", 0.0
+
+    def reached(self, time: float, sample: tuple[float, ...], *, complete: bool) -> bool:
+        """Return whether the flight is over at a sample; ``complete`` says whether it has all crossings that are asked for."""
+        monitor, self._end = self._guidance.monitor, time
+        self._ditched = monitor is not None and monitor.fault is not Fault.NONE and sample[0] < _ON_THE_WATER
+        self._fault = "" if self._ditched else self._vehicle.fault(sample)
+        return bool(self._fault) or self._ditched or complete
+
+    @property
+    def mode(self) -> str:
+        """Return the mode of the guidance at the end, or ``DITCHED``."""
+        return DITCHED if self._ditched else self._guidance.mission.mode.value
+
+    @property
+    def outcome(self) -> Outcome:
+        """Return how the flight ended."""
+        mode = self._guidance.mission.mode
+        if self._fault:
+            return Outcome.DIVERGED
+        if self._ditched or mode in _LOST:
+            return Outcome.AIRCRAFT_LOST
+        if self._plan.world is None:
+            return Outcome.COMPLETED
+        if math.isnan(self._settling.at):
+            return Outcome.NOT_SETTLED
+        flown = self._settling.crossings >= max(1, self._plan.crossings)
+        # One that has flown all its crossings is over, whatever its guidance is about to do.
+        given_up = not self._plan.crossings and mode in _GIVEN_UP
+        return Outcome.COMPLETED if flown and not given_up else Outcome.INCOMPLETE
+
+    @property
+    def message(self) -> str:
+        """Return why the flight did not complete, in a sentence; nothing where it did."""
+        match self.outcome:
+            case Outcome.DIVERGED:
+                return f"{self._fault} at {self._end:.1f} s"
+            case Outcome.AIRCRAFT_LOST:
+                what = "came down on the sea" if self._ditched else f"was still {self.mode} towards the sea"
+                return f"it {what} at {self._end:.1f} s, {self._crossings()}"
+            case Outcome.NOT_SETTLED | Outcome.INCOMPLETE:
+                return self._shortfall()
+        return ""
+
+    def _crossings(self) -> str:
+        settling, demanded = self._settling, self._plan.crossings
+        if math.isnan(settling.at):
+            return "before it had settled"
+        return f"after {settling.crossings}{f' of {demanded}' if demanded else ''} crossings"
+
+    def _shortfall(self) -> str:
+        settling, plan, mode = self._settling, self._plan, self._guidance.mission.mode
+        if math.isnan(settling.at):
+            flown = "did not settle"
+        elif plan.crossings or not settling.crossings:
+            flown = f"flew {settling.crossings}{f' of {plan.crossings}' if plan.crossings else ''} crossings after settling"
+        else:
+            return f"ended {mode.value} after {settling.crossings} crossings: the plume was no longer crossed"
+        ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""
+        return (
+            f"{flown} within {plan.duration_max:g} s{ended}; allow more time (flight.duration_max_s),"
+            " start closer, or see whether the guard holds it off (guidance.keepout_guard)"
+        )

@@ -1,0 +1,105 @@
+"""The verdict on flights claims what was flown, and the bound that follows: no more, and no less."""
+
+import json
+import re
+from dataclasses import replace
+
+from report_parts import blocks_of
+from trial_runs import rows_of, with_values
+
+from reports.document.blocks import FlightPicker
+from reports.registry import content
+
+
+def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
+    assert content(run).verdict.headline.startswith("No keep-out violation in 4 flights (")
+    assert content(run).verdict.holds
+    judged = content(with_values(run, 3, keepout_violations=2, keepout_depth_m=1.5, min_distance_m=198.5, criteria_met=False))
+    assert not judged.verdict.holds
+    assert judged.verdict.headline == "Keep-out violations in 1 of 4 flights, 2 in all"
+    assert ("Closest approach, from the keep-out sphere's centre", "198.5 m", "≥ 200 m") in judged.verdict.figures
+    assert judged.verdict.failures == ["turns_00001: completed; "]
+    (picker,) = blocks_of(judged, FlightPicker, "flights")
+    assert "deepest keep-out violation" in next(flight.title for flight in picker.flights if flight.flight_id == "turns_00001")
+    # Keep-out violations and the closest approach, from r_min too, are in the trial's row.
+    assert rows_of(judged, "Turns")[0][7:10] == ["2", "198.5", "-1.5"]
+
+
+LOST = {"outcome": "aircraft_lost", "mode_at_end": "ditched", "criteria_met": False, "message": "it came down on the sea"}
+
+
+def test_a_flight_that_lost_its_aircraft_fails_a_run_of_which_it_is_required_to_complete(run):
+    report = content(with_values(run, 1, **LOST))
+    assert report.verdict.headline.startswith("1 lost the aircraft, of 4 flights. No keep-out violation in 4 flights (")
+    assert (report.verdict.holds, report.verdict.complete) == (False, False)
+    assert report.verdict.failures == ["steady_00001: aircraft lost; it came down on the sea"]
+    # Planned, flown, completed, met, lost, kept out.
+    assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "2"]
+
+
+def test_where_a_fault_is_flown_on_purpose_a_lost_aircraft_is_shown_and_keeping_out_judged(run):
+    report = content(with_values(run, 1, required="keep_out", **LOST))
+    # Amber: nothing that must never happen did, but not every flight is met.
+    assert (report.verdict.holds, report.verdict.complete) == (True, False)
+    assert report.verdict.headline.endswith("; of 4, 1 lost the aircraft")
+    assert (
+        "required to keep out, not to complete: 1 kept out, 0 completed. The exit status is about the first."
+        in report.verdict.detail
+    )
+    assert ("Aircraft lost", "1", "") in report.verdict.figures
+    assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "2"]
+
+
+def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
+    values = {"outcome": "incomplete", "message": "flew 1 of 3 crossings", "criteria_met": False}
+    report = content(with_values(run, 0, **values))
+    assert (report.verdict.holds, report.verdict.complete) == (True, False)
+    assert report.verdict.headline.endswith("; of 4, 1 did not complete the mission")
+    assert report.verdict.failures == ["steady_00000: incomplete; flew 1 of 3 crossings"]
+
+
+def test_flights_that_are_not_flown_yet_are_not_failed_ones(run):
+    manifest = json.loads(json.dumps(run.manifest)) | {"flights_planned": 200, "state": "interrupted"}
+    manifest["trial_flights"] = {"steady": 198, "turns": 2}
+    report = content(replace(run, manifest=manifest))
+    assert report.verdict.headline.endswith("; of 200, 196 not flown yet")
+    assert report.verdict.failures == ["Steady: 196 of 198 not flown yet"]
+    assert "200 planned, 4 flown, 4 completed, 4 met every criterion" in report.verdict.detail
+    assert (report.verdict.holds, report.verdict.complete) == (True, False)
+    assert rows_of(report, "Steady")[0][:4] == ["198", "2", "2", "2"]
+    assert "failed" not in {section.anchor for section in report.sections}
+
+
+def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
+    verdict = content(run).verdict
+    # Clopper and Pearson, none of four: 1 - 0.05^(1/4).
+    assert "at most 52.7 % of such flights at 95 % confidence" in verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
+    texts = [verdict.headline, verdict.detail, *verdict.failures, *(text for figure in verdict.figures for text in figure)]
+    assert not any(re.search(r"\bsafe", text, re.IGNORECASE) for text in texts)
+    # Those of a search are no random sample: no bound follows from them.
+    manifest = run.manifest | {"sampled_at_random": {"steady": False, "turns": True}}
+    chosen = content(replace(run, manifest=manifest)).verdict
+    assert "confidence" not in chosen.headline
+    assert "No bound on a probability follows from these flights" in chosen.detail
+
+
+def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
+    report = content(with_values(run, 2, tracking_error_rms_m=107.0, guard_lost_s=3.2, guard_interventions=1, manoeuvres_unflown=1))
+    (tracking,) = (value for name, value, _ in report.verdict.figures if "99" in name)
+    assert tracking.endswith(", 107 m")
+    assert report.verdict.failures == [
+        "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",
+        "In 1 flight a manoeuvre of the vessel begins after the end of the flight, and was never flown.",
+    ]
+
+
+def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run):
+    assert " m from the keep-out sphere's centre, in " in content(run).verdict.detail
+    manifest = json.loads(json.dumps(run.manifest))
+    for trial in manifest["trials"].values():
+        trial["keepout"]["shape"] = "cylinder"
+    report = content(replace(run, manifest=manifest))
+    assert " m horizontal, from the keep-out cylinder's axis, in " in report.verdict.detail
+    # Beside the funnel, far above it: a sphere is narrower there.
+    rising = content(with_values(run, 0, min_distance_m=200.5, horizontal_distance_min_m=80.2)).verdict.detail
+    assert "200.5 m from the keep-out sphere's centre, in steady_00000; 80.2 m horizontally from the funnel" in rising

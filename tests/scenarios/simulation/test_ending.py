@@ -1,0 +1,56 @@
+"""How a flight ended: by its aircraft, and by its mission."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+
+from gnc.estimation.health import Fault
+from gnc.mission.mode import Mode
+from scenarios.simulation.ending import Ending
+from scenarios.simulation.outcome import Outcome
+
+AT_THE_MAST, ON_THE_WATER = (60.0,), (1.0,)
+
+
+def ended(*, asked=0, flown=12, settled=80.0, mode=Mode.TRACKING, fault=Fault.NONE, sample=AT_THE_MAST, trouble="", vessel=True):
+    """Return how a flight ended at 300 s."""
+    plan = SimpleNamespace(crossings=asked, duration_max=300.0, world=object() if vessel else None)
+    vehicle = SimpleNamespace(fault=lambda _: trouble)
+    guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mission=SimpleNamespace(mode=mode))
+    ending = Ending(plan, vehicle, guidance, SimpleNamespace(at=settled, crossings=flown))
+    ending.reached(300.0, sample, complete=0 < asked <= flown)
+    return ending
+
+
+@pytest.mark.parametrize(
+    ("flight", "outcome", "words"),
+    [
+        ({}, Outcome.COMPLETED, ""),
+        ({"asked": 12}, Outcome.COMPLETED, ""),
+        # Such a flight is on its way back to its orbit, or waits for the next report.
+        ({"mode": Mode.APPROACH}, Outcome.COMPLETED, ""),
+        ({"mode": Mode.HOLDING}, Outcome.COMPLETED, ""),
+        ({"asked": 12, "mode": Mode.OUTRUN}, Outcome.COMPLETED, ""),
+        ({"vessel": False, "settled": math.nan, "flown": 0}, Outcome.COMPLETED, ""),
+        ({"settled": math.nan, "flown": 0}, Outcome.NOT_SETTLED, "did not settle within 300 s"),
+        ({"settled": math.nan, "mode": Mode.OUTRUN}, Outcome.NOT_SETTLED, "did not settle within 300 s, and ended outrun"),
+        ({"flown": 0}, Outcome.INCOMPLETE, "flew 0 crossings after settling within 300 s"),
+        ({"asked": 30}, Outcome.INCOMPLETE, "flew 12 of 30 crossings after settling within 300 s"),
+        ({"mode": Mode.OUTRUN}, Outcome.INCOMPLETE, "ended outrun after 12 crossings"),
+        ({"mode": Mode.NO_PLUME}, Outcome.INCOMPLETE, "ended no plume after 12 crossings"),
+        (
+            {"asked": 30, "fault": Fault.THRUST_LOST, "mode": Mode.GLIDING, "sample": ON_THE_WATER},
+            Outcome.AIRCRAFT_LOST,
+            "it came down on the sea at 300.0 s, after 12 of 30 crossings",
+        ),
+        ({"mode": Mode.GLIDING, "flown": 0}, Outcome.AIRCRAFT_LOST, "it was still gliding towards the sea at 300.0 s"),
+        ({"mode": Mode.TERMINATING, "settled": math.nan}, Outcome.AIRCRAFT_LOST, "before it had settled"),
+        ({"trouble": "bank reached 90 deg"}, Outcome.DIVERGED, "bank reached 90 deg at 300.0 s"),
+    ],
+)
+def test_a_flight_completes_only_with_its_aircraft_and_its_mission(flight, outcome, words):
+    ending = ended(**flight)
+    assert ending.outcome is outcome
+    assert words in ending.message
+    assert bool(ending.message) == (outcome is not Outcome.COMPLETED)
