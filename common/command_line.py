@@ -1,5 +1,6 @@
 """Command lines of the project: typer for the options, one line for an error."""
 
+import io
 import sys
 from collections.abc import Callable
 
@@ -13,6 +14,10 @@ _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 
 def run_command(command: Callable[..., None], name: str) -> None:
     """Run ``command`` as a command line called ``name`` and exit with its status, 2 for bad options."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # Names may have letters that a terminal does not.
+            stream.reconfigure(errors="backslashreplace")
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     app.command()(command)
     try:

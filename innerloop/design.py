@@ -67,7 +67,7 @@ def _design(aircraft: str, out: Path | None, altitude: float, *, no_report: bool
     out = out or Path("runs") / f"design-{spec.name}"
     _refuse_another_run(out)
 
-    from common.files import write_json
+    from common.files import remove_reports, write_json
     from innerloop.designs.cache import designed
     from innerloop.designs.manifest import design_manifest
     from innerloop.jsbsim.root import write_root
@@ -79,6 +79,9 @@ def _design(aircraft: str, out: Path | None, altitude: float, *, no_report: bool
     out.mkdir(parents=True, exist_ok=True)
     found = designed(spec, altitude)
     record = found.record
+    # Of an older design; the manifest comes last, when all that it stands for is there.
+    remove_reports(out)
+    (out / MANIFEST).unlink(missing_ok=True)
     write_script(found.design.schedule, write_root(found.design.schedule, out / MODEL))
     write_json(out / DESIGN_RECORD, record)
     write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started))

@@ -7,6 +7,7 @@ from typing import Any
 
 import pandas as pd
 
+from common.cells import from_cell
 from common.run_layout import (
     COMPARISON,
     CROSSINGS,
@@ -105,6 +106,8 @@ def _table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
     if not path.is_file():
         return pd.DataFrame(columns=columns or ["flight_id"])
     frame = pd.read_csv(path, keep_default_na=False, na_values=[""])
+    for name in frame.select_dtypes(exclude=["number", "bool"]).columns:
+        frame[name] = frame[name].map(from_cell)
     if "criteria_met" in frame:
         frame["criteria_met"] = frame["criteria_met"].astype(str) == "True"
     for name in ("message", "outcome"):

@@ -191,3 +191,39 @@ def test_what_happened_is_told_in_lines(listed, tmp_path):
     assert lines[0] == "2 flights planned, 2 done: 0 completed"
     assert lines[1].startswith("  one: 0 of 1 met every criterion; 0 keep-out violations")
     assert lines[3].startswith("    one_00000: infeasible: the vessel moves at up to")
+
+
+def state_of(directory):
+    """Return content and time of every file."""
+    files = (path for path in sorted(directory.rglob("*")) if path.is_file())
+    return {path.relative_to(directory).as_posix(): (path.read_bytes(), path.stat().st_mtime_ns) for path in files}
+
+
+def test_a_resumed_list_that_had_nothing_to_do_rewrites_nothing(listed, tmp_path):
+    run(listed, tmp_path / "run")
+    before = state_of(tmp_path / "run")
+    assert not run(listed, tmp_path / "run", resume=True).changed
+    assert state_of(tmp_path / "run") == before
+
+
+def test_time_histories_that_were_deleted_are_made_again_to_the_last_bit(listed, tmp_path):
+    run(listed, tmp_path / "run")
+    before = state_of(tmp_path / "run")
+    deleted = [name for name in before if name.startswith("flights/")]
+    assert len(deleted) == 8
+    for name in deleted:
+        (tmp_path / "run" / name).unlink()
+    # Killed in between, it still knows which there were.
+    flown = []
+
+    def stop(doing, done, total):
+        if doing == "flying":
+            flown.append(done)
+            raise KeyboardInterrupt
+
+    assert run(listed, tmp_path / "run", resume=True, progress=stop).interrupted
+    assert run(listed, tmp_path / "run", resume=True).all_met
+    after = state_of(tmp_path / "run")
+    assert set(after) == set(before)
+    assert [name for name in deleted if after[name][0] != before[name][0]] == []
+    assert {name for name in before if after[name] != before[name]} == {*deleted, "manifest.json"}
