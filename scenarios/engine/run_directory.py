@@ -1,6 +1,7 @@
 """The run directory: its files, each written completely or not at all."""
 
 import json
+import os
 import re
 import uuid
 from collections.abc import Mapping
@@ -33,6 +34,9 @@ if TYPE_CHECKING:
 _BEGUN = re.compile(rf"{re.escape(JOURNAL)}(-.*)?|\.probe-[0-9a-f]*|\.{re.escape(MANIFEST)}\.\d+\.part")
 """Files of a run that was killed before it had a manifest."""
 
+_PARQUET_END = b"PAR1"
+"""How a Parquet file ends (Apache Parquet, file format)."""
+
 _SHOWN = 120
 """Letters of a path that a message shows at most: what is refused may be too long."""
 
@@ -46,7 +50,7 @@ class RunDirectory:
 
     Attributes
     ----------
-    gone : files that the run had when it ended, and has no more; known once it has been opened to be resumed
+    gone : files that the run had when it ended, and that are deleted or cut since; known once it has been opened to be resumed
     """
 
     def __init__(self, path: Path) -> None:
@@ -121,7 +125,7 @@ class RunDirectory:
         self._create()
         listed = manifest.get(FILES)
         names = [str(name) for name in listed] if isinstance(listed, list) else []
-        self.gone = [name for name in names if not (self.path / name).is_file()]
+        self.gone = [name for name in names if not _is_whole(self.path / name)]
         return manifest
 
     def sweep(self) -> None:
@@ -176,3 +180,17 @@ class RunDirectory:
     def write_bytes(self, name: str, content: bytes) -> None:
         """Write a file of the run, completely or not at all."""
         write_whole(self._inside(name), lambda part: part.write_bytes(content))
+
+
+def _is_whole(path: Path) -> bool:
+    """Return whether there is a file that, as far as its kind shows it, is not cut."""
+    try:
+        if path.suffix == HISTORY_SUFFIX:
+            with path.open("rb") as file:
+                file.seek(-len(_PARQUET_END), os.SEEK_END)
+                return file.read() == _PARQUET_END
+        if path.suffix == ".json":
+            json.loads(path.read_text(encoding="utf-8"))
+        return path.is_file()
+    except (OSError, ValueError, RecursionError):
+        return False

@@ -177,8 +177,8 @@ class _Execution:
         except KeyboardInterrupt:
             interrupted = True
         changed = not self._is_as_before()
-        if changed:
-            study.export(run, journal)
+        # Always: tables may have been changed by others, and those that have not are left as they are.
+        study.export(run, journal)
         summary = study.summary(journal)
         if changed:
             closing = {
