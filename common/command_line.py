@@ -24,9 +24,15 @@ def run_command(command: Callable[..., None], name: str) -> None:
         status = app(prog_name=name, standalone_mode=False)
     except _USAGE_ERROR as error:
         message = str(getattr(error, "format_message", error.__str__)()).rstrip(".")
-        print(f"error: {message}; see {name} --help", file=sys.stderr)
-        status = BAD_INPUT
+        status = refuse(f"{message}; see {name} --help")
     except typer.Abort:
         print("interrupted", file=sys.stderr)
         status = INTERRUPTED
     sys.exit(status or 0)
+
+
+def refuse(error: Exception | str) -> int:
+    """Print what is wrong with the input as one line, whatever names it quotes; return the exit status."""
+    line = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in str(error))
+    print(f"error: {line}", file=sys.stderr)
+    return BAD_INPUT

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from common.command_line import BAD_INPUT, INTERRUPTED, run_command
+from common.command_line import INTERRUPTED, refuse, run_command
 from common.run_layout import DESIGN_RECORD, MANIFEST, MODEL
 
 
@@ -32,16 +32,13 @@ def command(
         _list(altitude)
         return
     if aircraft is None:
-        print("error: no aircraft given; `--list` lists the known ones", file=sys.stderr)
-        raise typer.Exit(BAD_INPUT)
+        raise typer.Exit(refuse("no aircraft given; `--list` lists the known ones"))
     try:
         _design(aircraft, out, altitude, no_report=no_report)
     except (AircraftError, ReportError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        raise typer.Exit(BAD_INPUT) from None
+        raise typer.Exit(refuse(error)) from None
     except OSError as error:
-        print(f"error: '{error.filename}' cannot be written: {error.strerror}; choose another --out", file=sys.stderr)
-        raise typer.Exit(BAD_INPUT) from None
+        raise typer.Exit(refuse(f"'{error.filename}' cannot be written: {error.strerror}; choose another --out")) from None
 
 
 def _list(altitude: float) -> None:

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from common.command_line import BAD_INPUT, run_command
+from common.command_line import refuse, run_command
 from common.run_layout import EXPORT, REPORT_HTML, REPORT_PDF, is_file_name
 
 MISSING = 1
@@ -136,8 +136,7 @@ def command(
             if missing:
                 raise typer.Exit(MISSING)
     except (ReportError, PluginError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        raise typer.Exit(BAD_INPUT) from None
+        raise typer.Exit(refuse(error)) from None
 
 
 def main() -> None:

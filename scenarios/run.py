@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from common.command_line import BAD_INPUT, INTERRUPTED, run_command
+from common.command_line import INTERRUPTED, refuse, run_command
 from common.run_layout import REPORT_HTML, REPORT_PDF
 
 if TYPE_CHECKING:
@@ -64,8 +64,7 @@ def command(
             )
             status = _run(name, out, executor_factory, seed, overrides or [], resume, no_report)
     except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        status = BAD_INPUT
+        status = refuse(error)
     except KeyboardInterrupt:
         print("interrupted before the first flight", file=sys.stderr)
         status = INTERRUPTED
@@ -148,14 +147,10 @@ def _report(directory: Path) -> int:
         for path in build_reports(directory):
             print(f"report: {path}")
     except ReportError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return BAD_INPUT
+        return refuse(error)
     except OSError as error:
         again = f"python -m reports.build {directory}"
-        print(
-            f"error: the report cannot be written: {error.strerror}; fix that, then build the report with: {again}", file=sys.stderr
-        )
-        return BAD_INPUT
+        return refuse(f"the report cannot be written: {error.strerror}; fix that, then build the report with: {again}")
     except KeyboardInterrupt:
         print(f"report interrupted; build the report with: python -m reports.build {directory}", file=sys.stderr)
         return INTERRUPTED
