@@ -55,7 +55,7 @@ def main() -> None:
         if designed is None:
             raise SystemExit(f"error: {refusal}")
         run_directory = RunDirectory(Path(folder) / "run")
-        run_directory.open_new()
+        run_directory.open("", resume=False)
         setup = aircraft_setup(designed, scenario, run_directory)
         runs, parts = _loops(scenario, setup, Path(folder))
         for run in runs.values():

@@ -78,7 +78,7 @@ def _fly_each(work: Work, numbers: Iterable[int]) -> None:
 def _work(length: float, path: Path) -> Work:
     """Return the work of flights of some length [s]."""
     run = RunDirectory(path)
-    run.open_new()
+    run.open("a", resume=False)
     overrides = [f"flight.duration_max_s={length}", "sampling=random", *SETTINGS]
     return study_of(load_study("monte_carlo", overrides), "bench").work(run)
 

@@ -1,18 +1,33 @@
 """Files that are written completely or not at all."""
 
+import filecmp
 import json
 import os
+import shutil
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from common.run_layout import EXPORT, REPORT_HTML, REPORT_PDF
+
+
+def is_file(path: Path) -> bool:
+    """Return whether there is a file, which there is not under a name that no file can have."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Call ``write`` with a temporary path beside ``path``, then rename the result."""
+    """Call ``write`` with a temporary path beside ``path``, then rename the result; a file with the same content is left as it
+    is."""
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         write(part)
-        part.replace(path)
+        if not (is_file(path) and filecmp.cmp(part, path, shallow=False)):
+            part.replace(path)
     finally:
         part.unlink(missing_ok=True)
 
@@ -26,3 +41,18 @@ def write_json(path: Path, value: Mapping[str, Any]) -> None:
     """
     text = json.dumps(value, indent=1, allow_nan=False) + "\n"
     write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+
+
+def write_tree(source: Path, target: Path) -> None:
+    """Copy the files below ``source`` to ``target``; those with the same content are left as they are."""
+    for path in sorted(path for path in source.rglob("*") if path.is_file()):
+        copy = target / path.relative_to(source)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(copy, partial(shutil.copyfile, path))
+
+
+def remove_reports(directory: Path) -> None:
+    """Remove reports and exports of a run that goes on, or of a design that is made anew: they would tell what is no longer so."""
+    for name in (REPORT_HTML, REPORT_PDF):
+        (directory / name).unlink(missing_ok=True)
+    shutil.rmtree(directory / EXPORT, ignore_errors=True)

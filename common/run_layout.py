@@ -3,6 +3,9 @@
 MANIFEST = "manifest.json"
 """Configuration, software, and how the run ended."""
 
+FILES = "files"
+"""Entry of the manifest with the files that a run had when it ended."""
+
 JOURNAL = "journal.sqlite"
 """Results as they arrived; the tables are written from it."""
 
@@ -48,8 +51,28 @@ WORST = "worst"
 REPORT_HTML, REPORT_PDF = "report.html", "report.pdf"
 """The reports."""
 
+EXPORT = "export"
+"""Directory of what exporters wrote."""
+
 HISTORY_SUFFIX = ".parquet"
 """Suffix of time histories."""
+
+NAME_BYTES_MAX = 200
+"""Longest name of a trial or a flight [bytes]: file systems take 255, and suffixes are added."""
+
+
+def is_file_name(name: object) -> bool:
+    """Return whether ``name`` can be part of the name of a file, and leads to no other directory.
+
+    Names are checked where they are read from a file: in somebody else's run they may be anything.
+    """
+    return (
+        isinstance(name, str)
+        and name.isprintable()
+        and 0 < len(name.encode()) <= NAME_BYTES_MAX
+        and name not in (".", "..")
+        and not set(name) & {"/", "\\"}
+    )
 
 
 def time_history_path(flight_id: str) -> str:

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from common.command_line import BAD_INPUT, INTERRUPTED, run_command
+from common.command_line import INTERRUPTED, refuse, run_command
 from common.run_layout import DESIGN_RECORD, MANIFEST, MODEL
 
 
@@ -32,16 +32,13 @@ def command(
         _list(altitude)
         return
     if aircraft is None:
-        print("error: no aircraft given; `--list` lists the known ones", file=sys.stderr)
-        raise typer.Exit(BAD_INPUT)
+        raise typer.Exit(refuse("no aircraft given; `--list` lists the known ones"))
     try:
         _design(aircraft, out, altitude, no_report=no_report)
     except (AircraftError, ReportError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        raise typer.Exit(BAD_INPUT) from None
+        raise typer.Exit(refuse(error)) from None
     except OSError as error:
-        print(f"error: '{error.filename}' cannot be written: {error.strerror}; choose another --out", file=sys.stderr)
-        raise typer.Exit(BAD_INPUT) from None
+        raise typer.Exit(refuse(f"'{error.filename}' cannot be written: {error.strerror}; choose another --out")) from None
 
 
 def _list(altitude: float) -> None:
@@ -67,7 +64,7 @@ def _design(aircraft: str, out: Path | None, altitude: float, *, no_report: bool
     out = out or Path("runs") / f"design-{spec.name}"
     _refuse_another_run(out)
 
-    from common.files import write_json
+    from common.files import remove_reports, write_json
     from innerloop.designs.cache import designed
     from innerloop.designs.manifest import design_manifest
     from innerloop.jsbsim.root import write_root
@@ -79,6 +76,9 @@ def _design(aircraft: str, out: Path | None, altitude: float, *, no_report: bool
     out.mkdir(parents=True, exist_ok=True)
     found = designed(spec, altitude)
     record = found.record
+    # Of an older design; the manifest comes last, when all that it stands for is there.
+    remove_reports(out)
+    (out / MANIFEST).unlink(missing_ok=True)
     write_script(found.design.schedule, write_root(found.design.schedule, out / MODEL))
     write_json(out / DESIGN_RECORD, record)
     write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started))

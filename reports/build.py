@@ -9,12 +9,20 @@ from typing import Annotated, Any
 
 import typer
 
-from common.command_line import BAD_INPUT, run_command
-from common.run_layout import REPORT_HTML, REPORT_PDF
+from common.command_line import refuse, run_command
+from common.run_layout import EXPORT, REPORT_HTML, REPORT_PDF, is_file_name
+
+MISSING = 1
+"""Exit status of reports that lack pieces of their run."""
 
 
-def build_reports(directory: Path) -> list[Path]:
+def build_reports(directory: Path, *, tell_missing: Callable[[str], None] = lambda _: None) -> list[Path]:
     """Write ``report.html`` and ``report.pdf`` into a run directory and return their paths.
+
+    Parameters
+    ----------
+    directory : of the run
+    tell_missing : called with the path of each file of the run that is gone or cannot be read; the reports name it
 
     Raises
     ------
@@ -29,6 +37,8 @@ def build_reports(directory: Path) -> list[Path]:
     print("building the report", file=sys.stderr)
     with _damage_named(directory):
         report = content(run)
+    for name in run.missing():
+        tell_missing(name)
     return [
         _written(directory / name, partial(write, report)) for name, write in ((REPORT_HTML, write_html), (REPORT_PDF, write_pdf))
     ]
@@ -47,14 +57,20 @@ def export_run(directory: Path, name: str) -> Path:
     ReportError : the run cannot be read or written, or does not have what the format is about
     PluginError : there is no such exporter, or it does not load
     """
+    from reports.errors import ReportError
     from reports.export import EXPORTERS
     from reports.run.run_data import read_run
 
     exporter = EXPORTERS.get(name)()
     run = read_run(directory)
-    (directory / "export").mkdir(exist_ok=True)
-    path = directory / "export" / f"{run.manifest['name']}{exporter.suffix}"
+    run_name, folder = run.manifest.get("name"), directory / EXPORT
+    if not is_file_name(run_name):
+        raise ReportError(f"'{directory}' is that of a run called {run_name!r}, which is no name of a file; do not use this run")
+    if folder.is_symlink():
+        raise ReportError(f"'{folder}' is a link; exports are written into '{directory}' alone: remove it")
+    path = folder / f"{run_name}{exporter.suffix}"
     with _damage_named(directory):
+        folder.mkdir(exist_ok=True)
         return _written(path, partial(exporter.write, run))
 
 
@@ -98,7 +114,10 @@ def command(
         typer.Option(metavar="NAME", help="Write RUN_DIR/export/... by this exporter, or by FILE.py:NAME, instead of the reports."),
     ] = None,
 ) -> None:
-    """Rebuild report.html and report.pdf of a run or of a design, without flying anything; or export a run."""
+    """Rebuild report.html and report.pdf of a run or of a design, without flying anything; or export a run.
+
+    Exit status: 0 written, 1 written but pieces of the run are missing, 2 bad input.
+    """
     from common.registry import PluginError
     from reports.errors import ReportError
 
@@ -107,11 +126,17 @@ def command(
             for name in export:
                 print(f"export: {export_run(directory, name)}")
         else:
-            for path in build_reports(directory):
+            missing: list[str] = []
+            for path in build_reports(directory, tell_missing=missing.append):
                 print(f"report: {path}")
+            for name in missing:
+                print(
+                    f"missing: {directory / name} is gone or cannot be read; the report says what it does not show", file=sys.stderr
+                )
+            if missing:
+                raise typer.Exit(MISSING)
     except (ReportError, PluginError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        raise typer.Exit(BAD_INPUT) from None
+        raise typer.Exit(refuse(error)) from None
 
 
 def main() -> None:

@@ -7,6 +7,7 @@ from common.run_layout import MANIFEST
 from reports.convergence.content import convergence_content
 from reports.design.content import design_content
 from reports.document.blocks import Content, Section, Verdict
+from reports.document.missing import missing_sections
 from reports.document.tables import provenance_table
 from reports.errors import ReportError
 from reports.flights.content import flights_content
@@ -44,6 +45,8 @@ def content(run: RunData) -> Content:
             " run the scenario again in another --out"
         )
     verdict, sections = made(run)
+    # What is missing is known once everything has been asked for; it stands first.
+    sections = [*missing_sections(run), *sections]
     provenance = Section(anchor="provenance", title="Provenance", blocks=[provenance_table(run)])
     return Content(
         title=run.manifest["title"],

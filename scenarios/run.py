@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from common.command_line import BAD_INPUT, INTERRUPTED, run_command
+from common.command_line import INTERRUPTED, refuse, run_command
+from common.run_layout import REPORT_HTML, REPORT_PDF
 
 if TYPE_CHECKING:
     from scenarios.engine.executors import ExecutorFactory
@@ -38,8 +39,8 @@ def command(
         str | None,
         typer.Option(metavar="tcp://HOST:PORT", help="Address of a running Dask scheduler; default a cluster on this machine."),
     ] = None,
-    time_limit: Annotated[float, typer.Option(min=1.0, help="Longest computing time of a flight [s].")] = 600.0,
-    memory_limit: Annotated[float | None, typer.Option(min=0.25, help="Memory limit of a process [GiB]; default none.")] = None,
+    time_limit: Annotated[float, typer.Option(help="Longest computing time of a flight [s].")] = 600.0,
+    memory_limit: Annotated[float | None, typer.Option(help="Memory limit of a process [GiB]; default none.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue the unfinished run in --out.")] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
     list_scenarios: Annotated[bool, typer.Option("--list", help="List the scenarios of the catalog and exit.")] = False,
@@ -57,14 +58,13 @@ def command(
         if list_scenarios:
             status = _list()
         else:
-            limits = Limits(time=time_limit, memory=None if memory_limit is None else round(memory_limit * 2**30))
+            limits = Limits.given(time_limit, memory_limit)
             executor_factory = ExecutorFactory(
                 jobs=jobs or os.cpu_count() or 1, executor=executor, scheduler=scheduler, limits=limits
             )
             status = _run(name, out, executor_factory, seed, overrides or [], resume, no_report)
     except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        status = BAD_INPUT
+        status = refuse(error)
     except KeyboardInterrupt:
         print("interrupted before the first flight", file=sys.stderr)
         status = INTERRUPTED
@@ -133,7 +133,8 @@ def _run(
         kept = f"{result.summary.done} of {result.planned} {result.what} are done and kept"
         print(f"interrupted; {kept}. Continue with: python -m scenarios.run {again}", file=sys.stderr)
         return INTERRUPTED
-    status = MET if no_report else _report(directory)
+    reported = all((directory / name).is_file() for name in (REPORT_HTML, REPORT_PDF))
+    status = MET if no_report or (reported and not result.changed) else _report(directory)
     return status or (MET if result.all_met else NOT_MET)
 
 
@@ -146,14 +147,10 @@ def _report(directory: Path) -> int:
         for path in build_reports(directory):
             print(f"report: {path}")
     except ReportError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return BAD_INPUT
+        return refuse(error)
     except OSError as error:
         again = f"python -m reports.build {directory}"
-        print(
-            f"error: the report cannot be written: {error.strerror}; fix that, then build the report with: {again}", file=sys.stderr
-        )
-        return BAD_INPUT
+        return refuse(f"the report cannot be written: {error.strerror}; fix that, then build the report with: {again}")
     except KeyboardInterrupt:
         print(f"report interrupted; build the report with: python -m reports.build {directory}", file=sys.stderr)
         return INTERRUPTED

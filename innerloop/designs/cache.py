@@ -3,17 +3,12 @@
 import contextlib
 import hashlib
 import importlib.metadata
-import io
 import os
-import pickle
 import platform
 import tempfile
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
-
-import control
 
 import aircraft
 import common
@@ -24,10 +19,13 @@ from aircraft.spec import AircraftSpec
 from common.files import write_whole
 from innerloop.designs.designer import Design, DesignError, design_autopilot
 from innerloop.designs.record import Record, design_record
+from innerloop.designs.stored import as_text, from_text
 from innerloop.jsbsim.root import write_root
 
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot")
-_DIGEST = hashlib.sha256().digest_size
+
+SUFFIX = ".design.json"
+"""How the names of cached designs end."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,6 +44,14 @@ class _Refused:
     is_margins: bool
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Entry:
+    """An entry of the cache: a design, or why there is none."""
+
+    made: Designed | None = None
+    refused: _Refused | None = None
+
+
 def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
     """Return the design of an aircraft at ``altitude`` [m] and its record: from the cache if nothing it depends on has
     changed.
@@ -61,11 +67,14 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
     key = design_key(spec, altitude)
     found = _cached(key)
     if found is None:
-        found = _design(spec, altitude)
-        _store(key, found)
-    if isinstance(found, _Refused):
-        raise (DesignError if found.is_margins else AircraftError)(found.message)
-    return _at(spec.root, found)
+        text = as_text(_design(spec, altitude))
+        _store(key, text)
+        # What is used is what the next run reads, whether or not it was written.
+        found = from_text(text, _Entry)
+    if found.refused is not None or found.made is None:
+        refused = found.refused or _Refused(message=f"aircraft '{spec.name}' has no design", is_margins=False)
+        raise (DesignError if refused.is_margins else AircraftError)(refused.message)
+    return _at(spec.root, found.made)
 
 
 def _at(root: Path, found: Designed) -> Designed:
@@ -100,53 +109,49 @@ def _add_files(digest: Any, folder: Path, pattern: str) -> None:
         digest.update(path.read_bytes())
 
 
-def _design(spec: AircraftSpec, altitude: float) -> Designed | _Refused:
+def _design(spec: AircraftSpec, altitude: float) -> _Entry:
     try:
         design = design_autopilot(spec, altitude)
     except AircraftError as error:
-        return _Refused(message=str(error), is_margins=isinstance(error, DesignError))
+        return _Entry(refused=_Refused(message=str(error), is_margins=isinstance(error, DesignError)))
     with tempfile.TemporaryDirectory() as folder:
-        return Designed(design=design, record=design_record(design, write_root(design.schedule, Path(folder))))
+        return _Entry(made=Designed(design=design, record=design_record(design, write_root(design.schedule, Path(folder)))))
 
 
-def cache_directory() -> Path:
-    """Return the cache of designs: ``plume-flight-study`` in the user's cache directory."""
-    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"
+def cache_directory() -> Path | None:
+    """Return the cache of designs: ``plume-flight-study`` in the user's cache directory; None for a user without a home."""
+    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
+    if not base:
+        try:
+            base = str(Path.home() / ".cache")
+        except RuntimeError:
+            return None
     return Path(base) / "plume-flight-study"
 
 
-def _cached(key: str) -> Designed | _Refused | None:
-    """Return the cached design of a key; None if it is absent or cannot be read."""
-    try:
-        content = (cache_directory() / f"{key}.design").read_bytes()
-        # A damaged file might still unpickle, as another autopilot.
-        if content[:_DIGEST] != hashlib.sha256(content[_DIGEST:]).digest():
-            return None
-        found = pickle.loads(content[_DIGEST:])
-    except (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, TypeError, ValueError, IndexError):
+def _cached(key: str) -> _Entry | None:
+    """Return the cached entry of a key; None if it is absent or damaged."""
+    directory = cache_directory()
+    if directory is None:
         return None
-    return found if isinstance(found, Designed | _Refused) else None
+    try:
+        # In a damaged file the numbers might be those of another autopilot: the first line is the hash of the others.
+        digest, _, text = (directory / f"{key}{SUFFIX}").read_text(encoding="utf-8").partition("\n")
+        return from_text(text, _Entry) if digest == _digest(text) else None
+    except (OSError, ValueError):
+        return None
 
 
-def _store(key: str, found: Designed | _Refused) -> None:
-    """Cache a design; if it cannot be written, it is made again the next time."""
-    buffer = io.BytesIO()
-    _Pickler(buffer).dump(found)
-    content = hashlib.sha256(buffer.getvalue()).digest() + buffer.getvalue()
+def _store(key: str, text: str) -> None:
+    """Cache an entry; if it cannot be written, the design is made again the next time."""
+    directory = cache_directory()
+    if directory is None:
+        return
     with contextlib.suppress(OSError):
-        cache_directory().mkdir(parents=True, exist_ok=True)
-        write_whole(cache_directory() / f"{key}.design", lambda path: path.write_bytes(content))
+        directory.mkdir(parents=True, exist_ok=True)
+        content = f"{_digest(text)}\n{text}"
+        write_whole(directory / f"{key}{SUFFIX}", lambda path: path.write_text(content, encoding="utf-8"))
 
 
-class _Pickler(pickle.Pickler):
-    """Pickles linear systems as their matrices: python-control's objects hold functions, which do not pickle."""
-
-    def reducer_override(self, obj: object) -> tuple[Callable[..., object], tuple[object, ...]]:
-        if isinstance(obj, control.StateSpace):
-            labels = (list(obj.state_labels), list(obj.input_labels), list(obj.output_labels))
-            return _state_space, (obj.A, obj.B, obj.C, obj.D, *labels)
-        return NotImplemented
-
-
-def _state_space(a: Any, b: Any, c: Any, d: Any, states: list[str], inputs: list[str], outputs: list[str]) -> control.StateSpace:
-    return control.ss(a, b, c, d, states=states, inputs=inputs, outputs=outputs)
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import aircraft_names, find_spec
-from common.interrupt import ignore_interrupt
+from common.interrupt import follow_parent
 from innerloop.analysis.perturbations import NOMINAL
 from innerloop.designs.cache import designed
 
@@ -41,7 +41,7 @@ def discover(altitude: float, jobs: int) -> Iterator[Discovered]:
     """
     names = aircraft_names()
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=ignore_interrupt)
+    pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=follow_parent)
     try:
         futures = {name: pool.submit(examine, name, altitude) for name in names}
         for name, future in futures.items():
@@ -59,7 +59,7 @@ def discover(altitude: float, jobs: int) -> Iterator[Discovered]:
 
 def _alone(name: str, altitude: float) -> Discovered:
     """Examine an aircraft in a process of its own, after another one broke the pool."""
-    with ProcessPoolExecutor(max_workers=1, mp_context=multiprocessing.get_context("spawn")) as pool:
+    with ProcessPoolExecutor(max_workers=1, mp_context=multiprocessing.get_context("spawn"), initializer=follow_parent) as pool:
         try:
             return pool.submit(examine, name, altitude).result()
         except BrokenProcessPool:

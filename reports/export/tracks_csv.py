@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from common.cells import cell
 from reports.errors import ReportError
 from reports.export.exporter import EXPORTERS
 from reports.run.run_data import RunData
@@ -30,5 +31,5 @@ class TracksCsv:
             for number, flight_id in enumerate(recorded):
                 history = run.history(flight_id)
                 rows = pd.DataFrame() if history is None else history.reindex(columns=list(COLUMNS))
-                rows.insert(0, "flight_id", flight_id)
+                rows.insert(0, "flight_id", str(cell(flight_id)))
                 rows.to_csv(file, index=False, header=number == 0, float_format="%.3f")

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2.utils import htmlsafe_json_dumps
 from plotly.offline import get_plotlyjs
 
 from reports.document.blocks import Content, FlightPicker
@@ -39,5 +40,5 @@ def _figure(chart: Chart) -> dict[str, Any]:
 
 
 def _for_script(value: Any) -> str:
-    """Return JSON that cannot end the script element it stands in."""
-    return json.dumps(value, separators=(",", ":")).replace("</", "<\\/")
+    """Return JSON for a script element: no text in it can end the element, nor begin a comment that hides its end."""
+    return htmlsafe_json_dumps(value, separators=(",", ":"))

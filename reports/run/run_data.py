@@ -1,20 +1,25 @@
 """A run directory as read from disk."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
+import pyarrow as pa
 
+from common.cells import from_cell
+from common.files import is_file
 from common.run_layout import (
     COMPARISON,
     CROSSINGS,
     DESIGN_RECORD,
     DRAWS,
+    FILES,
     MANIFEST,
     STATISTICS,
     SUMMARY,
+    is_file_name,
     time_history_path,
     trajectory_path,
 )
@@ -35,6 +40,7 @@ class RunData:
     innerloop : the autopilot's design record, or none if the run ended before
     statistics : what a Monte Carlo study shows and how sure that is, or none of any other run
     draws : of each flight, what was swept or sampled
+    unread : files that are there and cannot be read, as found so far
     """
 
     path: Path
@@ -45,20 +51,34 @@ class RunData:
     innerloop: dict[str, Any] | None
     statistics: dict[str, Any] | None
     draws: pd.DataFrame
+    unread: set[str] = field(default_factory=set)
 
     def history(self, flight_id: str) -> pd.DataFrame | None:
-        """Return a flight's time history, or None if it has none."""
-        path = self.path / time_history_path(flight_id)
-        return pd.read_parquet(path) if path.is_file() else None
+        """Return a flight's time history, or None if it has none that can be read."""
+        return self._parquet(time_history_path(flight_id)) if is_file_name(flight_id) else None
 
     def has_history(self, flight_id: str) -> bool:
         """Return whether a flight has a time history."""
-        return (self.path / time_history_path(flight_id)).is_file()
+        return is_file_name(flight_id) and is_file(self.path / time_history_path(flight_id))
 
     def trajectory(self, law: str, number: int) -> pd.DataFrame | None:
-        """Return the time history of a trajectory of a convergence study, or None if it was not kept."""
-        path = self.path / trajectory_path(law, number)
-        return pd.read_parquet(path) if path.is_file() else None
+        """Return the time history of a trajectory of a convergence study, or None if none was kept that can be read."""
+        return self._parquet(trajectory_path(law, number)) if is_file_name(law) else None
+
+    def missing(self) -> list[str]:
+        """Return the files that the run had when it ended, and that are gone or, as far as they were needed, cannot be read."""
+        listed = self.manifest.get(FILES)
+        names = [str(name) for name in listed] if isinstance(listed, list) else []
+        return sorted({*(name for name in names if not is_file(self.path / name)), *self.unread})
+
+    def _parquet(self, name: str) -> pd.DataFrame | None:
+        if not is_file(self.path / name):
+            return None
+        try:
+            return pd.read_parquet(self.path / name)
+        except (ValueError, OSError, pa.ArrowException):
+            self.unread.add(name)
+            return None
 
     def crossings_of(self, flight_id: str) -> pd.DataFrame:
         """Return the crossings of a flight."""
@@ -76,12 +96,13 @@ def read_run(path: Path) -> RunData:
         manifest = json.loads((path / MANIFEST).read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise ReportError(f"'{path}' holds no run (no {MANIFEST}); give the directory that scenarios.run named") from None
-    except (json.JSONDecodeError, UnicodeDecodeError, OSError) as error:
+    except (ValueError, OSError, RecursionError) as error:
         raise ReportError(f"'{path}': {MANIFEST} cannot be read: {error}; run the scenario again") from None
     if not (isinstance(manifest, dict) and isinstance(manifest.get("config"), dict)):
         raise ReportError(f"'{path}': {MANIFEST} is not that of a run; run the scenario again in another --out")
     if manifest.get("study") != "design" and not (path / SUMMARY).is_file():
         raise ReportError(f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume")
+    unread: set[str] = set()
     try:
         return RunData(
             path=path,
@@ -89,22 +110,31 @@ def read_run(path: Path) -> RunData:
             summary=_table(path / SUMMARY),
             comparison=_table(path / COMPARISON),
             crossings=_table(path / CROSSINGS, columns=["flight_id", "time_s", "distance_m"]),
-            innerloop=_record(path / DESIGN_RECORD),
-            statistics=_record(path / STATISTICS),
+            innerloop=_record(path / DESIGN_RECORD, unread),
+            statistics=_record(path / STATISTICS, unread),
             draws=_table(path / DRAWS),
+            unread=unread,
         )
     except (ValueError, OSError) as error:
-        raise ReportError(f"'{path}': a table or a record cannot be read: {error}; run the scenario again") from None
+        raise ReportError(f"'{path}': a table cannot be read: {error}; run the scenario again") from None
 
 
-def _record(path: Path) -> dict[str, Any] | None:
-    return dict(json.loads(path.read_text(encoding="utf-8"))) if path.is_file() else None
+def _record(path: Path, unread: set[str]) -> dict[str, Any] | None:
+    if not is_file(path):
+        return None
+    try:
+        return dict(json.loads(path.read_text(encoding="utf-8")))
+    except (ValueError, TypeError, OSError, RecursionError):
+        unread.add(path.name)
+        return None
 
 
 def _table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
     if not path.is_file():
         return pd.DataFrame(columns=columns or ["flight_id"])
     frame = pd.read_csv(path, keep_default_na=False, na_values=[""])
+    for name in frame.select_dtypes(exclude=["number", "bool"]).columns:
+        frame[name] = frame[name].map(from_cell)
     for name in ("criteria_met", "kept_out"):
         if name in frame:
             frame[name] = frame[name].astype(str) == "True"

@@ -2,24 +2,30 @@
 
 A result is either in the journal or not: whenever and however the program ends, the next one finds every result that
 was added. Tables are written from the journal in the order of the tasks, one row at a time: a study may have more rows
-than fit into memory.
+than fit into memory. Every result has a checksum; a journal in which one does not agree is refused.
 """
 
 import csv
+import hashlib
 import json
-import math
 import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
 
+from common.cells import cell
 from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
 
 _LARGEST = 2**63 - 1
 """SQLite's largest integer."""
 
-_SCHEMA = "CREATE TABLE IF NOT EXISTS results (number INTEGER PRIMARY KEY, point TEXT, items INTEGER, lost INTEGER, tables TEXT)"
+_COLUMNS = ("number", "point", "items", "lost", "tables", "checksum")
+
+_SCHEMA = (
+    "CREATE TABLE IF NOT EXISTS results"
+    " (number INTEGER PRIMARY KEY, point TEXT, items INTEGER, lost INTEGER, tables TEXT, checksum TEXT)"
+)
 
 
 class Journal:
@@ -28,32 +34,54 @@ class Journal:
     Parameters
     ----------
     path : path of the file; created if it does not exist
+    reading : whether results are read alone: then nothing is written beside somebody else's run
 
     Raises
     ------
     InputError : another program is writing to it, or it is damaged
     """
 
-    def __init__(self, path: Path) -> None:
-        self._database = sqlite3.connect(path, isolation_level=None, timeout=0.0)
+    def __init__(self, path: Path, *, reading: bool = False) -> None:
+        self._path = path
+        # A log beside it is of a program that was killed, or that is writing now: SQLite has to see to it.
+        closed = reading and not path.with_name(f"{path.name}-wal").exists()
         try:
-            # Exclusive: two programs that fly the same study would overwrite each other's results.
-            self._database.execute("PRAGMA locking_mode = EXCLUSIVE")
-            self._database.execute("PRAGMA journal_mode = WAL")
-            self._database.execute("PRAGMA synchronous = NORMAL")
-            self._database.execute(_SCHEMA)
-        except sqlite3.OperationalError as error:
-            self._database.close()
-            if "locked" not in str(error):
-                raise
-            raise InputError(
-                f"another program is writing to '{path.parent}'; wait until it has ended, or choose another --out"
-            ) from None
+            self._database = sqlite3.connect(
+                f"{path.absolute().as_uri()}?immutable=1" if closed else path, uri=closed, isolation_level=None, timeout=0.0
+            )
+        except sqlite3.Error as error:
+            raise InputError(f"'{path}' cannot be opened: {error}; choose another --out") from None
+        # What is not text is found by its checksum.
+        self._database.text_factory = lambda text: text.decode(errors="replace")
+        try:
+            if not closed:
+                # Exclusive: two programs that fly the same study would overwrite each other's results.
+                self._database.execute("PRAGMA locking_mode = EXCLUSIVE")
+                self._database.execute("PRAGMA journal_mode = WAL")
+                self._database.execute("PRAGMA synchronous = NORMAL")
+                self._database.execute(_SCHEMA)
+            self._check()
         except sqlite3.DatabaseError as error:
             self._database.close()
+            if _code(error) in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_PROTOCOL):
+                raise InputError(
+                    f"another program is writing to '{path.parent}'; wait until it has ended, or choose another --out"
+                ) from None
             if not is_damaged(error):
                 raise
-            raise InputError(f"'{path}' is damaged; start a new run in another --out") from None
+            raise damaged(path) from None
+        except InputError:
+            self._database.close()
+            raise
+
+    def _check(self) -> None:
+        """Raise an InputError if a result is not as it was added."""
+        columns = tuple(name for _, name, *_ in self._database.execute("PRAGMA table_info(results)"))
+        if columns != _COLUMNS:
+            raise InputError(f"'{self._path}' is no journal of this version; start a new run in another --out")
+        for *fields, checksum in self._database.execute(f"SELECT {', '.join(_COLUMNS)} FROM results"):
+            if checksum != _checksum(*fields) or not _is_tables(fields[-1]):
+                raise damaged(self._path, f": the result of task {fields[0]} does not agree with its checksum")
 
     def close(self) -> None:
         """Close the file."""
@@ -61,16 +89,18 @@ class Journal:
 
     def add(self, result: Result) -> None:
         """Store a result, replacing an earlier one of its task; from then on it survives any end of the program."""
-        self._database.execute(
-            "INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?)",
-            (
-                result.task.number,
-                json.dumps(result.task.point),
-                result.items,
-                result.lost,
-                json.dumps(result.tables, default=_plain),
-            ),
+        fields = (
+            result.task.number,
+            json.dumps(result.task.point),
+            result.items,
+            int(result.lost),
+            json.dumps(result.tables, default=_plain),
         )
+        self._database.execute("INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?, ?)", (*fields, _checksum(*fields)))
+
+    def is_empty(self) -> bool:
+        """Return whether it has no results."""
+        return self._database.execute("SELECT 1 FROM results LIMIT 1").fetchone() is None
 
     def done(self) -> set[int]:
         """Return the numbers of the tasks that are done; tasks whose process was lost are not."""
@@ -103,7 +133,7 @@ class Journal:
         writer.writerow(columns)
         count = 0
         for count, row in enumerate(self.rows(table), start=1):  # noqa: B007 - the last one is returned
-            writer.writerow([_text(row.get(name)) for name in columns])
+            writer.writerow([cell(row.get(name)) for name in columns])
         return count
 
 
@@ -114,18 +144,34 @@ def is_full(error: sqlite3.DatabaseError) -> bool:
 
 def is_damaged(error: sqlite3.DatabaseError) -> bool:
     """Return whether the file is damaged, or not a journal."""
-    return _code(error) in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+    return _code(error) in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_MISMATCH)
+
+
+def damaged(path: Path, what: str = "") -> InputError:
+    """Return the error to raise for a damaged journal."""
+    return InputError(f"'{path}' is damaged{what}; start a new run in another --out")
 
 
 def _code(error: sqlite3.DatabaseError) -> int:
     """Return the primary error code of SQLite."""
-    return int(error.sqlite_errorcode) & 0xFF
+    return int(getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR)) & 0xFF
+
+
+def _checksum(*fields: object) -> str:
+    return hashlib.blake2b(repr(fields).encode(errors="replace"), digest_size=8).hexdigest()
+
+
+def _is_tables(text: object) -> bool:
+    """Return whether a text has lists of rows by the names of their tables."""
+    try:
+        tables = json.loads(str(text))
+    except (ValueError, RecursionError):
+        return False
+    return isinstance(tables, dict) and all(
+        isinstance(rows, list) and all(isinstance(row, dict) for row in rows) for rows in tables.values()
+    )
 
 
 def _plain(value: Any) -> Any:
     """Return a numpy scalar as a Python number."""
     return value.item()
-
-
-def _text(value: Any) -> Any:
-    return "" if value is None or (isinstance(value, float) and math.isnan(value)) else value

@@ -15,7 +15,7 @@ from multiprocessing.process import BaseProcess
 from types import TracebackType
 from typing import Self
 
-from common.interrupt import ignore_interrupt
+from common.interrupt import follow_parent
 from scenarios.engine.executor import MAX_ATTEMPTS, QUEUE_DEPTH
 from scenarios.engine.memory import data_memory, limit_memory
 from scenarios.engine.task import Limits, Result, Task, Work
@@ -188,7 +188,7 @@ def _exit_reason(code: int | None) -> str:
 
 def _serve(connection: Connection, inherited: Sequence[Connection], work: Work, memory: int | None) -> None:
     """Do tasks in a process until the pipe is closed."""
-    ignore_interrupt()
+    follow_parent()
     for other in inherited:
         other.close()
     limit_memory(memory)

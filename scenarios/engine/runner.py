@@ -3,15 +3,16 @@
 import errno
 import sqlite3
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from common.files import write_whole
+from common.files import remove_reports, write_whole
+from common.run_layout import FILES
 from scenarios.engine.executor import Executor
 from scenarios.engine.executors import ExecutorFactory
-from scenarios.engine.journal import Journal, is_damaged, is_full
+from scenarios.engine.journal import Journal, damaged, is_damaged, is_full
 from scenarios.engine.memory import peak_memory
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.task import Task, Work
@@ -19,6 +20,8 @@ from scenarios.errors import InputError
 
 Progress = Callable[[str, int, int], None]
 """Called with the current activity, the number of items that are done and the total number of items."""
+
+_COMPLETE, _INTERRUPTED = "complete", "interrupted"
 
 Fly = Callable[[Iterable[Task]], None]
 """Executes tasks and returns when their results are in the journal."""
@@ -91,6 +94,7 @@ class RunResult:
     what, planned : name and planned number of the items that the study counts
     summary : the result of the study
     interrupted : whether the run was interrupted before every task was done
+    changed : whether anything was written; a resumed run may have had nothing to do
     """
 
     directory: Path
@@ -98,6 +102,7 @@ class RunResult:
     planned: int
     summary: StudySummary
     interrupted: bool
+    changed: bool = True
 
     @property
     def all_met(self) -> bool:
@@ -121,57 +126,111 @@ def fly_study(study: Study, directory: Path, *, executor_factory: ExecutorFactor
     InputError : the directory cannot be used, or the disk is full; finished results are kept
     """
     run = RunDirectory(directory)
-    run.open(study.config_hash, resume=resume)
+    before = run.open(study.config_hash, resume=resume)
     try:
         journal = Journal(run.journal)
-        run.sweep()
         try:
-            return _fly(study, run, journal, executor_factory, progress)
+            if not before and not journal.is_empty():
+                raise InputError(f"'{run.path}' has results without a {run.manifest.name}; choose another --out")
+            run.sweep()
+            return _Execution(study, run, journal, before, progress).fly(executor_factory)
         finally:
             journal.close()
     except (OSError, sqlite3.DatabaseError) as error:
         raise _explained(error, run) from None
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
+        if not before or isinstance(error, InputError):
+            raise
+        what = f"{type(error).__name__}: {error}".splitlines()[0]
+        raise InputError(
+            f"'{run.path}' has results that do not fit its study ({what}); start a new run in another --out"
+        ) from error
 
 
-def _fly(study: Study, run: RunDirectory, journal: Journal, executor_factory: ExecutorFactory, progress: Progress) -> RunResult:
-    manifest = study.initial_manifest()
-    run.write_json(run.manifest, manifest | {"state": "running"})
-    began = time.perf_counter()
-    interrupted = False
-    try:
-        work = study.work(run)
-        with executor_factory(work) as executor:
-            study.run(_executing(study, run, journal, executor, progress), run, journal)
-        study.postprocess(run, journal, progress)
-    except KeyboardInterrupt:
-        interrupted = True
-    study.export(run, journal)
-    summary = study.summary(journal)
-    closing = {
-        "state": "interrupted" if interrupted else "complete",
-        "wall_time_s": time.perf_counter() - began,
-        "peak_memory_mib": round(peak_memory() / 2**20, 1),
-    }
-    run.write_json(run.manifest, manifest | closing | summary.manifest)
-    return RunResult(directory=run.path, what=study.what, planned=study.planned, summary=summary, interrupted=interrupted)
+class _Execution:
+    """One execution of a study, or of its unfinished part.
 
+    Parameters
+    ----------
+    study, run, journal : of the run
+    before : manifest of the run that is resumed, empty for a new one
+    progress : called as the study advances
+    """
 
-def _executing(study: Study, run: RunDirectory, journal: Journal, executor: Executor, progress: Progress) -> Fly:
-    before, done = journal.done(), journal.items()
-    progress("flying", done, study.planned)
+    def __init__(self, study: Study, run: RunDirectory, journal: Journal, before: Mapping[str, Any], progress: Progress) -> None:
+        self._study, self._run, self._journal, self._before, self._progress = study, run, journal, before, progress
+        self._manifest = study.initial_manifest()
+        self._begun = False
 
-    def fly(tasks: Iterable[Task]) -> None:
-        nonlocal done
-        for result in executor.fly(task for task in tasks if task.recorded or task.number not in before):
-            # Files first: a result counts as done when it is in the journal.
-            for name, content in result.files.items():
-                run.write_bytes(name, content)
-            if not result.task.recorded:
-                journal.add(result)
-                done += result.items
-                progress("flying", done, study.planned)
+    def fly(self, executor_factory: ExecutorFactory) -> RunResult:
+        study, run, journal = self._study, self._run, self._journal
+        began = time.perf_counter()
+        interrupted = False
+        if not self._before:
+            self._begin()
+        try:
+            work = study.work(run)
+            with executor_factory(work) as executor:
+                study.run(self._executing(executor), run, journal)
+            if not self._is_as_before():
+                study.postprocess(run, journal, self._progress)
+        except KeyboardInterrupt:
+            interrupted = True
+        changed = not self._is_as_before()
+        # Always: tables may have been changed by others, and those that have not are left as they are.
+        study.export(run, journal)
+        summary = study.summary(journal)
+        if changed:
+            closing = {
+                "state": _INTERRUPTED if interrupted else _COMPLETE,
+                "wall_time_s": time.perf_counter() - began,
+                "peak_memory_mib": round(peak_memory() / 2**20, 1),
+                # What was deleted and is not made again is still missed.
+                FILES: sorted({*run.files(), *run.gone}),
+            }
+            run.write_json(run.manifest, self._manifest | closing | summary.manifest)
+        return RunResult(
+            directory=run.path,
+            what=study.what,
+            planned=study.planned,
+            summary=summary,
+            interrupted=interrupted,
+            changed=changed,
+        )
 
-    return fly
+    def _begin(self) -> None:
+        """Say in the manifest that the run goes on, and remove what will be untrue; once, before anything is added."""
+        if not self._begun:
+            self._begun = True
+            remove_reports(self._run.path)
+            self._run.write_json(self._run.manifest, self._manifest | {"state": "running", FILES: self._before.get(FILES, [])})
+
+    def _is_as_before(self) -> bool:
+        """Return whether the run was complete, nothing was added, and nothing is missing."""
+        return not self._begun and self._before.get("state") == _COMPLETE and not self._run.gone
+
+    def _executing(self, executor: Executor) -> Fly:
+        before, done = self._journal.done(), self._journal.items()
+        self._progress("flying", done, self._study.planned)
+
+        def waiting(tasks: Iterable[Task]) -> Iterator[Task]:
+            for task in tasks:
+                if task.recorded or task.number not in before:
+                    self._begin()
+                    yield task
+
+        def fly(tasks: Iterable[Task]) -> None:
+            nonlocal done
+            for result in executor.fly(waiting(tasks)):
+                # Files first: a result counts as done when it is in the journal.
+                for name, content in result.files.items():
+                    self._run.write_bytes(name, content)
+                if not result.task.recorded:
+                    self._journal.add(result)
+                    done += result.items
+                    self._progress("flying", done, self._study.planned)
+
+        return fly
 
 
 def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, tuple[str, ...]]) -> None:
@@ -192,6 +251,7 @@ def _explained(error: OSError | sqlite3.DatabaseError, run: RunDirectory) -> Exc
         return InputError(
             f"the disk of '{run.path}' is full; finished results are kept: free some space and continue with --resume"
         )
-    if isinstance(error, sqlite3.DatabaseError) and is_damaged(error):
-        return InputError(f"'{run.journal}' is damaged; start a new run in another --out")
-    return error
+    if isinstance(error, OSError):
+        where = error.filename or run.path
+        return InputError(f"'{where}' cannot be used: {error.strerror or error}; fix that, then continue with --resume")
+    return damaged(run.journal) if is_damaged(error) else error

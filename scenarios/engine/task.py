@@ -2,10 +2,18 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, Self
+
+from scenarios.errors import InputError
 
 Row = dict[str, Any]
 """A row of a table: values by column."""
+
+TIME_RANGE = 1.0, 1e6
+"""Least and largest time limit of a task [s]: eleven days, which the clock of a wait can still count in milliseconds."""
+
+MEMORY_RANGE = 0.25, 1e6
+"""Least and largest memory limit of a process [GiB]: about a pebibyte, beyond what processors can address."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,3 +95,27 @@ class Limits:
 
     time: float = 600.0
     memory: int | None = None
+
+    @classmethod
+    def given(cls, time_s: float, memory_gib: float | None) -> Self:
+        """Return the limits of a command line.
+
+        Parameters
+        ----------
+        time_s, memory_gib : ``--time-limit`` and ``--memory-limit``
+
+        Raises
+        ------
+        InputError : out of range, or not a number
+        """
+        _check("--time-limit", time_s, "s", TIME_RANGE)
+        if memory_gib is None:
+            return cls(time=time_s)
+        _check("--memory-limit", memory_gib, "GiB", MEMORY_RANGE)
+        return cls(time=time_s, memory=round(memory_gib * 2**30))
+
+
+def _check(name: str, value: float, unit: str, limits: tuple[float, float]) -> None:
+    # Neither comparison holds for what is not a number.
+    if not limits[0] <= value <= limits[1]:
+        raise InputError(f"{name} is {value:g} {unit}; it must lie between {limits[0]:g} and {limits[1]:g} {unit}")

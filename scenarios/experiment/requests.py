@@ -94,6 +94,10 @@ class Experiment:
         parts += [f"{index:05d}"] if point.flights > 1 or not point.label else []
         return "_".join(parts), point.variant
 
+    def names(self) -> list[str]:
+        """Return the name of one flight of each point: those of the others differ in their number alone."""
+        return [self.named(end - 1)[0] for end in self._ends]
+
     def index(self, number: int) -> int:
         """Return the number of a flight among those of its point."""
         return self._point(number)[1]

@@ -6,6 +6,9 @@ from pydantic import Field, field_validator, model_validator
 
 from scenarios.schema.section import NonNegative, Positive, Section, check_ordered
 
+REPORTS_MAX = 200_000
+"""Most reports in a flight: four times those of the longest flight by AIS, every 2 s at its fastest; with 0.4 kB each, 80 MB."""
+
 
 class VesselReportsConfig(Section):
     """Reports of the vessel's motion, as by AIS."""

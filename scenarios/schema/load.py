@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from common.files import is_file
 from common.registry import announced, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.spelling import did_you_mean
@@ -54,7 +55,7 @@ def catalog() -> dict[str, Path]:
 def is_flight(name: str) -> bool:
     """Return whether ``name`` is that of a flight in a run directory: ``RUN_DIR/flights/ID``."""
     path = Path(name)
-    return path.parent.name == FLIGHTS and (path.parents[1] / MANIFEST).is_file()
+    return path.parent.name == FLIGHTS and is_file(path.parents[1] / MANIFEST)
 
 
 def load_study(name: str, overrides: Sequence[str] = (), *, refusing: bool = True) -> AnyStudy:
@@ -122,7 +123,7 @@ def scenario_path(name: str, folder: Path | None = None) -> Path:
     """
     known = catalog()
     path = known.get(name, (folder or Path()) / name)
-    if path.is_file():
+    if is_file(path):
         return path
     guess = did_you_mean(Path(name).stem if name.endswith(".toml") else name, known)
     what = f"no scenario file '{name}'" if name.endswith(".toml") else f"unknown scenario '{name}'"

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from scenarios.schema.equipment import FaultConfig, KinematicConfig, SensorsConfig, VesselReportsConfig
+from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, SensorsConfig, VesselReportsConfig
 from scenarios.schema.experiment import (
     FLIGHTS_MAX,
     CaseConfig,
@@ -25,6 +25,9 @@ DEFAULT_AIRCRAFT = "x8"
 
 DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "plume.source_height_m")
 """Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept."""
+
+POINTS_MAX = 10_000
+"""Most points of an experiment: all are checked before the first flight, in a millisecond and 20 kB each."""
 
 Histories = Annotated[int, Field(ge=0, le=100_000)]
 """Number of time histories to be kept: an even sample. Those of flights that failed a criterion are kept beside them."""
@@ -178,6 +181,13 @@ class Scenario(Section):
                 f"turbulence.gusts is {air.gusts}, each {2.0 * air.gust_length_s:g} s long; they do not fit into"
                 f" flight.duration_max_s, {room:g} s: give fewer or shorter ones"
             )
+        interval = 0.5 * sum(self.reports.interval_s)
+        if not self.reports.exact and room > REPORTS_MAX * interval:
+            raise ValueError(
+                f"reports.interval_s is {list(self.reports.interval_s)} s; in flight.duration_max_s, {room:g} s, this makes"
+                f" more than {REPORTS_MAX} reports: let at least {room / REPORTS_MAX:.2g} s pass between them on average, or fly"
+                " shorter"
+            )
         return self
 
     @model_validator(mode="after")
@@ -187,19 +197,31 @@ class Scenario(Section):
             raise ValueError(f"cases are named {', '.join(names)}; give each a name of its own")
         if self.cases and self.sweep.root:
             raise ValueError(f"sweep has {', '.join(self.sweep.root)} beside {len(names)} cases; give one of the two")
+        if (points := math.prod(map(len, self.sweep.root.values()))) > POINTS_MAX:
+            raise ValueError(f"sweep has {points} points; the most is {POINTS_MAX}: give fewer values, or sample keys at random")
         if self.study == "paper" and not self.cases:
             raise ValueError("study is 'paper' without cases; give it cases, or set study to 'flights'")
-        if self.study == "falsify" and not self.draws:
+        return self
+
+    @model_validator(mode="after")
+    def _searched(self) -> "Scenario":
+        if self.study != "falsify":
+            return self
+        if not self.draws:
             raise ValueError("draws is empty; give the keys to search over, each with its range")
-        if self.study == "falsify" and (self.sweep.root or self.cases or self.comparison.variants or self.fidelity == "both"):
+        if self.sweep.root or self.cases or self.comparison.variants or self.fidelity == "both":
             raise ValueError(
                 "study is 'falsify' beside a sweep, cases, a comparison or two vehicles; it searches one point: remove them"
             )
-        if self.study == "falsify" and (most := self.search.flights_max) * (1 + self.search.confirmations) > FLIGHTS_MAX:
+        if (most := self.search.flights_max) * (1 + self.search.confirmations) > FLIGHTS_MAX:
             raise ValueError(
                 f"search.population and search.generations make {most} flights, with search.confirmations of each numbered up to"
                 f" {most * (1 + self.search.confirmations)}; the most is {FLIGHTS_MAX}: make one of them smaller"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _varied(self) -> "Scenario":
         keys = [draw.key for draw in self.draws]
         for key in keys:
             if keys.count(key) > 1:

@@ -8,6 +8,7 @@ from aircraft.fleet.find import find_spec
 from aircraft.simulation.faults import fault_names
 from aircraft.spec import Envelope
 from common.registry import PluginError, Registry, is_file_part
+from common.run_layout import NAME_BYTES_MAX, is_file_name
 from common.spelling import did_you_mean
 from gnc.errors import InfeasibleError
 from gnc.reference.reference import REFERENCE_SHAPES
@@ -32,6 +33,10 @@ _REGISTRIES: dict[str, Registry[Any]] = {
 """Where the parts are found that neither the schema nor the design of the autopilot looks up."""
 
 
+_SHOWN = 60
+"""Letters of a name that a message shows at most."""
+
+
 def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) -> None:
     """Check the flights of a study.
 
@@ -41,6 +46,8 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
         fault that it cannot have, manoeuvres that overlap, a part that does not exist, a key that cannot be sampled
     """
     experiments = list(experiments)
+    for experiment in experiments:
+        _check_names(experiment)
     points = [point.scenario for experiment in experiments for point in experiment.points]
     if len({(s.aircraft, s.guidance.airspeed_mps, s.plume.source_height_m) for s in points}) > 1:
         raise InputError("flights differ in aircraft, guidance.airspeed_mps or plume.source_height_m; give each a run of its own")
@@ -68,6 +75,16 @@ def plugins_explained(what: str, scenarios: Iterable[Scenario]) -> Iterator[None
         if not any(is_file_part(name) for scenario in scenarios for _, name in part_names(scenario)):
             raise
         raise InputError(f"{what}: {failure(error)['message']}") from error
+
+
+def _check_names(experiment: Experiment) -> None:
+    """Refuse flights whose names cannot be part of the names of files."""
+    for name in (experiment.name, *experiment.names()):
+        if not is_file_name(name):
+            raise InputError(
+                f"a flight would be called {name[:_SHOWN]!r}, with {len(name)} letters; names have up to {NAME_BYTES_MAX} bytes,"
+                " all printable, without / and \\: call the scenario file otherwise, or sweep fewer keys at once"
+            )
 
 
 def _check_fault(scenario: Scenario) -> None:

@@ -136,7 +136,8 @@ class FlightStudy:
         fly(self.representative_flights(run, journal))
 
     def representative_flights(self, run: RunDirectory, journal: Journal) -> list[Task]:
-        """Return what is to be recorded of each trial: the closest flight, the median one, and the first unfinished mission."""
+        """Return what is to be recorded of each trial: the closest flight, the median one, the first unfinished mission, and those
+        whose time history was deleted."""
         # Figures alone: a hundred thousand rows would be too many.
         distances = {trial: (array("d"), array("q")) for trial in self.trials}
         unfinished: dict[str, int] = {}
@@ -154,13 +155,19 @@ class FlightStudy:
         return self.unrecorded(chosen, run, journal)
 
     def unrecorded(self, numbers: Sequence[int], run: RunDirectory, journal: Journal) -> list[Task]:
-        """Return the tasks of those flights that have no time history yet, to be recorded."""
-        return [
-            replace(self.task(number), recorded=True)
+        """Return the tasks of those flights that have no time history yet, and of those that had one, to be recorded."""
+        gone = set(run.gone)
+        wanted = {
+            number
             for number in numbers
             for row in journal.rows(SUMMARY, first=number, below=number + 1)
             if not (run.path / time_history_path(row["flight_id"])).is_file()
-        ]
+        }
+        if gone:
+            tables = (SUMMARY, COMPARISON)
+            found = ((number, row) for table in tables for number, row in journal.numbered(table))
+            wanted |= {number for number, row in found if time_history_path(row["flight_id"]) in gone}
+        return [replace(self.task(number), recorded=True) for number in sorted(wanted)]
 
     def task(self, number: int) -> Task:
         """Return the task of a flight."""

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from common.registry import file_of
-from common.run_layout import COMPARISON, HISTORY_SUFFIX, JOURNAL, MANIFEST, SUMMARY
+from common.run_layout import COMPARISON, HISTORY_SUFFIX, JOURNAL, MANIFEST, SUMMARY, is_file_name
 from scenarios.engine.fingerprint import differences
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
@@ -47,7 +47,12 @@ class Replay:
         if "replayed" in manifest:
             raise InputError(f"'{self._from}' is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run")
         self._task, self._table, self._row = self._found()
-        self._study = self._restored(manifest)
+        try:
+            self._study = self._restored(manifest)
+        except (LookupError, TypeError, AttributeError, ValueError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(f"'{self._from}': {MANIFEST} is not that of a run ({type(error).__name__}: {error})") from None
         self._original_fingerprint = manifest.get("fingerprint", {})
         self.config_hash = f"{self._study.config_hash} {self._flight_id}"
 
@@ -55,7 +60,7 @@ class Replay:
         try:
             manifest = json.loads((self._from / MANIFEST).read_text(encoding="utf-8"))
             return dict(manifest)
-        except (ValueError, TypeError, OSError) as error:
+        except (ValueError, TypeError, OSError, RecursionError) as error:
             raise InputError(f"'{self._from}': {MANIFEST} cannot be read: {error}; give the directory of a run") from None
 
     def _found(self) -> tuple[Task, str, Row]:
@@ -65,7 +70,7 @@ class Replay:
             raise InputError(
                 f"'{self._from}' has no {path.name} with the results of its flights; give the directory of a complete run"
             )
-        journal = Journal(path)
+        journal = Journal(path, reading=True)
         try:
             for table in _TABLES:
                 for number, row in journal.numbered(table):
@@ -82,16 +87,20 @@ class Replay:
         """
         if "trials" not in manifest:
             raise InputError(f"'{self._from}' is a study of {manifest.get('study')}; only single flights can be replayed")
-        trial, task = self._row["trial"], self._task
-        study = study_of(checked({**manifest["trials"][trial], "study": "flights"}, Scenario), trial)
+        trial, task, trials = self._row["trial"], self._task, manifest["trials"]
+        for name in (trial, *trials):
+            # It becomes part of the names of files.
+            if not is_file_name(name) or name not in trials:
+                raise InputError(f"'{self._from}' names a trial {name!r}, which is no name of a trial; do not use this run")
+        scenarios = {name: checked({**config, "study": "flights"}, Scenario) for name, config in trials.items()}
+        study = study_of(scenarios[trial], trial)
         _check_plugins(manifest.get("plugins", {}), study.initial_manifest()["plugins"])
-        before = 0
-        for name, config in manifest["trials"].items():
-            if name == trial:
-                break
-            before += Experiment(name, checked({**config, "study": "flights"}, Scenario)).flights
+        flights = {name: Experiment(name, scenario).flights for name, scenario in scenarios.items()}
+        before = sum(flights[name] for name in list(trials)[: list(trials).index(trial)])
         # Of a flight that the study gave a seed of its own, the row has it.
         self._task = Task(number=task.number - before, point=task.point, seed=self._row.get("seed"))
+        if not 0 <= self._task.number < flights[trial]:
+            raise InputError(f"'{self._from}': flight '{self._flight_id}' has number {task.number}; '{trial}' has no such flight")
         return study
 
     def initial_manifest(self) -> dict[str, Any]:

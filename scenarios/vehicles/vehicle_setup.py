@@ -1,6 +1,7 @@
 """What flights need of their vehicle beyond their scenario: an aircraft with its autopilot, or the kinematic vehicle."""
 
 import math
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from aircraft.dynamics.equilibrium import Trim
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftSpec, Envelope
+from common.files import write_tree
 from innerloop.designs.cache import Designed, designed
 from innerloop.designs.record import reversal_record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -134,7 +136,8 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
     bank : steepest that the guidance asks for [rad]
     """
     schedule = found.design.schedule
-    write_root(schedule, run.model)
+    with tempfile.TemporaryDirectory() as folder:
+        write_tree(write_root(schedule, Path(folder)), run.model)
     run.write_json(run.innerloop, found.record)
     start = level_trim(
         schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, schedule.level(schedule.middle)

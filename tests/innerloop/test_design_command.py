@@ -7,6 +7,7 @@ from pathlib import Path
 
 from reports.registry import content
 from reports.run.run_data import read_run
+from tests.in_process import run_command
 
 PROJECT = Path(__file__).parents[2]
 
@@ -34,3 +35,15 @@ def test_the_command_does_not_write_over_flights(tmp_path):
     assert refused.returncode == 2
     assert "holds another run; choose another --out" in refused.stderr
     assert [p.name for p in tmp_path.iterdir()] == ["manifest.json"]
+
+
+def test_a_design_made_anew_leaves_no_report_of_the_older_one(tmp_path, designs):
+    designs("x8")
+    out = tmp_path / "x8"
+    (out / "export").mkdir(parents=True)
+    (out / "manifest.json").write_text('{"study": "design"}', encoding="utf-8")
+    for name in ("report.html", "report.pdf", "export/x8.csv", "notes.txt"):
+        (out / name).write_text("of the older one", encoding="utf-8")
+    assert run_command("innerloop.design", "x8", "--out", out, "--no-report").status == 0
+    # What somebody else put there stays.
+    assert {path.name for path in out.iterdir()} == {"manifest.json", "innerloop.json", "model", "notes.txt"}

@@ -216,8 +216,8 @@ def test_a_sweeps_report_takes_from_a_design_only_what_belongs_to_level_flight(d
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
-        (lambda path: (path / "innerloop.json").unlink(), "holds no design record"),
-        (lambda path: (path / "innerloop.json").write_text("{", encoding="utf-8"), "cannot be read"),
+        (lambda path: (path / "innerloop.json").unlink(), "holds no design record that can be read"),
+        (lambda path: (path / "innerloop.json").write_text("{", encoding="utf-8"), "holds no design record that can be read"),
         (lambda path: (path / "innerloop.json").write_text("{}", encoding="utf-8"), "is damaged"),
         (lambda path: (path / "innerloop.json").write_text(json.dumps({**record(), "poles": []})), "is damaged"),
     ],

@@ -249,7 +249,6 @@ def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, rep
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
         (lambda path: (path / "summary.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),
         (lambda path: (path / "crossings.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),
-        (lambda path: (path / "flights" / "nu_0.50.parquet").write_text("x", encoding="utf-8"), "is damaged"),
     ],
 )
 def test_a_damaged_run_is_refused_in_one_line(copy, damage, words):

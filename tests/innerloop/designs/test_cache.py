@@ -1,6 +1,7 @@
 """Designs that are found again: only when nothing that they depend on has changed, and whatever state the cache is in."""
 
 import dataclasses
+import hashlib
 import math
 import os
 import pickle
@@ -31,14 +32,14 @@ def asked(monkeypatch, tmp_path, designs):
 
     def design(spec, altitude):
         requests.append((spec.name, altitude))
-        return made
+        return cache._Entry(made=made)
 
     monkeypatch.setattr(cache, "_design", design)
     return requests
 
 
 def remembered():
-    return sorted(cache.cache_directory().glob("*.design"))
+    return sorted(cache.cache_directory().glob(f"*{cache.SUFFIX}"))
 
 
 def test_this_runs_designs_are_kept_apart_from_the_users(cache_home):
@@ -64,6 +65,16 @@ def test_a_design_is_made_once_and_found_again_whole(asked, designs):
     for mine, other in zip(sum(one.gains, ()), sum(two.gains, ()), strict=True):
         for field in dataclasses.fields(mine):
             np.testing.assert_array_equal(getattr(mine, field.name), getattr(other, field.name))
+
+
+def test_a_design_that_is_used_is_the_one_that_was_made_to_the_last_bit(asked, designs):
+    made, used = designs("x8"), designed(X8)
+    # As text, which has every bit of every number: what was made may hold figures of numpy where Python's own come back.
+    assert cache.as_text(used) == cache.as_text(made)
+    for mine, other in zip(sum(made.design.schedule.models, ()), sum(used.design.schedule.models, ()), strict=True):
+        for matrix in "ABCD":
+            # Also as it lies in memory, by which products are rounded.
+            assert getattr(mine, matrix).tobytes("A") == getattr(other, matrix).tobytes("A")
 
 
 def test_another_altitude_or_another_aircraft_is_designed_anew(asked):
@@ -110,7 +121,7 @@ def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(
     elsewhere = dataclasses.replace(
         made, design=dataclasses.replace(made.design, schedule=dataclasses.replace(schedule, spec=there))
     )
-    monkeypatch.setattr(cache, "_design", lambda *_: elsewhere)
+    monkeypatch.setattr(cache, "_design", lambda *_: cache._Entry(made=elsewhere))
     assert designed(there).design.schedule.spec.root == root
     shutil.rmtree(root)
     # A worktree or an environment that is gone by now, say.
@@ -136,7 +147,31 @@ def test_another_version_of_a_package_is_another_key(monkeypatch):
     assert design_key(X8, 100.0) != before
 
 
-@pytest.mark.parametrize("content", [b"", b"garbage", pickle.dumps("something else"), pickle.dumps({"design": 1})])
+class Planted:
+    """Leaves a mark when it is unpickled."""
+
+    def __init__(self, mark):
+        self.mark = mark
+
+    def __reduce__(self):
+        return (os.mkdir, (os.fspath(self.mark),))
+
+
+def hashed(text):
+    """Return a file of the cache with this text, as anyone can make one."""
+    return f"{cache._digest(text)}\n{text}".encode()
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"garbage",
+        b"\xff\xfe",
+        pickle.dumps({"design": 1}),
+        *(hashed(text) for text in ("", "[]", "{}x", '{"made": 1}', '{"made": {"design": []}}', '{"other": 1}', "[" * 100_000)),
+    ],
+)
 def test_a_file_that_holds_no_design_is_ignored_and_replaced(asked, content):
     designed(X8)
     (file,) = remembered()
@@ -145,6 +180,17 @@ def test_a_file_that_holds_no_design_is_ignored_and_replaced(asked, content):
     assert len(asked) == 2
     designed(X8)
     assert len(asked) == 2
+
+
+def test_nothing_in_a_planted_file_is_executed(asked, tmp_path):
+    designed(X8)
+    (file,) = remembered()
+    planted = pickle.dumps(Planted(tmp_path / "executed"))
+    # As the cache had its files before, and under the names that it had for them, too.
+    for name in (file, file.with_name(file.name.removesuffix(".json"))):
+        name.write_bytes(hashlib.sha256(planted).digest() + planted)
+    assert designed(X8).record["aircraft"] == "x8"
+    assert not (tmp_path / "executed").exists()
 
 
 def test_a_file_that_is_cut_short_anywhere_is_ignored(asked):
@@ -200,9 +246,20 @@ def test_a_cache_that_cannot_be_written_is_done_without(asked, monkeypatch, tmp_
     assert len(asked) == 2
 
 
+def test_a_user_without_a_home_has_no_cache(asked, monkeypatch):
+    def nowhere():
+        raise RuntimeError("Could not determine home directory.")
+
+    for name in ("XDG_CACHE_HOME", "LOCALAPPDATA"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(Path, "home", nowhere)
+    assert designed(X8).record["aircraft"] == "x8"
+    assert cache.cache_directory() is None
+
+
 def test_nothing_half_written_is_left_beside_a_design(asked):
     designed(X8)
-    assert [path.suffix for path in cache.cache_directory().iterdir()] == [".design"]
+    assert [path.suffixes for path in cache.cache_directory().iterdir()] == [[".design", ".json"]]
 
 
 def test_the_cache_stands_where_the_system_keeps_caches(monkeypatch, tmp_path):

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.fingerprint import fingerprint
-from scenarios.engine.runner import StudySummary, write_tables
+from scenarios.engine.runner import StudySummary, fly_study, write_tables
 from scenarios.engine.task import Result, Task
 
 TABLE = "rows.csv"
@@ -96,3 +97,15 @@ class SquareStudy:
     def summary(self, journal):
         done = journal.items()
         return StudySummary(done=done, met=done == self.planned, lines=[], manifest={"squares_done": done})
+
+
+def fly(study, out, *, resume=False, jobs=1, progress=lambda *_: None):
+    return fly_study(study, out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
+
+
+def interrupt_at(count):
+    def progress(doing, done, total):
+        if doing == "flying" and done == count:
+            raise KeyboardInterrupt
+
+    return progress

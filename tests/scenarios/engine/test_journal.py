@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from common.cells import from_cell
 from scenarios.engine.journal import Journal
 from scenarios.engine.task import Result, Task
 from scenarios.errors import InputError
@@ -193,3 +194,79 @@ def test_a_disk_that_is_full_is_told_and_leaves_what_was_there(tmp_path):
     journal.add(result(len(kept), {"text": ""}))
     assert journal.done() == {*kept, len(kept)}
     journal.close()
+
+
+def tampered(path, statement, *values):
+    """Change a journal as anyone can who has SQLite."""
+    database = sqlite3.connect(path)
+    database.execute(statement, values)
+    database.commit()
+    database.close()
+
+
+@pytest.mark.parametrize(
+    ("statement", "values"),
+    [
+        # One digit of one figure.
+        ("UPDATE results SET tables = replace(tables, '149.8', '249.8') WHERE number = 1", ()),
+        ("UPDATE results SET number = 7 WHERE number = 1", ()),
+        ("UPDATE results SET lost = 1 WHERE number = 1", ()),
+        ("UPDATE results SET items = 5 WHERE number = 1", ()),
+        ("UPDATE results SET point = '[0.5]' WHERE number = 1", ()),
+        ("UPDATE results SET checksum = ''", ()),
+        ("UPDATE results SET tables = ?", (b"\xff\xfe",)),
+        ("UPDATE results SET tables = NULL", ()),
+        ("ALTER TABLE results DROP COLUMN checksum", ()),
+        ("DROP TABLE results", ()),
+    ],
+)
+@pytest.mark.parametrize("reading", [False, True])
+def test_a_result_that_is_not_as_it_was_added_is_refused_in_a_line(tmp_path, statement, values, reading):
+    path = tmp_path / "journal.sqlite"
+    journal = Journal(path)
+    for number in range(3):
+        journal.add(result(number, {"min_distance_m": 149.8}))
+    journal.close()
+    tampered(path, statement, *values)
+    if statement.startswith("DROP") and not reading:
+        # Nothing is believed of it: it has no results.
+        journal = Journal(path)
+        assert journal.is_empty()
+        journal.close()
+        return
+    with pytest.raises(InputError, match=r"journal\.sqlite' is (damaged|no journal of this version)") as refused:
+        Journal(path, reading=reading)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_directory_in_its_place_is_refused_in_a_line(tmp_path):
+    (tmp_path / "journal.sqlite").mkdir()
+    for reading in (False, True):
+        with pytest.raises(InputError, match=r"cannot be opened|is damaged"):
+            Journal(tmp_path / "journal.sqlite", reading=reading)
+
+
+def test_reading_writes_nothing_beside_it(tmp_path):
+    path = tmp_path / "journal.sqlite"
+    journal = Journal(path)
+    journal.add(result(0, {"a": 1}))
+    journal.close()
+    before = (path.read_bytes(), path.stat().st_mtime_ns)
+    tmp_path.chmod(0o500)
+    journal = Journal(path, reading=True)
+    assert rows(journal) == [{"a": 1}]
+    journal.close()
+    tmp_path.chmod(0o700)
+    assert [each.name for each in tmp_path.iterdir()] == ["journal.sqlite"]
+    assert (path.read_bytes(), path.stat().st_mtime_ns) == before
+
+
+def test_texts_that_a_spreadsheet_would_compute_are_marked_and_come_back_as_they_were(journal):
+    texts = ["=1+1", "+1", "-1", "@a", "\t=1", "'=1", "''=1", "it's", "'quoted'", "1-1", ""]
+    journal.add(result(0, *({"a": text, "b": -1.5} for text in texts)))
+    _, text = exported(journal, "a", "b")
+    cells = list(csv.reader(io.StringIO(text, newline="")))[1:]
+    assert not [a for a, _ in cells if a.startswith(("=", "+", "-", "@", "\t"))]
+    # Numbers are numbers, whatever their sign.
+    assert {b for _, b in cells} == {"-1.5"}
+    assert [from_cell(a) for a, _ in cells] == texts

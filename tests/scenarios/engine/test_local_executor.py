@@ -202,7 +202,9 @@ from scenarios.errors import InputError
 class Slow(Squares):
     def fly(self, task):
         time.sleep(0.05)
-        return super().fly(task)
+        result = super().fly(task)
+        {works}
+        return result
 with LocalExecutor(Slow(marks=Path(sys.argv[1])), jobs=2, limits=Limits()) as executor:
     for result in executor.fly(Task(number=i) for i in itertools.count()):
         if result.task.number == 3:
@@ -211,9 +213,18 @@ with LocalExecutor(Slow(marks=Path(sys.argv[1])), jobs=2, limits=Limits()) as ex
 """
 
 
-@pytest.mark.parametrize("waits", ["pass", "time.sleep(60)"], ids=["at work", "idle"])
-def test_processes_whose_parent_is_killed_end_by_themselves(waits, tmp_path):
-    code = ORPHANS.format(waits=waits)
+@pytest.mark.parametrize(
+    ("waits", "works"),
+    [
+        ("pass", "pass"),
+        ("time.sleep(60)", "pass"),
+        # Nobody would wait for the end of such a flight.
+        ("pass", "time.sleep(600.0 if task.number > 3 else 0.0)"),
+    ],
+    ids=["at work", "idle", "in a long flight"],
+)
+def test_processes_whose_parent_is_killed_end_by_themselves(waits, works, tmp_path):
+    code = ORPHANS.format(waits=waits, works=works)
     parent = subprocess.Popen(
         [sys.executable, "-c", code, str(tmp_path), str(Path(__file__).parent), str(ROOT)], stdout=subprocess.PIPE, text=True
     )

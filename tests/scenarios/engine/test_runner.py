@@ -7,49 +7,16 @@ import re
 import signal
 
 import pytest
-from engine_cases import TABLE, Squares, SquareStudy, begun
+from engine_cases import TABLE, Squares, SquareStudy, begun, fly, interrupt_at
 
-from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
 from tests.run_tables import rows_of
 
 
-@pytest.fixture
-def marks(tmp_path):
-    (tmp_path / "marks").mkdir()
-    return tmp_path / "marks"
-
-
-@pytest.fixture
-def out(tmp_path):
-    return tmp_path / "run"
-
-
-def fly(study, out, *, resume=False, jobs=1, progress=lambda *_: None):
-    return fly_study(study, out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
-
-
-def interrupt_at(count):
-    def progress(doing, done, total):
-        if doing == "flying" and done == count:
-            raise KeyboardInterrupt
-
-    return progress
-
-
 def manifest(out):
     return json.loads((out / "manifest.json").read_text(encoding="utf-8"))
-
-
-@pytest.fixture
-def whole(marks, tmp_path):
-    """The table of a run that nothing disturbed."""
-    (tmp_path / "others").mkdir()
-    fly(SquareStudy(Squares(marks=tmp_path / "others")), tmp_path / "whole")
-    return (tmp_path / "whole" / TABLE).read_bytes()
 
 
 def test_a_run_has_its_table_its_files_and_says_how_it_ended(marks, out):
@@ -218,8 +185,9 @@ def test_any_other_trouble_with_files_is_not_taken_for_a_full_disk(marks, out, m
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
     monkeypatch.setattr(RunDirectory, "write_bytes", denied)
-    with pytest.raises(PermissionError):
+    with pytest.raises(InputError, match=rf"'{re.escape(str(out))}' cannot be used: Permission denied; fix that") as refused:
         fly(SquareStudy(Squares(marks=marks)), out)
+    assert "\n" not in str(refused.value)
 
 
 def test_a_run_that_other_code_began_is_not_gone_on_with(marks, out):

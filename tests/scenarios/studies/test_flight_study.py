@@ -216,3 +216,52 @@ def test_a_manoeuvre_after_the_end_of_the_flight_is_warned_of(tmp_path):
     )
     lines = run(path, tmp_path / "run").summary.lines
     assert lines[-1].startswith("warning: in 1 flight a manoeuvre of the vessel begins after the end of the flight")
+
+
+def state_of(directory):
+    """Return content and time of every file."""
+    files = (path for path in sorted(directory.rglob("*")) if path.is_file())
+    return {path.relative_to(directory).as_posix(): (path.read_bytes(), path.stat().st_mtime_ns) for path in files}
+
+
+def test_a_resumed_list_that_had_nothing_to_do_rewrites_nothing(listed, tmp_path):
+    run(listed, tmp_path / "run")
+    before = state_of(tmp_path / "run")
+    assert not run(listed, tmp_path / "run", resume=True).changed
+    assert state_of(tmp_path / "run") == before
+
+
+def test_a_table_that_somebody_has_changed_is_written_again(listed, tmp_path):
+    run(listed, tmp_path / "run")
+    before = state_of(tmp_path / "run")
+    summary = tmp_path / "run" / "summary.csv"
+    summary.write_text(summary.read_text(encoding="utf-8").replace("completed", "ditched"), encoding="utf-8")
+    run(listed, tmp_path / "run", resume=True)
+    after = state_of(tmp_path / "run")
+    assert after["summary.csv"][0] == before["summary.csv"][0]
+    assert {name for name in before if after[name] != before[name]} == {"summary.csv"}
+
+
+def test_time_histories_that_were_deleted_or_cut_are_made_again_to_the_last_bit(listed, tmp_path):
+    run(listed, tmp_path / "run")
+    before = state_of(tmp_path / "run")
+    deleted = [name for name in before if name.startswith("flights/")]
+    assert len(deleted) == 8
+    for number, name in enumerate(deleted):
+        # Deleted, empty, or cut.
+        path = tmp_path / "run" / name
+        path.unlink() if number < 4 else path.write_bytes(before[name][0][: 0 if number < 6 else -1])
+    # Killed in between, it still knows which there were.
+    flown = []
+
+    def stop(doing, done, total):
+        if doing == "flying":
+            flown.append(done)
+            raise KeyboardInterrupt
+
+    assert run(listed, tmp_path / "run", resume=True, progress=stop).interrupted
+    assert run(listed, tmp_path / "run", resume=True).all_met
+    after = state_of(tmp_path / "run")
+    assert set(after) == set(before)
+    assert [name for name in deleted if after[name][0] != before[name][0]] == []
+    assert {name for name in before if after[name] != before[name]} == {*deleted, "manifest.json"}

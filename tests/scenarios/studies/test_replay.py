@@ -9,7 +9,9 @@ import pytest
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.journal import Journal
 from scenarios.engine.runner import fly_study
+from scenarios.engine.task import Result, Task
 from scenarios.errors import InputError
 from scenarios.schema.load import is_flight, load_study
 from scenarios.studies.registry import run_study
@@ -110,3 +112,56 @@ def test_what_cannot_be_flown_again_is_refused_in_one_line(runs, tmp_path):
     (copy / "manifest.json").write_text("{", encoding="utf-8")
     with pytest.raises(InputError, match=r"manifest\.json cannot be read"):
         Replay(str(copy / "flights" / "one_00000"))
+
+
+def tampered(run, change):
+    """Change each row of a journal as anyone can who knows how its checksums are made."""
+    journal = Journal(run / "journal.sqlite")
+    rows = [(number, row) for number, row in journal.numbered("summary.csv")]
+    for number, row in rows:
+        journal.add(Result(task=Task(number=number), tables={"summary.csv": [row | change]}))
+    journal.close()
+
+
+def files_below(folder):
+    return {path.relative_to(folder).as_posix(): path.stat().st_mtime_ns for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("trial", ["../../../../pwned/x", "/pwned/x", "..", "a\\b", "a\nb", "", "x" * 201])
+def test_a_run_whose_trial_is_no_name_of_a_file_is_not_replayed(runs, tmp_path, trial):
+    copy = shutil.copytree(runs / "trials", tmp_path / "a" / "b" / "copy")
+    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    manifest["trials"] = {trial: manifest["trials"]["one"]}
+    (copy / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    tampered(copy, {"trial": trial, "flight_id": "planted"})
+    before = files_below(tmp_path)
+    with pytest.raises(InputError, match=r"names a trial .*, which is no name of a trial; do not use this run") as refused:
+        replay(copy / "flights" / "planted", tmp_path / "a" / "b" / "again")
+    assert "\n" not in str(refused.value)
+    assert files_below(tmp_path) == before
+
+
+def test_a_replay_writes_nothing_into_the_run_that_it_is_of(runs, tmp_path):
+    before = files_below(runs / "trials")
+    assert replay(runs / "trials" / "flights" / "one_00001", tmp_path / "again").all_met
+    assert files_below(runs / "trials") == before
+
+
+@pytest.mark.parametrize("number", [6, 10**12])
+def test_a_flight_with_a_number_that_its_trial_does_not_have_is_refused(runs, tmp_path, number):
+    copy = shutil.copytree(runs / "trials", tmp_path / "copy")
+    journal = Journal(copy / "journal.sqlite")
+    journal.add(Result(task=Task(number=number), tables={"summary.csv": [{"flight_id": "planted", "trial": "one"}]}))
+    journal.close()
+    with pytest.raises(InputError, match=rf"flight 'planted' has number {number}; 'one' has no such flight"):
+        Replay(str(copy / "flights" / "planted"))
+
+
+@pytest.mark.parametrize("trials", [3, {"one": 5}, {"one": {"title": 5}}, [], {}])
+def test_a_manifest_that_is_not_that_of_a_run_is_refused_in_a_line(runs, tmp_path, trials):
+    copy = shutil.copytree(runs / "trials", tmp_path / "copy")
+    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    (copy / "manifest.json").write_text(json.dumps(manifest | {"trials": trials}), encoding="utf-8")
+    with pytest.raises(InputError) as refused:
+        Replay(str(copy / "flights" / "one_00000"))
+    assert "\n" not in str(refused.value)

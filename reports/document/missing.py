@@ -1,0 +1,56 @@
+"""Pieces of a run that its report lacks, and what it cannot show without them."""
+
+from collections.abc import Mapping
+
+from common.run_layout import (
+    BOUNDS,
+    COMPARISON,
+    COUNTEREXAMPLES,
+    CROSSINGS,
+    DESIGN_RECORD,
+    DRAWS,
+    FLIGHTS,
+    INTERVENTIONS,
+    STATISTICS,
+    TRAJECTORIES,
+    WORST,
+)
+from reports.document.blocks import Block, Section, Table, Text
+from reports.run.run_data import RunData
+
+_SHOWN: Mapping[str, str] = {
+    STATISTICS: "probability of a keep-out violation, distributions, sensitivity",
+    DESIGN_RECORD: "the autopilot: trims, margins, responses",
+    BOUNDS: "bounds of the commands",
+    COMPARISON: "comparisons",
+    CROSSINGS: "crossings in the figures of single flights",
+    INTERVENTIONS: "nothing: the report counts interventions by flight",
+    DRAWS: "figures over swept and sampled keys",
+    COUNTEREXAMPLES: "nothing: the summary has the same rows",
+    FLIGHTS: "figures of this flight over time",
+    TRAJECTORIES: "figures of this trajectory over time",
+    WORST: "nothing: a scenario file of one of the worst flights",
+}
+"""What a report shows of a file or, of those in a directory, of each."""
+
+_LISTED_MAX = 30
+"""Missing files that are listed, at most."""
+
+
+def missing_sections(run: RunData) -> list[Section]:
+    """Return the section that names what is missing, if anything is."""
+    names = run.missing()
+    if not names:
+        return []
+    more = len(names) - _LISTED_MAX
+    rows = [
+        [name, "cannot be read" if name in run.unread else "is gone", _SHOWN.get(name, _SHOWN.get(name.split("/")[0], "nothing"))]
+        for name in names[:_LISTED_MAX]
+    ]
+    text = (
+        f"{len(names)} {'files' if len(names) > 1 else 'file'} of this run cannot be shown; scenarios.run with --resume makes them"
+        " again."
+    )
+    table = Table(head=["File", "State", "What is not shown"], rows=rows, widths=[3.0, 1.0, 4.0], prose=True, left_columns=3)
+    blocks: list[Block] = [Text(text), table, *([Text(f"{more} more are missing.")] if more > 0 else [])]
+    return [Section(anchor="missing", title="Missing files", nav_title="Missing", blocks=blocks)]

@@ -1,0 +1,107 @@
+"""Pieces of a run that are gone, empty or cut: the report names them, and so does the exit status."""
+
+import json
+import shutil
+
+import pytest
+
+from reports.document.blocks import Table
+from reports.registry import content
+from reports.run.run_data import read_run
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+from tests.in_process import assert_refused, run_command
+from tests.scenarios.short_trial import short_trial
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A run whose manifest says that it had a file of each kind; statistics and a design it has not, as if they were gone."""
+    folder = tmp_path_factory.mktemp("runs")
+    (folder / "short.toml").write_text(short_trial(flights=2, duration=8.0), encoding="utf-8")
+    run_study(load_study(str(folder / "short.toml")), "short", folder / "run")
+    return folder / "run"
+
+
+@pytest.fixture
+def copy(whole, tmp_path):
+    return shutil.copytree(whole, tmp_path / "copy")
+
+
+def named(run):
+    """Return what the report says is missing: file, state, and what it does not show."""
+    sections = [section for section in content(read_run(run)).sections if section.anchor == "missing"]
+    return [tuple(row) for section in sections for block in section.blocks if isinstance(block, Table) for row in block.rows]
+
+
+def had(run, *names):
+    """Have the manifest of a run say that it had these files as well."""
+    manifest = json.loads((run / "manifest.json").read_text(encoding="utf-8"))
+    manifest["files"] = sorted([*manifest["files"], *names])
+    (run / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+
+
+def test_of_a_whole_run_nothing_is_missing(whole):
+    assert named(whole) == []
+    assert json.loads((whole / "manifest.json").read_text(encoding="utf-8"))["files"] == [
+        "crossings.csv",
+        "draws.csv",
+        "flights/short_00000.parquet",
+        "flights/short_00001.parquet",
+        "interventions.csv",
+        "summary.csv",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "shows"),
+    [
+        ("flights/short_00000.parquet", "figures of this flight over time"),
+        ("crossings.csv", "crossings in the figures of single flights"),
+        ("statistics.json", "probability of a keep-out violation, distributions, sensitivity"),
+        ("innerloop.json", "the autopilot: trims, margins, responses"),
+        ("bounds.json", "bounds of the commands"),
+        ("trajectories/cascade_00001.parquet", "figures of this trajectory over time"),
+    ],
+)
+def test_a_file_that_is_gone_is_named_with_what_is_not_shown_for_it(copy, name, shows):
+    if (copy / name).is_file():
+        (copy / name).unlink()
+    else:
+        had(copy, name)
+    assert named(copy) == [(name, "is gone", shows)]
+
+
+@pytest.mark.parametrize("cut", [0, 3, 200])
+@pytest.mark.parametrize("name", ["flights/short_00001.parquet", "statistics.json", "innerloop.json"])
+def test_a_file_that_is_empty_or_cut_is_named(copy, name, cut):
+    whole = (copy / name).read_bytes() if (copy / name).is_file() else b'{"confidence": 0.95, "violation"'
+    (copy / name).write_bytes(whole[:cut])
+    ((found, state, _),) = named(copy)
+    assert (found, state) == (name, "cannot be read")
+
+
+def test_the_exit_status_says_that_pieces_are_missing(copy):
+    (copy / "flights" / "short_00000.parquet").unlink()
+    ended = run_command("reports.build", copy)
+    assert ended.status == 1
+    missing = copy / "flights" / "short_00000.parquet"
+    assert ended.errors.splitlines()[-1] == f"missing: {missing} is gone or cannot be read; the report says what it does not show"
+    assert "flights/short_00000.parquet" in (copy / "report.html").read_text(encoding="utf-8")
+    assert (copy / "report.pdf").is_file()
+
+
+@pytest.mark.parametrize("name", ["../../x", "/tmp/x", "", 3, None])
+def test_an_export_of_a_run_with_a_name_that_leads_elsewhere_is_refused(copy, name):
+    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    (copy / "manifest.json").write_text(json.dumps(manifest | {"name": name}), encoding="utf-8")
+    before = sorted(copy.parent.parent.rglob("*"))
+    assert_refused(run_command("reports.build", copy, "--export", "tracks_csv"), "no name of a file; do not use this run")
+    assert sorted(copy.parent.parent.rglob("*")) == before
+
+
+def test_an_export_into_a_link_is_refused(copy, tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (copy / "export").symlink_to(tmp_path / "elsewhere")
+    assert_refused(run_command("reports.build", copy, "--export", "tracks_csv"), "is a link")
+    assert list((tmp_path / "elsewhere").iterdir()) == []

@@ -1,0 +1,141 @@
+"""Numbers of every size, names of every kind, machines without a home: one line and status 2, or it works."""
+
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from reports.run.run_data import read_run
+from tests.in_process import assert_refused, run_command
+from tests.scenarios.short_trial import short_trial
+
+ROOT = Path(__file__).parents[2]
+TRIAL = short_trial(flights=2, duration=5.0)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "short.toml").write_text(TRIAL, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--time-limit", "inf"], ["--time-limit is inf s", "between 1 and 1e+06 s"]),
+        (["--time-limit", "nan"], ["--time-limit is nan s"]),
+        (["--time-limit", "0"], ["--time-limit is 0 s"]),
+        (["--memory-limit", "inf"], ["--memory-limit is inf GiB", "between 0.25 and 1e+06 GiB"]),
+        (["--memory-limit", "1e300"], ["--memory-limit is 1e+300 GiB"]),
+        (["--memory-limit", "nan"], ["--memory-limit is nan GiB"]),
+        (["--out", "a" * 300], ["cannot be written: File name too long", "choose another --out"]),
+        (["--out", "a" * 300, "--resume"], ["cannot be written: File name too long"]),
+        (
+            ["--set", "reports.interval_s=[1e-9, 1e-9]"],
+            ["reports.interval_s is [1e-09, 1e-09] s", "more than 200000 reports", "at least 2.5e-05 s pass", "or fly shorter"],
+        ),
+        (
+            ["--set", f"sweep.wind.from_deg={[*range(200)]}", "--set", f"sweep.vessel.course_deg={[*range(200)]}"],
+            ["sweep has 40000 points; the most is 10000"],
+        ),
+    ],
+)
+def test_a_number_or_a_path_out_of_range_is_one_line(folder, arguments, words):
+    assert_refused(run_command("scenarios.run", "short.toml", "--no-report", *arguments), *words)
+    assert [path.name for path in folder.iterdir()] == ["short.toml"]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("a" * 300, "unknown scenario 'aaa"),
+        ("a" * 300 + ".toml", "no scenario file 'aaa"),
+        ("a" * 300 + "/flights/x", "unknown scenario"),
+        ("a\nb.toml", "a flight would be called 'a\\nb"),
+        ("b" * 230 + ".toml", "names have up to 200 bytes"),
+    ],
+)
+def test_a_name_that_no_file_can_have_is_one_line(folder, name, words):
+    if len(name) < 250 and name.endswith(".toml"):
+        (folder / name).write_text(TRIAL, encoding="utf-8")
+    assert_refused(run_command("scenarios.run", name, "--no-report", "--out", "run"), words)
+    assert not (folder / "run").exists()
+
+
+@pytest.mark.parametrize("module", ["reports.build", "innerloop.design"])
+def test_the_other_commands_refuse_a_path_that_is_too_long_in_a_line_too(folder, module):
+    arguments = ["x8", "--out"] if module == "innerloop.design" else []
+    assert_refused(run_command(module, *arguments, "a" * 300), "File name too long")
+
+
+class Scripts(HTMLParser):
+    """What a parser that knows the rules for script elements finds in them: text up to the first end tag that is one."""
+
+    def __init__(self):
+        super().__init__()
+        self.texts, self._inside = [], False
+
+    def handle_starttag(self, tag, attrs):
+        self._inside = tag == "script" and ("type", "application/json") in attrs
+
+    def handle_endtag(self, _):
+        self._inside = False
+
+    def handle_data(self, data):
+        if self._inside:
+            self.texts.append(data)
+
+
+def test_a_report_keeps_its_charts_whatever_the_scenario_is_called(folder):
+    (folder / "<!--<script>.toml").write_text(TRIAL, encoding="utf-8")
+    ended = run_command("scenarios.run", "<!--<script>.toml", "--out", "run", "--jobs", "1")
+    assert ended.status == 0, ended
+    page = (folder / "run" / "report.html").read_text(encoding="utf-8")
+    found = Scripts()
+    found.feed(page)
+    assert len(found.texts) == page.count('type="application/json"') > 1
+    for text in found.texts:
+        # Between "<!--" and "-->" a parser does not see the end of a script element.
+        assert not set(text) & set("<>&")
+        json.loads(text)
+
+
+def test_a_scenario_whose_name_is_a_formula_is_none_in_its_tables(folder):
+    (folder / "=1+1.toml").write_text(TRIAL, encoding="utf-8")
+    ended = run_command("scenarios.run", "=1+1.toml", "--out", "run", "--jobs", "1", "--no-report")
+    assert ended.status == 0, ended
+    with (folder / "run" / "summary.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    # Numbers are numbers, also those below zero.
+    assert not [value for row in rows for value in row.values() if re.match(r"[=+@]|-[^\d]", value)]
+    run = read_run(folder / "run")
+    assert list(run.summary["flight_id"]) == ["=1+1_00000", "=1+1_00001"]
+    assert all(run.has_history(flight_id) for flight_id in run.summary["flight_id"])
+
+
+NO_HOME = """
+import pwd, runpy, sys
+def unknown(_):
+    raise KeyError("no such user")
+pwd.getpwuid = unknown
+sys.argv = sys.argv[1:]
+runpy.run_module("scenarios.run", run_name="__main__")
+"""
+
+
+def test_no_home_and_a_terminal_with_ascii_alone_are_enough(folder):
+    (folder / "é.toml").write_text(TRIAL, encoding="utf-8")
+    homes = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR")
+    environment = {name: value for name, value in os.environ.items() if name not in homes}
+    environment |= {"PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "ascii"}
+    command = [sys.executable, "-c", NO_HOME, "run", "é.toml", "--no-report", "--out", "run", "--jobs", "1"]
+    ended = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=60)
+    assert ended.returncode == 0, ended.stderr
+    assert "\\xe9: 2 of 2" in ended.stdout
