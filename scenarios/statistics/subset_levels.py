@@ -20,7 +20,7 @@ class Level:
     below : values of the sample are at or below this; infinite for the first level
     threshold : that of the next level; 0 for the last one
     probability : fraction of the sample that passes ``threshold``: at or below it, and for the last level below 0 [-]
-    variation : coefficient of variation of ``probability``, with the correlation within chains, by Au and Beck, eq. 29 [-]
+    variation : coefficient of variation of ``probability``, with the correlation within chains [-]
     points : shape (n, inputs), in the unit cube: positions of the inputs in their distributions
     dummies : shape (n, ``DUMMIES``), likewise
     values : shape (n,); infinite where there is none
@@ -75,7 +75,7 @@ class Simulation:
     def below(self, value: float) -> tuple[float, float]:
         """Return the estimate of the probability of values below ``value``, and its coefficient of variation [-].
 
-        The coefficient is that of Au and Beck, eq. 30, as if levels were independent; infinite where none is below.
+        The coefficient is that of Au and Beck (2001), as if levels were independent; infinite where none is below.
         """
         reached, squares = 1.0, 0.0
         for level in self.levels:
@@ -88,7 +88,7 @@ class Simulation:
 
 
 def variation(event: Mask, chains: Indices) -> float:
-    """Return the coefficient of variation of the fraction of a level that has an event [-]: Au and Beck, eqs. 28 and 29.
+    """Return the coefficient of variation of the fraction of a level that has an event [-], by Au and Beck (2001).
 
     Parameters
     ----------

@@ -7,10 +7,10 @@ next level, whose sample are Markov chains that start there and never leave what
 on, until a tenth of a level is below 0. The probability is the product of the fractions that passed each threshold.
 
 The chains move in standard normal space by conditional sampling with adaptive steps: I. Papaioannou, W. Betz, K.
-Zwirglmaier, D. Straub, "MCMC algorithms for subset simulation", Probabilistic Engineering Mechanics 41 (2015),
-section 3.4 and figure 8. A proposal is distributed as declared, given the state; it is accepted if its value is at or
-below the threshold. Steps adapt after every wave of proposals to the acceptance rate that the same paper recommends,
-ever less, so that they depend on the chains' past, but the less the longer.
+Zwirglmaier, D. Straub, "MCMC algorithms for subset simulation", Probabilistic Engineering Mechanics 41 (2015). A
+proposal is distributed as declared, given the state; it is accepted if its value is at or below the threshold. Steps
+adapt after every wave of proposals to the acceptance rate that the same paper recommends, ever less: they depend on the
+chains' past, but the less the longer.
 
 Noise within a flight follows from seeds. If every proposal had others, the same point would have another value each
 time, and no chain could stay below a threshold. So the noise is part of the state, the event is one of inputs and noise
@@ -43,10 +43,10 @@ from scipy.special import ndtr
 from scenarios.statistics.subset_levels import Array, Indices, Level, Simulation, variation
 
 ACCEPTANCE = 0.44
-"""Acceptance rate that steps adapt to: Papaioannou et al. (2015), section 3.4."""
+"""Acceptance rate that steps adapt to: Papaioannou et al. (2015)."""
 
 FIRST_SCALE = 0.6
-"""Scale of the steps before any adaptation: as in the same paper, figure 8."""
+"""Scale of the steps before any adaptation, as in the same paper."""
 
 SCALE_MAX = 1e3
 """Where all proposals are accepted the scale would grow without end; every step is at its largest, 1, long before."""
