@@ -20,6 +20,7 @@ from scenarios.world.noise import Noise
 
 RARE = """
 study = "monte_carlo"
+method = "subset"
 title = "short"
 fidelity = "kinematic"
 seed = 11
@@ -62,7 +63,7 @@ def rare(tmp_path_factory):
 
 
 def run(rare, out, *overrides, jobs=2, resume=False, progress=lambda *_: None):
-    scenario = load_study(str(rare), ["method=subset", *overrides])
+    scenario = load_study(str(rare), overrides)
     return run_study(scenario, "short", out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
 
 
@@ -77,7 +78,7 @@ def statistics_of(out):
 
 
 def test_it_agrees_with_plain_sampling_where_both_can_see(rare, whole, tmp_path):
-    scenario = load_study(str(rare), ["flights=1000", "sampling=random"])
+    scenario = load_study(str(rare), ["method=plain", "flights=1000", "sampling=random"])
     run_study(scenario, "short", tmp_path / "plain", executor_factory=ExecutorFactory(jobs=2))
     plain = statistics_of(tmp_path / "plain")["violation"]["measured"]
     # About 1 %: neither method may see nothing.
@@ -121,12 +122,10 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
 
 
 def test_no_point_outside_the_declared_speed_ratios_is_flown(whole):
-    draws = pd.read_csv(whole[1] / "draws.csv")
-    # 0.3 and 0.5 of the X8's airspeed of 20 m/s or so: without wind nu is the vessel's speed over that, as summary.csv has it.
+    # Vessels of 4 to 10 m/s beside a UAV at about 20 m/s have 0.2 to 0.5 and a little more; without wind nu is their ratio.
     nu = pd.read_csv(whole[1] / "summary.csv")["nu"]
-    assert 0.3 <= nu.min()
+    assert nu.min() >= 0.3
     assert nu.max() <= 0.5
-    assert draws["vessel.speed_mps"].min() > 4.0
 
 
 def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_where_it_was_interrupted(rare, whole, tmp_path):
@@ -154,7 +153,7 @@ def test_a_flight_of_a_late_level_is_replayed_to_the_last_bit_its_blended_noise_
 
 
 def test_a_point_carries_its_noise(rare):
-    scenario = load_study(str(rare), ["method=subset"])
+    scenario = load_study(str(rare))
     flight = sampled_flight("short", scenario, 0, (0.1, 0.2, 0.3, 0.6, 17.0, 5.0, 0.6, 6.0, 0.8))
     assert flight.noise == Noise(17, ((5, 0.6), (6, 0.8)))
     assert Experiment("short", scenario).request(0, (0.1, 0.2, 0.3, 0.6, 17.0, 5.0, 1.0)).seed == 17
