@@ -8,6 +8,11 @@ from reports.monte_carlo.names import FIGURES, Figure, input_name
 
 Record = dict[str, Any]
 
+TINY = 1e-5
+"""Probabilities below are written as powers of ten: nobody reads zeros behind a point."""
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 
 def violation_table(statistics: Record) -> Table:
     """Return how many flights violated the keep-out area, and the interval of that probability."""
@@ -87,6 +92,12 @@ def left_out_rows(sensitivity: Record) -> list[str]:
 
 
 def percent(fraction: float) -> str:
-    """Return a fraction in per cent, to three digits, and to four where it is nearly all. No line breaks before the sign."""
+    """Return a fraction in per cent, to three digits, and to four where it is nearly all; below 1e-5 as a power of ten.
+
+    No line breaks before the sign.
+    """
+    if 0.0 < fraction < TINY:
+        mantissa, exponent = f"{fraction:.1e}".split("e")
+        return f"{mantissa}·10{str(int(exponent)).translate(_RAISED)}"
     digits = 3 if fraction < 0.99 else 4
     return f"{100.0 * fraction:.{digits}g}\N{NO-BREAK SPACE}%"

@@ -29,7 +29,8 @@ speed_ratio = [0.3, 0.5]
 [guidance]
 keepout_guard = false
 [subset]
-flights_per_level = 100
+flights_per_level = 60
+conditional_probability = 0.2
 repeats = 3
 [reports]
 interval_s = [1.0, 2.0]
@@ -48,11 +49,11 @@ key = "vessel.speed_mps"
 uniform = [4.0, 10.0]
 [flight]
 crossings = 0
-duration_max_s = 2.0
+duration_max_s = 2.4
 [criteria]
 settles = false
 """
-"""Starts near r_min, of which about one in 100 is so near, and flown so straight at the vessel, that 2 s are enough."""
+"""Starts near r_min, of which about one in 50 is so near, and flown so straight at the vessel, that 2.4 s are enough."""
 
 
 @pytest.fixture(scope="module")
@@ -78,11 +79,11 @@ def statistics_of(out):
 
 
 def test_it_agrees_with_plain_sampling_where_both_can_see(rare, whole, tmp_path):
-    scenario = load_study(str(rare), ["method=plain", "flights=1000", "sampling=random"])
+    scenario = load_study(str(rare), ["method=plain", "flights=400", "sampling=random"])
     run_study(scenario, "short", tmp_path / "plain", executor_factory=ExecutorFactory(jobs=2))
     plain = statistics_of(tmp_path / "plain")["violation"]["measured"]
-    # About 1 %: neither method may see nothing.
-    assert 3 <= plain["events"] <= 40
+    # About 2 %: neither method may see nothing.
+    assert 3 <= plain["events"] <= 25
     found = statistics_of(whole[1])["violation"]
     interval = clopper_pearson(plain["events"], plain["flights"], 0.95)
     # Two intervals of 95 % of the same probability.
@@ -98,7 +99,7 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
     levels = [level for simulation in found["simulations"] for level in simulation["levels"]]
     assert len(summary) == result.summary.done == sum(level["flights"] for level in levels) == result.planned
     assert list(summary["flight_id"]) == [f"short_{i:05d}" for i in range(len(summary))]
-    assert found["violation"]["first_levels"]["flights"] == 300
+    assert found["violation"]["first_levels"]["flights"] == 180
     for simulation in found["simulations"]:
         first, *others = simulation["levels"]
         assert first["below_m"] is None
@@ -114,7 +115,7 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
         "start.aspect_deg",
         "vessel.speed_mps",
     }
-    # Nothing enters from 400 m within 2 s, so the range decides.
+    # Nothing enters from 400 m within 2.4 s, so the range decides.
     assert found["inputs"][0]["distance"] > found["noise_floor"]
     ranges = next(entry for entry in found["inputs"] if entry["key"] == "start.range_m")
     assert ranges["median_near"] < 280.0 < ranges["median"]
@@ -130,7 +131,7 @@ def test_no_point_outside_the_declared_speed_ratios_is_flown(whole):
 
 def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_where_it_was_interrupted(rare, whole, tmp_path):
     def interrupt(doing, done, _):
-        if done == 335:
+        if done == 200:
             raise KeyboardInterrupt
 
     out = tmp_path / "run"
