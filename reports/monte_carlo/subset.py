@@ -46,9 +46,11 @@ def probability_in_words(statistics: Record) -> str:
             " simulations, or from the correlation within their chains (Au and Beck), whichever is larger."
         )
     else:
+        nearest = _range([simulation["levels"][-1]["nearest_m"] for simulation in statistics["simulations"]], "{:.1f}")
         words = (
             f"None of {repeats} independent subset simulations reached a keep-out violation. With {confidence} confidence its"
-            f" probability in a flight is at most {percent(found['upper'])}, if chains find the way to it."
+            f" probability in a flight is at most {percent(found['upper'])}, if chains find the way to it. Their nearest flights"
+            f" stayed {nearest} m beyond r_min; the more these differ, the less the chains have seen."
         )
     if unknown := found["first_levels_unknown"]:
         words += (
@@ -93,19 +95,20 @@ def _levels(statistics: Record) -> list[Block]:
     simulations = statistics["simulations"]
     text = (
         "The first level is a plain random sample. The flights of each further level grow in Markov chains from the nearest of the"
-        " level before, and stay at least as near. The probability is the product of the fractions that passed. Inputs and blended"
-        " noise (reports, sensor errors, gusts) move by small steps; the seed of the turbulence is renewed as a whole. Where"
-        " several simulations differ, the smallest and the largest figure are shown."
+        " level before, and stay at least as near. The probability is the product of the fractions that passed. Inputs and noise"
+        " (reports, sensor errors, gusts) move by small steps; the seed of the turbulence is renewed as a whole. The last three"
+        " columns say how many of these moves were accepted. Where simulations differ, the smallest and the largest figure are"
+        " shown."
     )
     deepest = max(len(simulation["levels"]) for simulation in simulations)
     rows = [_level_row(i, [s["levels"][i] for s in simulations if len(s["levels"]) > i]) for i in range(deepest)]
     head = [
         "Level", "Simulations", "Within r_min plus [m]", "Nearest flight beyond r_min [m]", "Flights", "Fraction that passed",
-        "Moves accepted", "Renewed noise accepted",
+        "Inputs", "Noise", "Seed",
     ]  # fmt: skip
     return [
         Text(text),
-        Table(head=head, rows=rows, widths=[0.5, 0.8, 1.2, 1.3, 0.7, 1.1, 1.0, 1.0]),
+        Table(head=head, rows=rows, widths=[0.5, 0.8, 1.2, 1.3, 0.7, 1.1, 0.6, 0.6, 0.6]),
         *(Text(line) for line in _warnings(simulations)),
     ]
 
@@ -119,6 +122,7 @@ def _level_row(number: int, levels: list[Record]) -> list[str]:
         f"{sum(level['flights'] for level in levels):,}",
         _range([100.0 * level["probability"] for level in levels], "{:.3g}") + "\N{NO-BREAK SPACE}%",
         _accepted(levels, "accepted", "moved"),
+        _accepted(levels, "blended_accepted", "blended"),
         _accepted(levels, "renewed_accepted", "renewed"),
     ]
 

@@ -8,8 +8,10 @@ chains, levels independent), whichever is larger: neither a lucky agreement of f
 correlation makes it narrow. Tests measure how often it holds what is true.
 
 Where a simulation has reached no event, its estimate is 0 and its logarithm does not exist. There the upper end is what
-such a simulation leaves open: with 0 of n chains of its last level in the event, 1 - (1 - confidence)^(1/n) of that
-level's probability, as Clopper and Pearson have it. States of one chain are alike, so that chains count, not states.
+it leaves open: with 0 of n chains of its last level in the event, 1 - (1 - confidence)^(1/n) of that level's
+probability, as Clopper and Pearson have it. States of one chain are alike, so that chains count, not states. If no
+simulation has reached any, all are judged at the threshold that even the least of them has reached: where some came
+much nearer than others, the probability of that threshold scatters, and the bound is the larger.
 """
 
 import math
@@ -108,8 +110,12 @@ def _left_open(simulations: Sequence[Simulation], estimates: Array, variations: 
     half = 0.5 + 0.5 * confidence
     chains = [int(simulation.levels[-1].chains.max()) + 1 for simulation in simulations]
     if not estimates.any():
-        levels = np.array([simulation.reached for simulation in simulations])
-        within = np.array([simulation.reached_variation for simulation in simulations])
+        common = max(simulation.levels[-1].below for simulation in simulations)
+        if math.isinf(common):
+            # A simulation has a plain sample alone; all together have at least these.
+            return upper_bound(0, sum(len(simulation.levels[0].values) for simulation in simulations), confidence)
+        # The next number above it: states at the threshold belong to it.
+        levels, within = np.array([simulation.below(math.nextafter(common, math.inf)) for simulation in simulations]).T
         factor = upper_bound(0, sum(chains), half)
     else:
         open_levels = [simulation.reached * upper_bound(0, n, half) for simulation, n in zip(simulations, chains, strict=True)]

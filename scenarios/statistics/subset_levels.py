@@ -26,10 +26,11 @@ class Level:
     values : shape (n,); infinite where there is none
     chains : number of the chain of each, shape (n,)
     evaluated : number of points whose values were asked for
-    moved, accepted : moves of inputs and blend, and those that were accepted
+    moved, accepted : moves of the inputs, and those that were accepted
+    blended, blended_accepted : moves of the blended noise, and those that were accepted
     renewed, renewed_accepted : renewals of the seed, and those that were accepted
     outside : moves to points that are not allowed, which were not evaluated
-    scale : of the steps at the end of the level [-]
+    scale, noise_scale : of the steps of inputs and of the blend at the end of the level [-]
     """
 
     below: float
@@ -43,10 +44,13 @@ class Level:
     evaluated: int
     moved: int
     accepted: int
+    blended: int
+    blended_accepted: int
     renewed: int
     renewed_accepted: int
     outside: int
     scale: float
+    noise_scale: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

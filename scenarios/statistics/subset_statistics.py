@@ -87,8 +87,11 @@ def _level(level: Level) -> Json:
         "without_measurement": int(sum(math.isinf(value) for value in level.values)),
         "moved": level.moved,
         "accepted": level.accepted,
+        "blended": level.blended,
+        "blended_accepted": level.blended_accepted,
         "renewed": level.renewed,
         "renewed_accepted": level.renewed_accepted,
         "outside": level.outside,
         "scale": level.scale,
+        "noise_scale": level.noise_scale,
     }

@@ -84,7 +84,7 @@ def test_noise_belongs_to_the_event_whether_it_moves_by_small_steps_or_is_renewe
     simulation, _ = simulated(value, 5, noise=True, flights=300)
     last = simulation.levels[-1]
     # A fifth of the moves are renewals; four standard deviations of that count.
-    moves = last.moved + last.renewed
+    moves = last.moved + last.blended + last.renewed
     assert abs(last.renewed - 0.2 * moves) < 4.0 * math.sqrt(0.16 * moves)
     assert 0.05 < last.renewed_accepted / last.renewed < 0.9
 
@@ -99,13 +99,10 @@ def test_the_same_noise_is_kept_while_inputs_move_and_a_renewal_moves_nothing_el
     simulated(value, 1, noise=True, levels=2)
     first, wave = seen[:2]
     known = {point[DIMENSION] for point in first}
-    renewed = [point for point in wave if point[DIMENSION] not in known]
-    moved = [point for point in wave if point[DIMENSION] in known]
-    inputs = {point[:DIMENSION] for point in first}
-    assert renewed
-    assert moved
-    assert all(point[:DIMENSION] in inputs for point in renewed)
-    assert not any(point[:DIMENSION] in inputs for point in moved)
+    blends, inputs = ({point[part] for point in first} for part in (slice(DIMENSION + 1, None), slice(DIMENSION)))
+    kinds = [(point[:DIMENSION] in inputs, point[DIMENSION] in known, point[DIMENSION + 1 :] in blends) for point in wave]
+    # Exactly one of inputs, seed and blend is new, and each of them in some of the moves.
+    assert set(kinds) == {(False, True, True), (True, False, True), (True, True, False)}
     for point in wave:
         # Squares of the weights add up to 1: rounding of two products.
         assert sum(weight**2 for weight in point[DIMENSION + 2 :: 2]) == pytest.approx(1.0, abs=1e-12)
