@@ -71,6 +71,8 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
             f" With {percent(run.statistics['confidence'])} confidence a flight violates the keep-out area with a probability of at"
             f" most {percent(run.statistics['violation']['pessimistic']['upper'])}."
         )
+        if run.statistics.get("method") == "subset":
+            detail += " Subset simulation leads its flights towards violations: their share in these flights is no probability."
     elif len(flown):
         detail += " No bound on a probability follows from these flights; a Monte Carlo study gives one."
     detail += f" {vehicles_flown(run)}"

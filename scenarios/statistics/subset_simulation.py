@@ -142,7 +142,7 @@ class SubsetSimulation:
         below, scales = math.inf, _Scales()
         while True:
             passing = max(1, round(self.conditional_probability * self.flights))
-            threshold = float(np.sort(states.values)[passing - 1])
+            threshold = _threshold(states.values, passing)
             passed = states.values <= threshold
             stalled = threshold >= 0.0 and bool(passed.all())
             last = threshold < 0.0 or len(levels) + 1 == self.levels_max or stalled
@@ -252,6 +252,19 @@ class SubsetSimulation:
     def _points(self, normal: Array, noise: Sequence[Point]) -> list[Point]:
         inputs = ndtr(normal[:, : self.dimension]).tolist()
         return [(*at, *of_noise) for at, of_noise in zip(inputs, noise, strict=True)]
+
+
+def _threshold(values: Array, passing: int) -> float:
+    """Return what so many values are at or below, half way to the next greater one.
+
+    Chains repeat states. A threshold at one of them, all of whose repetitions pass, would be too low for the fraction that
+    passes, by half of these.
+    """
+    least = float(np.sort(values)[passing - 1])
+    above = float(np.min(values[values > least], initial=math.inf))
+    between = 0.5 * (least + above)
+    # An event begins at 0: from a value that has it there is no half way to one that has not.
+    return between if math.isfinite(above) and (least < 0.0) == (between < 0.0) else least
 
 
 def _seeds(generator: np.random.Generator, count: int) -> list[float]:

@@ -177,7 +177,7 @@ def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, 
 def test_its_report_says_the_probability_and_shows_levels_and_inputs(whole, tmp_path):
     html, pdf = build_reports(shutil.copytree(whole[1], tmp_path / "copy"))
     text = html.read_text(encoding="utf-8")
-    for words in ("subset simulation", "Levels", "Start range", "noise floor"):
+    for words in ("subset simulation", "Levels", "Start range", "noise floor", "is no probability"):
         assert words in text
     assert pdf.read_bytes().startswith(b"%PDF")
 
