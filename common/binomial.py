@@ -4,6 +4,12 @@ CONFIDENCE = 0.95
 """Confidence of a bound where nothing else is asked for [-]."""
 
 
+TINY = 1e-5
+"""Probabilities below are written as powers of ten: nobody reads zeros behind a point."""
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
 def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> float:
     """Return the exact one-sided upper bound of a probability [-].
 
@@ -30,6 +36,12 @@ def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> flo
 
 
 def percent(fraction: float) -> str:
-    """Return a fraction in per cent, to three digits, and to four where it is nearly all. No line breaks before the sign."""
+    """Return a fraction in per cent, to three digits, and to four where it is nearly all; below 1e-5 as a power of ten.
+
+    No line breaks before the sign.
+    """
+    if 0.0 < fraction < TINY:
+        mantissa, exponent = f"{fraction:.1e}".split("e")
+        return f"{mantissa}·10{str(int(exponent)).translate(_RAISED)}"
     digits = 3 if fraction < 0.99 else 4
     return f"{100.0 * fraction:.{digits}g}\N{NO-BREAK SPACE}%"

@@ -125,7 +125,7 @@ class FlightWork:
         InfeasibleError : it has no solution
         """
         return plan_flight(
-            request.scenario, flight_id=request.flight_id, seed=request.seed, setup=self._setup(request), spreads=self.spreads
+            request.scenario, flight_id=request.flight_id, seed=request.noise, setup=self._setup(request), spreads=self.spreads
         )
 
     def _setup(self, request: FlightRequest) -> VehicleSetup:

@@ -104,6 +104,10 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
             f"With {percent(bound[1])} confidence a flight sampled as these were violates the keep-out area with a probability of"
             f" at most {percent(bound[0])}, on average and in this simulation."
         )
+        if run.statistics is not None and run.statistics.get("method") == "subset":
+            sentences.append(
+                "Subset simulation leads its flights towards violations: their share in these flights is no probability."
+            )
     elif len(flown):
         sentences.append("No bound on a probability follows from these flights: they are no random sample.")
     if "required" in rows and (rows["required"] == "keep_out").any():

@@ -54,7 +54,7 @@ def _index_panel(inputs: list[dict[str, Any]], name: str, floor: float, x_label:
     place = np.arange(len(inputs))[::-1].astype(np.float64)
     above = value - error > floor
     lines = [
-        _bar_line(value[mask], place[mask], label, colour)
+        bar_line(value[mask], place[mask], label, colour)
         for mask, label, colour in ((above, "above the noise floor", "blue"), (~above, "not above it", "grey"))
         if mask.any()
     ]
@@ -76,7 +76,7 @@ def _index_panel(inputs: list[dict[str, Any]], name: str, floor: float, x_label:
     )
 
 
-def _bar_line(values: Array, places: Array, label: str, colour: str) -> Line:
+def bar_line(values: Array, places: Array, label: str, colour: str) -> Line:
     """Return bars from 0, which one outline encloses: from bar to bar it runs along 0."""
     x = np.column_stack([np.zeros(len(values)), values, values, np.zeros(len(values))]).ravel()
     y = np.column_stack([places - 0.32, places - 0.32, places + 0.32, places + 0.32]).ravel()

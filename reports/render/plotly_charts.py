@@ -90,8 +90,10 @@ def _dress(figure: go.Figure, panel: Panel, row: int, column: int, *, show_x: bo
     if panel.y_names:
         y_options |= {"tickvals": [value for value, _ in panel.y_names], "ticktext": [name for _, name in panel.y_names]}
     # Plotly would write 20k and 50µ, before a unit that has a prefix of its own. Decades are too many for plain figures.
-    figure.update_xaxes(**({} if panel.log_x else {"exponentformat": "none"}), **x_options, row=row, col=column)
-    figure.update_yaxes(**({} if panel.log_y else {"exponentformat": "none"}), **y_options, row=row, col=column)
+    x_options["exponentformat"] = "power" if panel.log_x else "none"
+    y_options["exponentformat"] = "power" if panel.log_y else "none"
+    figure.update_xaxes(**x_options, row=row, col=column)
+    figure.update_yaxes(**y_options, row=row, col=column)
     for note in panel.notes:
         figure.add_annotation(
             x=note.x, y=note.y, text=note.text, xanchor=note.align, showarrow=False,

@@ -12,6 +12,7 @@ from scenarios.errors import InputError
 from scenarios.schema.experiment import DrawConfig
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
+from scenarios.world.noise import Noise
 from scenarios.world.world import apparent_wind, vessel_of
 
 _TRIES = 1000
@@ -27,13 +28,18 @@ class SampledFlight:
     Attributes
     ----------
     scenario : with its samples set
-    seed : of its start, air and noise
+    noise : of its start, air, sensors and reports
     values : the samples, by key
     """
 
     scenario: Scenario
-    seed: int
+    noise: Noise
     values: dict[str, object]
+
+    @property
+    def seed(self) -> int:
+        """Return the seed of its noise; beside a blend, of what is not blended."""
+        return self.noise.seed
 
 
 def sampled_flight(trial: str, scenario: Scenario, number: int, point: Sequence[float] = ()) -> SampledFlight:
@@ -45,7 +51,8 @@ def sampled_flight(trial: str, scenario: Scenario, number: int, point: Sequence[
     scenario : the trial
     number : of the flight, from 0
     point : position of each random variable in its distribution, from 0 to 1, in their order; at random if it is empty. Where
-        that has no speed ratio within ``scenario.speed_ratio``, the flight is sampled again at random.
+        that has no speed ratio within ``scenario.speed_ratio``, the flight is sampled again at random. More numbers after these
+        are those of its noise (``Noise.at``); otherwise it has a seed of its own.
 
     Raises
     ------
@@ -53,12 +60,14 @@ def sampled_flight(trial: str, scenario: Scenario, number: int, point: Sequence[
     """
     sequence = np.random.SeedSequence([scenario.seed, zlib.crc32(trial.encode()), number])
     low, high = scenario.speed_ratio
-    for values in _tried(scenario.draws, np.random.default_rng(sequence), number, point):
+    inputs, given = point[: len(scenario.draws)], point[len(scenario.draws) :]
+    for values in _tried(scenario.draws, np.random.default_rng(sequence), number, inputs):
         flight = with_values(scenario, values)
         least, most = speed_ratios(flight)
         if low <= least and most <= high:
-            seed = int(sequence.generate_state(1)[0]) if flight.flight_seed is None else flight.flight_seed
-            return SampledFlight(scenario=flight, seed=seed, values=values)
+            own = int(sequence.generate_state(1)[0]) if flight.flight_seed is None else flight.flight_seed
+            noise = Noise.at(given) if given and flight.flight_seed is None else Noise(own)
+            return SampledFlight(scenario=flight, noise=noise, values=values)
     raise InputError(
         f"trial '{trial}': {_TRIES} samples had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
         f" {most:.3f}: widen speed_ratio, or sample other winds and vessel speeds"

@@ -15,6 +15,7 @@ from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.points import STUDY, Point, points_of
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
+from scenarios.world.noise import Noise
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +27,7 @@ class FlightRequest:
     flight_id : unique in the run
     trial, variant : name of the trial, and ``STUDY`` or the name of a comparison
     scenario : of this flight alone
-    seed : of its start, air and noise
+    noise : of its start, air, sensors and reports
     inputs : swept and sampled keys, and their values
     """
 
@@ -34,8 +35,13 @@ class FlightRequest:
     trial: str
     variant: str
     scenario: Scenario
-    seed: int
+    noise: Noise
     inputs: dict[str, object]
+
+    @property
+    def seed(self) -> int:
+        """Return the seed of its noise; beside a blend, of what is not blended."""
+        return self.noise.seed
 
 
 def table_of(variant: str) -> str:
@@ -108,7 +114,7 @@ class Experiment:
         Parameters
         ----------
         number : of the flight, from 0
-        at : position of each random variable in its distribution, from 0 to 1; at random if it is empty
+        at : as ``point`` of ``sampled_flight``
         seed : instead of the one that follows from the number and the random variables
 
         Raises
@@ -119,20 +125,14 @@ class Experiment:
         flight_id, variant = self.named(number)
         if point.scenario.draws:
             sampled = sampled_flight(self.name, point.scenario, index, at)
-            scenario, own, inputs = sampled.scenario, sampled.seed, point.inputs | sampled.values
+            scenario, noise, inputs = sampled.scenario, sampled.noise, point.inputs | sampled.values
         else:
             scenario, inputs = point.scenario, point.inputs
-            own = self._seed(point, index) if scenario.flight_seed is None else scenario.flight_seed
-        if seed is not None and "flight_seed" in inputs:
-            inputs = inputs | {"flight_seed": seed}
-        return FlightRequest(
-            flight_id=flight_id,
-            trial=self.name,
-            variant=variant,
-            scenario=scenario,
-            seed=own if seed is None else seed,
-            inputs=inputs,
-        )
+            noise = Noise(self._seed(point, index) if scenario.flight_seed is None else scenario.flight_seed)
+        if seed is not None and seed != noise.seed:
+            noise = Noise(seed)
+            inputs = inputs | ({"flight_seed": seed} if "flight_seed" in inputs else {})
+        return FlightRequest(flight_id=flight_id, trial=self.name, variant=variant, scenario=scenario, noise=noise, inputs=inputs)
 
     def settings(self) -> Iterator[Scenario]:
         """Yield every kind of flight, as far as autopilot and margins depend on it: choices of guidance and turbulence apart."""

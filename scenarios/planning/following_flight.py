@@ -3,8 +3,6 @@
 import math
 from collections.abc import Callable
 
-import numpy as np
-
 from gnc.airspeed.pace_hold import PaceHold
 from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
@@ -33,6 +31,7 @@ from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.ais_reports import no_outage, received_reports
 from scenarios.world.faults import VESSEL_DATA, sampled_fault
+from scenarios.world.noise import Noise, streams
 from scenarios.world.weather import sampled_weather
 from scenarios.world.world import ApparentWind, World, apparent_wind, plume_of, vessel_of
 
@@ -40,7 +39,9 @@ Spreads = Callable[[Scenario], SpreadTable | None]
 """Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air."""
 
 
-def following_flight(scenario: Scenario, flight_id: str, seed: int, setup: VehicleSetup, spreads: SpreadTable | None) -> FlightPlan:
+def following_flight(
+    scenario: Scenario, flight_id: str, noise: Noise, setup: VehicleSetup, spreads: SpreadTable | None
+) -> FlightPlan:
     """Return a flight that follows a plume.
 
     Raises
@@ -48,7 +49,7 @@ def following_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehic
     InfeasibleError : the vessel outruns the UAV, its plume has no direction, or the flight starts where no command keeps it out
     """
     g, f, flight = scenario.guidance, scenario.following, scenario.flight
-    for_world, for_noise = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(2))
+    generators = streams(noise)
     vessel = vessel_of(scenario)
     plume = plume_of(scenario, vessel)
     wind = apparent_wind(scenario, vessel)
@@ -64,9 +65,9 @@ def following_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehic
     farthest = max(radius + f.margin_min_m, orbit_distance(guarded, widest, orbit)) + level
     reach = widest.reach(turn_time(scenario, setup.reversal))
     margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
-    start = sampled_start(scenario.start, for_world, course=vessel.course(0.0), axis=plume.axis(0.0))
-    fault = sampled_fault(scenario.fault, for_world)
-    weather = sampled_weather(scenario, for_world)
+    start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
+    fault = sampled_fault(scenario.fault, generators.world)
+    weather = sampled_weather(scenario, generators.world)
     outage = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else no_outage()
     guard = None
     if g.keepout_guard:
@@ -77,7 +78,7 @@ def following_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehic
     received = None
     if not scenario.reports.exact:
         duration = flight.duration_max_s
-        received = received_reports(scenario.reports, vessel, duration=duration, outage=outage, generator=for_noise)
+        received = received_reports(scenario.reports, vessel, duration=duration, outage=outage, generator=generators.reports)
     steps = round(flight.duration_max_s * g.rate_hz) + 2
     return FlightPlan.of(
         scenario,
@@ -97,7 +98,7 @@ def following_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehic
         ),
         sensing=Sensing(
             received=received,
-            errors=SensorErrors(scenario.sensors, steps=steps, time_step=1.0 / g.rate_hz, generator=for_noise),
+            errors=SensorErrors(scenario.sensors, steps=steps, time_step=1.0 / g.rate_hz, generator=generators.sensors),
         ),
         oscillation=orbit,
         periods=periods,

@@ -5,18 +5,19 @@ from scenarios.planning.following_flight import Spreads, following_flight
 from scenarios.planning.tracking_flight import circling_flight, tracking_flight
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.noise import Noise
 from scenarios.world.vessel import check_manoeuvres
 
 
 def plan_flight(
-    scenario: Scenario, *, flight_id: str, seed: int, setup: VehicleSetup, spreads: Spreads = lambda _: None
+    scenario: Scenario, *, flight_id: str, seed: int | Noise, setup: VehicleSetup, spreads: Spreads = lambda _: None
 ) -> FlightPlan:
     """Resolve one flight.
 
     Parameters
     ----------
     scenario, flight_id : the flight
-    seed : of its start, air and noise
+    seed : of its start, air and noise, or these as a blend
     setup : of its vehicle
     spreads : of the tracking error
 
@@ -26,8 +27,9 @@ def plan_flight(
         its vessel overlap
     """
     check_manoeuvres(scenario.vessel, scenario.vessel_speed)
+    noise = seed if isinstance(seed, Noise) else Noise(seed)
     if scenario.circles:
-        return circling_flight(scenario, flight_id, seed, setup)
+        return circling_flight(scenario, flight_id, noise, setup)
     if scenario.follows:
-        return following_flight(scenario, flight_id, seed, setup, spreads(scenario))
-    return tracking_flight(scenario, flight_id, seed, setup)
+        return following_flight(scenario, flight_id, noise, setup, spreads(scenario))
+    return tracking_flight(scenario, flight_id, noise, setup)

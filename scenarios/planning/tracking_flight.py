@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from gnc.airspeed.along_track import AlongTrackTrim
 from gnc.estimation.reachable_set import Tube
 from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
@@ -18,11 +16,12 @@ from scenarios.planning.start import check_start, placed, sampled_start
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.faults import NO_FAULT
+from scenarios.world.noise import Noise, start_generator
 from scenarios.world.weather import STILL_AIR
 from scenarios.world.world import World, plume_of, vessel_of
 
 
-def circling_flight(scenario: Scenario, flight_id: str, seed: int, setup: VehicleSetup) -> FlightPlan:
+def circling_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: VehicleSetup) -> FlightPlan:
     """Return a flight that tracks a circle, without a vessel.
 
     Raises
@@ -37,12 +36,12 @@ def circling_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehicl
         flight_id,
         guidance=_guidance(scenario, setup, steering, DirectParameters(reference=reference), altitude=altitude),
         steering=steering,
-        start=sampled_start(scenario.start, np.random.default_rng(seed), course=0.0, axis=math.pi),
+        start=sampled_start(scenario.start, start_generator(noise), course=0.0, axis=math.pi),
         period=2.0 * math.pi / reference.heading_rate,
     )
 
 
-def tracking_flight(scenario: Scenario, flight_id: str, seed: int, setup: VehicleSetup) -> FlightPlan:
+def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: VehicleSetup) -> FlightPlan:
     """Return a flight beside a steady vessel that is known exactly, in still air.
 
     Raises
@@ -59,7 +58,7 @@ def tracking_flight(scenario: Scenario, flight_id: str, seed: int, setup: Vehicl
     distance = placed_distance(scenario, oscillation, axis)
     ahead, right, above = centre_of_oscillation(distance, axis)
     steering = plan_steering(scenario, omega_max(g), oscillation.amplitude)
-    start = sampled_start(scenario.start, np.random.default_rng(seed), course=course, axis=plume.axis(0.0))
+    start = sampled_start(scenario.start, start_generator(noise), course=course, axis=plume.axis(0.0))
     guard = None
     # The disc that the keep-out area cuts out at the height of the flight.
     disc = radius if scenario.keepout.shape == "cylinder" else math.sqrt(max(0.0, radius**2 - above**2))

@@ -44,6 +44,10 @@ def _six_dof(scenario: Scenario) -> bool:
     return scenario.fidelity in ("six_dof", "both")
 
 
+def _subset(scenario: Scenario) -> bool:
+    return scenario.study == "monte_carlo" and scenario.method == "subset"
+
+
 def _trims(scenario: Scenario) -> bool:
     return not scenario.follows and scenario.guidance.airspeed_trim
 
@@ -197,8 +201,15 @@ RULES = (
                "criteria.modes_at_end"),
          acts=lambda s: not s.circles, user=_VESSEL),
     Rule(keys=("statistics.",), acts=lambda s: s.study == "monte_carlo", user="a Monte Carlo study: set study to 'monte_carlo'"),
-    Rule(keys=("sampling",), acts=lambda s: s.study == "monte_carlo" and bool(s.draws),
-         user="a Monte Carlo study with random variables: set study to 'monte_carlo', and give draws"),
+    Rule(keys=("method",), acts=lambda s: s.study == "monte_carlo", user="a Monte Carlo study: set study to 'monte_carlo'"),
+    Rule(keys=("sampling",), acts=lambda s: s.study == "monte_carlo" and s.method == "plain" and bool(s.draws),
+         user="a Monte Carlo study with random variables and plain sampling: set study to 'monte_carlo' and method to 'plain', and"
+         " give draws"),
+    Rule(keys=("statistics.distance_quantile",), acts=lambda s: s.method == "plain",
+         user="plain sampling, which may stop by it: set method to 'plain'"),
+    Rule(keys=("subset.",), acts=_subset, user="subset simulation: set study to 'monte_carlo' and method to 'subset'"),
+    Rule(keys=("flights",), acts=lambda s: not _subset(s), user="plain sampling; subset simulation flies subset.flights_per_level"
+         " in each level of each of subset.repeats: set these, or set method to 'plain'"),
     Rule(keys=("search.",), acts=lambda s: s.study == "falsify", user="a search: set study to 'falsify'"),
     Rule(keys=("search.generations",), acts=lambda s: s.search.time_s is None,
          user="a search without a time: leave search.time_s out"),

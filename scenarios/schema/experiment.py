@@ -1,5 +1,6 @@
 """What a scenario file may say of an experiment: sweeps, cases, comparisons, random variables, statistics, a search."""
 
+import math
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, RootModel, field_validator, model_validator
@@ -12,6 +13,9 @@ Sampling = Literal["sobol", "latin_hypercube", "random"]
 
 FLIGHTS_MAX = 1_000_000
 """Largest number of flights of one scenario [-]."""
+
+CHAINS_MIN = 10
+"""Least number of flights that pass on to the next level: of fewer, one that is an exception would decide all that follows."""
 
 NU_MAX = 10.0
 """Largest speed ratio of a sweep [-]; from 1 on there is no solution, and the flight is a row that says so."""
@@ -133,6 +137,38 @@ class StatisticsConfig(Section):
     def stops(self) -> bool:
         """Return whether the study stops by itself."""
         return self.violation_upper is not None or self.distance_quantile_width_m is not None
+
+
+class SubsetConfig(Section):
+    """Subset simulation: levels of flights, each starting from the nearest of the level before."""
+
+    flights_per_level: Annotated[int, Field(ge=50, le=1_000_000)] = 500
+    """Flights of a level, those that pass on from the level before among them [-]."""
+    conditional_probability: Annotated[float, Field(ge=0.01, le=0.5)] = 0.1
+    """Fraction of a level's flights that pass on to the next: the nearest [-]."""
+    levels_max: Annotated[int, Field(ge=1, le=50)] = 8
+    """Levels at most, the first one, a plain random sample, among them [-]."""
+    repeats: Annotated[int, Field(ge=3, le=1000)] = 5
+    """Independent simulations, whose scatter gives the confidence interval [-]."""
+
+    @property
+    def passing(self) -> int:
+        """Return the number of flights that pass on to the next level."""
+        return round(self.flights_per_level * self.conditional_probability)
+
+    @property
+    def flights_max(self) -> int:
+        """Return the number of flights of all simulations, if every level is flown and every move is."""
+        return self.repeats * (self.flights_per_level + (self.levels_max - 1) * (self.flights_per_level - self.passing))
+
+    @model_validator(mode="after")
+    def _enough(self) -> "SubsetConfig":
+        if self.passing < CHAINS_MIN:
+            raise ValueError(
+                f"conditional_probability times flights_per_level is {self.passing} flights that pass on; it must be {CHAINS_MIN}"
+                f" at least: set subset.flights_per_level to {math.ceil(CHAINS_MIN / self.conditional_probability)} or more"
+            )
+        return self
 
 
 class SearchConfig(Section):

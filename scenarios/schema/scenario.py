@@ -14,6 +14,7 @@ from scenarios.schema.experiment import (
     Sampling,
     SearchConfig,
     StatisticsConfig,
+    SubsetConfig,
     SweepConfig,
 )
 from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
@@ -51,6 +52,8 @@ class Scenario(Section):
     histories: Histories = 200
     speed_ratio: Range = (0.0, 1e9)
     """Flights whose nu leaves this range, at the start or after a manoeuvre, are sampled again [-]."""
+    method: Literal["plain", "subset"] = "plain"
+    """How a Monte Carlo study samples: every flight alike, or by subset simulation, towards rare keep-out violations."""
     sampling: Sampling = "sobol"
     """How samples are spread: evenly over all distributions at once, or over each, or not at all."""
     sweep: SweepConfig = SweepConfig()
@@ -58,6 +61,7 @@ class Scenario(Section):
     draws: tuple[DrawConfig, ...] = ()
     comparison: ComparisonConfig = ComparisonConfig()
     statistics: StatisticsConfig = StatisticsConfig()
+    subset: SubsetConfig = SubsetConfig()
     search: SearchConfig = SearchConfig()
     vessel: VesselConfig = VesselConfig()
     plume: PlumeConfig = PlumeConfig()
@@ -168,6 +172,20 @@ class Scenario(Section):
             raise ValueError(f"{where} {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m")
         return self
 
+    def _check_subset(self) -> None:
+        if not self.draws:
+            raise ValueError("method is 'subset' and draws is empty; give the random variables, or set method to 'plain'")
+        if self.sweep.root or self.cases or self.comparison.variants or self.fidelity == "both":
+            raise ValueError(
+                "method is 'subset' beside a sweep, cases, a comparison or two vehicles; it estimates one probability: give each"
+                " point a run of its own, or set method to 'plain'"
+            )
+        if self.statistics.stops:
+            raise ValueError(
+                "method is 'subset' beside statistics.violation_upper or statistics.distance_quantile_width_m, by which plain"
+                " sampling stops; leave them out: subset simulation ends by itself, or after subset.levels_max levels"
+            )
+
     @model_validator(mode="after")
     def _fits_into_the_flight(self) -> "Scenario":
         air, room = self.turbulence, self.flight.duration_max_s
@@ -222,6 +240,8 @@ class Scenario(Section):
 
     @model_validator(mode="after")
     def _varied(self) -> "Scenario":
+        if self.study == "monte_carlo" and self.method == "subset":
+            self._check_subset()
         keys = [draw.key for draw in self.draws]
         for key in keys:
             if keys.count(key) > 1:

@@ -69,19 +69,19 @@ def study_statistics(
         "confidence": confidence,
         "look_number": look_number,
         "interval_confidence": level,
-        "flights": {"done": found.flights, "measured": found.measured, "unknown": _named(found)},
-        "outcomes": _counts(rows["outcome"]),
-        "modes_at_end": _counts(rows["mode_at_end"]),
+        "flights": {"done": found.flights, "measured": found.measured, "unknown": named(found)},
+        "outcomes": counted(rows["outcome"]),
+        "modes_at_end": counted(rows["mode_at_end"]),
         "violation": {
-            "measured": _share(found.events, found.measured, level),
-            "pessimistic": _share(found.events_at_most, found.flights, level),
+            "measured": share(found.events, found.measured, level),
+            "pessimistic": share(found.events_at_most, found.flights, level),
         },
         "figures": {name: _figure(values, level) for name, values in figures.items()},
         "sensitivity": {
             name: asdict(sensitivity_indices(drawn, figures[name], confidence=confidence, seed=seed)) for name in DRIVEN
         },
     }
-    plain: Json = _without_nan(statistics)
+    plain: Json = without_nan(statistics)
     return plain
 
 
@@ -105,18 +105,20 @@ def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
     }
 
 
-def _named(found: Violations) -> Json:
+def named(found: Violations) -> Json:
+    """Return the flights of unknown end by their outcome."""
     return {
         outcome: {"flights": len(flights), "flight_ids": flights[:NAMED_MAX]} for outcome, flights in sorted(found.unknown.items())
     }
 
 
-def _counts(words: "pd.Series[str]") -> dict[str, int]:
+def counted(words: "pd.Series[str]") -> dict[str, int]:
     """Return how often each word occurs, the most frequent first; flights without a word are left out."""
     return dict(Counter(str(word) for word in words.dropna()).most_common())
 
 
-def _share(events: int, flights: int, level: float) -> Json:
+def share(events: int, flights: int, level: float) -> Json:
+    """Return the share of flights with an event, and the intervals of its probability."""
     interval = clopper_pearson(events, flights, level)
     return {
         "events": events,
@@ -139,10 +141,10 @@ def _figure(values: Array, level: float) -> Json:
     return {"known": len(known), "missing": len(values) - len(known), "quantiles": quantiles}
 
 
-def _without_nan(value: Any) -> Any:
+def without_nan(value: Any) -> Any:
     """Return a nested value with None in place of every number that is not finite, which JSON cannot express."""
     if isinstance(value, dict):
-        return {key: _without_nan(item) for key, item in value.items()}
+        return {key: without_nan(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_without_nan(item) for item in value]
+        return [without_nan(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -19,7 +19,6 @@ from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.study import study
 
 
-@study("monte_carlo")
 class MonteCarloStudy(FlightStudy):
     """Flights sampled from declared distributions, until all are flown or every interval is as narrow as the scenario demands.
 
@@ -97,6 +96,18 @@ class MonteCarloStudy(FlightStudy):
         asked = self._scenario.flights
         line = f"stopped after {self.planned} of {asked} flights: the intervals are as narrow as demanded"
         return replace(found, lines=[*found.lines, line])
+
+
+@study("monte_carlo")
+def monte_carlo_study(
+    scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()
+) -> FlightStudy:
+    """Return the study by the scenario's method; parameters and errors are those of ``MonteCarloStudy``."""
+    if scenario.method == "subset":
+        from scenarios.studies.subset_study import SubsetStudy
+
+        return SubsetStudy(scenario, name, trials, overrides=overrides)
+    return MonteCarloStudy(scenario, name, trials, overrides=overrides)
 
 
 def _frame(rows: Iterable[Row], columns: Sequence[str]) -> pd.DataFrame:

@@ -1,0 +1,193 @@
+"""What a report shows of a subset simulation: the probability of a rare violation, its levels, and the inputs near it."""
+
+from typing import Any
+
+from common.binomial import percent
+from reports.document.blocks import Block, Section, Table, Text
+from reports.monte_carlo.names import input_name, input_unit
+from reports.monte_carlo.subset_charts import curve_chart, distance_chart, input_charts
+from reports.monte_carlo.tables import Record, ending_table
+
+FEW_RENEWALS = 0.05
+"""Fraction of accepted renewals below which the seed decides: intervals were too narrow in tests from there on."""
+
+
+def subset_sections(statistics: Record) -> list[Section]:
+    """Return the sections of a study by subset simulation."""
+    return [
+        Section(
+            anchor="study",
+            title="Probability of a keep-out violation",
+            nav_title="Probability",
+            blocks=[
+                Text(probability_in_words(statistics)),
+                _probability_table(statistics),
+                *curve_chart(statistics),
+                ending_table(statistics),
+            ],
+        ),
+        Section(anchor="levels", title="Levels of the subset simulations", nav_title="Levels", blocks=_levels(statistics)),
+        Section(anchor="drivers", title=_near(statistics), nav_title="Inputs", blocks=_inputs(statistics)),
+    ]
+
+
+def probability_in_words(statistics: Record) -> str:
+    """Return the probability of a keep-out violation, with its confidence and what it assumes."""
+    confidence, found = percent(statistics["confidence"]), statistics["violation"]
+    repeats, reached = found["repeats"], found["reached"]
+    if reached:
+        words = (
+            f"A flight of this study violates the keep-out area with a probability of {percent(found['estimate'])}: with"
+            f" {confidence} confidence {percent(found['low'])} to {percent(found['high'])}, and at most {percent(found['upper'])}."
+            f" {repeats} independent subset simulations estimate it"
+        )
+        words += "." if reached == repeats else f"; {repeats - reached} of them reached no violation."
+        words += (
+            " The interval is that of the mean of a log-normal distribution (Cox, with Student's t), from the scatter of the"
+            " simulations, or from the correlation within their chains (Au and Beck), whichever is larger."
+        )
+    else:
+        nearest = _range([simulation["levels"][-1]["nearest_m"] for simulation in statistics["simulations"]], "{:.1f}")
+        words = (
+            f"None of {repeats} independent subset simulations reached a keep-out violation. With {confidence} confidence its"
+            f" probability in a flight is at most {percent(found['upper'])}, if chains find the way to it. Their nearest flights"
+            f" stayed {nearest} m beyond r_min; the more these differ, the less the chains have seen."
+        )
+    if unknown := found["first_levels_unknown"]:
+        words += (
+            f" Of the flights of the first levels {unknown:,} {'is' if unknown == 1 else 'are'} of unknown end; with each of them"
+            f" as a violation the bound is {percent(found['pessimistic']['upper'])}."
+        )
+    return words + (
+        " What lies apart from all flights of a level, in a corner to which nothing leads that comes closer, is not found by"
+        " chains; a search (falsify) is the other way to look for it. The figures are of flights sampled as these were, in this"
+        " simulation."
+    )
+
+
+def _probability_table(statistics: Record) -> Table:
+    found, plain = statistics["violation"], statistics["violation"]["first_levels"]
+    level = percent(statistics["confidence"])
+    return Table(
+        head=["By", "Flights", "Violations", "Probability", f"Two-sided at {level}", f"At most, one-sided at {level}"],
+        rows=[
+            [
+                f"{found['repeats']} subset simulations",
+                f"{statistics['flights']['done']:,}",
+                f"{found['events']:,}",
+                percent(found["estimate"]) if found["reached"] else "–",
+                f"{percent(found['low'])} to {percent(found['high'])}",
+                percent(found["upper"]),
+            ],
+            [
+                "Their first levels alone, plain sampling",
+                f"{plain['flights']:,}",
+                f"{plain['events']:,}",
+                "–" if plain["share"] is None else percent(plain["share"]),
+                f"{percent(plain['low'])} to {percent(plain['high'])}",
+                percent(plain["upper"]),
+            ],
+        ],
+        widths=[2.2, 0.7, 0.8, 1.0, 1.9, 1.5],
+    )
+
+
+def _levels(statistics: Record) -> list[Block]:
+    simulations = statistics["simulations"]
+    text = (
+        "The first level is a plain random sample. The flights of each further level grow in Markov chains from the nearest of the"
+        " level before, and stay at least as near. The probability is the product of the fractions that passed. Inputs and noise"
+        " (reports, sensor errors, gusts) move by small steps; the seed of the turbulence is renewed as a whole. The last three"
+        " columns say how many of these moves were accepted. Where simulations differ, the smallest and the largest figure are"
+        " shown."
+    )
+    deepest = max(len(simulation["levels"]) for simulation in simulations)
+    rows = [_level_row(i, [s["levels"][i] for s in simulations if len(s["levels"]) > i]) for i in range(deepest)]
+    head = [
+        "Level", "Simulations", "Within r_min plus [m]", "Nearest flight beyond r_min [m]", "Flights", "Fraction that passed",
+        "Inputs", "Noise", "Seed",
+    ]  # fmt: skip
+    return [
+        Text(text),
+        Table(head=head, rows=rows, widths=[0.5, 0.8, 1.2, 1.3, 0.7, 1.1, 0.6, 0.6, 0.6]),
+        *(Text(line) for line in _warnings(simulations)),
+    ]
+
+
+def _level_row(number: int, levels: list[Record]) -> list[str]:
+    return [
+        str(number + 1),
+        str(len(levels)),
+        "any" if number == 0 else _range([level["below_m"] for level in levels], "{:.1f}"),
+        _range([level["nearest_m"] for level in levels], "{:.1f}"),
+        f"{sum(level['flights'] for level in levels):,}",
+        _range([100.0 * level["probability"] for level in levels], "{:.3g}") + "\N{NO-BREAK SPACE}%",
+        _accepted(levels, "accepted", "moved"),
+        _accepted(levels, "blended_accepted", "blended"),
+        _accepted(levels, "renewed_accepted", "renewed"),
+    ]
+
+
+def _range(values: list[Any], form: str) -> str:
+    known = [value for value in values if value is not None]
+    if not known:
+        return "–"
+    least, most = form.format(min(known)), form.format(max(known))
+    return least if least == most else f"{least} to {most}"
+
+
+def _accepted(levels: list[Record], accepted: str, tried: str) -> str:
+    count = sum(level[tried] for level in levels)
+    return percent(sum(level[accepted] for level in levels) / count) if count else "–"
+
+
+def _warnings(simulations: list[Record]) -> list[str]:
+    lines = []
+    if stalled := sum(simulation["stalled"] for simulation in simulations):
+        lines.append(f"{stalled} of {len(simulations)} simulations ended early: all flights of a level were equally near.")
+    last = [simulation["levels"][-1] for simulation in simulations]
+    tried, accepted = (sum(level[name] for level in last) for name in ("renewed", "renewed_accepted"))
+    if tried and accepted < FEW_RENEWALS * tried:
+        lines.append(
+            f"Only {percent(accepted / tried)} of the renewals of the seed were accepted in the last levels: the turbulence's seed"
+            " decides which flights come near, chains depend on the few seeds that they began with, and the interval may be too"
+            " narrow. Use more flights per level (subset.flights_per_level)."
+        )
+    return lines
+
+
+def _near(statistics: Record) -> str:
+    return "Inputs of flights with a violation" if statistics["violation"]["reached"] else "Inputs of the nearest flights"
+
+
+def _inputs(statistics: Record) -> list[Block]:
+    which = "with a violation" if statistics["violation"]["reached"] else "of the last level"
+    text = (
+        f"How the inputs of flights {which} are distributed, against how they are declared: the distance is the largest difference"
+        " of the two cumulative distributions (Kolmogorov), 0 for an input that does not matter, 1 for one that decides alone. The"
+        f" noise floor, {statistics['noise_floor']:.2f}, is the largest distance of some inputs without any effect that moved too."
+    )
+    return [Text(text), *distance_chart(statistics), input_table(statistics), *input_charts(statistics)]
+
+
+def input_table(statistics: Record) -> Table:
+    """Return the inputs with their distances, and how their values differ."""
+    rows = [[_named(entry), f"{entry['distance']:.2f}", *_values(entry)] for entry in statistics["inputs"]]
+    return Table(
+        head=["Input", "Distance [-]", "As declared", "Near the event"], rows=rows, widths=[2.0, 0.8, 2.0, 2.0], prose=True
+    )
+
+
+def _named(entry: Record) -> str:
+    unit = input_unit(entry["key"])
+    return input_name(entry["key"]) + (f" [{unit}]" if entry["edges"] else "")
+
+
+def _values(entry: Record) -> tuple[str, str]:
+    if entry["edges"]:
+        return f"median {entry['median']:.3g}", f"median {entry['median_near']:.3g}"
+    shares = [
+        ", ".join(f"{name.replace('_', ' ')} {percent(share)}" for name, share in zip(entry["names"], entry[which], strict=True))
+        for which in ("declared", "near")
+    ]
+    return shares[0], shares[1]

@@ -1,0 +1,136 @@
+"""Subset simulation: the probability of a keep-out violation where hardly any random flight has one."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+
+from common.run_layout import SUMMARY
+from scenarios.engine.journal import Journal
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.runner import Fly, Progress, StudySummary
+from scenarios.engine.task import Row, Task
+from scenarios.experiment.declared import beyond_declared
+from scenarios.experiment.draws import value_at
+from scenarios.schema.scenario import Scenario
+from scenarios.statistics.estimates import COLUMNS
+from scenarios.statistics.subset_estimates import RareProbability, input_shifts, near_event, rare_probability
+from scenarios.statistics.subset_levels import Array, Simulation
+from scenarios.statistics.subset_simulation import Point, Simulating, SubsetSimulation
+from scenarios.statistics.subset_statistics import subset_statistics
+from scenarios.studies.flight_study import FlightStudy
+
+
+class SubsetStudy(FlightStudy):
+    """Repeated subset simulations of the distance kept beyond r_min, in step: each wave of all of them is flown at once.
+
+    Points whose speed ratio leaves the declared range are not flown: the distribution is the declared one within that
+    range, as in the plain study, which samples such flights again. A flight without a measurement passes no threshold.
+
+    Parameters
+    ----------
+    scenario, name : the scenario, and its name
+    trials : the same by its name
+    overrides : overrides that were applied, recorded in the manifest
+
+    Raises
+    ------
+    InputError : as of ``FlightStudy``
+    """
+
+    def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
+        flights = scenario.subset.flights_max
+        sampled = {trial: of.model_copy(update={"flights": flights}) for trial, of in trials.items()}
+        super().__init__(scenario.model_copy(update={"flights": flights}), name, sampled, overrides=overrides)
+        self._statistics = scenario.statistics
+        self._tasks: list[Task] = []
+        self._simulations: list[Simulation] = []
+
+    def task(self, number: int) -> Task:
+        """Return the task of a flight, at the point that its simulation gave it."""
+        return self._tasks[number]
+
+    def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
+        """Have wave after wave flown, until every simulation has ended."""
+        running = self._begun()
+        waiting = {repeat: next(simulating) for repeat, simulating in running.items()}
+        ended: dict[int, Simulation] = {}
+        while waiting:
+            values = self._clearances([point for points in waiting.values() for point in points], fly, journal)
+            ends = np.cumsum([len(points) for points in waiting.values()])
+            parts = dict(zip(waiting, np.split(values, ends[:-1]), strict=True))
+            waiting = {}
+            for repeat, part in parts.items():
+                try:
+                    waiting[repeat] = running[repeat].send(part)
+                except StopIteration as end:
+                    ended[repeat] = end.value
+        self._simulations = [ended[repeat] for repeat in sorted(ended)]
+        self.flights = dict.fromkeys(self.flights, len(self._tasks))
+        fly(self.representative_flights(run, journal))
+
+    def _begun(self) -> dict[int, Simulating]:
+        ((_, scenario),) = self.trials.items()
+        settings = scenario.subset
+        simulation = SubsetSimulation(
+            dimension=len(scenario.draws),
+            noise=scenario.flight_seed is None and all(draw.key != "flight_seed" for draw in scenario.draws),
+            flights=settings.flights_per_level,
+            conditional_probability=settings.conditional_probability,
+            levels_max=settings.levels_max,
+            allowed=lambda inputs: not beyond_declared(scenario, inputs.tolist()),
+        )
+        seeds = np.random.SeedSequence(scenario.seed).spawn(settings.repeats)
+        return {repeat: simulation.run(np.random.default_rng(seed)) for repeat, seed in enumerate(seeds)}
+
+    def _clearances(self, points: Sequence[Point], fly: Fly, journal: Journal) -> Array:
+        """Return how far from the keep-out area flights at these points stay at their closest [m]; infinite if not measured."""
+        first = len(self._tasks)
+        self._tasks += [Task(number=first + i, point=point) for i, point in enumerate(points)]
+        # What is flown after a wave depends on it. So a lost flight is tried again only as long as nothing does.
+        if next(journal.numbered(SUMMARY, first=len(self._tasks)), None) is None:
+            fly(self._tasks[first:])
+        values = np.full(len(points), np.inf)
+        for number, row in journal.numbered(SUMMARY, first=first, below=len(self._tasks)):
+            values[number - first] = _clearance(row)
+        return values
+
+    def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
+        """Write ``statistics.json``."""
+        progress("estimating", self.planned, self.planned)
+        first = np.concatenate([simulation.levels[0].points for simulation in self._simulations])
+        near = np.concatenate([simulation.levels[-1].points[chosen] for simulation, chosen in near_event(self._simulations)])
+        shifts = input_shifts(self._values(first), self._values(near), (first, near))
+        rows = pd.DataFrame([[row.get(name) for name in COLUMNS] for row in journal.rows(SUMMARY)], columns=list(COLUMNS))
+        run.write_json(run.statistics, subset_statistics(rows, self._simulations, shifts, confidence=self._statistics.confidence))
+
+    def _values(self, points: Array) -> pd.DataFrame:
+        """Return the values of the random variables at points of the unit cube."""
+        ((_, scenario),) = self.trials.items()
+        return pd.DataFrame({draw.key: [value_at(draw, at) for at in points[:, i]] for i, draw in enumerate(scenario.draws)})
+
+    def summary(self, journal: Journal) -> StudySummary:
+        """Return what the flights have come to, and the probability if every simulation has ended."""
+        found = super().summary(journal)
+        if not self._simulations:
+            return found
+        probability = rare_probability(self._simulations, self._statistics.confidence)
+        return replace(found, lines=[*found.lines, self._line(probability)])
+
+    def _line(self, found: RareProbability) -> str:
+        sure, repeats = f"{100.0 * self._statistics.confidence:g} % confidence", len(self._simulations)
+        if not found.reached:
+            return (
+                f"none of {repeats} subset simulations reached a keep-out violation: its probability in a flight is at most"
+                f" {found.upper:.2g} with {sure}, if chains find the way to it"
+            )
+        some = "" if found.reached == repeats else f"; {repeats - found.reached} of {repeats} simulations reached none"
+        return (
+            f"probability of a keep-out violation in a flight: {found.estimate:.2g}, {found.low:.2g} to {found.high:.2g} and at"
+            f" most {found.upper:.2g} with {sure}, by {repeats} subset simulations{some}"
+        )
+
+
+def _clearance(row: Row) -> float:
+    return float(row["min_distance_m"] - row["keepout_radius_m"]) if "min_distance_m" in row else float("inf")

@@ -1,0 +1,118 @@
+"""What a report shows of a subset simulation, of made-up ones with statistics as the study itself writes them."""
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reports.document.blocks import Table, Text
+from reports.document.chart import Chart
+from reports.monte_carlo.subset import probability_in_words, subset_sections
+from reports.monte_carlo.tables import percent
+from reports.render import matplotlib_charts, plotly_charts
+from scenarios.statistics.subset_estimates import input_shifts, near_event
+from scenarios.statistics.subset_statistics import subset_statistics
+from tests.scenarios.statistics.rare_events import DIMENSION, linear, noisy, simulated
+from tests.scenarios.study_rows import study_rows
+
+REPEATS = 3
+
+
+def statistics_of(value, **settings):
+    simulations = [simulated(value, [20261203, i], flights=100, **settings)[0] for i in range(REPEATS)]
+    first = np.concatenate([one.levels[0].points for one in simulations])
+    near = np.concatenate([one.levels[-1].points[chosen] for one, chosen in near_event(simulations)])
+    names = ["wind.speed_mps", *(f"input_{i}" for i in range(2, DIMENSION)), "turbulence.level"]
+    frames = [pd.DataFrame(at, columns=names) for at in (first, near)]
+    for frame in frames:
+        frame["turbulence.level"] = np.where(frame["turbulence.level"] < 0.5, "none", "light")
+    flown = sum(level.evaluated for one in simulations for level in one.levels)
+    return subset_statistics(study_rows(flown)[0], simulations, input_shifts(*frames, (first, near)), confidence=0.95)
+
+
+@pytest.fixture(scope="module")
+def reached():
+    return statistics_of(linear(1e-6))
+
+
+@pytest.fixture(scope="module")
+def unreached():
+    return statistics_of(linear(1e-12), levels=4)
+
+
+def blocks_of(statistics, kind):
+    return [block for section in subset_sections(statistics) for block in section.blocks if isinstance(block, kind)]
+
+
+def test_the_probability_is_said_with_its_interval_and_how_it_was_made(reached):
+    words, found = probability_in_words(reached), reached["violation"]
+    assert f"{percent(found['low'])} to {percent(found['high'])}, and at most {percent(found['upper'])}" in words
+    assert "3 independent subset simulations estimate it." in words
+    assert "log-normal" in words
+    assert "is not found by chains" in words
+
+
+def test_where_nothing_was_reached_only_an_upper_bound_is_claimed(unreached):
+    words = probability_in_words(unreached)
+    assert words.startswith("None of 3 independent subset simulations reached a keep-out violation.")
+    assert f"at most {percent(unreached['violation']['upper'])}" in words
+    assert "m beyond r_min" in words
+    assert "Inputs of the nearest flights" in [section.title for section in subset_sections(unreached)]
+
+
+def test_tiny_probabilities_are_powers_of_ten():
+    assert percent(3.14e-7) == "3.1·10⁻⁷"
+    assert percent(2e-5) == "0.002\N{NO-BREAK SPACE}%"
+    assert percent(0.0) == "0\N{NO-BREAK SPACE}%"
+
+
+def test_every_level_has_a_row_with_the_flights_of_all_simulations(reached):
+    (levels,) = (table for table in blocks_of(reached, Table) if table.head[0] == "Level")
+    simulations = reached["simulations"]
+    assert len(levels.rows) == max(len(simulation["levels"]) for simulation in simulations)
+    flights = levels.head.index("Flights")
+    total = sum(int(row[flights].replace(",", "")) for row in levels.rows)
+    assert total == sum(level["flights"] for simulation in simulations for level in simulation["levels"])
+    assert levels.rows[0][levels.head.index("Within r_min plus [m]")] == "any"
+
+
+def test_every_axis_reads_quantity_and_unit_and_both_drawers_draw_all_charts(reached, unreached):
+    for statistics in (reached, unreached):
+        charts = blocks_of(statistics, Chart)
+        assert [chart.name for chart in charts] == ["rare-curve", "rare-inputs", "rare-distributions"]
+        for chart in charts:
+            assert len(matplotlib_charts.draw(chart).axes) >= len(chart.panels)
+            assert len(plotly_charts.draw(chart).data) == sum(len(panel.lines) for panel in chart.panels)
+            for panel in chart.panels:
+                for label in (panel.x_label, panel.y_label):
+                    assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)
+
+
+def test_the_curve_rises_with_the_distance_and_lies_within_its_band(reached):
+    (curve,) = (chart for chart in blocks_of(reached, Chart) if chart.name == "rare-curve")
+    lines = {line.label: line for line in curve.panels[0].lines}
+    estimate, band = lines["estimate"], lines["interval"].y
+    count = len(estimate.y)
+    assert (band[:count] <= estimate.y).all()
+    assert (estimate.y <= band[count:][::-1]).all()
+    # From the event's probability, 1e-6 within the scatter of three small simulations, to that of nearly all flights.
+    assert 1e-8 < estimate.y[0] < 1e-4
+    assert estimate.y[-1] > 0.5
+
+
+def test_words_are_in_the_table_of_inputs_and_numbers_have_their_medians(reached):
+    (table,) = (block for block in blocks_of(reached, Table) if block.head[0] == "Input")
+    rows = {row[0]: row for row in table.rows}
+    assert "median" in rows["Wind speed [m/s]"][2]
+    assert "none" in rows["Turbulence level"][3]
+    assert len(rows) == DIMENSION
+
+
+def test_a_seed_that_decides_is_warned_of():
+    statistics = statistics_of(noisy(1e-5, seed_share=0.95, blend_share=0.02), noise=True)
+    last = [simulation["levels"][-1] for simulation in statistics["simulations"]]
+    share = sum(level["renewed_accepted"] for level in last) / sum(level["renewed"] for level in last)
+    texts = [block.text for block in blocks_of(statistics, Text)]
+    assert share < 0.05
+    assert any("the interval may be too narrow" in text.replace("\n", " ") for text in texts)

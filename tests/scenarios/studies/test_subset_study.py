@@ -1,0 +1,208 @@
+"""Monte Carlo by subset simulation from its file to its report, kinematic and short."""
+
+import json
+import shutil
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reports.build import build_reports
+from scenarios.engine.executors import ExecutorFactory
+from scenarios.errors import InputError
+from scenarios.experiment.draws import sampled_flight
+from scenarios.experiment.requests import Experiment
+from scenarios.schema.load import load_study
+from scenarios.statistics.intervals import clopper_pearson
+from scenarios.studies.registry import run_study
+from scenarios.studies.replay import Replay
+from scenarios.world.noise import Noise
+
+RARE = """
+study = "monte_carlo"
+method = "subset"
+title = "short"
+fidelity = "kinematic"
+seed = 11
+histories = 0
+speed_ratio = [0.3, 0.5]
+[guidance]
+keepout_guard = false
+[subset]
+flights_per_level = 60
+conditional_probability = 0.2
+repeats = 3
+[reports]
+interval_s = [1.0, 2.0]
+missing = 0.5
+[[draws]]
+key = "start.range_m"
+uniform = [225.0, 400.0]
+[[draws]]
+key = "start.course_deg"
+uniform = [-180.0, 180.0]
+[[draws]]
+key = "start.aspect_deg"
+uniform = [-180.0, 180.0]
+[[draws]]
+key = "vessel.speed_mps"
+uniform = [4.0, 10.0]
+[flight]
+crossings = 0
+duration_max_s = 2.4
+[criteria]
+settles = false
+"""
+"""Starts near r_min, of which about one in 50 is so near, and flown so straight at the vessel, that 2.4 s are enough."""
+
+
+@pytest.fixture(scope="module")
+def rare(tmp_path_factory):
+    path = tmp_path_factory.mktemp("rare") / "short.toml"
+    path.write_text(RARE, encoding="utf-8")
+    return path
+
+
+def run(rare, out, *overrides, jobs=2, resume=False, progress=lambda *_: None):
+    scenario = load_study(str(rare), overrides)
+    return run_study(scenario, "short", out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
+
+
+@pytest.fixture(scope="module")
+def whole(rare, tmp_path_factory):
+    out = tmp_path_factory.mktemp("subset") / "run"
+    return run(rare, out), out
+
+
+def statistics_of(out):
+    return json.loads((out / "statistics.json").read_text(encoding="utf-8"))
+
+
+def test_it_agrees_with_plain_sampling_where_both_can_see(rare, whole, tmp_path):
+    scenario = load_study(str(rare), ["method=plain", "flights=400", "sampling=random"])
+    run_study(scenario, "short", tmp_path / "plain", executor_factory=ExecutorFactory(jobs=2))
+    plain = statistics_of(tmp_path / "plain")["violation"]["measured"]
+    # About 2 %: neither method may see nothing.
+    assert 3 <= plain["events"] <= 25
+    found = statistics_of(whole[1])["violation"]
+    interval = clopper_pearson(plain["events"], plain["flights"], 0.95)
+    # Two intervals of 95 % of the same probability.
+    assert found["low"] <= interval.high
+    assert interval.low <= found["high"]
+    assert found["reached"] == found["repeats"] == 3
+
+
+def test_every_flight_has_a_row_and_every_level_its_figures(whole):
+    result, out = whole
+    summary = pd.read_csv(out / "summary.csv")
+    found = statistics_of(out)
+    levels = [level for simulation in found["simulations"] for level in simulation["levels"]]
+    assert len(summary) == result.summary.done == sum(level["flights"] for level in levels) == result.planned
+    assert list(summary["flight_id"]) == [f"short_{i:05d}" for i in range(len(summary))]
+    assert found["violation"]["first_levels"]["flights"] == 180
+    for simulation in found["simulations"]:
+        first, *others = simulation["levels"]
+        assert first["below_m"] is None
+        assert first["moved"] == first["renewed"] == 0
+        for before, level in zip(simulation["levels"], others, strict=False):
+            assert level["below_m"] == before["threshold_m"]
+            assert 0 < level["accepted"] < level["moved"]
+        product = np.prod([level["probability"] for level in simulation["levels"]])
+        assert simulation["probability"] == pytest.approx(product, rel=1e-12)
+    assert {entry["key"] for entry in found["inputs"]} == {
+        "start.range_m",
+        "start.course_deg",
+        "start.aspect_deg",
+        "vessel.speed_mps",
+    }
+    # Nothing enters from 400 m within 2.4 s, so the range decides.
+    assert found["inputs"][0]["distance"] > found["noise_floor"]
+    ranges = next(entry for entry in found["inputs"] if entry["key"] == "start.range_m")
+    assert ranges["median_near"] < 280.0 < ranges["median"]
+    assert "probability of a keep-out violation in a flight" in result.summary.lines[-1]
+
+
+def test_no_point_outside_the_declared_speed_ratios_is_flown(whole):
+    # Vessels of 4 to 10 m/s beside a UAV at about 20 m/s have 0.2 to 0.5 and a little more; without wind nu is their ratio.
+    nu = pd.read_csv(whole[1] / "summary.csv")["nu"]
+    assert nu.min() >= 0.3
+    assert nu.max() <= 0.5
+
+
+def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_where_it_was_interrupted(rare, whole, tmp_path):
+    def interrupt(doing, done, _):
+        if done == 200:
+            raise KeyboardInterrupt
+
+    out = tmp_path / "run"
+    assert run(rare, out, jobs=1, progress=interrupt).interrupted
+    assert not (out / "statistics.json").exists()
+    run(rare, out, jobs=1, resume=True)
+    for name in ("summary.csv", "draws.csv"):
+        one, other = (pd.read_csv(of / name).drop(columns="wall_time_s", errors="ignore") for of in (whole[1], out))
+        pd.testing.assert_frame_equal(one, other, check_exact=True)
+    assert statistics_of(out) == statistics_of(whole[1])
+
+
+def test_a_flight_of_a_late_level_is_replayed_to_the_last_bit_its_blended_noise_included(whole, tmp_path):
+    last = pd.read_csv(whole[1] / "summary.csv")["flight_id"].iloc[-1]
+    replay = Replay(str(whole[1] / "flights" / last))
+    from scenarios.engine.runner import fly_study
+
+    result = fly_study(replay, tmp_path / "replay", executor_factory=ExecutorFactory(), resume=False, progress=lambda *_: None)
+    assert result.summary.met, result.summary.lines
+
+
+def test_a_point_carries_its_noise(rare):
+    scenario = load_study(str(rare))
+    flight = sampled_flight("short", scenario, 0, (0.1, 0.2, 0.3, 0.6, 17.0, 5.0, 0.6, 6.0, 0.8))
+    assert flight.noise == Noise(17, ((5, 0.6), (6, 0.8)))
+    assert Experiment("short", scenario).request(0, (0.1, 0.2, 0.3, 0.6, 17.0, 5.0, 1.0)).seed == 17
+
+
+def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, tmp_path):
+    import sqlite3
+
+    out = shutil.copytree(whole[1], tmp_path / "copy")
+    with sqlite3.connect(out / "journal.sqlite") as database:
+        database.execute("UPDATE results SET lost = 1 WHERE number = 3")
+    database.close()
+    flown = []
+    run(rare, out, resume=True, progress=lambda *p: flown.append(p))
+    done = len(pd.read_csv(out / "summary.csv"))
+    assert [p[1] for p in flown if p[0] == "flying"] == [done - 1]
+    assert statistics_of(out) == statistics_of(whole[1])
+
+
+def test_its_report_says_the_probability_and_shows_levels_and_inputs(whole, tmp_path):
+    html, pdf = build_reports(shutil.copytree(whole[1], tmp_path / "copy"))
+    text = html.read_text(encoding="utf-8")
+    for words in ("subset simulation", "Levels", "Start range", "noise floor", "is no probability"):
+        assert words in text
+    assert pdf.read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        (["method=subsett"], ["method", "'subsett'", "did you mean 'subset'"]),
+        (["method=subset", "sweep.nu=[0.3,0.4]"], ["method is 'subset'", "sweep", "set method to 'plain'"]),
+        (
+            ["method=subset", "statistics.violation_upper=0.1"],
+            ["method is 'subset'", "statistics.violation_upper", "leave them out"],
+        ),
+        (["method=subset", "flights=10"], ["'flights' has no effect", "subset.flights_per_level"]),
+        (["method=subset", "draws=[]"], ["method is 'subset'", "draws is empty", "set method to 'plain'"]),
+        (["method=subset", "sampling=random"], ["'sampling' has no effect", "set study to 'monte_carlo' and method to 'plain'"]),
+        (["method=subset", "subset.flights_per_level=60"], ["6 flights that pass on", "must be 10", "100 or more"]),
+        (["method=subset", "subset.repeats=2"], ["subset.repeats", "2", "greater than or equal to 3"]),
+        (["method=subset", "subset.conditional_probability=0.7"], ["subset.conditional_probability", "0.7", "0.5"]),
+        (["subset.repeats=4"], ["'subset.repeats' has no effect", "set study to 'monte_carlo' and method to 'subset'"]),
+    ],
+)
+def test_what_does_not_fit_is_refused_in_one_line(overrides, words):
+    with pytest.raises(InputError) as refused:
+        load_study("monte_carlo", overrides)
+    for word in words:
+        assert word in str(refused.value)
+    assert "\n" not in str(refused.value)
