@@ -106,8 +106,8 @@ class FlightCounts:
         """Return the bound on the probability of a keep-out violation, if flights are a random sample; none of a search."""
         bound, confidence = (percent(p).replace("\N{NO-BREAK SPACE}", " ") for p in (self._bound, CONFIDENCE))
         return (
-            f"{self.flown - self.kept_out} of {self.flown} flights ({self.duration / 3600.0:.3g} h) are not known to have kept out:"
-            f" at most {bound} of flights sampled as these were, at {confidence} confidence"
+            f"{self.flown - self.kept_out} of {self.flown} flights ({self.duration / 3600.0:.3g} h) violated the keep-out area or"
+            f" ended unknown: at most {bound} of flights sampled as these were, at {confidence} confidence"
         )
 
     @property

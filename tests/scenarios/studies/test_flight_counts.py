@@ -54,7 +54,8 @@ def test_a_bound_follows_from_the_flights_that_were_flown():
     counts = FlightCounts.of([row(i, min_distance_m=201.0) for i in range(64)], planned=200)
     # The rule of three: 1 - 0.05^(1/64) = 4.57 %.
     assert counts.bound_line() == (
-        "0 of 64 flights (32 h) are not known to have kept out: at most 4.57 % of flights sampled as these were, at 95 % confidence"
+        "0 of 64 flights (32 h) violated the keep-out area or ended unknown: at most 4.57 % of flights sampled as these were,"
+        " at 95 % confidence"
     )
 
 
