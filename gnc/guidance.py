@@ -95,7 +95,10 @@ class Guidance:
             command = mission.command()
         keep_out, guard, least = self._keep_out, self.guard, self._speed
         if keep_out is not None and guard is not None:
-            # A turn away is flown at V_r at least: what an airspeed law has taken from the airspeed comes back in it.
+            # A turn away is flown at V_r at least, or at the airspeed of the way to the reference: what an airspeed law has
+            # taken from the airspeed comes back in it.
+            if overriding and mission.airspeed > least:
+                least = mission.airspeed
             command = keep_out(command, time, own, speed if speed > least else least)
             self.guarding = guarding = guard.intervening
         tracker.heading_rate_command = command

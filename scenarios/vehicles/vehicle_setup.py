@@ -151,7 +151,7 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
     return VehicleSetup(
         lag=float(found.record["heading_rate_lag_s"]),
         reversal=TurnReversalResponse(delay=reversal["delay_s"], lag=reversal["lag_s"]),
-        response_error=reversal["deviation_99_percent_m"],
+        response_error=reversal["deviation_max_m"],
         airspeed_bandwidth=found.design.bandwidths.airspeed,
         airspeed_min=schedule.envelope.airspeed_min,
         airspeed_max=schedule.envelope.airspeed_max,
