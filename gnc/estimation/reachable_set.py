@@ -57,7 +57,7 @@ class VesselLimits:
     speed_max : largest over the ground; infinite if none is declared [m/s]
     position_sigma, velocity_sigma : of a report's components; the vehicle's own place counts as the vessel's [m, m/s]
     deviations : k, largest error of a report in any direction over its standard deviation [-]
-    horizon : for how long ahead a tube serves at most before it is replaced [s]
+    horizon : for how long ahead discs are asked for: a turn away [s]
     """
 
     acceleration: float
@@ -78,26 +78,35 @@ def tube(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
     """
     age, k, acceleration = time - report.time, limits.deviations, limits.acceleration
     place, drift = limits.position_sigma, limits.velocity_sigma
-    by_reports = k * math.hypot(place, drift * age)
-    # The error of the velocity counts the more the older the report; by the end of the horizon, this much.
-    later = age + limits.horizon
-    drifting = k * drift * drift * later / math.hypot(place, drift * later) if drift > 0.0 else 0.0
+    # Of the errors' growth no more than the first and second derivative now are needed: the second one falls.
+    spread = math.hypot(place, drift * age)
+    drifting, faster = k * drift, 0.0
+    if place > 0.0:
+        drifting, faster = k * drift * drift * age / spread, k * (drift * place) ** 2 / spread**3
     return Tube(
         time,
         report.north + report.velocity_north * age,
         report.east + report.velocity_east * age,
         report.velocity_north,
         report.velocity_east,
-        by_reports + 0.5 * acceleration * age * age,
+        k * spread + 0.5 * acceleration * age * age,
         drifting + acceleration * age,
-        acceleration,
+        faster + acceleration,
     )
 
 
 def tube_by_speed(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
-    """Return the disc of a vessel that may have gone anywhere at its largest speed since its report; parameters as of ``tube``."""
-    reported, speed = limits.deviations * limits.position_sigma, limits.speed_max
-    return Tube(time, report.north, report.east, 0.0, 0.0, reported + speed * (time - report.time), speed)
+    """Return the disc of a vessel that may go anywhere at its largest speed from ``time`` on; parameters as of ``tube``.
+
+    It begins as where the vessel may be by its acceleration, or by its largest speed since its report, whichever is smaller. A
+    disc by acceleration is left for good only until its edge moves as fast as the vehicle; this one, by a vehicle that is faster
+    than the vessel, always. Since it begins no larger, the one takes over from the other before that.
+    """
+    by_acceleration, speed = tube(report, limits, time), limits.speed_max
+    since_report = limits.deviations * limits.position_sigma + speed * (time - report.time)
+    if by_acceleration.radius <= since_report:
+        return Tube(time, by_acceleration.north, by_acceleration.east, 0.0, 0.0, by_acceleration.radius, speed)
+    return Tube(time, report.north, report.east, 0.0, 0.0, since_report, speed)
 
 
 class ReachableSet:
@@ -122,6 +131,9 @@ class ReachableSet:
         """Return the discs of the reports that are kept at ``time`` [s], that of the newest first."""
         limits, reports = self._limits, self._reports
         found = [tube(report, limits, time) for report in reports]
-        if math.isfinite(limits.speed_max) and limits.acceleration > 0.0:
-            found.append(tube_by_speed(reports[0], limits, time))
+        for disc, report in zip(tuple(found), reports, strict=True):
+            # Of use once the edge of the other may move faster than the vessel, by when a turn away is over.
+            edge = disc.growth + disc.acceleration * limits.horizon
+            if math.hypot(disc.velocity_north, disc.velocity_east) + edge > limits.speed_max and limits.acceleration > 0.0:
+                found.append(tube_by_speed(report, limits, time))
         return found

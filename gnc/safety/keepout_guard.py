@@ -17,12 +17,10 @@ from collections.abc import Sequence
 
 from gnc.estimation.own_motion import AirMotion
 from gnc.estimation.reachable_set import Tube
-from gnc.safety.turn_prediction import Motion, TurnPrediction
+from gnc.safety.turn_prediction import Motion, TurnPrediction, commands_under_way
 
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
-_WHOLE = 1e-6
-"""Of a step, by which a dead time may lack a whole number of them without losing one [-]."""
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away, which is found to 1/32."""
 
@@ -36,7 +34,7 @@ class KeepoutGuard:
     deviation : by how much nearer the vehicle may come in a full reversal of its turn than predicted [m]
     heading_rate_max : omega_max, the largest command [rad/s]
     lag : time constant of the vehicle's heading rate behind its command; 0 if it follows at once [s]
-    delay : dead time before that; what is left of it after whole steps counts as lag [s]
+    delay : dead time before that [s]
     time_step : for which a command is held [s]
     speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together [m/s]
     drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
@@ -46,7 +44,8 @@ class KeepoutGuard:
     tubes : discs that contain the vessel; whoever knows of it sets them, the one known best first
     intervening : whether the last command was changed
     interventions : how often interventions began
-    lost : whether, at the last step, no turn away kept off by more than deviation and speed error explain; the best is flown
+    lost : whether, at the last step, no turn away kept off by more than deviation, speed error and resolution explain;
+        the best is flown
     """
 
     __slots__ = (
@@ -84,10 +83,8 @@ class KeepoutGuard:
     ) -> None:
         self._radius, self._deviation = radius, deviation
         self._rate, self._time_step = heading_rate_max, time_step
-        # A command acts for whole steps; the rest of the dead time is as late as lag is.
-        steps = math.floor(delay / time_step + _WHOLE)
-        self._lag, self._until_acting = lag + max(0.0, delay - steps * time_step), steps * time_step
-        self._under_way: deque[float] = deque(maxlen=steps)
+        self._lag, self._until_acting = lag, delay
+        self._under_way: deque[float] = deque(maxlen=commands_under_way(delay, time_step))
         # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
         self._speed_error, self._drift_rate = speed_error + drift_rate, drift_rate
         self._prediction = TurnPrediction(
@@ -216,13 +213,13 @@ class KeepoutGuard:
         x, y, _, _, course, speed, heading_rate, *_ = motion
         self._side = side
         turn = side * self._rate
-        self.lost = slack < -self._deviation - self._speed_error * self._turn_time
+        floor = _RESOLUTION * speed / self._rate
+        self.lost = slack < -self._deviation - self._speed_error * self._turn_time - floor
         if slack < 0.0:
             # Away from the disc and no farther.
             left = math.remainder(math.atan2(y, x) - course - self._lag * heading_rate, 2.0 * math.pi)
             return left / self._time_step if abs(left) < self._rate * self._time_step else turn
         self._kept_off = tube
-        floor = _RESOLUTION * speed / self._rate
         begun = self._until_acting + self._time_step
         mixed = turn
         low, high = 0.0, 1.0

@@ -8,6 +8,9 @@ _TURN = 0.125
 _TURN_MAX = 2.5 * math.pi
 """Course after which a turn away is over [rad]: once round, and what a turn the other way before it and the disc's motion add."""
 
+_WHOLE = 1e-6
+"""Of a step, by which a delay may exceed a whole number of them without counting as one more [-]."""
+
 Motion = tuple[float, float, float, float, float, float, float, float, float, float]
 """A vehicle's motion relative to a disc, and how the disc grows.
 
@@ -23,11 +26,11 @@ class TurnPrediction:
 
     Parameters
     ----------
-    heading_rate_max, lag, delay, time_step, deviation : as of ``KeepoutGuard``; the delay in whole steps
+    heading_rate_max, lag, delay, time_step, deviation : as of ``KeepoutGuard``
     """
 
     __slots__ = (
-        "_chord", "_delay", "_deviation", "_hold", "_interval", "_lag", "_points_max", "_rate",
+        "_chord", "_delay", "_deviation", "_first", "_hold", "_interval", "_lag", "_points_max", "_rate",
     )  # fmt: skip
 
     def __init__(
@@ -42,6 +45,8 @@ class TurnPrediction:
         self._rate, self._deviation = heading_rate_max, deviation
         self._lag, self._delay = lag, delay
         self._hold = _held(time_step, lag)
+        # Of the commands under way the first acts only for what of it lies within the delay.
+        self._first = _held(delay - (commands_under_way(delay, time_step) - 1) * time_step, lag)
         interval = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
         self._interval = _held(interval, lag)
         self._points_max = math.ceil(_TURN_MAX / (heading_rate_max * interval))
@@ -51,21 +56,22 @@ class TurnPrediction:
     def when_acting(self, motion: Motion, under_way: deque[float]) -> Motion:
         """Return the motion when a command given now begins to act: those before it cannot be taken back.
 
-        ``under_way`` holds as many of those [rad/s] as fit into the delay, or none before the first.
+        ``under_way`` holds those [rad/s] that act within the delay, the first perhaps in part, or none before the first call.
         """
         count = under_way.maxlen
         if not count:
             return motion
         x, y, velocity_north, velocity_east, course, speed, heading_rate, *disc = motion
-        duration, turned, mean, decay = self._hold
-        turned_by, mean_by, gained_by = duration - turned, 0.5 * duration - mean, 1.0 - decay
+        held = self._first
         begun, middles = course, 0.0
         # Before the first call the commands under way are taken to be the turn that is flown.
         for command in under_way or (heading_rate,) * count:
-            middles += course + mean * heading_rate + mean_by * command
-            course += turned * heading_rate + turned_by * command
-            heading_rate = decay * heading_rate + gained_by * command
-        middle, half = middles / count, 0.5 * (course - begun)
+            duration, turned, mean, decay = held
+            middles += duration * (course + mean * heading_rate + (0.5 * duration - mean) * command)
+            course += turned * heading_rate + (duration - turned) * command
+            heading_rate = decay * heading_rate + (1.0 - decay) * command
+            held = self._hold
+        middle, half = middles / self._delay, 0.5 * (course - begun)
         # One chord will do, with the sine over arc of half the course turned.
         chord = speed * (1.0 - half * half / 6.0)
         x += (chord * math.cos(middle) - velocity_north) * self._delay
@@ -153,6 +159,11 @@ class TurnPrediction:
                 if gain == best or outward < 0.0:
                     break
         return least, gain / (2.0 * speed * self._rate)
+
+
+def commands_under_way(delay: float, time_step: float) -> int:
+    """Return how many commands, each held for ``time_step`` [s], act within a delay [s]: of the first perhaps a part."""
+    return math.ceil(delay / time_step - _WHOLE)
 
 
 def _range_rate(start: Start, motion: Motion) -> float:

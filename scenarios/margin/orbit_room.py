@@ -1,6 +1,7 @@
 """How far from the vessel an orbit has to lie for the keep-out guard not to act on it."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,8 +14,28 @@ from gnc.reference.reference import Orbit
 _PHASES = 24
 """Points of half an orbit from which a turn away is predicted: the other half is its mirror image [-]."""
 
+_HALVINGS = 6
+"""Of the deviation that is too much for an orbit [-]: to 1/64 of it."""
+
 _FAR = 3.0
 """Distance at which that is done first, over the radius to be kept [-]."""
+
+
+def tolerable(guard: GuardParameters, vessel: Tube, orbit: Orbit, distance: float) -> GuardParameters:
+    """Return a guard with as much of its deviation as leaves an orbit alone that lies at a given distance [m].
+
+    Parameters are those of ``orbit_distance``.
+    """
+    if orbit_distance(guard, vessel, orbit) <= distance:
+        return guard
+    low, high = 0.0, guard.deviation
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if orbit_distance(replace(guard, deviation=middle), vessel, orbit) <= distance:
+            low = middle
+        else:
+            high = middle
+    return replace(guard, deviation=low)
 
 
 def orbit_distance(guard: GuardParameters, vessel: Tube, orbit: Orbit) -> float:

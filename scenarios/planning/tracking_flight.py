@@ -7,6 +7,7 @@ from gnc.estimation.reachable_set import Tube
 from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
 from gnc.parameters import GuardParameters, GuidanceParameters
 from gnc.reference.placement import PlumeAxis, centre_of_oscillation
+from scenarios.margin.orbit_room import tolerable
 from scenarios.planning.bounded_steering import Steering, plan_steering
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.guidance import approach_parameters, guard_parameters, plan_interval, tracking_parameters
@@ -65,6 +66,8 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
     if g.keepout_guard and disc > 0.0:
         guard = guard_parameters(scenario, setup, disc)
         known = Tube(0.0, 0.0, 0.0, v_north, v_east)
+        # The paper's rule places the orbit; the guard must leave it alone.
+        guard = tolerable(guard, known, oscillation, math.hypot(ahead, right) - oscillation.half_widths()[0])
         check_start(start, guard, known, wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius)
     orbit = joined_orbit(scenario, oscillation, course)
     joining = None

@@ -29,8 +29,17 @@ class DiscGuard:
         self.guard = KeepoutGuard(time_step=TIME_STEP, **parameters)
         self._acceleration, self._time, self._north, self._east = acceleration, 0.0, 0.0, 0.0
 
-    def __getattr__(self, name):
-        return getattr(self.__dict__["guard"], name)
+    @property
+    def intervening(self):
+        return self.guard.intervening
+
+    @property
+    def lost(self):
+        return self.guard.lost
+
+    @property
+    def interventions(self):
+        return self.guard.interventions
 
     def _own(self, x, y, velocity_north, velocity_east, course, heading_rate, radius_inflation):
         place = (self._time, self._north, self._east, velocity_north, velocity_east)

@@ -22,19 +22,22 @@ from gnc.compose import compose
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.navigation import NavigationParameters
 from gnc.estimation.own_motion import EstimatedNavigation, TrueNavigation
+from gnc.estimation.reachable_set import VesselLimits
 from gnc.estimation.target_motion import ReportedTarget, SteadyTarget
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.direct_tracking import DirectTracking
 from gnc.mission.mode import Mode
 from gnc.mission.plume_following import GLIDE_ALTITUDE, FollowingParameters, PlumeFollowing
-from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters
+from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters, ReportedVessel
 from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.orbit import half_widths
 
 GUARD = GuardParameters(radius=200.0, heading_rate_max=HEADING_RATE_MAX, lag=0.4, delay=0.0, time_step=TIME_STEP)
 APPROACH = ApproachParameters(blocked_radius=203.0, round_radius=230.0, join_distance=150.0, tracked=12.0, airspeed=SPEED + 2.0)
 PLAN_INTERVAL = 10
+FILTER = FilterParameters(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0)
+LIMITS = VesselLimits(acceleration=0.25, speed_max=15.0, position_sigma=5.0, velocity_sigma=0.15, deviations=5.0, horizon=9.0)
 
 
 def paper(**how):
@@ -63,7 +66,8 @@ def following(*, guard=GUARD, climb=0.0):
         standoff=100.0,
         glide_airspeed=17.0,
         stale=12.0,
-        vessel_acceleration=0.0,
+        reach=0.0,
+        reach_time=9.0,
         drift_rate=1.0,
         plan_interval=PLAN_INTERVAL,
         source_altitude=60.0,
@@ -78,7 +82,7 @@ def following(*, guard=GUARD, climb=0.0):
             crab_banks=(-1.0, 1.0), crab_offsets=(0.0, 0.0), airspeed_sigma=0.5, course_sigma=0.03, wind_drift=0.02,
             wind_prior=10.0, wind_interval=PLAN_INTERVAL, time_step=TIME_STEP,
         ),
-        vessel=FilterParameters(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0),
+        vessel=ReportedVessel(filter=FILTER, limits=LIMITS),
         guard=guard,
         mission=mission,
         health=HealthParameters(
@@ -90,7 +94,7 @@ def following(*, guard=GUARD, climb=0.0):
 def reported(parameters, *, speed=8.0):
     """Return a guidance that has received a report of a vessel that goes north from the origin."""
     guidance = compose(parameters)
-    guidance.target.vessel.report(VesselReport(0.0, 0.0, 0.0, speed, 0.0))
+    guidance.target.report(VesselReport(0.0, 0.0, 0.0, speed, 0.0))
     return guidance
 
 

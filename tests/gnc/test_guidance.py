@@ -6,6 +6,7 @@ from gnc_cases import HEADING_RATE_MAX, SPEED, TIME_STEP, examples, fly, make_gu
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gnc.estimation.reachable_set import Tube
 from gnc.laws.cascade import CascadeLaw
 from gnc.laws.line_of_sight import LineOfSightLaw
 from gnc.laws.lyapunov import LyapunovLaw
@@ -22,10 +23,11 @@ class RecordingGuard:
     def __init__(self, answer, *, intervening=True):
         self.answer = answer
         self.intervening = intervening
-        self.asked = []
+        self.asked, self.tubes = [], ()
 
-    def limit(self, _, *moving, radius_inflation):
-        self.asked.append((*moving, radius_inflation))
+    def limit(self, _, time, own, speed):
+        motion = own.ground_north, own.ground_east, own.wind_north, own.wind_east, own.course, own.heading_rate
+        self.asked.append((time, *motion, speed))
         return self.answer
 
 
@@ -108,19 +110,20 @@ def test_the_guards_answer_is_what_is_commanded(guarded_by, answer):
 
 
 @pytest.mark.parametrize("lag", [0.0, 0.4])
-def test_the_guard_is_asked_about_the_motion_now_relative_to_the_disc(guarded_by, lag):
+def test_the_guard_is_asked_about_the_motion_now_and_told_of_a_disc_without_width(guarded_by, lag):
     guidance = guarded_by(RecordingGuard(0.0), lag=lag, vessel=(3.0, -2.0))
-    # After 5 s the disc is at (15, -10) m.
     guidance.step(5.0, motion(-300.0, 20.0, 0.7, SPEED + 0.5, 0.1))
     # Course and speed come back from the velocities: roundings.
-    assert guidance.guard.asked[0] == pytest.approx((-315.0, 30.0, 3.0, -2.0, 0.7, SPEED + 0.5, 0.1, 0.0), rel=1e-14)
+    assert guidance.guard.asked[0] == pytest.approx((5.0, -300.0, 20.0, 0.0, 0.0, 0.7, 0.1, SPEED + 0.5), rel=1e-14)
+    # From the origin at time 0, and known exactly for good.
+    assert guidance.guard.tubes == (Tube(0.0, 0.0, 0.0, 3.0, -2.0, 0.0, 0.0, 0.0),)
 
 
 def test_the_guard_reckons_with_the_airspeed_that_comes_back(guarded_by):
     # Trimmed to less than V_r, the vehicle is back at V_r in a turn away; the guard takes it to be there.
     guidance = guarded_by(RecordingGuard(0.0))
     guidance.step(0.0, motion(-300.0, 20.0, 0.7, SPEED - 1.0, 0.1))
-    assert guidance.guard.asked[0][5] == SPEED
+    assert guidance.guard.asked[0][-1] == SPEED
 
 
 @pytest.mark.parametrize(("intervening", "airspeed"), [(True, SPEED), (False, SPEED + 1.0)])

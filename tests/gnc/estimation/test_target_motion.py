@@ -2,10 +2,12 @@
 
 import pytest
 
+from gnc.estimation.reachable_set import ReachableSet, Tube, VesselLimits
 from gnc.estimation.target_motion import ReportedTarget, SteadyTarget
 from gnc.estimation.vessel_filter import VesselFilter, VesselReport
 
 TIME_STEP = 0.05
+LIMITS = VesselLimits(acceleration=0.25, speed_max=15.0, position_sigma=5.0, velocity_sigma=0.15, deviations=5.0, horizon=9.0)
 
 
 def fields(target):
@@ -21,9 +23,10 @@ def test_a_steady_target_goes_straight_on_from_the_origin_and_is_never_old(plann
 
 
 def reported(*reports):
-    target = ReportedTarget(VesselFilter(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0), TIME_STEP)
+    known = VesselFilter(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0)
+    target = ReportedTarget(known, ReachableSet(LIMITS), TIME_STEP)
     for report in reports:
-        target.vessel.report(VesselReport(*report))
+        target.report(VesselReport(*report))
     return target
 
 
@@ -46,9 +49,28 @@ def test_between_plans_it_goes_on_at_its_acceleration():
     # 0.45 s at an acceleration that decays over 40 s, of 0.02 m/s^2 or so: 1 % of 9 mm/s; and half of it, as sums run, of 0.2 mm.
     assert fields(target) == pytest.approx((seen.north, seen.east, seen.velocity_north, seen.velocity_east), abs=1e-3)
     # A report that comes meanwhile is used at the next plan.
-    target.vessel.report(VesselReport(7.4, 0.0, 0.0, 0.0, 0.0))
+    target.report(VesselReport(7.4, 0.0, 0.0, 0.0, 0.0))
     before = fields(target)
     target.update(7.5, False)
     assert fields(target) == pytest.approx(before, abs=1.0)
+    tubes = target.tubes
     target.update(7.55, True)
     assert target.north < before[0] - 20.0
+    assert (tubes[0].time, target.tubes[0].time) == (7.0, 7.55)
+    # The newest report's disc is about where it says, 0.15 s on.
+    assert (target.tubes[0].north, target.tubes[0].east) == (0.0, 0.0)
+
+
+def test_a_steady_target_is_one_disc_without_width():
+    target = SteadyTarget(6.0, -2.5)
+    target.update(12.0, True)
+    assert target.tubes == (Tube(0.0, 0.0, 0.0, 6.0, -2.5),)
+    assert target.tubes[0].reach(100.0) == 0.0
+
+
+def test_a_target_that_was_reported_has_a_disc_for_each_report():
+    target = reported((0.0, 100.0, -40.0, 6.0, 2.0), (5.0, 130.0, -30.0, 6.5, 2.0))
+    assert target.tubes == ()
+    target.update(7.0, True)
+    # The newest first.
+    assert [(tube.velocity_north, tube.velocity_east) for tube in target.tubes] == [(6.5, 2.0), (6.0, 2.0)]

@@ -60,23 +60,23 @@ def test_the_guard_holds_off_who_joins_and_who_has_lost_the_reference(error, tra
 
 def test_the_command_turns_to_the_centre_and_within_omega_max():
     # 0.1 rad off: twice omega_max per radian.
-    found = approach((-600.0, 0.0), 0.1).command(*CENTRE, 0.0, radius_inflation=0.0)
+    found = approach((-600.0, 0.0), 0.1).command(*CENTRE, 0.0, additional_range=0.0)
     assert found == pytest.approx(-2.0 * HEADING_RATE_MAX * 0.1, rel=1e-9)
     for course in (-3.0, -1.0, 1.0, 3.0):
-        found = approach((-600.0, 0.0), course).command(*CENTRE, 0.0, radius_inflation=0.0)
+        found = approach((-600.0, 0.0), course).command(*CENTRE, 0.0, additional_range=0.0)
         assert found == math.copysign(HEADING_RATE_MAX, -course)
 
 
 def test_it_leads_round_the_vessel_from_ahead():
     # Straight astern from 600 m ahead lies the vessel.
     towards = approach((600.0, 10.0), math.pi)
-    assert abs(towards.command(*CENTRE, 0.0, radius_inflation=0.0)) > 0.1
+    assert abs(towards.command(*CENTRE, 0.0, additional_range=0.0)) > 0.1
     # The farther the larger the area that it has to go round.
-    assert abs(towards.command(*CENTRE, 0.0, radius_inflation=60.0)) > abs(towards.command(*CENTRE, 0.0, radius_inflation=0.0))
+    assert abs(towards.command(*CENTRE, 0.0, additional_range=60.0)) > abs(towards.command(*CENTRE, 0.0, additional_range=0.0))
 
 
 def test_it_turns_from_the_course_that_it_will_have_when_the_command_acts():
     late = approach((-600.0, 0.0), 0.1, lag=0.4, heading_rate=0.2)
     # Linear from 0.2 to 0.1 rad/s in 0.4 s: 0.06 rad.
     assert late.course_ahead(0.1) == pytest.approx(0.16, abs=1e-12)
-    assert late.command(*CENTRE, 0.1, radius_inflation=0.0) == pytest.approx(-2.0 * HEADING_RATE_MAX * 0.16, rel=1e-9)
+    assert late.command(*CENTRE, 0.1, additional_range=0.0) == pytest.approx(-2.0 * HEADING_RATE_MAX * 0.16, rel=1e-9)

@@ -12,7 +12,12 @@ from scenarios.schema.load import load_study, with_values
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 SETUP = VehicleSetup(
-    lag=0.275, reversal=TurnReversalResponse(delay=0.0, lag=0.3), airspeed_bandwidth=1.0, airspeed_min=15.0, airspeed_max=25.0
+    lag=0.275,
+    reversal=TurnReversalResponse(delay=0.0, lag=0.3),
+    response_error=0.0,
+    airspeed_bandwidth=1.0,
+    airspeed_min=15.0,
+    airspeed_max=25.0,
 )
 
 

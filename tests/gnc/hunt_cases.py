@@ -1,0 +1,148 @@
+"""Vessels that hunt a vehicle as hard as they are declared to be able to, while their reports come late or not at all."""
+
+import math
+from collections import deque
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from gnc_cases import HEADING_RATE_MAX, SPEED
+from guard_cases import RADIUS, moved, random_velocity
+from vessel_cases import LIMITS, Mailbox, Vessel, radio, report_of
+
+from gnc.estimation.own_motion import KnownMotion
+from gnc.estimation.reachable_set import ReachableSet, Tube
+from gnc.numeric import wrap
+from gnc.safety.keepout_guard import KeepoutGuard
+
+PLAN_PERIOD = 0.5
+PIECE = 0.01
+"""For which the vessel's acceleration is held [s]."""
+
+
+class Hunt(NamedTuple):
+    """Closest approach [m], and at how many steps the guard changed its command, and at how many it was lost."""
+
+    closest: float
+    changed: int
+    lost: int
+
+
+def towards(vessel, north, east, silent):
+    """At full acceleration to the vehicle, at all times."""
+    return north - vessel.north, east - vessel.east
+
+
+def ahead_of(vessel, north, east, silent):
+    """Straight on while it reports; then at full acceleration to the vehicle."""
+    return towards(vessel, north, east, silent) if silent else (0.0, 0.0)
+
+
+def braking(vessel, north, east, silent):
+    """Brakes as soon as its reports cease, and stops."""
+    going = math.hypot(vessel.velocity_north, vessel.velocity_east)
+    return (-vessel.velocity_north, -vessel.velocity_east) if silent and going > 0.05 else (0.0, 0.0)
+
+
+def turning(vessel, north, east, silent):
+    """Turns to the side of the vehicle as tightly as it may."""
+    along = vessel.velocity_north, vessel.velocity_east
+    to_north, to_east = towards(vessel, north, east, silent)
+    side = math.copysign(1.0, along[0] * to_east - along[1] * to_north)
+    return -side * along[1], side * along[0]
+
+
+HUNTERS = (towards, ahead_of, braking, turning)
+
+
+def aim_at(tube, own, time):
+    """Demand a turn to where a disc has its centre."""
+    since = time - tube.time
+    north, east = tube.north + tube.velocity_north * since, tube.east + tube.velocity_east * since
+    error = wrap(math.atan2(east - own.ground_east, north - own.ground_north) - own.course)
+    return min(max(1.5 * error, -HEADING_RATE_MAX), HEADING_RATE_MAX)
+
+
+def as_it_was_known(reach):
+    """Return the discs of a guard that takes the vessel to be where its newest report says, and no more."""
+
+    def tubes(time):
+        newest = reach.tubes(time)[0]
+        return (Tube(*newest[:5]),)
+
+    return tubes
+
+
+def forgetful(guard):
+    """Return a guard that keeps off the disc that is nearest now, and knows none that it kept off before."""
+
+    class Forgetful(KeepoutGuard):
+        __slots__ = ()
+
+        def limit(self, *asked):
+            self._kept_off = None
+            return super().limit(*asked)
+
+    guard.__class__ = Forgetful
+    return guard
+
+
+def hunted(seed, hunter, *, lag=0.4, delay=0.0, time_step=0.05, silence=0.0, speed_max=12.0, known=None, made=None):
+    """Return the hunt that a seed stands for: vessel, start and reports, which cease for a time after 40 s."""
+    generator, duration = np.random.default_rng(seed), 100.0 + silence
+    limits = replace(LIMITS, speed_max=speed_max)
+    velocity = random_velocity(generator, float(generator.uniform(2.0, 0.9 * speed_max)))
+    bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(450.0, 700.0)
+    start = (distance * math.cos(bearing), distance * math.sin(bearing), generator.uniform(-math.pi, math.pi), 0.0)
+    sent = radio(generator, interval=(2.0, 10.0), latency=3.0, missing=0.2, silences=[(40.0, 40.0 + silence)], duration=duration)
+    guard = KeepoutGuard(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=lag, delay=delay, time_step=time_step)
+    return hunt(
+        made(guard) if made else guard, start, Vessel(0.0, 0.0, *velocity, limits), hunter, sent, generator,
+        lag=lag, delay=delay, duration=duration, known=known, time_step=time_step,
+    )  # fmt: skip
+
+
+def hunt(guard, start, vessel, hunter, sent, generator, *, lag, delay=0.0, duration=120.0, known=None, time_step=0.05):
+    """Fly a guarded vehicle that aims at the vessel against a hunter.
+
+    Parameters
+    ----------
+    guard : with its radius
+    start : north, east, course and heading rate of the vehicle
+    vessel, hunter : the vessel, and where it accelerates to
+    sent : times of its reports and of their arrival, in the order of arrival; the first at 0
+    generator : of the reports' errors, whose largest are in the direction that hides the vessel
+    lag, delay : of the vehicle
+    known : makes the discs of the reachable set those that the guard is given
+    """
+    state, reach, post = start, ReachableSet(vessel.limits), Mailbox()
+    sent = sorted(sent)
+    tubes = known(reach) if known else reach.tubes
+    pieces, late = round(time_step / PIECE), round(delay / PIECE)
+    under_way = deque([start[3]] * late)
+    closest, changed, lost, last_report = math.inf, 0, 0, -math.inf
+    each = round(PLAN_PERIOD / time_step)
+    for step in range(round(duration / time_step)):
+        time = step * time_step
+        away = math.atan2(vessel.east - state[1], vessel.north - state[0])
+        while sent and sent[0][0] <= time:
+            when, arrives = sent.pop(0)
+            split = float(generator.uniform(0.0, 0.5 * math.pi))
+            side = away if generator.uniform() < 0.7 else away + math.pi
+            post.send(arrives + time - when, report_of(vessel, time, split=split, place=side, drift=side))
+            last_report = time
+        for report in post.deliver(time):
+            reach.report(report)
+        if step % each == 0:
+            guard.tubes = tubes(time)
+        own = KnownMotion(ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3])
+        command = guard.limit(aim_at(guard.tubes[0], own, time), time, own, SPEED)
+        changed += guard.intervening
+        lost += guard.lost
+        silent = not sent or sent[0][0] > time + 10.0 or time - last_report > 10.0
+        for _ in range(pieces):
+            under_way.append(command)
+            state = moved(state, under_way.popleft(), lag, PIECE)
+            vessel.accelerate(*(1e3 * part for part in hunter(vessel, state[0], state[1], silent)), PIECE)
+            closest = min(closest, math.hypot(state[0] - vessel.north, state[1] - vessel.east))
+    return Hunt(closest, changed, lost)
