@@ -2,17 +2,12 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from scenarios.errors import InputError
 from scenarios.experiment.draws import speed_ratios, values_at
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
-from scenarios.world.vessel import TRACK_STEP, ManoeuvringVessel
+from scenarios.world.vessel import ManoeuvringVessel, largest_acceleration
 from scenarios.world.world import vessel_of
-
-_ROUNDING = 1e-3
-"""Relative error of an acceleration that is taken from a table of velocities [-]."""
 
 
 def beyond_declared(scenario: Scenario, point: Sequence[float]) -> float:
@@ -39,6 +34,4 @@ def _acceleration_excess(flight: Scenario) -> float:
     vessel = vessel_of(flight)
     if declared == 0.0 or not isinstance(vessel, ManoeuvringVessel):
         return 0.0
-    velocity, _ = vessel.samples
-    largest = float(np.hypot(*np.diff(velocity, axis=0).T).max()) / TRACK_STEP
-    return max(0.0, largest / declared - 1.0 - _ROUNDING)
+    return max(0.0, largest_acceleration(vessel) / declared - 1.0)

@@ -32,6 +32,7 @@ from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.ais_reports import no_outage, received_reports
 from scenarios.world.faults import VESSEL_DATA, sampled_fault
 from scenarios.world.noise import Noise, streams
+from scenarios.world.vessel import ManoeuvringVessel, VesselTruth, largest_acceleration, largest_speed
 from scenarios.world.weather import sampled_weather
 from scenarios.world.world import ApparentWind, World, apparent_wind, plume_of, vessel_of
 
@@ -54,6 +55,7 @@ def following_flight(
     plume = plume_of(scenario, vessel)
     wind = apparent_wind(scenario, vessel)
     _check_plume(scenario, wind)
+    _check_declared(scenario, vessel)
     nu = wind.at_start / g.airspeed_mps
     periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
     limits = vessel_limits(scenario, turn_time(scenario, setup.reversal))
@@ -134,6 +136,27 @@ def _guidance(
             time_step=tracking.time_step,
         ),
     )
+
+
+def _check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
+    """Raise an InfeasibleError for a vessel that does more than the keep-out guard is told, where it is not always known."""
+    f = scenario.following
+    known = scenario.reports.exact and scenario.fault.kind != VESSEL_DATA
+    if known or not scenario.guidance.keepout_guard or not isinstance(vessel, ManoeuvringVessel):
+        return
+    acceleration, speed = largest_acceleration(vessel), largest_speed(vessel)
+    if acceleration > f.vessel_acceleration_mps2:
+        raise InfeasibleError(
+            f"the vessel accelerates by {acceleration:.3g} m/s2, changes of speed and course together; declared are at most"
+            f" following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on which the keep-out guard relies: declare"
+            " more, or manoeuvre more gently (vessel.manoeuvres)"
+        )
+    if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
+        raise InfeasibleError(
+            f"the vessel moves at up to {speed:.3g} m/s over the ground; it is declared to stay within"
+            f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
+            " sail more slowly"
+        )
 
 
 def _check_plume(scenario: Scenario, wind: ApparentWind) -> None:

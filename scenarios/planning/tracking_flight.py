@@ -66,8 +66,9 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
     if g.keepout_guard and disc > 0.0:
         guard = guard_parameters(scenario, setup, disc)
         known = Tube(0.0, 0.0, 0.0, v_north, v_east)
-        # The paper's rule places the orbit; the guard must leave it alone.
-        guard = tolerable(guard, known, oscillation, math.hypot(ahead, right) - oscillation.half_widths()[0])
+        # The paper's rule places the orbit; the guard must leave it alone, and what the UAV may stray from it.
+        nearest = math.hypot(ahead, right) - oscillation.half_widths()[0]
+        guard = tolerable(guard, known, oscillation, nearest - g.tracking_allowance_m)
         check_start(start, guard, known, wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius)
     orbit = joined_orbit(scenario, oscillation, course)
     joining = None

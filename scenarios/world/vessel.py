@@ -15,6 +15,9 @@ from scenarios.schema.world import VesselConfig
 TRACK_STEP = 0.05
 """Time step of a tabled track [s]; between its points the track is a parabola to 1e-5 m."""
 
+_ROUNDING = 1e-3
+"""Relative error of what is taken from a table of velocities [-]."""
+
 _COLUMNS = 5
 """Of the table: north, east, their rates, the course."""
 
@@ -161,6 +164,18 @@ def check_manoeuvres(vessel: VesselConfig, speed: float) -> None:
 def by_manoeuvres(vessel: VesselConfig, speed: float, duration: float) -> VesselTruth:
     """Return the vessel that a scenario's speed, course and manoeuvres describe."""
     return ManoeuvringVessel(vessel, speed, duration)
+
+
+def largest_acceleration(vessel: ManoeuvringVessel) -> float:
+    """Return the largest acceleration of a vessel, along its course and across it together, rounded down by 0.1 % [m/s^2]."""
+    velocity, _ = vessel.samples
+    return (1.0 - _ROUNDING) * float(np.hypot(*np.diff(velocity, axis=0).T).max()) / TRACK_STEP
+
+
+def largest_speed(vessel: ManoeuvringVessel) -> float:
+    """Return the largest speed of a vessel over the ground, rounded down by 0.1 % [m/s]."""
+    velocity, _ = vessel.samples
+    return (1.0 - _ROUNDING) * float(np.hypot(*velocity.T).max())
 
 
 def track_times(duration: float) -> Array:
