@@ -5,12 +5,16 @@ import os
 import sys
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from common.command_line import INTERRUPTED, refuse, run_command
 from common.run_layout import DESIGN_RECORD, MANIFEST, MODEL
+
+if TYPE_CHECKING:
+    from innerloop.designs.cache import Designed
+    from innerloop.designs.record import Record
 
 
 def command(
@@ -20,6 +24,10 @@ def command(
     out: Annotated[Path | None, typer.Option(help="Directory for the design; default runs/design-AIRCRAFT.")] = None,
     altitude: Annotated[float, typer.Option(min=10.0, max=5000.0, help="Design altitude in metres.")] = 100.0,
     no_report: Annotated[bool, typer.Option("--no-report", help="Leave out report.html and report.pdf.")] = False,
+    reversals: Annotated[
+        int | None,
+        typer.Option(min=1, max=1_000_000, help="Repeat the search for the worst reversal of a turn with so many, e.g. 10000."),
+    ] = None,
     list_aircraft: Annotated[
         bool, typer.Option("--list", help="List every known aircraft: whether it can be flown, or why not; then exit.")
     ] = False,
@@ -34,7 +42,7 @@ def command(
     if aircraft is None:
         raise typer.Exit(refuse("no aircraft given; `--list` lists the known ones"))
     try:
-        _design(aircraft, out, altitude, no_report=no_report)
+        _design(aircraft, out, altitude, reversals, no_report=no_report)
     except (AircraftError, ReportError) as error:
         raise typer.Exit(refuse(error)) from None
     except OSError as error:
@@ -57,7 +65,7 @@ def _list(altitude: float) -> None:
     print(f"{count} can be flown", file=sys.stderr)
 
 
-def _design(aircraft: str, out: Path | None, altitude: float, *, no_report: bool) -> None:
+def _design(aircraft: str, out: Path | None, altitude: float, reversals: int | None, *, no_report: bool) -> None:
     from aircraft.fleet.find import find_spec
 
     spec = find_spec(aircraft)
@@ -79,13 +87,27 @@ def _design(aircraft: str, out: Path | None, altitude: float, *, no_report: bool
     # Of an older design; the manifest comes last, when all that it stands for is there.
     remove_reports(out)
     (out / MANIFEST).unlink(missing_ok=True)
-    write_script(found.design.schedule, write_root(found.design.schedule, out / MODEL))
+    root = write_root(found.design.schedule, out / MODEL)
+    write_script(found.design.schedule, root)
+    if reversals:
+        record = _with_repeated_search(found, root, reversals)
     write_json(out / DESIGN_RECORD, record)
     write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started))
     print_design(record)
     print(f"\ndesign: {out}\nJSBSim root with the autopilot: {out / 'model'}")
     for path in () if no_report else build_reports(out):
         print(f"report: {path}")
+
+
+def _with_repeated_search(found: "Designed", root: Path, reversals: int) -> "Record":
+    """Return the design's record with what a search over so many reversals finds."""
+    from innerloop.designs.long_search import repeat_search
+
+    def told(count: int, deviation: float) -> None:
+        print(f"{count} of {reversals} reversals, largest deviation {deviation:.2f} m", file=sys.stderr)
+
+    searched = repeat_search(found, root, reversals, done=told)
+    return found.record | {"turn_reversal": found.record["turn_reversal"] | {"repeated_search": searched}}
 
 
 def _refuse_another_run(out: Path) -> None:

@@ -7,6 +7,7 @@ from rich.table import Table as ConsoleTable
 from rich.text import Text
 
 from reports.design.data import Record, at_middle, complete, excess_overshoot
+from reports.design.reversal import reversal_sentences
 from reports.design.tables import extreme_trims, pole_table, robustness_table, step_table, trim_table, worst_margin_table
 from reports.design.verdict import design_verdict
 from reports.document.blocks import Table
@@ -32,6 +33,9 @@ def print_summary(record: Record) -> None:
         console.print()
         console.print(_console_table(title, table))
     console.print(f"\nThe heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated flight.")
+    reversals = reversal_sentences(design)
+    if reversals:
+        console.print(reversals, markup=False, highlight=False)
     excess = excess_overshoot(design)
     if excess is not None:
         console.print(f"A heading-rate step overshoots its reference model by {100.0 * excess:.1f} %.")

@@ -8,6 +8,7 @@ from reports.design.loop_charts import loop_charts
 from reports.design.margin_charts import margin_charts
 from reports.design.pole_chart import pole_chart
 from reports.design.response_charts import response_charts
+from reports.design.reversal import reversal_sentences
 from reports.design.tables import (
     envelope_table,
     extreme_trims,
@@ -39,7 +40,9 @@ def design_content(run: RunData) -> tuple[Verdict, list[Section]]:
     sections = [
         _margins(design),
         Section(anchor="loops", title="Loop shapes", blocks=loop_charts(design)),
-        Section(anchor="responses", title="Step responses", blocks=[*response_charts(design), step_table(design)]),
+        Section(
+            anchor="responses", title="Step responses", blocks=[*response_charts(design), step_table(design), *_reversals(design)]
+        ),
         _equilibria(design),
         Section(anchor="poles", title="Poles", blocks=[pole_chart(design), pole_table(design)]),
         _verification(design),
@@ -47,6 +50,11 @@ def design_content(run: RunData) -> tuple[Verdict, list[Section]]:
         _elsewhere(run.path / MODEL),
     ]
     return design_verdict(design), sections
+
+
+def _reversals(design: Record) -> list[Block]:
+    said = reversal_sentences(design)
+    return [Text(said)] if said else []
 
 
 def _margins(design: Record) -> Section:

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from reports.registry import content
 from reports.run.run_data import read_run
 from tests.in_process import run_command
@@ -27,6 +29,29 @@ def test_the_command_leaves_a_directory_that_can_be_reported_on_again(tmp_path):
     assert (manifest["study"], manifest["name"]) == ("design", "x8")
     assert manifest["packages"]["jsbsim"]
     assert content(read_run(tmp_path / "x8")).verdict.headline in done.stdout
+
+
+def test_the_search_over_reversals_can_be_repeated_with_more_of_them(tmp_path):
+    done = design_command("x8", "--out", tmp_path / "x8", "--reversals", 3)
+    assert done.returncode == 0, done.stderr
+    own = json.loads((tmp_path / "x8" / "innerloop.json").read_text(encoding="utf-8"))["turn_reversal"]
+    found = own["repeated_search"]
+    assert found["reversals"] == 3
+    assert found["deviation_max_m"] > 0.0
+    # Other random numbers than the design's own search has, which stays as it was.
+    assert found["deviation_max_m"] != own["deviation_max_m"]
+    assert own["reversals"] == 100
+    assert f"3 of 3 reversals, largest deviation {found['deviation_max_m']:.2f} m" in done.stderr
+    assert f"{found['deviation_max_m']:.2f} m nearer" in " ".join(done.stdout.split())
+    assert f"{found['deviation_max_m']:.2f} m nearer" in (tmp_path / "x8" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("reversals", ["0", "-5", "many", "2000000"])
+def test_a_number_of_reversals_that_cannot_be_flown_is_refused(tmp_path, reversals):
+    refused = design_command("x8", "--out", tmp_path / "x8", "--reversals", reversals)
+    assert refused.returncode == 2
+    assert "--reversals" in refused.stderr
+    assert not (tmp_path / "x8").exists()
 
 
 def test_the_command_does_not_write_over_flights(tmp_path):

@@ -9,9 +9,11 @@ from design_runs import AIRSPEEDS, BANKS_DEG, CASES, LOOPS, record, write_design
 from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built
 
 from reports.build import build_reports
+from reports.design.console import print_summary
 from reports.design.data import complete, excess_overshoot, where
 from reports.design.loop_charts import disk_region, turned
 from reports.design.margin_charts import margin_charts
+from reports.design.reversal import reversal_sentences
 from reports.design.section import innerloop_section
 from reports.design.section_charts import innerloop_charts
 from reports.design.trim_charts import trim_charts
@@ -229,3 +231,33 @@ def test_a_damaged_design_is_refused_in_one_line(damage, words, tmp_path):
         build_reports(path)
     assert "\n" not in str(refusal.value)
     assert str(refusal.value).startswith("'")
+
+
+REVERSALS = {
+    "bank_deg": 45.0, "airspeed_mps": 19.42, "delay_s": 0.254, "lag_s": 0.254, "reversals": 100, "deviation_99_percent_m": 2.37,
+    "deviation_max_m": 4.39, "worst_command_before": -1.0, "worst_airspeed_before_mps": 18.9,
+}  # fmt: skip
+
+
+def test_how_far_reversals_stray_is_said_where_it_was_searched():
+    # Records of before the search lack it, or all of it but the response.
+    for old in (record(), record() | {"turn_reversal": {"delay_s": 0.254, "lag_s": 0.254}}):
+        assert reversal_sentences(old) is None
+    searched = record() | {"turn_reversal": REVERSALS}
+    said = reversal_sentences(searched)
+    assert "a dead time of 0.25 s and a lag of 0.25 s. In 100 reversals" in said
+    assert said.endswith(
+        "up to 4.39 m nearer to what it turned away from than predicted, in 99 of 100 of them no more than 2.37 m."
+    )
+    more = {"reversals": 10000, "deviation_max_m": 7.21, "worst_command_before": 1.0, "worst_airspeed_before_mps": 18.2}
+    repeated = record() | {"turn_reversal": REVERSALS | {"repeated_search": more}}
+    assert reversal_sentences(repeated) == f"{said} In 10000 others it came up to 7.21 m nearer."
+
+
+def test_the_report_and_the_console_say_how_far_reversals_stray(tmp_path, capsys):
+    searched = record() | {"turn_reversal": REVERSALS}
+    write_design(tmp_path, turn_reversal=REVERSALS)
+    (section,) = (section for section in content(read_run(tmp_path)).sections if section.anchor == "responses")
+    assert reversal_sentences(searched) in [block.text for block in section.blocks if isinstance(block, Text)]
+    print_summary(searched)
+    assert "4.39 m nearer" in " ".join(capsys.readouterr().out.split())

@@ -14,19 +14,38 @@ def test_such_a_flight_has_sensing_margin_and_health():
     assert flight.sensing.received is None  # the vessel is known exactly
     assert flight.guidance.health is not None
     assert flight.guidance.navigation is not None
-    # What is kept at least, in still air and with exact knowledge; the guard holds half of it.
-    assert (flight.margin.total, flight.margin.guard) == pytest.approx((3.0, 1.5))
-    assert flight.guidance.guard.radius == pytest.approx(201.5)
+    # What is kept at least, in still air and with exact knowledge, where tracking has no spread: the guard keeps r_min.
+    assert (flight.margin.total, flight.margin.guard) == pytest.approx((3.0, 0.0))
+    assert flight.guidance.guard.radius == pytest.approx(200.0)
     assert flight.guidance.mission.centre.distance_min == pytest.approx(203.0)
 
 
 def test_reports_are_received_beforehand_and_the_filter_knows_their_errors():
-    flight = plan(scenario(reports={"interval_s": (2.0, 10.0), "position_sigma_m": 7.0}))
+    reports = {"interval_s": (2.0, 10.0), "position_sigma_m": 7.0}
+    flight = plan(scenario(reports=reports, following={"touches_per_hour": 1e-3}))
     assert len(flight.sensing.received) > 50
-    assert flight.guidance.vessel.position_sigma == 7.0
-    assert plan(scenario()).guidance.vessel.position_sigma == 0.0
-    # A vessel that is not known exactly takes more margin.
+    assert flight.guidance.vessel.filter.position_sigma == 7.0
+    assert plan(scenario()).guidance.vessel.filter.position_sigma == 0.0
+    # Of one report every 6 s one in 1000 hours may exceed k sigma: exp(-k^2/2) = 1/600/1000.
+    assert flight.guidance.vessel.limits.deviations == pytest.approx(math.sqrt(2.0 * math.log(600.0 * 1000.0)), rel=1e-12)
+    # A vessel that is not known exactly is somewhere in a disc, and takes more margin.
+    assert flight.margin.reach > 7.0 * math.sqrt(2.0 * math.log(600.0 * 1000.0))
     assert flight.margin.total > 3.0
+
+
+def test_what_is_declared_of_the_vessel_is_what_its_discs_are_made_of():
+    declared = {"vessel_acceleration_mps2": 0.1, "vessel_speed_max_mps": 12.0}
+    changes = {"reports": {"interval_s": (2.0, 10.0), "position_sigma_m": 4.0}, "sensors": {"position_sigma_m": 3.0}}
+    limits = plan(scenario(following=declared, **changes)).guidance.vessel.limits
+    # The UAV's own place is the vessel's too: 3-4-5.
+    assert (limits.acceleration, limits.speed_max, limits.position_sigma) == pytest.approx((0.1, 12.0, 5.0), rel=1e-12)
+    assert plan(scenario()).guidance.vessel.limits.speed_max == math.inf
+
+
+def test_dead_reckoning_is_reckoned_with_where_satellite_navigation_is_declared_to_fail():
+    fault = {"kind": "satellite_navigation", "at_s": (80.0, 80.0)}
+    assert plan(scenario(following={"drift_rate_mps": 2.0}, fault=fault)).guidance.guard.drift_rate == 2.0
+    assert plan(scenario(following={"drift_rate_mps": 2.0})).guidance.guard.drift_rate == 0.0
 
 
 def test_a_vessel_data_fault_silences_its_reports():

@@ -33,8 +33,8 @@ NOT_SCALED = {
     "reports.velocity_sigma_mps", "reports.latency_max_s", "sensors.position_sigma_m", "sensors.velocity_sigma_mps",
     "sensors.airspeed_sigma_mps", "sensors.airspeed_bias_mps", "fault.at_s", "fault.vessel_data_s", "fault.satellite_navigation_s",
     # What a ship does, how well it is known, and how often the keep-out area may be touched.
-    "following.apparent_wind_min_mps", "following.vessel_acceleration_mps2", "following.speed_error_mps",
-    "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
+    "following.apparent_wind_min_mps", "following.vessel_acceleration_mps2", "following.vessel_speed_max_mps",
+    "following.speed_error_mps", "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
     # The paper's vehicle has no lag, however fast it turns.
     "kinematic.heading_rate_lag_s",
     # The simulation runs at 120 Hz for every aircraft.

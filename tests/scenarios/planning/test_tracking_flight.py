@@ -6,6 +6,8 @@ import pytest
 
 from gnc.compose import keepout_guard
 from gnc.errors import InfeasibleError
+from gnc.estimation.own_motion import KnownMotion
+from gnc.estimation.reachable_set import Tube
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.planning.planner import plan_flight
 from scenarios.schema.load import load_study, with_values
@@ -79,16 +81,18 @@ def test_a_start_from_which_no_command_keeps_out_is_refused():
     plan(*start, "guidance.keepout_guard=false", nu=0.0)
 
 
-def test_the_guard_keeps_its_fraction_of_what_the_orbit_keeps():
-    # r_min and 0.75 of the allowance of 1 m: the clearance of a vehicle that recedes is its distance less that.
+def test_the_guard_keeps_the_keep_out_radius_and_no_more_where_everything_is_known():
+    # The tracking allowance is the orbit's. The clearance of a vehicle that recedes is its distance less the radius.
     guard = keepout_guard(plan(nu=0.0).guidance.guard)
-    assert guard.clearance(0.0, 300.0, 0.0, 0.0, math.pi / 2.0, 19.42, 0.0) == pytest.approx(300.0 - 200.75, abs=1e-9)
+    guard.tubes = (Tube(0.0, 0.0, 0.0, 0.0, 0.0),)
+    own = KnownMotion(ground_north=0.0, ground_east=300.0, course=math.pi / 2.0)
+    assert guard.clearance(0.0, own, 19.42) == pytest.approx(300.0 - 200.0, abs=1e-9)
 
 
 def test_the_guard_keeps_the_disc_that_the_keep_out_sphere_cuts_out_at_the_height_of_the_flight():
     flight = plan("plume.elevation_deg=20")
     above = flight.altitude - 60.0
-    assert flight.guidance.guard.radius == pytest.approx(math.sqrt(200.75**2 - above**2), rel=1e-12)
+    assert flight.guidance.guard.radius == pytest.approx(math.sqrt(200.0**2 - above**2), rel=1e-12)
     # Above the whole sphere there is nothing to keep out of.
     assert plan("plume.elevation_deg=60", "guidance.tracking_allowance_m=400").guidance.guard is None
 

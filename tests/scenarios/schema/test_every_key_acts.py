@@ -69,10 +69,10 @@ VALUES = {
     "guidance.command_limit": False, "guidance.preview": False, "guidance.airspeed_trim": False,
     "guidance.airspeed_gain_per_s": 0.1, "guidance.airspeed_trim_max_mps": 0.5, "guidance.keepout_guard": False,
     "guidance.approach": False, "guidance.rate_hz": 40.0,
-    "following.touches_per_hour": 1e-6, "following.margin_min_m": 20.0, "following.speed_ratio_max": 0.2,
-    "following.apparent_wind_min_mps": 12.0, "following.standoff_m": 50.0, "following.join_distance_m": 60.0,
+    "following.touches_per_hour": 1e-6, "following.margin_min_m": 60.0, "following.speed_ratio_max": 0.2,
+    "following.apparent_wind_min_mps": 12.0, "following.standoff_m": 50.0, "following.join_distance_m": 20.0,
     "following.tracked_m": 4.0, "following.vessel_acceleration_mps2": 0.1, "following.speed_error_mps": 1.0,
-    "following.drift_rate_mps": 5.0,
+    "following.drift_rate_mps": 5.0, "following.vessel_speed_max_mps": 7.5,
     "start.distance_m": [350.0, 400.0], "start.spread_deg": 90.0, "start.range_m": 350.0, "start.aspect_deg": 20.0,
     "start.course_deg": 30.0, "start.place_m": [-300.0, 50.0],
     "flight.crossings": 4, "flight.duration_max_s": 20.0, "flight.settling_band_m": 0.5, "flight.log_rate_hz": 20.0,
@@ -99,6 +99,9 @@ ELSEWHERE = {
 
 LEVEL = {"criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"}
 """Criteria that the kinematic vehicle always meets: it is level and as fast as commanded."""
+
+IN_SILENCE = {"following.vessel_speed_max_mps"}
+"""Keys that act where nothing is received for long, of which there is a test of its own."""
 
 BEYOND_OR_WITHIN = {"criteria.law_beyond_heading_rate_max", "criteria.law_within_heading_rate_max"}
 """Criteria of which every flight meets exactly one."""
@@ -145,6 +148,14 @@ def test_with_another_value_of_any_key_the_flight_differs_or_the_key_is_refused(
             continue
         if other == row and (history is changed or history.equals(changed)):
             silent.append(key)
-    assert set(silent) <= LEVEL | BEYOND_OR_WITHIN, silent
+    assert set(silent) <= LEVEL | BEYOND_OR_WITHIN | IN_SILENCE, silent
     assert len(BEYOND_OR_WITHIN & set(silent)) == 1
     assert not unnamed
+
+
+def test_the_vessels_largest_speed_acts_where_little_is_received_of_her(tmp_path):
+    path = tmp_path / "short.toml"
+    silent = "reports.missing = 0.8\nfollowing.vessel_acceleration_mps2 = 0.5\n"
+    path.write_text(SHORT + BASES["following"] + silent, encoding="utf-8")
+    (_, history), (_, changed) = flown(path), flown(path, *(f"{key}={VALUES[key]}" for key in IN_SILENCE))
+    assert not history.equals(changed)
