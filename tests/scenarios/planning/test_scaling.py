@@ -37,6 +37,8 @@ NOT_SCALED = {
     "following.speed_error_mps", "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
     # The paper's vehicle has no lag, however fast it turns.
     "kinematic.heading_rate_lag_s",
+    # The budget of a search on this machine.
+    "search.time_s",
     # The simulation runs at 120 Hz for every aircraft.
     "guidance.rate_hz", "flight.log_rate_hz",
     # Not set by default; who sets them means what they say.

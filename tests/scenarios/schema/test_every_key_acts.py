@@ -32,6 +32,7 @@ vessel.speed_mps = 6.0
 vessel.manoeuvres = [{ at_s = 60.0, turn_deg = 20.0, speed_mps = 7.0 }]
 wind = { speed_mps = 4.0, from_deg = 60.0 }
 reports.interval_s = [2.0, 5.0]
+following.vessel_acceleration_mps2 = 0.15
 fault = { kind = "satellite_navigation", at_s = [70.0, 80.0] }
 flight.crossings = 0
 start.distance_m = [300.0, 400.0]
@@ -71,7 +72,7 @@ VALUES = {
     "guidance.approach": False, "guidance.rate_hz": 40.0,
     "following.touches_per_hour": 1e-6, "following.margin_min_m": 60.0, "following.speed_ratio_max": 0.2,
     "following.apparent_wind_min_mps": 12.0, "following.standoff_m": 50.0, "following.join_distance_m": 20.0,
-    "following.tracked_m": 4.0, "following.vessel_acceleration_mps2": 0.1, "following.speed_error_mps": 1.0,
+    "following.tracked_m": 4.0, "following.vessel_acceleration_mps2": 0.3, "following.speed_error_mps": 1.0,
     "following.drift_rate_mps": 5.0, "following.vessel_speed_max_mps": 7.5,
     "start.distance_m": [350.0, 400.0], "start.spread_deg": 90.0, "start.range_m": 350.0, "start.aspect_deg": 20.0,
     "start.course_deg": 30.0, "start.place_m": [-300.0, 50.0],
@@ -155,7 +156,7 @@ def test_with_another_value_of_any_key_the_flight_differs_or_the_key_is_refused(
 
 def test_the_vessels_largest_speed_acts_where_little_is_received_of_her(tmp_path):
     path = tmp_path / "short.toml"
-    silent = "reports.missing = 0.8\nfollowing.vessel_acceleration_mps2 = 0.5\n"
-    path.write_text(SHORT + BASES["following"] + silent, encoding="utf-8")
+    base = BASES["following"].replace("vessel_acceleration_mps2 = 0.15", "vessel_acceleration_mps2 = 0.5")
+    path.write_text(SHORT + base + "reports.missing = 0.8\n", encoding="utf-8")
     (_, history), (_, changed) = flown(path), flown(path, *(f"{key}={VALUES[key]}" for key in IN_SILENCE))
     assert not history.equals(changed)
