@@ -111,6 +111,8 @@ def test_vessel_data_fail_also_where_they_are_exact():
     result = fly(
         fault={"kind": "vessel_data", "at_s": (0.0, 0.0), "vessel_data_s": 30.0},
         vessel={"speed_mps": 8.0, "manoeuvres": [{"at_s": 5.0, "turn_deg": 90.0, "turn_rate_deg_s": 3.0}]},
+        # 8 m/s at 3 deg/s: 0.42 m/s2.
+        following={"vessel_acceleration_mps2": 0.5},
         start=ASTERN,
         flight={"crossings": 0, "duration_max_s": 45.0},
         criteria={"settles": False},
