@@ -1,0 +1,41 @@
+"""Corners of what scenarios declare in which the former keep-out guard let the aircraft in: each was found by a search.
+
+The guard kept off where the vessel was predicted; a report that moved her, a long silence, gusts and steep banks got the X8 in.
+"""
+
+import pandas as pd
+import pytest
+
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+
+SILENT_BRAKING = [
+    "sea_faults", "draws=[]", "flights=2", "fault.kind=vessel_data", "fault.at_s=[200,200]", "flight.duration_max_s=300",
+    "vessel.speed_mps=12", "vessel.manoeuvres=[{at_s=200,speed_mps=2,acceleration_mps2=0.25}]",
+]  # fmt: skip
+ORDINARY_REPORTS = [
+    "sea_faults", "draws=[]", "flights=1", "fault.kind=none", "flight_seed=1121458970", "vessel.speed_mps=12.9",
+    "vessel.manoeuvres=[{at_s=100.5,speed_mps=4.7,acceleration_mps2=0.25}]", "wind.speed_mps=0", "flight.duration_max_s=300",
+    "start.aspect_deg=-13.3",
+]  # fmt: skip
+GUSTS = [
+    "sea_wind", "flights=3", "turbulence.gusts=12", "turbulence.gust_speed_mps=8", "flight.duration_max_s=250",
+    "flight.crossings=0",
+]  # fmt: skip
+WITHOUT_SATELLITES = ["sea_wind", "flights=3", "fault.kind=satellite_navigation", "flight.duration_max_s=280", "flight.crossings=0"]
+STEEP = ["sweep_nu", "sweep.nu=[0.1,0.6]", "start.spread_deg=180", "guidance.bank_deg=49.9", "flight.crossings=4"]
+
+
+@pytest.mark.parametrize(
+    "settings", [SILENT_BRAKING, ORDINARY_REPORTS, GUSTS, WITHOUT_SATELLITES, STEEP],
+    ids=["silent braking", "ordinary reports", "gusts", "no satellites", "steep banks"],
+)  # fmt: skip
+def test_corners_that_a_search_has_found_are_kept_out_of(settings, tmp_path):
+    name, *overrides = settings
+    comparisons = ["comparison.variants=[]"] if name == "sweep_nu" else []
+    study = load_study(name, [*overrides, *comparisons])
+    run_study(study, name, tmp_path / "run")
+    rows = pd.read_csv(tmp_path / "run" / "summary.csv")
+    # None of them was refused: every one has a closest approach.
+    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+    assert rows["guard_lost_s"].sum() == 0.0
