@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 
+from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
 from scenarios.experiment.draws import speed_ratios, values_at
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
-from scenarios.world.vessel import ManoeuvringVessel, largest_acceleration
+from scenarios.world.vessel import ManoeuvringVessel, check_manoeuvres, largest_acceleration
 from scenarios.world.world import vessel_of
 
 
@@ -14,7 +15,7 @@ def beyond_declared(scenario: Scenario, point: Sequence[float]) -> float:
     """Return how far a flight leaves the declared speed ratios and the declared acceleration of the vessel [-].
 
     The acceleration counts relative to ``following.vessel_acceleration_mps2``, changes of speed and of course together, where
-    that is not 0. A flight whose values contradict each other, such as manoeuvres that are not in their order, counts as 1.
+    that is not 0. A flight whose values contradict each other, such as manoeuvres that overlap, counts as 1.
 
     Parameters
     ----------
@@ -23,7 +24,8 @@ def beyond_declared(scenario: Scenario, point: Sequence[float]) -> float:
     """
     try:
         flight = with_values(scenario, values_at(scenario.draws, point))
-    except InputError:
+        check_manoeuvres(flight.vessel, flight.vessel_speed)
+    except (InputError, InfeasibleError):
         return 1.0
     (low, high), (least, most) = flight.speed_ratio, speed_ratios(flight)
     return max(0.0, low - least, most - high, _acceleration_excess(flight))

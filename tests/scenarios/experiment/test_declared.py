@@ -21,11 +21,11 @@ def scenario(**changes):
 
 
 def manoeuvring(at_s, **second):
-    """Return a scenario whose vessel turns at 10 m/s and 1 deg/s, 0.175 m/s2, and may change its speed at 0.2 m/s2."""
+    """Return a scenario whose vessel turns at 10 m/s and 1 deg/s, 0.175 m/s2, and changes its speed at 0.2 m/s2."""
     turn = {"at_s": 50.0, "turn_deg": 90.0, "turn_rate_deg_s": 1.0}
     braking = {"at_s": at_s, "speed_mps": 2.0, "acceleration_mps2": 0.2} | second
     return scenario(
-        vessel={"speed_mps": 10.0, "manoeuvres": [turn, braking]},
+        vessel={"speed_mps": 10.0, "manoeuvres": [turn | braking] if at_s == turn["at_s"] else [turn, braking]},
         following={"vessel_acceleration_mps2": 0.25},
         draws=[{"key": "wind.speed_mps", "uniform": [0.0, 1.0]}],
     )
@@ -42,7 +42,7 @@ def test_changes_of_speed_and_of_course_count_together():
 
 
 def test_without_a_declared_acceleration_any_is_within():
-    free = manoeuvring(50.0).model_copy(update={"following": scenario().following})
+    free = manoeuvring(50.0, acceleration_mps2=0.9).model_copy(update={"following": scenario().following})
     assert beyond_declared(free, [0.0]) == 0.0
 
 
@@ -55,8 +55,9 @@ def test_speed_ratios_are_within_their_limits():
 
 def test_values_that_contradict_each_other_are_beyond():
     times = [{"key": f"vessel.manoeuvres.{i}.at_s", "uniform": [0.0, 100.0]} for i in (0, 1)]
-    both = scenario(vessel={"manoeuvres": [{"at_s": 10.0}, {"at_s": 20.0}]}, draws=times)
-    assert [beyond_declared(both, point) for point in ([0.2, 0.8], [0.8, 0.2])] == [0.0, 1.0]
+    both = scenario(vessel={"manoeuvres": [{"at_s": 10.0, "turn_deg": 5.0}, {"at_s": 30.0}]}, draws=times)
+    # In their order, in the wrong one, and the second before the first one's ten seconds are over.
+    assert [beyond_declared(both, point) for point in ([0.2, 0.8], [0.8, 0.2], [0.2, 0.25])] == [0.0, 1.0, 1.0]
 
 
 def test_the_space_knows_choices_times_directions_and_noise():
