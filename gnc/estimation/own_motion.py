@@ -20,53 +20,51 @@ _SPEED_MIN = 1.0
 """Speed below which the ratio of airspeed to speed over the mean air is not formed [m/s]: no vehicle flies as slowly."""
 
 
-class OwnMotion(Protocol):
-    """The vehicle's motion, updated once per guidance step.
+class AirMotion(Protocol):
+    """What of a vehicle's motion a turn away is predicted from.
+
+    Attributes
+    ----------
+    ground_north, ground_east : over the ground [m]
+    course : of the motion through the mean air, from -pi to pi [rad]
+    heading_rate : of that course [rad/s]
+    wind_north, wind_east : velocity of the air mass [m/s]
+    lost : for how long there has been no satellite navigation [s]
+    """
+
+    ground_north: float
+    ground_east: float
+    course: float
+    heading_rate: float
+    wind_north: float
+    wind_east: float
+    lost: float
+
+
+class OwnMotion(AirMotion, Protocol):
+    """The vehicle's motion, updated once per guidance step; attributes as of ``AirMotion``, and more.
 
     The guidance works in the frame of the mean air, which drifts with the wind and is that of the ground in still air.
 
     Attributes
     ----------
     north, east : in the frame of the air mass [m]
-    course, speed : of the motion through the mean air, from -pi to pi [rad, m/s]
-    heading_rate : of that course [rad/s]
-    ground_north, ground_east : over the ground [m]
+    speed : of the motion through the mean air [m/s]
     drift_north, drift_east : how far the frame of the air mass has drifted [m]
-    wind_north, wind_east : velocity of the air mass [m/s]
     airspeed : as measured, against gusty air [m/s]
     air_ratio : airspeed over the speed through the mean air [-]
-    lost : for how long there has been no satellite navigation [s]
     """
 
     north: float
     east: float
-    course: float
     speed: float
-    heading_rate: float
-    ground_north: float
-    ground_east: float
     drift_north: float
     drift_east: float
-    wind_north: float
-    wind_east: float
     airspeed: float
     air_ratio: float
-    lost: float
 
     def update(self, measurement: Any) -> None:
         """Take in what is measured now, in the form that this navigation takes."""
-
-
-class AirMotion(Protocol):
-    """What of a vehicle's motion a turn away is predicted from; attributes as of ``OwnMotion``."""
-
-    ground_north: float
-    ground_east: float
-    course: float
-    heading_rate: float
-    wind_north: float
-    wind_east: float
-    lost: float
 
 
 @dataclass(slots=True, kw_only=True)

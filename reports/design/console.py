@@ -6,8 +6,7 @@ from rich.console import Console
 from rich.table import Table as ConsoleTable
 from rich.text import Text
 
-from reports.design.data import Record, at_middle, complete, excess_overshoot
-from reports.design.reversal import reversal_sentences
+from reports.design.data import Record, at_middle, complete, excess_overshoot, reversal_sentences
 from reports.design.tables import extreme_trims, pole_table, robustness_table, step_table, trim_table, worst_margin_table
 from reports.design.verdict import design_verdict
 from reports.document.blocks import Table

@@ -3,12 +3,11 @@
 from pathlib import Path
 
 from common.run_layout import DESIGN_RECORD, MODEL
-from reports.design.data import Record, climbing, complete
+from reports.design.data import Record, climbing, complete, reversal_sentences
 from reports.design.loop_charts import loop_charts
 from reports.design.margin_charts import margin_charts
 from reports.design.pole_chart import pole_chart
 from reports.design.response_charts import response_charts
-from reports.design.reversal import reversal_sentences
 from reports.design.tables import (
     envelope_table,
     extreme_trims,

@@ -157,7 +157,7 @@ class FlightStudy:
     def unrecorded(self, numbers: Sequence[int], run: RunDirectory, journal: Journal) -> list[Task]:
         """Return the tasks of those flights that have no time history yet, and of those that had one, to be recorded."""
         gone = set(run.gone)
-        wanted = {
+        missing = {
             number
             for number in numbers
             for row in journal.rows(SUMMARY, first=number, below=number + 1)
@@ -166,8 +166,8 @@ class FlightStudy:
         if gone:
             tables = (SUMMARY, COMPARISON)
             found = ((number, row) for table in tables for number, row in journal.numbered(table))
-            wanted |= {number for number, row in found if time_history_path(row["flight_id"]) in gone}
-        return [replace(self.task(number), recorded=True) for number in sorted(wanted)]
+            missing |= {number for number, row in found if time_history_path(row["flight_id"]) in gone}
+        return [replace(self.task(number), recorded=True) for number in sorted(missing)]
 
     def task(self, number: int) -> Task:
         """Return the task of a flight."""

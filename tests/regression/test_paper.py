@@ -17,7 +17,7 @@ from reports.registry import content
 from reports.render.html import write_html
 from reports.run.run_data import read_run
 from scenarios.schema.load import load_study
-from scenarios.studies import paper_bounds
+from scenarios.studies import paper
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
@@ -188,8 +188,8 @@ def test_saddle_points_are_marked_where_the_relative_courses_meet(directory):
 @pytest.fixture
 def few_bounds(monkeypatch):
     """Search few states and reserves, where a run's bounds are not what is tested: they take two thirds of its time."""
-    monkeypatch.setattr(paper_bounds, "SEARCH_STATES", 10_000)
-    monkeypatch.setattr(paper_bounds, "RESERVES", (0.0, 0.2, 0.4))
+    monkeypatch.setattr(paper, "SEARCH_STATES", 10_000)
+    monkeypatch.setattr(paper, "RESERVES", (0.0, 0.2, 0.4))
 
 
 def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):

@@ -10,10 +10,9 @@ from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built
 
 from reports.build import build_reports
 from reports.design.console import print_summary
-from reports.design.data import complete, excess_overshoot, where
+from reports.design.data import complete, excess_overshoot, reversal_sentences, where
 from reports.design.loop_charts import disk_region, turned
 from reports.design.margin_charts import margin_charts
-from reports.design.reversal import reversal_sentences
 from reports.design.section import innerloop_section
 from reports.design.section_charts import innerloop_charts
 from reports.design.trim_charts import trim_charts
