@@ -1,0 +1,76 @@
+"""Ships: engine and funnel."""
+
+from dataclasses import dataclass
+
+from measurement.emission.presets import preset, preset_names
+from measurement.errors import MeasurementError
+
+_FILE = "ships.toml"
+
+_POSITIVE = (
+    "power_max",
+    "speed_max",
+    "stack_height",
+    "stack_diameter",
+    "exhaust_per_energy_kg_kwh",
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ship:
+    """Engine and funnel of a ship. Several engines are one, and their pipes one funnel; auxiliary engines are left out.
+
+    Attributes
+    ----------
+    name, title : what it is called, short and in words
+    stroke : 2 or 4
+    nox_tier : 0 to 3, IMO's tiers of NOx
+    power_max, speed_max : power of the main engine at its maximum continuous rating [W], and the speed that it gives [m/s]
+    stack_height, stack_diameter : of the funnel's mouth above the sea, and its inner diameter [m]
+    exhaust_per_energy_kg_kwh, exhaust_temperature_c : at maximum continuous rating; corrected for part load
+    wake_spread : initial spread of the plume in the superstructure's wake [m], 0 to 20
+
+    Raises
+    ------
+    MeasurementError : a value is out of its range
+    """
+
+    name: str
+    title: str
+    stroke: int
+    nox_tier: int
+    power_max: float
+    speed_max: float
+    stack_height: float
+    stack_diameter: float
+    exhaust_per_energy_kg_kwh: float
+    exhaust_temperature_c: float
+    wake_spread: float
+
+    def __post_init__(self) -> None:
+        if self.stroke not in {2, 4}:
+            raise MeasurementError(f"stroke of {self.name} is {self.stroke}; an engine has 2 or 4")
+        if self.nox_tier not in {0, 1, 2, 3}:
+            raise MeasurementError(f"NOx tier of {self.name} is {self.nox_tier}; there are 0, 1, 2 and 3")
+        for name in _POSITIVE:
+            if not getattr(self, name) > 0.0:
+                raise MeasurementError(f"{name} of {self.name} is {getattr(self, name):g}; give a value above 0")
+        if not 100.0 <= self.exhaust_temperature_c <= 600.0:
+            raise MeasurementError(f"exhaust_temperature_c of {self.name} is {self.exhaust_temperature_c:g}; give 100 to 600")
+        if not 0.0 <= self.wake_spread <= 20.0:
+            raise MeasurementError(f"wake_spread of {self.name} is {self.wake_spread:g} m; give 0 to 20, usually 0 to 8")
+
+
+def ship_names() -> tuple[str, ...]:
+    """Return the names of the ships that are known."""
+    return preset_names(_FILE)
+
+
+def ship_preset(name: str) -> Ship:
+    """Return the ship ``name``.
+
+    Raises
+    ------
+    MeasurementError : the name is not known
+    """
+    return Ship(**preset(_FILE, "ship", name))

@@ -1,0 +1,50 @@
+"""The gases of the exhaust, their units in readings, and what their ratio says of the fuel."""
+
+from measurement.errors import MeasurementError
+
+GASES = ("so2", "co2", "no", "no2")
+"""Gases in the order of every array over gases."""
+
+PARTS = {"so2": 1e9, "co2": 1e6, "no": 1e9, "no2": 1e9}
+"""Readings per mole fraction: CO2 is read in ppm, the others in ppb."""
+
+UNITS = {"so2": "ppb", "co2": "ppm", "no": "ppb", "no2": "ppb"}
+"""Units of readings, as they are printed."""
+
+_CARBON, _OXYGEN, _NITROGEN = 12.011e-3, 15.999e-3, 14.007e-3
+"""Standard atomic weights [kg/mol], abridged (IUPAC 2021)."""
+
+SULPHUR_MASS = 32.06e-3
+"""Of a mole of sulphur [kg/mol] (IUPAC 2021)."""
+
+MOLAR_MASS = {
+    "so2": SULPHUR_MASS + 2.0 * _OXYGEN,
+    "co2": _CARBON + 2.0 * _OXYGEN,
+    "no": _NITROGEN + _OXYGEN,
+    "no2": _NITROGEN + 2.0 * _OXYGEN,
+}
+"""Molar masses [kg/mol]."""
+
+CARBON_FRACTION = 0.87
+"""Carbon by mass that the published factor assumes [-]: Balzani Loov et al., AMT 7:2597 (2014)."""
+
+CARBON_PER_CO2 = _CARBON / MOLAR_MASS["co2"]
+"""Carbon by mass in CO2 [-]."""
+
+
+def fsc_factor(carbon_fraction: float = CARBON_FRACTION) -> float:
+    """Return the fuel sulphur content [% m/m] per SO2 over CO2 [ppb/ppm]: 0.2322 at 87 % carbon.
+
+    A part per billion over a part per million is a thousandth by mole, and the content is in per cent: hence 0.1.
+
+    Parameters
+    ----------
+    carbon_fraction : carbon by mass in the fuel [-], above 0 and at most 1
+
+    Raises
+    ------
+    MeasurementError : the fraction is not within 0 to 1
+    """
+    if not 0.0 < carbon_fraction <= 1.0:
+        raise MeasurementError(f"carbon fraction is {carbon_fraction:g}; a fuel has above 0 and at most 1, usually 0.85 to 0.875")
+    return 0.1 * carbon_fraction * SULPHUR_MASS / _CARBON
