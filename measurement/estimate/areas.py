@@ -1,0 +1,111 @@
+"""The published method: areas of SO2 and CO2 over a window about each pass (measurement.md, section 4.2)."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from measurement.estimate.fit.signals import shares_of, used_gases
+from measurement.estimate.passes import Pass
+from measurement.estimate.record import Record
+from measurement.sniffer.lag import Array, parallel
+from measurement.sniffer.spec import SnifferSpec
+
+_LEAD = 1.0
+"""The window begins so long before the pass [s]."""
+
+_TAIL = 5.0
+"""It ends so many of the slowest time constants after the pass."""
+
+_BASE_SAMPLES = 3
+"""Samples on either side of the window whose mean is the background."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Areas:
+    """Areas of all passes together.
+
+    Attributes
+    ----------
+    ratio : SO2 over CO2 [ppb/ppm]
+    noise : its standard deviation by the noise [ppb/ppm]
+    share : of the truth that the areas are expected to read, as passes overlap in the SO2 channel [-]
+    interval_s : between passes, median [s]; not a number for one pass
+    """
+
+    ratio: float
+    noise: float
+    share: float
+    interval_s: float
+
+
+def overlap_ratio(interval: float, instrument: SnifferSpec) -> float:
+    """Return what areas over troughs read of the truth where narrow passes follow at an interval [s].
+
+    An area over the line between troughs is 1 - q/(e^q - 1) of the whole, q = interval/tau (measurement.md, section 4.4); the ratio
+    is that of SO2 over that of CO2. A channel with two poles counts by the sum of its time constants.
+    """
+    kept = []
+    for gas in ("so2", "co2"):
+        q = interval / sum(instrument.known(gas).constants)
+        kept.append(1.0 - q / math.expm1(q) if q < 500.0 else 1.0)
+    return kept[0] / kept[1]
+
+
+def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> Areas:
+    """Return the ratio of the areas, each over the straight line between the means before and after its window.
+
+    A window begins before its pass, and ends when the slowest channel has forgotten it or the next one begins. Each gas has its own
+    delay; SO2 is corrected by the areas of the gases that its cell responds to.
+    """
+    gases = used_gases(record)
+    shares = shares_of(instrument, gases)
+    tail = _TAIL * max(instrument.known(gas).constants[0] for gas in gases)
+    weights = {gas: np.zeros(len(record.time)) for gas in gases}
+    for i, found in enumerate(passes):
+        until = passes[i + 1].start_s - _LEAD if i + 1 < len(passes) else math.inf
+        for gas in gases:
+            late = instrument.known(gas).delay_s - instrument.known("co2").delay_s
+            _add_window(weights[gas], record, found.start_s - _LEAD + late, min(found.end_s + tail, until) + late)
+    so2 = sum(shares[gas][0] * float(weights[gas] @ record.of(gas)) for gas in gases)
+    co2 = sum(shares[gas][1] * float(weights[gas] @ record.of(gas)) for gas in gases)
+    ratio = so2 / co2 if co2 > 0.0 else math.nan
+    variance = sum(
+        ((shares[gas][0] - ratio * shares[gas][1]) * instrument.known(gas).noise) ** 2 * float(weights[gas] @ weights[gas])
+        for gas in gases
+    )
+    times = np.array([found.time_s for found in passes])
+    interval = float(np.median(np.diff(times))) if len(times) > 1 else math.nan
+    share = float(weights["so2"] @ _puffs(record, instrument, passes)) / co2 if co2 > 0.0 else math.nan
+    return Areas(ratio=ratio, noise=math.sqrt(variance) / co2 if co2 > 0.0 else math.nan, share=share, interval_s=interval)
+
+
+def _puffs(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> Array:
+    """Return what the SO2 channel reads of puffs with the dose of each pass, if SO2 and CO2 were alike: sums of exponentials."""
+    so2, co2 = instrument.known("so2"), instrument.known("co2")
+    since = (
+        record.time[:, np.newaxis] - np.array([found.centre_s for found in passes]) - so2.delay_s + co2.delay_s + sum(co2.constants)
+    )
+    doses = np.array([found.dose_ppm_s for found in passes])
+    read = np.zeros(len(since))
+    for weight, constant in parallel(so2.constants):
+        read += weight / constant * (np.where(since >= 0.0, np.exp(-np.maximum(since, 0.0) / constant), 0.0) @ doses)
+    return read * so2.gain / co2.gain
+
+
+def _add_window(weights: Array, record: Record, start: float, end: float) -> None:
+    """Add to the samples' weights those of an area from ``start`` to ``end`` over its background [s]."""
+    before = 0
+    for time in record.times:
+        first = max(int(np.searchsorted(time, start - 1e-9)), 0)
+        last = min(int(np.searchsorted(time, end + 1e-9)), len(time)) - 1
+        if last > first + 1 and first < len(time):
+            part = weights[before : before + len(time)]
+            # Trapezoids: the ends count half. The background's line has the area of its ends' mean.
+            part[first : last + 1] += record.step
+            part[[first, last]] -= 0.5 * record.step
+            for base in (slice(max(0, first - _BASE_SAMPLES + 1), first + 1), slice(last, last + _BASE_SAMPLES)):
+                part[base] -= 0.5 * record.step * (last - first) / len(part[base])
+            return
+        before += len(time)

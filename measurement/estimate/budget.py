@@ -1,0 +1,74 @@
+"""Errors that do not average out: what each property of the instrument that is not known exactly does to the result."""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from measurement.gases import fsc_factor
+from measurement.sniffer.spec import SnifferSpec
+
+CARBON_SD = 0.015
+"""Relative standard deviation of a fuel's carbon content [-] (measurement.md, section 4.5)."""
+
+SULPHATE_SHARE = 0.0225
+"""Of the sulphur leaves as sulphate, not as SO2 [-] (IMO GHG4, eq. 15); 0.01 to 0.19 are reported. Stated, not corrected."""
+
+EXPECTED_PPB_PER_PPM = {"no": (18.0, 7.5), "no2": (2.0, 1.2)}
+"""Of a ship's NO and NO2 over its CO2 and its standard deviation, where they are not measured [ppb/ppm].
+
+Assumption: NOx tiers 0 to 3 of two- and four-stroke engines emit 4 to 27 ppb/ppm (measurement.md, section 2); 5 to 15 % of it is
+NO2, and ozone adds some.
+"""
+
+_CORRECTING = ("no", "no2")
+
+
+def unmeasured(instrument: SnifferSpec, measured: tuple[str, ...], carbon: float) -> dict[str, tuple[float, float]]:
+    """Return what NO and NO2 that are not measured add to the result, and its standard deviation, by gas [% m/m]."""
+    so2, found = instrument.known("so2"), {}
+    for gas in _CORRECTING:
+        share, deviation = so2.cross.get(gas, 0.0), so2.cross_sd.get(gas, 0.0)
+        if gas not in measured and (share or deviation):
+            ratio, ratio_deviation = EXPECTED_PPB_PER_PPM[gas]
+            factor = fsc_factor(carbon)
+            spread = math.sqrt((share * ratio_deviation) ** 2 + deviation**2 * (ratio**2 + ratio_deviation**2))
+            found[gas] = factor * share * ratio, factor * spread
+    return found
+
+
+def common_errors(instrument: SnifferSpec, measured: tuple[str, ...], fsc: Callable[[SnifferSpec], float]) -> dict[str, float]:
+    """Return the standard uncertainty of the result by gains, responses, delays and cross-sensitivities, by name.
+
+    Each property is moved by its standard deviation, and the result found anew with ``fsc``; those of a name add in squares.
+
+    Parameters
+    ----------
+    instrument : as it is known, with response and delay of SO2 as they fit where they are not given
+    measured : gases of the record
+    fsc : result as a function of the instrument, in the unit of what is returned
+    """
+    found = fsc(instrument)
+    squares: dict[str, float] = {}
+    for name, moved in _moved(instrument, measured):
+        squares[name] = squares.get(name, 0.0) + (fsc(moved) - found) ** 2
+    return {name: math.sqrt(square) for name, square in squares.items()}
+
+
+def _moved(instrument: SnifferSpec, measured: tuple[str, ...]) -> Iterator[tuple[str, SnifferSpec]]:
+    """Yield the name of an error and the instrument that has it. What is not given at all was found from the record."""
+    for gas in measured:
+        channel = instrument.known(gas)
+        correcting = gas in _CORRECTING
+        if correcting and not any(instrument.known(main).cross.get(gas, 0.0) for main in ("so2", "co2")):
+            continue
+        name, response = (gas, gas) if correcting else ("calibration", "response")
+        if channel.gain_sd:
+            yield name, instrument.with_channel(replace(channel, gain=channel.gain * (1.0 + channel.gain_sd)))
+        for other, deviation in channel.cross_sd.items():
+            if other in measured and deviation:
+                cross = {**channel.cross, other: channel.cross.get(other, 0.0) + deviation}
+                yield other if other in _CORRECTING else "calibration", instrument.with_channel(replace(channel, cross=cross))
+        if 0.0 < channel.t90_sd < math.inf:
+            yield response, instrument.with_channel(replace(channel, t90_s=channel.t90_s * (1.0 + channel.t90_sd)))
+        if 0.0 < channel.delay_sd_s < math.inf:
+            yield response, instrument.with_channel(replace(channel, delay_s=channel.delay_s + channel.delay_sd_s))

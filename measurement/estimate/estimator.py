@@ -1,0 +1,227 @@
+"""The fuel sulphur content of a record, how sure it is, and what follows."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from measurement.errors import MeasurementError
+from measurement.estimate.areas import area_ratio
+from measurement.estimate.budget import CARBON_SD, SULPHATE_SHARE, common_errors, unmeasured
+from measurement.estimate.fit.alignment import Alignment, align, stated
+from measurement.estimate.fit.groups import grouped
+from measurement.estimate.fit.regression import regress, slope_alone
+from measurement.estimate.fit.signals import Signals, make_signals, used_gases
+from measurement.estimate.passes import SNR_LEAST, Pass, co2_background, find_passes, readings_noise
+from measurement.estimate.quality import judged_quality
+from measurement.estimate.record import Record, checked_record
+from measurement.estimate.result import Figures, FscEstimate, Method
+from measurement.estimate.verdict import LIMITS_PERCENT, interval, judged
+from measurement.gases import CARBON_FRACTION, UNITS, fsc_factor
+from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import SnifferSpec
+
+CARBON_LEAST, CARBON_MOST = 0.5, 0.95
+"""Of a fuel [-]; methanol has 0.375, which these factors are not made for."""
+
+OVERLAP_LEAST = 0.95
+"""Least share of the truth that areas must read, by how their passes overlap in the slow channel: 2.0 t90 between passes."""
+
+_OUTSIDE = 0.1
+"""Share of the samples with the least CO2, by which the level outside the plume is shown."""
+
+_SHARE_LEAST = 0.05
+"""Share of the truth under which the error of overlapping areas is not told larger."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Ratio:
+    """A ratio of SO2 to CO2 by either method, with what the methods do not share."""
+
+    ratio: float
+    noise: float
+    misfit: float
+    common: dict[str, float]
+    alignment: Alignment
+    problems: tuple[str, ...] = ()
+
+
+def estimate(
+    readings: Readings,
+    instrument: SnifferSpec,
+    *,
+    method: Method = "regression",
+    carbon: float = CARBON_FRACTION,
+    limits_percent: Sequence[float] = LIMITS_PERCENT,
+) -> FscEstimate:
+    """Return the fuel sulphur content that the readings show.
+
+    Parameters
+    ----------
+    readings : of a flight through the plume of one ship
+    instrument : as the analyst knows it
+    method : "regression" (equalise and regress), or "areas" over each pass
+    carbon : mass share of the fuel [-]
+    limits_percent : on which there are to be verdicts [% m/m]
+
+    Raises
+    ------
+    MeasurementError : the readings cannot be those of a flight through a plume: no CO2, times, units or shapes; or a parameter is
+        out of range. What makes a record weak rather than wrong is a quality of C with its reason, and no verdict.
+    """
+    if method not in ("regression", "areas"):
+        raise MeasurementError(f"method is {method!r}; it must be 'regression' or 'areas'")
+    if not CARBON_LEAST <= carbon <= CARBON_MOST:
+        raise MeasurementError(f"carbon is {carbon:g}; a fuel's mass share of carbon must be {CARBON_LEAST:g} to {CARBON_MOST:g}")
+    if not limits_percent or not all(0.0 < limit <= 10.0 for limit in limits_percent):
+        raise MeasurementError(f"limits are {tuple(limits_percent)} %; give one or more of 0 to 10")
+    record = checked_record(readings, instrument)
+    noise = readings_noise(record, instrument)
+    instrument = replace(
+        instrument, channels=tuple(replace(channel, noise=noise.get(channel.gas, channel.noise)) for channel in instrument.channels)
+    )
+    passes = find_passes(record, noise["co2"])
+    problems = [*record.problems, *_too_little(record, instrument, passes, noise["co2"])]
+    ratio = _regressed(record, instrument) if method == "regression" else _areas(record, instrument, passes)
+    if not passes:
+        ratio = replace(ratio, ratio=math.nan, noise=math.nan, misfit=math.nan)
+    return _told(record, passes, ratio, method, carbon, tuple(limits_percent), [*problems, *ratio.problems])
+
+
+def _too_little(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], noise: float) -> list[str]:
+    """Return why the record is too short or has no plume in it."""
+    if not passes:
+        least = f"{SNR_LEAST * noise:.1f} ppm, {SNR_LEAST:g} times its noise"
+        return [f"no pass through a plume: CO2 is nowhere {least}, over its background"]
+    width = max(found.end_s - found.start_s for found in passes)
+    response = instrument.known("so2").t90_s if math.isfinite(instrument.known("so2").t90_sd) else 0.0
+    if record.duration < width + response:
+        return [f"the record lasts {record.duration:.0f} s; a pass and the response of SO2 take {width + response:.0f} s"]
+    return []
+
+
+def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
+    alignment = align(record, instrument)
+    found = regress(make_signals(record, alignment.instrument))
+
+    def slope(moved: SnifferSpec) -> float:
+        return slope_alone(make_signals(record, align(record, moved, start=alignment.instrument).instrument))
+
+    common = common_errors(alignment.instrument, used_gases(record), slope)
+    common["response"] = math.hypot(common.get("response", 0.0), alignment.slope_deviation)
+    return _Ratio(ratio=found.slope, noise=found.noise, misfit=found.misfit, common=common, alignment=alignment)
+
+
+def _areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _Ratio:
+    """Return the ratio of areas; passes that overlap in the slow channel add a common error as large as the closed form tells."""
+    alignment = stated(instrument)
+    found = area_ratio(record, instrument, passes)
+    common = common_errors(instrument, used_gases(record), lambda moved: area_ratio(record, moved, passes).ratio)
+    problems: tuple[str, ...] = ()
+    if found.share < OVERLAP_LEAST:
+        problems = (
+            f"passes every {found.interval_s:.1f} s overlap in an SO2 channel with a t90 of {instrument.known('so2').t90_s:g} s:"
+            f" areas read about {100.0 * found.share:.0f} % of the truth; use the regression",
+        )
+    common["overlap"] = abs(found.ratio) * abs(1.0 / max(found.share, _SHARE_LEAST) - 1.0)
+    return _Ratio(ratio=found.ratio, noise=found.noise, misfit=1.0, common=common, alignment=alignment, problems=problems)
+
+
+def _told(
+    record: Record,
+    passes: tuple[Pass, ...],
+    ratio: _Ratio,
+    method: Method,
+    carbon: float,
+    limits: tuple[float, ...],
+    problems: list[str],
+) -> FscEstimate:
+    """Return the estimate that a ratio means."""
+    factor, instrument = fsc_factor(carbon), ratio.alignment.instrument
+    absent = unmeasured(instrument, used_gases(record), carbon)
+    fsc = factor * ratio.ratio - sum(shift for shift, _ in absent.values())
+    noise = factor * ratio.noise
+    common = {name: factor * value for name, value in ratio.common.items()}
+    for gas, (_, deviation) in absent.items():
+        common[gas] = math.hypot(common.get(gas, 0.0), deviation)
+    common["carbon"] = CARBON_SD * abs(fsc)
+    total = math.sqrt(noise**2 + sum(value**2 for value in common.values()))
+    signals = make_signals(record, instrument)
+    groups = grouped(signals, passes, ratio.ratio, misfit=ratio.misfit, response=ratio.common.get("response", 0.0))
+    samples, so2_snr = _samples(signals, ratio.ratio)
+    snr = float(np.median([found.snr for found in passes])) if passes else 0.0
+    quality, reasons = judged_quality(
+        problems=problems,
+        snr=snr,
+        passes=len(passes),
+        fsc=fsc,
+        deviation=total,
+        agreement=groups.agreement,
+        misfit=ratio.misfit,
+        so2_snr=so2_snr,
+        limit=min(limits),
+    )
+    low, high = interval(fsc, total)
+    return FscEstimate(
+        method=method,
+        fsc_percent=fsc,
+        noise_percent=noise,
+        common_percent=common,
+        total_percent=total,
+        low_percent=low,
+        high_percent=high,
+        sulphate_percent=-SULPHATE_SHARE * max(fsc, 0.0),
+        slope_ppb_per_ppm=ratio.ratio,
+        misfit=ratio.misfit,
+        quality=quality,
+        quality_reasons=reasons,
+        verdicts=tuple(judged(limit, fsc, total, admitted=quality != "C") for limit in limits),
+        figures=_figures(record, passes, instrument, snr, so2_snr),
+        passes=passes,
+        pass_percent=tuple(factor * slope - sum(shift for shift, _ in absent.values()) for slope in groups.slopes),
+        pass_deviation_percent=tuple(factor * deviation for deviation in groups.deviations),
+        agreement=groups.agreement,
+        so2_t90_s=instrument.known("so2").t90_s,
+        so2_t90_sd_s=ratio.alignment.t90_sd_s,
+        delay_s=instrument.known("so2").delay_s - instrument.known("co2").delay_s,
+        delay_sd_s=ratio.alignment.delay_sd_s,
+        signals=samples,
+    )
+
+
+def _figures(record: Record, passes: tuple[Pass, ...], instrument: SnifferSpec, snr: float, so2_snr: float) -> Figures:
+    noise = instrument.known("co2").noise
+    above = sum(
+        int(np.sum(values["co2"] - co2_background(time, values["co2"], noise) > SNR_LEAST * noise))
+        for time, values in zip(record.times, record.values, strict=True)
+    )
+    times = np.array([found.time_s for found in passes])
+    return Figures(
+        duration_s=record.duration,
+        passes=len(passes),
+        interval_s=float(np.median(np.diff(times))) if len(times) > 1 else math.nan,
+        seconds_in_plume=above * record.step if passes else 0.0,
+        dose_ppm_s=float(np.mean([found.dose_ppm_s for found in passes])) if passes else math.nan,
+        co2_snr=snr,
+        so2_snr=so2_snr,
+    )
+
+
+def _samples(signals: Signals, slope: float) -> tuple[pd.DataFrame, float]:
+    """Return readings, equalised excesses, fit and residual by sample, and the signal to noise of SO2."""
+    record = signals.record
+    co2, so2 = signals.excess()
+    # Beside the background both have a mean of 0; they are shown from the level that CO2 has outside the plume.
+    level = float(np.quantile(co2, _OUTSIDE))
+    fit, rest = slope * co2, float(np.std(so2 - slope * co2))
+    columns = {"time_s": record.time}
+    columns |= {f"{gas}_{UNITS[gas]}": record.of(gas) for gas in used_gases(record)}
+    columns |= {
+        "co2_excess_ppm": co2 - level,
+        "so2_excess_ppb": so2 - slope * level,
+        "fit_ppb": fit - slope * level,
+        "residual_ppb": so2 - fit,
+    }
+    return pd.DataFrame(columns), float(np.std(fit)) / rest if rest > 0.0 else math.inf

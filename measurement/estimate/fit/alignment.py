@@ -1,0 +1,153 @@
+"""Response time and delay of SO2, found from the record where they are not given: those that fit best."""
+
+import itertools
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from measurement.errors import MeasurementError
+from measurement.estimate.fit.regression import noise_covariance, residual_variance, slope_alone
+from measurement.estimate.fit.signals import Signals, make_signals
+from measurement.estimate.record import Record
+from measurement.sniffer.lag import Array
+from measurement.sniffer.spec import SnifferSpec
+
+_ROUNDS = 8
+"""Gauss-Newton steps at most."""
+
+_SMALL = 1e-3
+"""Change of log(t90) and delay [s] at which the fit has settled."""
+
+_STEPS, _JUMPS = np.array([0.02, 0.1]), np.array([0.3, 1.0])
+"""Of the numerical derivatives, and the largest of one round: log(t90), delay [s]."""
+
+_T90_SEARCH = tuple(float(t) for t in np.geomspace(0.5, 120.0, 14))
+_DELAY_SEARCH = tuple(float(d) for d in np.arange(-5.0, 31.0, 1.0))
+"""Where a t90 [s], and a delay after CO2 [s], are sought first."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Alignment:
+    """Response and delay.
+
+    Attributes
+    ----------
+    instrument : with the response and delay that fit, where they were not given
+    slope_deviation : standard deviation of the slope by what noise does to the fit; 0 where both were given [ppb/ppm]
+    t90_sd_s, delay_sd_s : standard deviations of t90 of SO2, and of its delay after CO2 [s]
+    """
+
+    instrument: SnifferSpec
+    slope_deviation: float
+    t90_sd_s: float
+    delay_sd_s: float
+
+
+def stated(instrument: SnifferSpec) -> Alignment:
+    """Return response and delay as the instrument's figures say.
+
+    Raises
+    ------
+    MeasurementError : they are not given
+    """
+    so2, co2 = instrument.known("so2"), instrument.known("co2")
+    spread = so2.t90_s * so2.t90_sd, math.hypot(so2.delay_sd_s, co2.delay_sd_s)
+    if not all(math.isfinite(value) for value in spread):
+        raise MeasurementError(f"t90 and delay of '{instrument.name}' are not both given; give them, or use the regression")
+    return Alignment(instrument=instrument, slope_deviation=0.0, t90_sd_s=spread[0], delay_sd_s=spread[1])
+
+
+def align(record: Record, instrument: SnifferSpec, start: SnifferSpec | None = None) -> Alignment:
+    """Return response and delay of SO2; of what is not given, the values with the least squared residuals.
+
+    Parameters
+    ----------
+    record, instrument : an infinite deviation of t90 or delay of SO2 means that it is not given
+    start : from which to seek; otherwise a grid is searched first
+    """
+    so2, co2 = instrument.known("so2"), instrument.known("co2")
+    free = np.flatnonzero(np.isinf([so2.t90_sd, so2.delay_sd_s]))
+    if not len(free):
+        return stated(instrument)
+    place = _place(start) if start else _searched(record, instrument, free)
+    covariance, slope_deviation = np.zeros((2, 2)), math.nan
+    for _ in range(_ROUNDS):
+        step, covariance, slope_deviation = _round(record, instrument, place, free)
+        place = place + step
+        if np.abs(step).max() < _SMALL:
+            break
+    fitted = _applied(instrument, place)
+    spread = np.sqrt(np.diagonal(covariance))
+    return Alignment(
+        instrument=fitted,
+        slope_deviation=slope_deviation,
+        t90_sd_s=fitted.known("so2").t90_s * (float(spread[0]) if 0 in free else so2.t90_sd),
+        delay_sd_s=float(spread[1]) if 1 in free else math.hypot(so2.delay_sd_s, co2.delay_sd_s),
+    )
+
+
+def _place(instrument: SnifferSpec) -> Array:
+    """Return log(t90) of SO2 and its delay after CO2 [s]."""
+    return np.array([math.log(instrument.known("so2").t90_s), instrument.known("so2").delay_s - instrument.known("co2").delay_s])
+
+
+def _applied(instrument: SnifferSpec, place: Array) -> SnifferSpec:
+    """Return the instrument with log(t90) of SO2 and its delay after CO2 [s]; where that is negative, all others are later."""
+    late = max(0.0, -float(place[1]) - instrument.known("co2").delay_s)
+    moved = replace(instrument, channels=tuple(replace(channel, delay_s=channel.delay_s + late) for channel in instrument.channels))
+    delay = max(0.0, moved.known("co2").delay_s + float(place[1]))
+    return moved.with_channel(replace(moved.known("so2"), t90_s=math.exp(float(place[0])), delay_s=delay))
+
+
+def _round(record: Record, instrument: SnifferSpec, place: Array, free: npt.NDArray[np.int64]) -> tuple[Array, Array, float]:
+    """Return the Gauss-Newton step, the covariance of log(t90) and delay, and what it adds to the slope's deviation."""
+    signals = make_signals(record, _applied(instrument, place))
+    slope = slope_alone(signals)
+    if not math.isfinite(slope):
+        return np.zeros(2), np.zeros((2, 2)), math.nan
+    derivatives = np.stack([-signals.excess()[0], *(_derivative(record, instrument, place, i, slope) for i in free)], axis=1)
+    inverse = np.linalg.pinv(derivatives.T @ derivatives, hermitian=True)
+    residual = _residual(signals, slope)
+    step = np.zeros(2)
+    step[free] = np.clip(-(inverse @ (derivatives.T @ residual))[1:], -_JUMPS[free], _JUMPS[free])
+    # The residuals' noise is not white: it reaches the fit by its own covariance.
+    expected = residual_variance(signals, slope) * len(residual)
+    misfit = max(1.0, float(residual @ residual) / expected) if expected > 0.0 else 1.0
+    noise = misfit * noise_covariance(signals, derivatives, slope)
+    spread = inverse @ noise @ inverse
+    covariance = np.zeros((2, 2))
+    covariance[np.ix_(free, free)] = spread[1:, 1:]
+    alone = float(noise[0, 0]) / float(derivatives[:, 0] @ derivatives[:, 0]) ** 2
+    return step, covariance, math.sqrt(max(0.0, float(spread[0, 0]) - alone))
+
+
+def _residual(signals: Signals, slope: float) -> Array:
+    co2, so2 = signals.excess()
+    return so2 - slope * co2
+
+
+def _derivative(record: Record, instrument: SnifferSpec, place: Array, i: int, slope: float) -> Array:
+    sides = []
+    for sign in (1.0, -1.0):
+        moved = place.copy()
+        moved[i] += sign * _STEPS[i]
+        sides.append(_residual(make_signals(record, _applied(instrument, moved)), slope))
+    return np.asarray((sides[0] - sides[1]) / (2.0 * _STEPS[i]))
+
+
+def _searched(record: Record, instrument: SnifferSpec, free: npt.NDArray[np.int64]) -> Array:
+    """Return the place on the grid at which CO2 leaves the smallest share of SO2 unexplained."""
+    best, least = _place(instrument), math.inf
+    times = np.log(_T90_SEARCH) if 0 in free else best[:1]
+    delays = np.array(_DELAY_SEARCH) if 1 in free else best[1:]
+    for log_t90, delay in itertools.product(times, delays):
+        place = np.array([log_t90, delay])
+        co2, so2 = make_signals(record, _applied(instrument, place)).excess()
+        product = float(co2 @ so2)
+        left = 1.0 - product**2 / max(float(co2 @ co2) * float(so2 @ so2), 1e-30)
+        # SO2 does not fall where CO2 rises: a fit of that sign is none.
+        if left < least and product > 0.0:
+            best, least = place, left
+    return best

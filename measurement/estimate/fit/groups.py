@@ -1,0 +1,82 @@
+"""Sulphur content of groups of passes, and whether they agree."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from measurement.estimate.fit.background import without
+from measurement.estimate.fit.regression import noise_covariance
+from measurement.estimate.fit.response import equalised, shifted
+from measurement.estimate.fit.signals import Signals
+from measurement.estimate.passes import Pass, co2_background
+from measurement.sniffer.lag import Array
+
+GROUPS_MAX = 8
+"""Groups of passes at most: single passes overlap in a slow sensor, and tell little apart."""
+
+_INDEPENDENT = 1e-6
+"""Least size of what is particular to a group, relative to all."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Groups:
+    """Slopes of groups of neighbouring passes.
+
+    Attributes
+    ----------
+    slopes, deviations : of each group, and its noise [ppb/ppm]
+    agreement : probability that groups of one slope differ as much; not a number for fewer than two groups
+    """
+
+    slopes: tuple[float, ...]
+    deviations: tuple[float, ...]
+    agreement: float
+
+
+def grouped(signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: float, response: float) -> Groups:
+    """Return the slopes of groups of passes, fitted together: each group's CO2 excess, equalised, is a signal of its own.
+
+    Parameters
+    ----------
+    signals : of the whole record
+    passes : through the plume
+    slope, misfit : of the whole record
+    response : standard deviation of the slope by response and delay [ppb/ppm]; groups may differ by as much, as a wrong response
+        distorts each of them in its own way
+    """
+    nothing = Groups(slopes=(), deviations=(), agreement=math.nan)
+    if len(passes) < 2 or not math.isfinite(slope):
+        return nothing
+    parts = np.array_split(np.arange(len(passes)), min(GROUPS_MAX, len(passes)))
+    cuts = [0.5 * (passes[part[-1]].end_s + passes[part[-1] + 1].start_s) for part in parts[:-1]]
+    co2 = np.stack([_part(signals, low, high) for low, high in zip([-math.inf, *cuts], [*cuts, math.inf], strict=True)], axis=1)
+    co2 = without(signals.basis, co2)
+    sizes = np.linalg.svd(co2, compute_uv=False)
+    if sizes[-1] <= _INDEPENDENT * sizes[0]:
+        return nothing
+    weights = np.asarray(np.linalg.pinv(co2), dtype=np.float64)
+    found = weights @ signals.excess()[1]
+    covariance = max(1.0, misfit) * noise_covariance(signals, weights.T, slope)
+    inverse = np.linalg.inv(covariance + response**2 * np.eye(len(found)))
+    mean = float(inverse.sum(axis=0) @ found / inverse.sum())
+    distance = float((found - mean) @ inverse @ (found - mean))
+    return Groups(
+        slopes=tuple(float(v) for v in found),
+        deviations=tuple(float(v) for v in np.sqrt(np.diagonal(covariance))),
+        agreement=float(chi2.sf(distance, len(found) - 1)),
+    )
+
+
+def _part(signals: Signals, start: float, end: float) -> Array:
+    """Return the equalised CO2 excess of the readings between two times."""
+    record, channel = signals.record, signals.instrument.known("co2")
+    late = signals.instrument.known("so2").delay_s - channel.delay_s
+    parts = []
+    for time, values in zip(record.times, record.values, strict=True):
+        excess = (values["co2"] - co2_background(time, values["co2"], channel.noise)) / channel.gain
+        inside = np.where((time >= start) & (time < end), excess, 0.0)
+        parts.append(shifted(equalised(inside, record.step, channel.constants, signals.common), record.step, late))
+    return np.concatenate(parts)

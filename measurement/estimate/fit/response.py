@@ -1,0 +1,73 @@
+"""One response for all channels: each is given the slowest poles there are, by a filter that lowers its noise."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from measurement.sniffer.lag import Array, lag
+
+Poles = tuple[float, ...]
+"""Time constants [s], the largest first."""
+
+
+def slowest(poles: Sequence[Poles]) -> Poles:
+    """Return the poles of the common response: of each order the largest time constant, so that no filter amplifies noise."""
+    count = max(len(p) for p in poles)
+    return tuple(max(p[i] for p in poles if len(p) > i) for i in range(count))
+
+
+def equalised(signal: Array, step: float, own: Poles, common: Poles) -> Array:
+    """Return a signal as a channel with the common poles had read it.
+
+    Each pole's filter is (1 + tau s)/(1 + T s), that is tau/T c + (1 - tau/T) lag_T(c), exact for a signal that is linear between
+    samples (measurement.md, section 4.3). It is at rest at the first sample; what that leaves out is in ``transients``.
+
+    Parameters
+    ----------
+    signal : shape (n,), a step [s] apart
+    own, common : poles; a missing one is 0
+    """
+    for i, target in enumerate(common):
+        tau = own[i] if i < len(own) else 0.0
+        if tau != target:
+            signal = tau / target * signal + (1.0 - tau / target) * lag(signal, step, target)
+    return signal
+
+
+def adjoint(weights: Array, step: float, own: Poles, common: Poles) -> Array:
+    """Return the weights of a signal in the weighted sum of its equalised samples, shape (n,) or (n, k).
+
+    The filter begins with a memory that is empty; for weights that sum to zero against ``transients`` this makes no difference.
+    """
+    columns = weights.reshape(len(weights), -1)[::-1].T
+    return np.stack([equalised_from_rest(column, step, own, common)[::-1] for column in columns], axis=1).reshape(weights.shape)
+
+
+def equalised_from_rest(signal: Array, step: float, own: Poles, common: Poles) -> Array:
+    """Return the equalised signal where it was 0 before its first sample."""
+    padded = np.concatenate([np.zeros(1), signal])
+    return equalised(padded, step, own, common)[1:]
+
+
+def impulse(length: int, step: float, own: Poles, common: Poles) -> Array:
+    """Return the filter's response to one sample of 1, shape (length,)."""
+    one = np.zeros(length)
+    one[0] = 1.0
+    return equalised_from_rest(one, step, own, common)
+
+
+def transients(time: Array, common: Poles) -> Array:
+    """Return what an unknown state at the first sample may leave in an equalised signal, shape (n, poles)."""
+    return np.stack([np.exp(-(time - time[0]) / constant) for constant in common], axis=1)
+
+
+def shifted(signal: Array, step: float, delay: float) -> Array:
+    """Return a smooth signal ``delay`` later, by a cubic spline; beyond its ends it stays at its last value."""
+    if abs(delay) < 1e-9 or len(signal) < 4:
+        return signal
+    place = np.clip(np.arange(len(signal)) - delay / step, 0.0, len(signal) - 1.0)
+    if math.isclose(delay / step, round(delay / step), abs_tol=1e-9):
+        return np.asarray(signal[np.round(place).astype(np.int64)])
+    return np.asarray(CubicSpline(np.arange(len(signal)), signal)(place), dtype=np.float64)

@@ -1,0 +1,122 @@
+"""SO2 and CO2 of a record, corrected for other gases and brought to one response and one delay."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from measurement.estimate.fit.background import background_basis, without
+from measurement.estimate.fit.response import Poles, adjoint, equalised, impulse, shifted, slowest
+from measurement.estimate.record import Record
+from measurement.gases import GASES
+from measurement.sniffer.lag import Array
+from measurement.sniffer.spec import SnifferSpec
+
+_MEMORY = 12.0
+"""Time constants after which a filter has forgotten."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Signals:
+    """What is regressed: ``so2 = slope co2 + background + noise``.
+
+    Attributes
+    ----------
+    record, instrument : what they are made of
+    co2, so2 : at the common response and delay, with their backgrounds, shape (n,) [ppm], [ppb]
+    basis : orthonormal, of the backgrounds, shape (n, k)
+    common : poles of the common response
+    shares : of each gas's reading in ``so2`` and in ``co2``
+    """
+
+    record: Record
+    instrument: SnifferSpec
+    co2: Array
+    so2: Array
+    basis: Array
+    common: Poles
+    shares: dict[str, tuple[float, float]]
+
+    def poles(self, gas: str) -> Poles:
+        """Return the poles of a gas's channel."""
+        return self.instrument.known(gas).constants
+
+    def noise(self, gas: str) -> float:
+        """Return the standard deviation of a gas's readings."""
+        return self.instrument.known(gas).noise
+
+    def excess(self) -> tuple[Array, Array]:
+        """Return CO2 and SO2 without what the background explains."""
+        return without(self.basis, self.co2), without(self.basis, self.so2)
+
+    def backwards(self, gas: str, weights: Array) -> Array:
+        """Return the weights of a gas's readings in a weighted sum of its equalised samples, shape (n,) or (n, k)."""
+        ends = np.cumsum([len(segment) for segment in self.record.times])[:-1]
+        parts = np.split(weights, ends)
+        return np.concatenate([adjoint(part, self.record.step, self.poles(gas), self.common) for part in parts])
+
+    def noise_energy(self, gas: str) -> float:
+        """Return the expected sum of squares, beside the background, of a gas's equalised noise of standard deviation 1."""
+        energy = 0.0
+        for segment in self.record.times:
+            squares = self._impulse(gas, len(segment)) ** 2
+            energy += float(np.sum(squares * (len(segment) - np.arange(len(squares)))))
+        return energy - float(np.sum(self.backwards(gas, self.basis) ** 2))
+
+    def noise_correlation(self, gas: str) -> float:
+        """Return the sum over all lags of the squared autocovariance of a gas's equalised noise of standard deviation 1."""
+        response = self._impulse(gas, len(self.so2))
+        return float(np.sum(np.correlate(response, response, mode="full") ** 2))
+
+    def _impulse(self, gas: str, longest: int) -> Array:
+        length = min(longest, int(_MEMORY * sum(self.common) / self.record.step) + 2)
+        return impulse(length, self.record.step, self.poles(gas), self.common)
+
+
+def used_gases(record: Record) -> tuple[str, ...]:
+    """Return the gases of a record, in the order of ``GASES``."""
+    return tuple(gas for gas in GASES if gas in record.values[0])
+
+
+def shares_of(instrument: SnifferSpec, gases: tuple[str, ...]) -> dict[str, tuple[float, float]]:
+    """Return what each gas's reading has to count for in SO2 and in CO2: the inverse of gains and cross-sensitivities."""
+    channels = [instrument.known(gas) for gas in gases]
+    response = np.array([[c.gain * (1.0 if c.gas == other else c.cross.get(other, 0.0)) for other in gases] for c in channels])
+    inverse = np.linalg.inv(response)
+    so2, co2 = inverse[gases.index("so2")], inverse[gases.index("co2")]
+    return {gas: (float(so2[i]), float(co2[i])) for i, gas in enumerate(gases)}
+
+
+def common_poles(instrument: SnifferSpec, gases: tuple[str, ...]) -> Poles:
+    """Return the poles of the common response.
+
+    They are the slowest of SO2 and CO2; a slower channel that corrects them joins in where bringing it to their response would make
+    its noise larger than that of SO2.
+    """
+    main = [instrument.known(gas) for gas in ("so2", "co2")]
+    poles = slowest([channel.constants for channel in main])
+    shares = shares_of(instrument, gases)
+    slow = [
+        channel.constants
+        for channel in (instrument.known(gas) for gas in gases if gas not in ("so2", "co2"))
+        if abs(shares[channel.gas][0]) * channel.noise * channel.constants[0] / poles[0] > main[0].noise
+    ]
+    return slowest([poles, *slow])
+
+
+def make_signals(record: Record, instrument: SnifferSpec) -> Signals:
+    """Return the signals of a record, given the instrument's response, delays, gains and cross-sensitivities."""
+    gases = used_gases(record)
+    common, shares = common_poles(instrument, gases), shares_of(instrument, gases)
+    so2, co2 = np.zeros(len(record.time)), np.zeros(len(record.time))
+    reference = instrument.known("so2").delay_s
+    for gas in gases:
+        channel = instrument.known(gas)
+        parts = [
+            shifted(equalised(segment[gas], record.step, channel.constants, common), record.step, reference - channel.delay_s)
+            for segment in record.values
+        ]
+        signal = np.concatenate(parts)
+        so2 += shares[gas][0] * signal
+        co2 += shares[gas][1] * signal
+    basis = background_basis(record, common)
+    return Signals(record=record, instrument=instrument, co2=co2, so2=so2, basis=basis, common=common, shares=shares)

@@ -1,0 +1,111 @@
+"""Passes through the plume: peaks of CO2 above its background (measurement.md, section 4.2)."""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.signal import find_peaks
+
+from measurement.estimate.record import Record
+from measurement.gases import GASES
+from measurement.sniffer.lag import Array
+from measurement.sniffer.spec import SnifferSpec
+
+SNR_LEAST = 5.0
+"""Signal to noise from which on a peak is a pass (Kattner et al., ACP 15:10087)."""
+
+_WINDOW = 60.0
+"""Length of the pieces of which the background is the low quantile [s]."""
+
+_QUANTILE, _QUANTILE_SIGMA = 0.2, 0.8416
+"""Share of the samples, less than those outside the plume, above which the background lies, and by how many standard deviations of
+the noise: the normal distribution's quantile."""
+
+_MEDIAN_SIGMA = 0.6745
+"""Median of the size of normal noise, over its standard deviation."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pass:
+    """A pass through the plume.
+
+    Attributes
+    ----------
+    time_s, centre_s : of the CO2 reading's peak, and of the centre of its area [s]
+    start_s, end_s : where the CO2 reading leaves its background and is back, or the trough to the neighbour [s]
+    height_ppm, snr : of the peak over the background, and over the noise [-]
+    dose_ppm_s : area of the CO2 excess [ppm s]
+    """
+
+    time_s: float
+    centre_s: float
+    start_s: float
+    end_s: float
+    height_ppm: float
+    snr: float
+    dose_ppm_s: float
+
+
+def readings_noise(record: Record, instrument: SnifferSpec) -> dict[str, float]:
+    """Return the standard deviation of each gas's readings: what is stated, or what its second differences show."""
+    noise = {}
+    for gas in (gas for gas in GASES if gas in record.values[0]):
+        stated = instrument.known(gas).noise
+        if math.isnan(stated):
+            second = np.concatenate([np.diff(segment[gas], 2) for segment in record.values])
+            # The variance of a second difference is 6 times that of a sample.
+            stated = float(np.median(np.abs(second))) / _MEDIAN_SIGMA / math.sqrt(6.0)
+        noise[gas] = stated
+    return noise
+
+
+def co2_background(time: Array, values: Array, noise: float) -> Array:
+    """Return the background of CO2: its low quantile in pieces, with straight lines between them."""
+    pieces = max(1, round((time[-1] - time[0]) / _WINDOW))
+    edges = np.linspace(time[0], time[-1], pieces + 1)
+    edges[-1] = math.inf
+    middles, levels = [], []
+    for low, high in itertools.pairwise(edges):
+        inside = (time >= low) & (time < high)
+        if inside.any():
+            middles.append(float(time[inside].mean()))
+            levels.append(float(np.quantile(values[inside], _QUANTILE)) + _QUANTILE_SIGMA * noise)
+    return np.interp(time, middles, levels)
+
+
+def find_passes(record: Record, noise: float) -> tuple[Pass, ...]:
+    """Return the passes of a record, given the noise of its CO2 readings [ppm]."""
+    passes: list[Pass] = []
+    for time, values in zip(record.times, record.values, strict=True):
+        excess = values["co2"] - co2_background(time, values["co2"], noise)
+        least = max(SNR_LEAST * noise, 1e-6 * float(np.abs(values["co2"]).max()))
+        peaks, _ = find_peaks(np.concatenate([[-math.inf], excess, [-math.inf]]), height=least, prominence=least)
+        passes += _bounded(time, excess, peaks - 1, noise)
+    return tuple(passes)
+
+
+def _bounded(time: Array, excess: Array, peaks: npt.NDArray[np.int64], noise: float) -> list[Pass]:
+    """Return the passes at these peaks, each between the troughs to its neighbours, where it is above the noise."""
+    inner = [int(a + np.argmin(excess[a : b + 1])) for a, b in itertools.pairwise(peaks)]
+    cuts = [0, *inner, len(excess) - 1]
+    passes = []
+    for peak, low, high in zip(peaks, cuts[:-1], cuts[1:], strict=True):
+        below = np.flatnonzero(excess <= noise)
+        start = max(low, int(below[below < peak].max(initial=low)))
+        end = min(high, int(below[below > peak].min(initial=high)))
+        height, inside = float(excess[peak]), slice(start, end + 1)
+        weights = np.maximum(excess[inside], 0.0)
+        passes.append(
+            Pass(
+                time_s=float(time[peak]),
+                centre_s=float(weights @ time[inside] / weights.sum()),
+                start_s=float(time[start]),
+                end_s=float(time[end]),
+                height_ppm=height,
+                snr=height / noise if noise > 0.0 else math.inf,
+                dose_ppm_s=float(np.trapezoid(excess[inside], time[inside])),
+            )
+        )
+    return passes

@@ -1,0 +1,164 @@
+"""Readings, checked and laid on an even grid, in segments between gaps."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from measurement.errors import MeasurementError
+from measurement.gases import GASES, UNITS
+from measurement.sniffer.lag import Array
+from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import SnifferSpec
+
+CO2_LEAST, CO2_MOST = 250.0, 50_000.0
+"""Median CO2 of a record in air that can be breathed [ppm]: outside it the unit, or the background, is wrong."""
+
+_OTHER_MOST = 1e6
+"""Largest reading of the other gases [ppb]."""
+
+_BRIDGED = 2.5
+"""Gaps of up to so many sample periods are bridged by a straight line; longer ones part the record."""
+
+_SHORTEST = 8
+"""Fewest samples of a segment."""
+
+_SATURATED_MAX, _MISSING_MAX = 0.0, 0.1
+"""Shares of saturated and of missing samples from which on there is no verdict."""
+
+_NEGATIVE_SIGMA = 8.0
+"""A reading lower than zero by so many standard deviations of noise and zero is no reading."""
+
+
+@dataclass(frozen=True)
+class Record:
+    """An even record.
+
+    Attributes
+    ----------
+    step : between samples [s]
+    times : of each segment, shape (n,) [s]
+    values : of each segment, by gas, shape (n,) each
+    problems : why there can be no verdict, a sentence each
+    """
+
+    step: float
+    times: tuple[Array, ...]
+    values: tuple[dict[str, Array], ...]
+    problems: tuple[str, ...]
+
+    @property
+    def time(self) -> Array:
+        """Times of all samples."""
+        return np.concatenate(self.times)
+
+    def of(self, gas: str) -> Array:
+        """Return all samples of a gas."""
+        return np.concatenate([segment[gas] for segment in self.values])
+
+    @property
+    def duration(self) -> float:
+        """From the first sample to the last [s]."""
+        return float(self.times[-1][-1] - self.times[0][0])
+
+
+def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
+    """Return the readings of SO2, CO2 and, where they and their channels exist, NO and NO2, on an even grid.
+
+    Raises
+    ------
+    MeasurementError : no CO2 or SO2, too short, times that do not increase, or units that cannot be
+    """
+    time, values = np.asarray(readings.time, dtype=np.float64), np.asarray(readings.values, dtype=np.float64)
+    if time.ndim != 1 or values.shape != (len(time), len(GASES)):
+        raise MeasurementError(f"readings have shapes {time.shape} and {values.shape}; they must be (m,) and (m, {len(GASES)})")
+    if len(time) < _SHORTEST:
+        raise MeasurementError(
+            f"the record has {len(time)} samples; it needs at least {_SHORTEST}, and one whole crossing of the plume"
+        )
+    if not np.isfinite(time).all():
+        raise MeasurementError(
+            f"time of sample {int(np.argmin(np.isfinite(time)))} is not a number; give a time [s] for every sample"
+        )
+    if (late := np.flatnonzero(np.diff(time) <= 0.0)).size:
+        at = int(late[0])
+        raise MeasurementError(
+            f"times do not increase: {time[at]:g} s is followed by {time[at + 1]:g} s; sort the record and drop repeats"
+        )
+    gases = _used(values, instrument)
+    for gas in gases:
+        _check_units(gas, values[:, GASES.index(gas)])
+    columns = [GASES.index(gas) for gas in gases]
+    problems = _problems(time, values, gases, instrument)
+    known = np.isfinite(values[:, columns]).all(axis=1)
+    step = float(np.median(np.diff(time)))
+    times, parts = [], []
+    rows = np.flatnonzero(known)
+    for segment in np.split(rows, np.flatnonzero(np.diff(time[rows]) > _BRIDGED * step) + 1):
+        if len(segment) < _SHORTEST:
+            continue
+        grid = time[segment[0]] + step * np.arange(math.floor((time[segment[-1]] - time[segment[0]]) / step + 1e-6) + 1)
+        # A grid of the record's own times is left as it is.
+        grid = time[segment] if len(grid) == len(segment) and np.allclose(grid, time[segment], atol=1e-3 * step) else grid
+        times.append(grid)
+        parts.append({gas: np.interp(grid, time[segment], values[segment, GASES.index(gas)]) for gas in gases})
+    if not times:
+        raise MeasurementError(f"no {_SHORTEST} samples in a row have both SO2 and CO2; give a record with fewer gaps")
+    return Record(step=step, times=tuple(times), values=tuple(parts), problems=problems)
+
+
+def _used(values: Array, instrument: SnifferSpec) -> list[str]:
+    used = [gas for i, gas in enumerate(GASES) if instrument.channel(gas) and np.isfinite(values[:, i]).any()]
+    for gas, why in (("co2", "the fuel that it burnt is not known without"), ("so2", "there is nothing to estimate without")):
+        if gas not in used:
+            raise MeasurementError(
+                f"the record has no {gas.upper()} readings, or '{instrument.name}' no such channel; {why} them: add them"
+            )
+    return used
+
+
+def _check_units(gas: str, values: Array) -> None:
+    known = values[np.isfinite(values)]
+    middle, least, most = float(np.median(known)), float(known.min()), float(known.max())
+    if gas == "co2" and not CO2_LEAST <= middle <= CO2_MOST:
+        raise MeasurementError(
+            f"CO2 has a median of {middle:g} ppm; air has {CO2_LEAST:g} to {CO2_MOST:g} ppm: check the unit; keep the background"
+        )
+    if gas != "co2" and max(most, -least) > _OTHER_MOST:
+        raise MeasurementError(f"{gas.upper()} reaches {most:g} ppb; at most {_OTHER_MOST:g} ppb can be: check its unit")
+
+
+def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferSpec) -> tuple[str, ...]:
+    problems = []
+    for gas in gases:
+        channel, column = instrument.channel(gas), values[:, GASES.index(gas)]
+        if channel is None:
+            continue
+        name, unit = gas.upper(), UNITS[gas]
+        missing = float(np.mean(~np.isfinite(column)))
+        if missing > _MISSING_MAX:
+            problems.append(f"{100.0 * missing:.0f} % of {name} is missing; at most {100.0 * _MISSING_MAX:.0f} % may be")
+        full = float(np.mean(column >= channel.range_high - 0.5 * channel.resolution)) if math.isfinite(channel.range_high) else 0.0
+        if full > _SATURATED_MAX:
+            problems.append(f"{name} is saturated at {channel.range_high:g} {unit} in {100.0 * full:.1f} % of the readings")
+        noise = 0.0 if math.isnan(channel.noise) else channel.noise
+        floor = -(_NEGATIVE_SIGMA * math.hypot(noise, channel.zero_sd, 1.0) - min(channel.zero, 0.0))
+        floor = 0.0 if gas == "co2" else floor - _cross_floor(channel.cross, values)
+        if (least := float(np.nanmin(column))) < floor:
+            problems.append(f"{name} reads {least:g} {unit}, which its noise and zero do not explain (from {floor:.0f} {unit})")
+    gaps = np.diff(time)
+    lost = float(np.sum(gaps[gaps > _BRIDGED * np.median(gaps)])) / float(time[-1] - time[0])
+    if lost > _MISSING_MAX:
+        problems.append(f"gaps make up {100.0 * lost:.0f} % of the record; at most {100.0 * _MISSING_MAX:.0f} % may be")
+    return tuple(problems)
+
+
+def _cross_floor(cross: Mapping[str, float], values: Array) -> float:
+    """Return how far below zero a cell may truly read, for what it makes of the other gases."""
+    lowest = 0.0
+    for gas, share in cross.items():
+        column = values[:, GASES.index(gas)]
+        if share < 0.0 and np.isfinite(column).any():
+            lowest += -share * float(np.nanmax(column))
+    return lowest

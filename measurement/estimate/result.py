@@ -1,0 +1,104 @@
+"""What an estimate of the fuel sulphur content says."""
+
+import math
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+import pandas as pd
+
+from measurement.estimate.passes import Pass
+from measurement.estimate.verdict import Verdict
+
+Method = Literal["regression", "areas"]
+Quality = Literal["A", "B", "C"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Figures:
+    """What the record holds.
+
+    Attributes
+    ----------
+    duration_s : of the record [s]
+    passes : through the plume
+    interval_s : between them, median [s]
+    seconds_in_plume : the CO2 reading above its background by its detection limit [s]
+    dose_ppm_s : CO2 of a pass, mean [ppm s]
+    co2_snr : of a pass's peak, median [-]
+    so2_snr : standard deviation of the SO2 that the plume explains, over that of the rest [-]
+    """
+
+    duration_s: float
+    passes: int
+    interval_s: float
+    seconds_in_plume: float
+    dose_ppm_s: float
+    co2_snr: float
+    so2_snr: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class FscEstimate:
+    """A fuel sulphur content with its uncertainty. Contents and uncertainties are in % m/m; what is not known is not a number.
+
+    Attributes
+    ----------
+    method : "regression" or "areas"
+    fsc_percent : estimate; noise may make it negative
+    noise_percent : standard uncertainty by noise, which falls with the number of passes
+    common_percent : standard uncertainties by errors that do not average out, by name
+    total_percent : standard uncertainty by both
+    low_percent, high_percent : 95 % interval
+    sulphate_percent : mean error by sulphur that leaves as sulphate, stated and not corrected
+    slope_ppb_per_ppm : SO2 over CO2
+    misfit : mean square of the residuals over that of the stated noise [-]
+    quality, quality_reasons : A, B or C, and why it is not A
+    verdicts : on each limit
+    figures : what the record holds
+    passes : through the plume
+    pass_percent, pass_deviation_percent : sulphur content of groups of neighbouring passes and its noise
+    agreement : probability that groups of the same fuel differ as much as these
+    so2_t90_s, so2_t90_sd_s, delay_s, delay_sd_s : response of SO2 and its delay after CO2, as given or as they fit best [s]
+    signals : readings, equalised signals beside their background, fit and residual; a row per sample
+    """
+
+    method: Method
+    fsc_percent: float
+    noise_percent: float
+    common_percent: dict[str, float]
+    total_percent: float
+    low_percent: float
+    high_percent: float
+    sulphate_percent: float
+    slope_ppb_per_ppm: float
+    misfit: float
+    quality: Quality
+    quality_reasons: tuple[str, ...]
+    verdicts: tuple[Verdict, ...]
+    figures: Figures
+    passes: tuple[Pass, ...]
+    pass_percent: tuple[float, ...]
+    pass_deviation_percent: tuple[float, ...]
+    agreement: float
+    so2_t90_s: float
+    so2_t90_sd_s: float
+    delay_s: float
+    delay_sd_s: float
+    signals: pd.DataFrame = field(compare=False, repr=False)
+
+    def record(self) -> dict[str, Any]:
+        """Return everything but the signals, for JSON: what is not a number is None."""
+        values = {name: value for name, value in vars(self).items() if name != "signals"}
+        values["figures"] = asdict(self.figures)
+        values["verdicts"] = [asdict(verdict) for verdict in self.verdicts]
+        values["passes"] = [asdict(found) for found in self.passes]
+        return {name: _plain(value) for name, value in values.items()}
+
+
+def _plain(value: Any) -> Any:
+    """Return a value with None where it is not finite."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {name: _plain(item) for name, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value

@@ -1,0 +1,64 @@
+"""Above a limit, below it, or open: by the probability that the fuel is above, with guard bands (JCGM 106)."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from scipy.stats import norm
+
+Side = Literal["above", "below", "open"]
+
+ABOVE: Side = "above"
+BELOW: Side = "below"
+OPEN: Side = "open"
+
+LIMITS_PERCENT = (0.10, 0.50)
+"""MARPOL Annex VI, regulation 14: inside an emission control area and outside [% m/m]."""
+
+CONFIDENCE = 0.95
+"""Probability from which on a verdict is given."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """What is said of a limit.
+
+    Attributes
+    ----------
+    limit_percent : [% m/m]
+    verdict : "above", "below" or "open"
+    probability_above : that the fuel's sulphur content is above the limit, given the reading and that it is not negative
+    """
+
+    limit_percent: float
+    verdict: Side
+    probability_above: float
+
+
+def probability_above(limit: float, fsc: float, deviation: float) -> float:
+    """Return the probability of a sulphur content above a limit [% m/m]: a normal distribution cut at 0, as no fuel has less."""
+    if not (math.isfinite(fsc) and deviation > 0.0):
+        return math.nan
+    return math.exp(float(norm.logsf(limit, fsc, deviation) - norm.logsf(0.0, fsc, deviation)))
+
+
+def judged(limit: float, fsc: float, deviation: float, *, admitted: bool) -> Verdict:
+    """Return the verdict on a limit.
+
+    "above" asks for a reading beyond the limit by a guard band of 1.645 standard deviations, so that of fuels at the limit no more
+    than 5 % are called above; "below" for a probability of at most 5 %. Without ``admitted`` the verdict is open.
+    """
+    probability = probability_above(limit, fsc, deviation)
+    verdict = OPEN
+    if admitted and math.isfinite(probability):
+        if fsc > limit + float(norm.ppf(CONFIDENCE)) * deviation:
+            verdict = ABOVE
+        elif probability < 1.0 - CONFIDENCE:
+            verdict = BELOW
+    return Verdict(limit_percent=limit, verdict=verdict, probability_above=probability)
+
+
+def interval(fsc: float, deviation: float) -> tuple[float, float]:
+    """Return the 95 % interval of a sulphur content [% m/m]; a reading below 0 is taken as 0 for its upper end."""
+    half = float(norm.ppf(0.5 + 0.5 * CONFIDENCE)) * deviation
+    return max(0.0, fsc - half), max(0.0, fsc) + half

@@ -1,0 +1,90 @@
+"""One gas channel of a sniffer: how it responds, and how well that is known."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from measurement.errors import MeasurementError
+from measurement.gases import GASES, UNITS
+from measurement.sniffer.lag import time_constants
+
+
+@dataclass(frozen=True, kw_only=True)
+class Channel:
+    """A gas channel. Concentrations are in the unit of its gas: ppm of CO2, ppb of the others.
+
+    It reads ``gain (c + sum of cross k c_k) (1 + pressure_effect dp) + zero``, delayed, through its lag, with white noise and a
+    random walk, rounded and cut at its range (measurement.md, section 3). An ending ``_sd`` is the standard deviation with which
+    the analyst knows a property; infinite where it is not known at all, and then it is estimated from the record.
+
+    Attributes
+    ----------
+    gas : one of ``GASES``
+    t90_s, t90_sd : time to 90 % of a step [s], and its relative standard deviation [-]
+    second_pole : second time constant over the first, 0 for a response with one pole
+    delay_s, delay_sd_s : of tube and pump [s]
+    noise : standard deviation of a reading; not a number where it is to be estimated from the record
+    random_walk : standard deviation of the zero's drift after one second, growing with the root of time [unit/s^0.5]
+    resolution : step of the readings, 0 for none
+    range_low, range_high : what it can read
+    gain, gain_sd : [-]
+    zero, zero_sd : reading of clean air
+    cross, cross_sd : response to other gases, in this gas's unit per unit of theirs
+    pressure_effect : of the reading, relative to it [1/hPa]
+    """
+
+    gas: str
+    t90_s: float
+    noise: float
+    t90_sd: float = 0.0
+    second_pole: float = 0.0
+    delay_s: float = 0.0
+    delay_sd_s: float = 0.0
+    random_walk: float = 0.0
+    resolution: float = 0.0
+    range_low: float = -math.inf
+    range_high: float = math.inf
+    gain: float = 1.0
+    gain_sd: float = 0.0
+    zero: float = 0.0
+    zero_sd: float = 0.0
+    cross: Mapping[str, float] = field(default_factory=dict)
+    cross_sd: Mapping[str, float] = field(default_factory=dict)
+    pressure_effect: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.gas not in GASES:
+            raise MeasurementError(f"gas is {self.gas!r}; it must be one of {', '.join(GASES)}")
+        time_constants(self.t90_s, self.second_pole)
+        for name in ("t90_sd", "delay_s", "delay_sd_s", "random_walk", "resolution", "gain_sd", "zero_sd"):
+            value = getattr(self, name)
+            if not value >= 0.0 or (math.isinf(value) and name not in ("t90_sd", "delay_sd_s")):
+                raise MeasurementError(f"{name} of {self.gas} is {value:g}; it must be 0 or more and finite")
+        if self.noise < 0.0 or math.isinf(self.noise):
+            raise MeasurementError(f"noise of {self.gas} is {self.noise:g} {UNITS[self.gas]}; it must be 0 or more")
+        if not 0.1 <= self.gain <= 10.0:
+            raise MeasurementError(f"gain of {self.gas} is {self.gain:g}; it must be 0.1 to 10: calibrate the channel")
+        if not self.range_low < self.range_high:
+            raise MeasurementError(
+                f"range of {self.gas} is {self.range_low:g} to {self.range_high:g}; its end must lie above its start"
+            )
+        for name in ("cross", "cross_sd"):
+            self._check_cross(name)
+        if not math.isfinite(self.zero) or not abs(self.pressure_effect) <= 0.1:
+            raise MeasurementError(
+                f"zero of {self.gas} must be finite and pressure_effect at most 0.1 per hPa, but it is {self.pressure_effect:g}"
+            )
+
+    def _check_cross(self, name: str) -> None:
+        for gas, value in getattr(self, name).items():
+            if gas not in GASES or gas == self.gas:
+                raise MeasurementError(f"{name} of {self.gas} names {gas!r}; it must be another of {', '.join(GASES)}")
+            if not abs(value) <= 10.0 or (name == "cross_sd" and value < 0.0):
+                raise MeasurementError(
+                    f"{name} of {self.gas} to {gas} is {value:g}; it must be at most 10, and a deviation 0 or more"
+                )
+
+    @property
+    def constants(self) -> tuple[float, ...]:
+        """Time constants of its poles, the largest first [s]."""
+        return time_constants(self.t90_s, self.second_pole)
