@@ -27,6 +27,12 @@ DRAWS = "draws.csv"
 COUNTEREXAMPLES = "counterexamples.csv"
 """Rows of the trajectories that did not converge."""
 
+ESTIMATE = "estimate.json"
+"""The fuel sulphur content that a measured flight shows."""
+
+SAMPLES = "samples.csv"
+"""Readings and signals of a measured flight."""
+
 DESIGN_RECORD = "innerloop.json"
 """The design record of the autopilot."""
 

@@ -11,6 +11,7 @@ from reports.document.missing import missing_sections
 from reports.document.tables import provenance_table
 from reports.errors import ReportError
 from reports.flights.content import flights_content
+from reports.measurement.content import measurement_content
 from reports.paper.content import paper_content
 from reports.run.run_data import RunData
 
@@ -19,6 +20,7 @@ STUDIES: dict[str, Callable[[RunData], tuple[Verdict, list[Section]]]] = {
     "paper": paper_content,
     "convergence": convergence_content,
     "design": design_content,
+    "measurement": measurement_content,
 }
 """A study, as its manifest names it, and what makes the verdict and the sections of its report."""
 

@@ -5,11 +5,11 @@ import sys
 from pathlib import Path
 
 from measurement.errors import MeasurementError
-from measurement.flight_log.analysis import analyse
-from measurement.flight_log.config import LogConfig, read_config
-from measurement.flight_log.csv_file import read_flight
-from measurement.flight_log.run_files import build_report, write_run
-from measurement.flight_log.words import summary
+from measurement.estimate.flight_log.analysis import analyse
+from measurement.estimate.flight_log.config import LogConfig, read_config
+from measurement.estimate.flight_log.csv_file import read_flight
+from measurement.estimate.flight_log.run_files import build_report, write_run
+from measurement.estimate.flight_log.words import summary
 
 BAD_INPUT = 2
 """Exit status of input that cannot be used."""

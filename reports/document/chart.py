@@ -22,6 +22,9 @@ COLOURS = {
 }
 """Okabe and Ito's palette, which colour-blind readers can tell apart."""
 
+SCALE = "Cividis"
+"""Colour scale of values, light for the least: of even steps for all eyes. Matplotlib writes it in small letters."""
+
 FILL_OPACITY = 0.16
 """Of what a curve encloses: the grid still shows through."""
 
@@ -38,6 +41,7 @@ class Line:
     style : how it is drawn
     error : half-height of error bars, shape (n,), or none
     fill : tint what the curve encloses
+    values : of each point, shape (n,), shown by its colour on the chart's scale; or none. Points without a number are not shown
     """
 
     x: Array
@@ -47,6 +51,7 @@ class Line:
     style: Style = "solid"
     error: Array | None = None
     fill: bool = False
+    values: Array | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,6 +112,7 @@ class Chart:
     columns : panels side by side
     panel_height : of each row, relative to a full text width of 1
     share_x : panels of a column share their abscissa
+    scale_label : "Quantity [unit]" of the colour scale, for lines with values
     """
 
     name: str
@@ -115,11 +121,19 @@ class Chart:
     columns: int = 1
     panel_height: float = 0.36
     share_x: bool = False
+    scale_label: str = ""
 
     @property
     def rows(self) -> int:
         """Number of rows of panels."""
         return -(-len(self.panels) // self.columns)
+
+    @property
+    def scale(self) -> tuple[float, float] | None:
+        """Ends of the colour scale, or None without values."""
+        values = [line.values[np.isfinite(line.values)] for panel in self.panels for line in panel.lines if line.values is not None]
+        known = np.concatenate(values) if values else np.empty(0)
+        return (float(known.min()), float(known.max())) if len(known) else None
 
 
 def circle(radius: float, points: int = 181) -> tuple[Array, Array]:

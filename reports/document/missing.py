@@ -9,8 +9,10 @@ from common.run_layout import (
     CROSSINGS,
     DESIGN_RECORD,
     DRAWS,
+    ESTIMATE,
     FLIGHTS,
     INTERVENTIONS,
+    SAMPLES,
     STATISTICS,
     TRAJECTORIES,
     WORST,
@@ -20,6 +22,8 @@ from reports.run.run_data import RunData
 
 _SHOWN: Mapping[str, str] = {
     STATISTICS: "probability of a keep-out violation, distributions, sensitivity",
+    ESTIMATE: "the result",
+    SAMPLES: "figures over time, along the track, and of the regression",
     DESIGN_RECORD: "the autopilot: trims, margins, responses",
     BOUNDS: "bounds of the commands",
     COMPARISON: "comparisons",

@@ -25,14 +25,15 @@ def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
 def provenance_table(run: RunData) -> Table:
     """Return where the run comes from."""
     manifest = run.manifest
-    design = manifest.get("study") == "design"
+    design, measured = (manifest.get("study") == study for study in ("design", "measurement"))
     seed = manifest["config"].get("seed")
     seeds = "each trial's own" if seed is None else str(seed)
     rows = [
-        ["Design" if design else "Scenario", f"{manifest['name']}: {manifest['title']}"],
+        ["Design" if design else "Flight" if measured else "Scenario", f"{manifest['name']}: {manifest['title']}"],
         *_vehicle(run),
         # A design is made without chance, and of no more than its title says.
-        *([] if design else [["Seed", seeds], ["Configuration hash", manifest["config_hash"]]]),
+        *([] if design or measured else [["Seed", seeds]]),
+        *([] if design else [["Hash of the input" if measured else "Configuration hash", manifest["config_hash"]]]),
         ["Source revision", manifest["git_revision"]],
         ["Python", f"{manifest['python']} on {manifest['platform']}"],
         ["Packages", ", ".join(f"{name} {version}" for name, version in manifest["packages"].items())],
@@ -54,7 +55,7 @@ def _vehicle(run: RunData) -> list[list[str]]:
     rows = []
     if run.innerloop:
         rows.append(["Aircraft", f"{run.innerloop['title']}. {run.innerloop['source']}"])
-    elif config.get("fidelity", "six_dof") == "six_dof":
+    elif config.get("fidelity", "six_dof") == "six_dof" and run.manifest.get("study") != "measurement":
         rows.append(["Aircraft", str(config.get("aircraft", "unknown"))])
     if config.get("fidelity") in ("kinematic", "both"):
         rows.append(

@@ -2,11 +2,13 @@
 
 from typing import Any
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from reports.document.chart import COLOURS, FILL_OPACITY, Chart, Line, Panel
+from reports.document.chart import COLOURS, FILL_OPACITY, SCALE, Chart, Line, Panel
+from reports.run.columns import Array
 
 WIDTH_INCHES = 7.0
 """Width of a figure: the text width of an A4 page."""
@@ -53,9 +55,13 @@ def draw(chart: Chart) -> Figure:
             sharex="col" if chart.share_x else "none",
         )
         handles: dict[str, Any] = {}
+        scale, shaded = chart.scale, None
         for i, panel in enumerate(chart.panels):
             ax = axes[i // chart.columns][i % chart.columns]
             for line in panel.lines:
+                if line.values is not None and scale:
+                    shaded = _draw_shaded(ax, line, line.values, scale)
+                    continue
                 handle = _draw_line(ax, line)
                 if line.label:
                     handles.setdefault(line.label, handle)
@@ -65,6 +71,8 @@ def draw(chart: Chart) -> Figure:
         for ax in axes.flat[max(0, len(chart.panels) - chart.columns) : len(chart.panels)]:
             # The last of a column may not be in the last row, where figures are written beside a shared axis.
             ax.tick_params(labelbottom=True)
+        if shaded is not None:
+            figure.colorbar(shaded, ax=list(axes.flat), label=chart.scale_label, shrink=0.85, pad=0.015)
         if len(handles) > 1:
             columns = max(1, min(len(handles), _LEGEND_CHARACTERS // (max(len(label) for label in handles) + 6)))
             figure.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=columns, fontsize=7.5)
@@ -79,6 +87,14 @@ def _draw_line(ax: Any, line: Line) -> Any:
     if line.error is not None:
         return ax.errorbar(line.x, line.y, yerr=line.error, color=colour, capsize=2, elinewidth=0.8, **style)
     return ax.plot(line.x, line.y, color=colour, rasterized=len(line.x) > 4000, **style)[0]
+
+
+def _draw_shaded(ax: Any, line: Line, values: Array, scale: tuple[float, float]) -> Any:
+    """Draw points with the colours of their values, the largest last, and return what a colour scale is made for."""
+    order = np.argsort(values)
+    order = order[np.isfinite(values[order])]
+    colours = {"c": values[order], "cmap": f"{SCALE.lower()}_r", "vmin": scale[0], "vmax": scale[1]}
+    return ax.scatter(line.x[order], line.y[order], s=4.0, linewidths=0.0, **colours)
 
 
 def _dress(ax: Any, panel: Panel, *, last_row: bool) -> None:

@@ -7,7 +7,8 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from reports.document.chart import COLOURS, FILL_OPACITY, Chart, Line, Panel
+from reports.document.chart import COLOURS, FILL_OPACITY, SCALE, Chart, Line, Panel
+from reports.run.columns import Array
 
 WIDTH_PIXELS = 980
 """Width that heights are made for; figures shrink with the window."""
@@ -38,11 +39,15 @@ def draw(chart: Chart) -> go.Figure:
         horizontal_spacing=0.09,
         vertical_spacing=gap / inner if chart.rows > 1 else 0.0,
     )
-    seen = {""}
+    seen, scale, shaded = {""}, chart.scale, False
     for i, panel in enumerate(chart.panels):
         row, column = i // chart.columns + 1, i % chart.columns + 1
         for line in panel.lines:
-            figure.add_trace(_trace(line, show=line.label not in seen), row=row, col=column)
+            trace = _trace(line, show=line.label not in seen)
+            if line.values is not None and scale:
+                _shade(trace, line.values, scale, chart.scale_label if not shaded else "")
+                shaded = True
+            figure.add_trace(trace, row=row, col=column)
             seen.add(line.label)
         _dress(figure, panel, row, column, show_x=not chart.share_x or i + chart.columns >= len(chart.panels))
     figure.update_layout(
@@ -67,6 +72,19 @@ def _trace(line: Line, *, show: bool) -> go.Scatter:
     return go.Scatter(
         x=line.x.astype(np.float32), y=line.y.astype(np.float32), name=line.label, legendgroup=line.label, showlegend=show, **style
     )
+
+
+def _shade(trace: go.Scatter, values: Array, scale: tuple[float, float], label: str) -> None:
+    """Give the points of a trace the colours of their values, and, with a label, a colour scale."""
+    bar = {"title": {"text": label, "side": "right"}, "thickness": 14, "outlinewidth": 0}
+    trace.update(
+        mode="markers",
+        showlegend=False,
+        marker={
+            "color": values.astype(np.float32), "colorscale": SCALE, "reversescale": True, "cmin": scale[0], "cmax": scale[1],
+            "size": 4, "showscale": bool(label), "colorbar": bar if label else None,
+        },
+    )  # fmt: skip
 
 
 def _tint(colour: str) -> str:

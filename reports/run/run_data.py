@@ -25,6 +25,9 @@ from common.run_layout import (
 )
 from reports.errors import ReportError
 
+WITHOUT_SUMMARY = ("design", "measurement")
+"""Studies that have nothing to count."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunData:
@@ -100,7 +103,7 @@ def read_run(path: Path) -> RunData:
         raise ReportError(f"'{path}': {MANIFEST} cannot be read: {error}; run the scenario again") from None
     if not (isinstance(manifest, dict) and isinstance(manifest.get("config"), dict)):
         raise ReportError(f"'{path}': {MANIFEST} is not that of a run; run the scenario again in another --out")
-    if manifest.get("study") != "design" and not (path / SUMMARY).is_file():
+    if manifest.get("study") not in WITHOUT_SUMMARY and not (path / SUMMARY).is_file():
         raise ReportError(f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume")
     unread: set[str] = set()
     try:

@@ -16,15 +16,18 @@ import numpy as np
 import pandas as pd
 
 from measurement.errors import MeasurementError
+from measurement.estimate.flight_log.analysis import Analysis
+from measurement.estimate.flight_log.csv_file import LoggedFlight
 from measurement.estimate.result import plain
-from measurement.flight_log.analysis import Analysis
-from measurement.flight_log.csv_file import LoggedFlight
 
 MANIFEST, ESTIMATE, SAMPLES = "manifest.json", "estimate.json", "samples.csv"
 """What the directory holds."""
 
 STUDY = "measurement"
 """What the manifest calls the kind of run."""
+
+_HASH_LETTERS = 16
+"""Letters of the hash of flight and configuration that are kept."""
 
 _PACKAGES = ("numpy", "scipy", "pandas")
 
@@ -68,7 +71,7 @@ def build_report(directory: Path) -> str:
 
 
 def _manifest(analysis: Analysis, source: Path, config: Path | None) -> dict[str, Any]:
-    digest = hashlib.sha256(source.read_bytes() + (config.read_bytes() if config else b"")).hexdigest()
+    digest = hashlib.sha256(source.read_bytes() + (config.read_bytes() if config else b"")).hexdigest()[:_HASH_LETTERS]
     return {
         "study": STUDY,
         "name": source.stem,

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from measurement.errors import MeasurementError
-from measurement.flight_log.config import LogConfig
+from measurement.estimate.flight_log.config import LogConfig
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings

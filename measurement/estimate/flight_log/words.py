@@ -3,9 +3,9 @@
 import math
 from collections.abc import Iterator
 
+from measurement.estimate.flight_log.analysis import Analysis
 from measurement.estimate.result import FscEstimate
 from measurement.estimate.verdict import ABOVE, BELOW, Verdict
-from measurement.flight_log.analysis import Analysis
 
 ERRORS = {
     "calibration": "calibration of SO2 and CO2",
@@ -44,13 +44,19 @@ def result(found: FscEstimate) -> str:
 
 def sentence(verdict: Verdict) -> str:
     """Return a verdict in words, with its probability and its limit."""
-    limit, probability = f"{verdict.limit_percent:.2f} %", 100.0 * verdict.probability_above
-    told = "not known" if math.isnan(probability) else f"{probability:.1f} %"
+    limit, told = f"{verdict.limit_percent:.2f} %", probability(verdict.probability_above)
     if verdict.verdict == ABOVE:
         return f"above the limit of {limit}: the probability that the fuel is above it is {told}"
     if verdict.verdict == BELOW:
         return f"below the limit of {limit}: the probability that the fuel is above it is {told}"
     return f"open for the limit of {limit}: the probability that the fuel is above it is {told}; 95 % or 5 % are needed"
+
+
+def probability(share: float) -> str:
+    """Return a probability in percent, never as certain."""
+    if math.isnan(share):
+        return "not known"
+    return "more than 99.9 %" if share > 0.999 else "less than 0.1 %" if share < 0.001 else f"{100.0 * share:.1f} %"
 
 
 def by_size(found: FscEstimate) -> list[tuple[str, float]]:

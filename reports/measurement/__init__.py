@@ -1,0 +1,1 @@
+"""Reports on a measured fuel sulphur content."""

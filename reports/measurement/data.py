@@ -1,0 +1,86 @@
+"""What a measured flight's directory holds."""
+
+import json
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from common.files import is_file
+from common.run_layout import ESTIMATE, SAMPLES
+from reports.errors import ReportError
+from reports.run.columns import Array, column
+from reports.run.run_data import RunData
+
+Record = dict[str, Any]
+"""What ``estimate.json`` holds: ``estimate``, ``other``, ``over_time``, ``time_to_verdict_s``, ``instrument``, ``true_percent``."""
+
+
+def read_estimate(run: RunData) -> Record:
+    """Return the estimate of a measured flight.
+
+    Raises
+    ------
+    ReportError : there is none that can be read, without which there is nothing to report
+    """
+    try:
+        record = json.loads((run.path / ESTIMATE).read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise ReportError(f"'{run.path}': {ESTIMATE} cannot be read: {error}; measure the flight again") from None
+    if not (isinstance(record, dict) and isinstance(record.get("estimate"), dict)):
+        raise ReportError(f"'{run.path}': {ESTIMATE} holds no estimate; measure the flight again")
+    return record
+
+
+def read_samples(run: RunData) -> pd.DataFrame | None:
+    """Return readings and signals by time, or None if there are none that can be read."""
+    if not is_file(run.path / SAMPLES):
+        return None
+    try:
+        table = pd.read_csv(run.path / SAMPLES)
+        return table.astype(np.float64) if "time_s" in table else None
+    except (ValueError, OSError):
+        run.unread.add(SAMPLES)
+        return None
+
+
+def value(record: Record, name: str) -> float:
+    """Return a figure of an estimate; not a number where it is not known."""
+    found = record.get(name)
+    return float("nan") if found is None else float(found)
+
+
+def over_time(record: Record) -> pd.DataFrame:
+    """Return the estimate over time, a row per elapsed time at which there is one."""
+    table = pd.DataFrame(record["over_time"])
+    return table[column(table, "total_percent") > 0.0] if len(table) else table
+
+
+def errors(record: Record) -> list[tuple[str, float]]:
+    """Return the parts of the uncertainty by their words, the largest first, noise among them [% m/m]."""
+    found = record["estimate"]
+    parts = {"noise": value(found, "noise_percent"), **found["common_percent"]}
+    named = [(WORDS.get(name, name), float(part)) for name, part in parts.items() if part is not None and np.isfinite(part)]
+    return sorted(named, key=lambda item: -item[1])
+
+
+WORDS = {
+    "noise": "noise",
+    "calibration": "calibration of SO2, CO2",
+    "no": "correction for NO",
+    "no2": "correction for NO2",
+    "response": "response and delay",
+    "carbon": "carbon content",
+    "overlap": "overlapping passes",
+}
+"""Parts of the uncertainty."""
+
+
+def thinned(samples: pd.DataFrame, most: int) -> pd.DataFrame:
+    """Return evenly so many rows at most."""
+    return samples.iloc[:: max(1, -(-len(samples) // most))]
+
+
+def finite(*columns: Array) -> bool:
+    """Return whether each column has a number."""
+    return all(bool(np.isfinite(values).any()) for values in columns)

@@ -1,0 +1,71 @@
+"""Tables of a measured fuel sulphur content."""
+
+import pandas as pd
+
+from reports.document.blocks import Table
+from reports.document.tables import number
+from reports.measurement.data import Record
+
+_PERCENT = "{:.3f} %"
+
+REPORTED_S = (60.0, 120.0, 300.0, 600.0)
+"""Elapsed times that the table over time has, with the end of the flight [s]."""
+
+
+def result_table(record: Record) -> Table:
+    """Return the result by each method."""
+    rows = []
+    for found in (record["estimate"], record.get("other")):
+        if found is None:
+            continue
+        rows.append([
+            {"regression": "equalise and regress", "areas": "areas of passes"}[found["method"]],
+            number(found["fsc_percent"], _PERCENT),
+            number(found["noise_percent"], _PERCENT),
+            number(found["total_percent"], _PERCENT),
+            f"{number(found['low_percent'], '{:.3f}')} to {number(found['high_percent'], _PERCENT)}",
+            found["quality"],
+        ])  # fmt: skip
+    head = ["Method", "Sulphur content", "Noise", "Standard uncertainty", "95 % interval", "Quality"]
+    return Table(head=head, rows=rows, widths=[2.0, 1.2, 1.0, 1.5, 1.6, 0.8])
+
+
+def over_time_table(record: Record) -> Table | None:
+    """Return what was known after each of ``REPORTED_S``, and at the end."""
+    table = pd.DataFrame(record["over_time"])
+    if not len(table):
+        return None
+    end = table["elapsed_s"].max()
+    table = table[table["elapsed_s"].isin([*REPORTED_S, end])]
+    limits = [f"{verdict['limit_percent']:g}" for verdict in record["estimate"]["verdicts"]]
+    rows = [
+        [
+            f"{row['elapsed_s']:.0f} s",
+            f"{int(row['passes'])}",
+            number(row["fsc_percent"], _PERCENT),
+            number(row["total_percent"], _PERCENT),
+            str(row["quality"]),
+            *(f"{row[f'verdict_{limit}']}" for limit in limits),
+        ]
+        for row in table.to_dict("records")
+    ]
+    head = ["After", "Passes", "Sulphur content", "Standard uncertainty", "Quality", *(f"Limit {float(v):.2f} %" for v in limits)]
+    return Table(head=head, rows=rows, widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)])
+
+
+def record_table(record: Record) -> Table:
+    """Return what the record holds and what was taken of the instrument."""
+    found, figures, instrument = record["estimate"], record["estimate"]["figures"], record["instrument"]
+    t90 = f"{number(found['so2_t90_s'], '{:.1f}')} ± {number(found['so2_t90_sd_s'], '{:.1f} s')}"
+    delay = f"{number(found['delay_s'], '{:.2f}')} ± {number(found['delay_sd_s'], '{:.2f} s')}"
+    dose, agreement = number(figures["dose_ppm_s"], "{:.0f} ppm s"), number(found["agreement"], "{:.2f}")
+    rows = [
+        ["Instrument", str(instrument["title"])],
+        ["Passes", f"{figures['passes']}, every {number(figures['interval_s'], '{:.1f} s')}; agreement p = {agreement}"],
+        ["In the plume", f"{figures['seconds_in_plume']:.0f} s of {figures['duration_s']:.0f} s; CO2 dose of a pass {dose}"],
+        ["Signal to noise", f"CO2 peaks {number(figures['co2_snr'], '{:.0f}')}, SO2 {number(figures['so2_snr'], '{:.1f}')}"],
+        ["Residuals over stated noise", number(found["misfit"], "{:.1f} (mean square)")],
+        ["SO2 channel", f"t90 {t90}; {delay} after CO2"],
+        ["Sulphate, not corrected", f"{number(found['sulphate_percent'], '{:.4f} %')}: sulphur that does not leave as SO2"],
+    ]
+    return Table(head=["", ""], rows=rows, widths=[1.0, 3.0], left_columns=2, prose=True)

@@ -1,0 +1,82 @@
+"""The verdict on a measured fuel in words that say probability and limit."""
+
+from typing import Any
+
+import numpy as np
+
+from reports.document.blocks import Verdict
+from reports.document.tables import number
+from reports.measurement.data import Record, value
+
+
+def measurement_verdict(record: Record) -> Verdict:
+    """Judge by the lowest limit: it fails where the fuel is above, and is not complete where that is open."""
+    found = record["estimate"]
+    verdicts = sorted(found["verdicts"], key=lambda verdict: float(verdict["limit_percent"]))
+    first = verdicts[0]
+    reasons = [str(reason) for reason in found["quality_reasons"]]
+    known = found["fsc_percent"] is not None
+    others = [f"{sentence(other, known=True)}." for other in verdicts[1:]] if known else []
+    return Verdict(
+        holds=first["verdict"] != "above",
+        complete=first["verdict"] == "below",
+        headline=sentence(first, known=known),
+        detail=" ".join([_result(record), *others]),
+        failures=[f"quality {found['quality']}: {reason}" for reason in reasons],
+        figures=_figures(record),
+    )
+
+
+def sentence(verdict: dict[str, Any], *, known: bool) -> str:
+    """Return a verdict in words."""
+    limit = f"{float(verdict['limit_percent']):.2f} %"
+    if not known:
+        return f"Nothing can be said of the limit of {limit}: there is no result"
+    chance = probability(value(verdict, "probability_above"))
+    side = {"above": "Above", "below": "Below", "open": "Open for"}[verdict["verdict"]]
+    return f"{side} the limit of {limit}: the probability that the fuel is above it is {chance}"
+
+
+def probability(share: float) -> str:
+    """Return a probability in percent, never as certain."""
+    if np.isnan(share):
+        return "not known"
+    return "more than 99.9 %" if share > 0.999 else "less than 0.1 %" if share < 0.001 else f"{100.0 * share:.1f} %"
+
+
+def _result(record: Record) -> str:
+    found, figures = record["estimate"], record["estimate"]["figures"]
+    if found["fsc_percent"] is None:
+        return "No fuel sulphur content can be given."
+    passes = "1 pass" if figures["passes"] == 1 else f"{figures['passes']} passes"
+    interval = f"{value(found, 'low_percent'):.3f} to {value(found, 'high_percent'):.3f} %"
+    return (
+        f"Fuel sulphur content {value(found, 'fsc_percent'):.3f} % ± {value(found, 'total_percent'):.3f} % m/m (one standard"
+        f" uncertainty; 95 % interval {interval}), from {passes} in {figures['duration_s']:.0f} s. Quality {found['quality']}."
+    )
+
+
+def _short(share: float) -> str:
+    return probability(share).replace("more than", ">").replace("less than", "<")
+
+
+def _figures(record: Record) -> list[tuple[str, str, str]]:
+    found = record["estimate"]
+    limits = [
+        (f"Probability above {float(verdict['limit_percent']):.2f} %", _short(value(verdict, "probability_above")), "")
+        for verdict in found["verdicts"]
+    ]
+    times = [
+        (f"Time to a verdict on {float(limit):.2f} %", "open" if seconds is None else f"{float(seconds):.0f} s", "")
+        for limit, seconds in record["time_to_verdict_s"].items()
+    ]
+    true = record.get("true_percent")
+    return [
+        ("Fuel sulphur content", number(found["fsc_percent"], "{:.3f} %"), ""),
+        ("Standard uncertainty", number(found["total_percent"], "{:.3f} %"), ""),
+        *([] if true is None else [("A perfect instrument reads", number(true, "{:.3f} %"), "")]),
+        *limits,
+        *times,
+        ("Quality", str(found["quality"]), ""),
+        ("CO2 signal to noise", number(found["figures"]["co2_snr"], "{:.0f}"), ""),
+    ]

@@ -1,0 +1,153 @@
+"""The report of a measured flight: its verdict, its figures, and what it says of a flight without a result."""
+
+import json
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built, named_charts
+
+from measurement.estimate.__main__ import main
+from reports.document.blocks import Table
+from reports.document.chart import Chart, Line, Panel
+from reports.errors import ReportError
+from reports.measurement.data import errors
+from reports.measurement.verdict import measurement_verdict, probability
+from reports.registry import content
+from reports.render import matplotlib_charts, plotly_charts
+from reports.run.run_data import read_run
+
+DOCS = Path(__file__).parents[2] / "docs"
+EXAMPLE = ("docs/example_flight.csv", "docs/example_instrument.toml")
+
+
+@pytest.fixture(scope="module")
+def run_directory(tmp_path_factory):
+    out = tmp_path_factory.mktemp("measured")
+    flight, config = (str(DOCS / Path(name).name) for name in EXAMPLE)
+    assert main([flight, "--config", config, "--out", str(out), "--no-report"]) == 0
+    return out
+
+
+@pytest.fixture
+def record(run_directory):
+    return json.loads((run_directory / "estimate.json").read_text(encoding="utf-8"))
+
+
+def changed_run(run_directory, tmp_path, record=None, samples=True):
+    """Return a copy of the directory with another record, or without samples."""
+    for name in ("manifest.json", "estimate.json", *(["samples.csv"] if samples else [])):
+        (tmp_path / name).write_bytes((run_directory / name).read_bytes())
+    if record is not None:
+        (tmp_path / "estimate.json").write_text(json.dumps(record), encoding="utf-8")
+    return tmp_path
+
+
+def test_the_report_shows_what_was_asked(run_directory):
+    report = content(read_run(run_directory))
+    charts = named_charts(report)
+    assert set(charts) == {"fsc-over-time", "budget", "regression", "track", "channels"}
+    assert_axes_read_quantity_and_unit(charts.values())
+    assert [panel.title for panel in charts["track"].panels] == ["In plan", "In height"]
+    assert {line.label for panel in charts["channels"].panels for line in panel.lines} >= {"truth", "reading", "what CO2 explains"}
+    assert "Above the limit of 0.10 %: the probability that the fuel is above it is more than 99.9 %" in report.verdict.headline
+    assert "Below the limit of 0.50 %" in report.verdict.detail
+    assert not report.verdict.holds
+
+
+def test_both_reports_are_built_and_print_takes_two_pages(run_directory, tmp_path):
+    text = built(changed_run(run_directory, tmp_path))
+    assert "Fuel sulphur content of example_flight" in text
+    pages = re.findall(rb"/Type\s*/Page\b", (tmp_path / "report.pdf").read_bytes())
+    assert len(pages) == 2
+
+
+def test_parts_of_the_uncertainty_add_to_the_whole(record):
+    # The parts are independent: they add in squares.
+    assert math.hypot(*(part for _, part in errors(record))) == pytest.approx(record["estimate"]["total_percent"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "chance", "holds", "complete", "words"),
+    [
+        ("above", 0.97, False, False, "Above the limit of 0.10 %: the probability that the fuel is above it is 97.0 %"),
+        ("below", 0.0001, True, True, "Below the limit of 0.10 %: the probability that the fuel is above it is less than 0.1 %"),
+        ("open", 0.4, True, False, "Open for the limit of 0.10 %: the probability that the fuel is above it is 40.0 %"),
+    ],
+)
+def test_a_verdict_says_probability_and_limit(record, verdict, chance, holds, complete, words):
+    record["estimate"]["verdicts"][0] |= {"verdict": verdict, "probability_above": chance}
+    told = measurement_verdict(record)
+    assert (told.holds, told.complete, told.headline) == (holds, complete, words)
+
+
+def test_a_flight_without_a_result_says_why(run_directory, tmp_path, record):
+    nothing = dict.fromkeys(("fsc_percent", "noise_percent", "total_percent", "slope_ppb_per_ppm", "agreement", "misfit"))
+    record["estimate"] |= nothing | {"quality": "C", "quality_reasons": ["no pass through a plume"], "common_percent": {}}
+    for verdict in record["estimate"]["verdicts"]:
+        verdict |= {"verdict": "open", "probability_above": None}
+    record |= {"over_time": [], "other": None, "time_to_verdict_s": {"0.1": None}}
+    report = content(read_run(changed_run(run_directory, tmp_path, record)))
+    assert report.verdict.headline == "Nothing can be said of the limit of 0.10 %: there is no result"
+    assert report.verdict.holds
+    assert not report.verdict.complete
+    assert report.verdict.failures == ["quality C: no pass through a plume"]
+    assert set(named_charts(report)) == {"channels", "track"}
+    built(tmp_path)
+
+
+def test_a_perfect_instrument_is_shown_where_it_is_known(run_directory, tmp_path, record):
+    report = content(read_run(changed_run(run_directory, tmp_path, record | {"true_percent": 0.25})))
+    labels = [line.label for line in named_charts(report)["fsc-over-time"].panels[0].lines]
+    assert "a perfect instrument" in labels
+    assert ("A perfect instrument reads", "0.250 %", "") in report.verdict.figures
+
+
+def test_without_samples_the_report_says_so(run_directory, tmp_path):
+    report = content(read_run(changed_run(run_directory, tmp_path, samples=False)))
+    assert report.sections[0].anchor == "missing"
+    assert "samples.csv" in blocks_of(report, Table, "missing")[0].rows[0][0]
+    assert set(named_charts(report)) == {"fsc-over-time", "budget"}
+
+
+def test_samples_without_a_place_have_no_track(run_directory, tmp_path):
+    directory = changed_run(run_directory, tmp_path)
+    table = pd.read_csv(directory / "samples.csv").drop(columns=["north_m", "east_m", "height_m", "so2_true_ppb", "co2_true_ppm"])
+    table.to_csv(directory / "samples.csv", index=False)
+    charts = named_charts(content(read_run(directory)))
+    assert "track" not in charts
+    assert "truth" not in {line.label for panel in charts["channels"].panels for line in panel.lines}
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"estimate": 3}', "\x00"])
+def test_an_estimate_that_cannot_be_read_is_refused(run_directory, tmp_path, text):
+    directory = changed_run(run_directory, tmp_path)
+    (directory / "estimate.json").write_text(text, encoding="utf-8")
+    with pytest.raises(ReportError, match="measure the flight again"):
+        content(read_run(directory))
+
+
+def test_probabilities_are_never_certain():
+    assert probability(1.0) == "more than 99.9 %"
+    assert probability(0.0) == "less than 0.1 %"
+    assert probability(math.nan) == "not known"
+
+
+def test_points_have_the_colour_of_their_value_on_one_scale():
+    x = np.arange(4.0)
+    lines = [Line(x=x, y=x, label="", colour="blue", style="points", values=values) for values in (x, 2.0 * x, x * np.nan)]
+    panels = [Panel(x_label="A [m]", y_label="B [m]", lines=[line]) for line in lines]
+    chart = Chart(name="coloured", caption="", panels=panels, columns=3, scale_label="CO2 [ppm]")
+    assert chart.scale == (0.0, 6.0)
+    traces = plotly_charts.draw(chart).data
+    assert [(trace.marker.cmin, trace.marker.cmax) for trace in traces] == [(0.0, 6.0)] * 3
+    assert [bool(trace.marker.showscale) for trace in traces] == [True, False, False]
+    figure = matplotlib_charts.draw(chart)
+    # Three panels and one colour scale; values that are no numbers are not drawn.
+    assert len(figure.axes) == 4
+    assert [len(ax.collections[0].get_offsets()) for ax in figure.axes[:3]] == [4, 4, 0]
+    assert figure.axes[3].get_ylabel() == "CO2 [ppm]"
+    assert Chart(name="plain", caption="", panels=[]).scale is None
