@@ -34,7 +34,7 @@ class Registry(Generic[Part]):
     ----------
     kind : of the parts, as in "steering_law"
     folder : package whose modules register the project's own parts when they are imported
-    methods : that every part has to have, unless it is a function that makes one: those of its Protocol
+    methods : that every part has to have, unless it is a function that makes one: those of its Protocol; of some, "this|that"
     """
 
     def __init__(self, kind: str, *, folder: str, methods: Sequence[str] = ()) -> None:
@@ -100,8 +100,9 @@ class Registry(Generic[Part]):
 
     def _checked(self, name: str, part: Any) -> Part:
         for method in () if isinstance(part, FunctionType) else self._methods:
-            if not callable(getattr(part, method, None)):
-                raise PluginError(f"{self.words} '{name}' has no method {method}(); see the Protocol in {self._folder}")
+            if not any(callable(getattr(part, alternative, None)) for alternative in method.split("|")):
+                missing = method.replace("|", "() or ")
+                raise PluginError(f"{self.words} '{name}' has no method {missing}(); see the Protocol in {self._folder}")
         found: Part = part
         return found
 

@@ -7,6 +7,7 @@ from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
 from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
+from gnc.mission.axis_height import AxisHeight
 from gnc.mission.egress import Egress
 from gnc.mission.mode import Mode
 from gnc.reference.mean_motion import mean_motion
@@ -39,7 +40,7 @@ class FollowingParameters:
     reach, reach_time : how far the vessel may be, that time ahead, from where it is taken to be, while its reports come [m, s]
     drift_rate : how fast dead reckoning goes wrong [m/s]
     plan_interval : guidance steps between plans
-    source_altitude, climb : altitude of the plume's origin [m], and by how much its axis rises per distance [-]
+    height : of the plume's axis, and so of the flight
     """
 
     centre: CentreParameters
@@ -54,8 +55,7 @@ class FollowingParameters:
     reach_time: float
     drift_rate: float
     plan_interval: int
-    source_altitude: float
-    climb: float
+    height: AxisHeight
 
 
 class PlumeFollowing:
@@ -101,7 +101,7 @@ class PlumeFollowing:
         self._orbit_range = self._orbit_rate = self.centre_error = 0.0
         self.centre = MovingCentre(parameters.centre)
         self.mode = Mode.APPROACH
-        self.airspeed, self.altitude = parameters.approach.airspeed, parameters.source_altitude
+        self.airspeed, self.altitude = parameters.approach.airspeed, parameters.height.source
         self.tracker: Tracker[SteeredReference]
         self._reference: SteeredReference
 
@@ -143,7 +143,7 @@ class PlumeFollowing:
         self._decide()
         if self.leaving:
             return
-        self.altitude = p.source_altitude + p.climb * centre.distance
+        self.altitude = p.height.at(centre.distance, centre.speed_ratio * self._speed)
         if own.lost > 0.0:
             self.mode = Mode.DEAD_RECKONING
         elif age > p.stale:

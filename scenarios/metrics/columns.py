@@ -20,15 +20,16 @@ SUMMARY_COLUMNS = (
 )  # fmt: skip
 """Of ``summary.csv`` and ``comparison.csv``: a row per flight."""
 
-_FLIGHT = ("flight_id", "trial", "variant")
+FLIGHT_COLUMNS = ("flight_id", "trial", "variant")
+"""Of every table: what names a flight."""
 
-CROSSING_COLUMNS = (*_FLIGHT, "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
+CROSSING_COLUMNS = (*FLIGHT_COLUMNS, "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
 """Of ``crossings.csv``: a row per crossing."""
 
-INTERVENTION_COLUMNS = (*_FLIGHT, "time_s", "duration_s", "distance_min_m", "lost")
+INTERVENTION_COLUMNS = (*FLIGHT_COLUMNS, "time_s", "duration_s", "distance_min_m", "lost")
 """Of ``interventions.csv``: a row per stretch in which the keep-out guard changed commands."""
 
-INPUT_COLUMNS = (*_FLIGHT, "nu")
+INPUT_COLUMNS = (*FLIGHT_COLUMNS, "nu")
 """Of ``draws.csv``, before the keys that differ from flight to flight: a row per flight."""
 
 SEARCH_COLUMNS = ("search_method", "confirms")

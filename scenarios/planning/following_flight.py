@@ -12,6 +12,7 @@ from gnc.parameters import GuardParameters, GuidanceParameters, ReportedVessel
 from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
 from scenarios.margin.orbit_room import orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
+from scenarios.planning.axis_height import axis_height
 from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
@@ -30,11 +31,12 @@ from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.ais_reports import no_outage, received_reports
+from scenarios.world.exhaust import exhaust_of
 from scenarios.world.faults import VESSEL_DATA, sampled_fault
-from scenarios.world.noise import Noise, streams
+from scenarios.world.noise import EXHAUST, Noise, own_generator, streams
 from scenarios.world.vessel import ManoeuvringVessel, VesselTruth, largest_acceleration, largest_speed
 from scenarios.world.weather import sampled_weather
-from scenarios.world.world import ApparentWind, World, apparent_wind, plume_of, vessel_of
+from scenarios.world.world import TRACK_MARGIN, ApparentWind, World, apparent_wind, plume_of, vessel_of
 
 Spreads = Callable[[Scenario], SpreadTable | None]
 """Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air."""
@@ -70,6 +72,8 @@ def following_flight(
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, generators.world)
+    generator = own_generator(noise, EXHAUST)
+    exhaust = exhaust_of(scenario, vessel, plume, duration=flight.duration_max_s + TRACK_MARGIN, generator=generator)
     outage = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else no_outage()
     guard = None
     if g.keepout_guard:
@@ -97,6 +101,7 @@ def following_flight(
             source_height=scenario.plume.source_height_m,
             weather=weather,
             fault=fault,
+            exhaust=exhaust,
         ),
         sensing=Sensing(
             received=received,
@@ -127,7 +132,7 @@ def _guidance(
         navigation=navigation_parameters(scenario, setup),
         vessel=ReportedVessel(filter=filter_parameters(scenario.reports), limits=limits),
         guard=guard,
-        mission=following_parameters(scenario, setup, margin, widths),
+        mission=following_parameters(scenario, setup, margin, widths, axis_height(scenario)),
         health=HealthParameters(
             airspeed_error=THRUST_LOST_FRACTION * (g.airspeed_mps - hold.airspeed_min),
             speed=g.airspeed_mps,

@@ -32,7 +32,16 @@ class Rule:
 _TRACKS = "the mission that tracks the paper's reference; here the reference is steered: set guidance.mission to 'track'"
 _FOLLOWS = "the mission that follows the vessel with a steered reference: set guidance.mission to 'follow'"
 _VESSEL = "an oscillation beside a vessel; here reference.path is 'circle'"
-_OPERATIONAL = ("wind.speed_mps", "turbulence.", "vessel.manoeuvres", "reports.", "sensors.", "fault.kind", "plume.direction")
+_OPERATIONAL = (
+    "wind.speed_mps",
+    "turbulence.",
+    "vessel.manoeuvres",
+    "reports.",
+    "sensors.",
+    "fault.kind",
+    "plume.direction",
+    "emission.ship",
+)
 """Keys from which the mission follows where guidance.mission is not given."""
 
 
@@ -146,6 +155,8 @@ RULES = (
     Rule(keys=("kinematic.",), acts=_kinematic, user="the kinematic vehicle: set fidelity to 'kinematic'"),
     Rule(keys=("turbulence.gust_length_s",), acts=lambda s: s.turbulence.gusts > 0, user="gusts: set turbulence.gusts",
          depends=("turbulence.gusts",)),
+    Rule(keys=("emission.fuel", "emission.sulphur_percent", "emission.load", "wind.temperature_c", "wind.stability_per_s"),
+         acts=lambda s: s.emission.ship is not None, user="a ship with exhaust: set emission.ship", depends=("emission.ship",)),
     Rule(keys=("wind.from_deg",), acts=lambda s: s.wind.speed_mps > 0.0, user="wind: set wind.speed_mps",
          depends=("wind.speed_mps",)),
     Rule(keys=("plume.heading_deg",), acts=lambda s: not s.plume_by_wind,
@@ -178,7 +189,7 @@ RULES = (
     Rule(keys=("fault.satellite_navigation_s",), acts=lambda s: s.fault.kind == "satellite_navigation",
          user="a loss of satellites: set fault.kind to 'satellite_navigation'", depends=("fault.kind",)),
     Rule(
-        keys=("turbulence.", "wind.", "reports.", "sensors.", "fault.", "vessel.manoeuvres", "vessel.track"),
+        keys=("turbulence.", "wind.", "emission.", "reports.", "sensors.", "fault.", "vessel.manoeuvres", "vessel.track"),
         acts=lambda s: s.follows,
         user="the mission that follows what it estimates; guidance.mission is 'track', in still air beside a steady vessel: leave"
         " guidance.mission out, or set it to 'follow'",

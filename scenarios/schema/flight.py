@@ -36,6 +36,8 @@ class FlightConfig(Section):
 
     crossings: Annotated[int, Field(ge=0, le=10_000)] = 30
     """Crossings to fly after settling; 0 to fly for the whole duration [-]."""
+    after_settling_s: Positive | None = None
+    """How long to fly after settling, with crossings at least as many; only crossings count if not given [s]."""
     duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 1500.0
     """Longest flight [s]."""
     settling_band_m: Positive = 5.0

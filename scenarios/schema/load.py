@@ -206,6 +206,10 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
         # Keys that only the other law has, such as those of a steering law that is added, go with it.
         for key in scenario.guidance.keys_lost_with(values["guidance.law"]):
             del document["guidance"][key]
+    for name in ("plume", "payload"):
+        changed = {key.partition(".")[2]: value for key, value in values.items() if key.startswith(f"{name}.")}
+        for key in getattr(scenario, name).keys_lost_with(changed):
+            del document[name][key]
     for key, value in values.items():
         set_value(document, key, value, Scenario)
     return checked(document, Scenario)

@@ -20,7 +20,7 @@ def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
     yield "vessel.track", scenario.vessel.track
     yield "plume.model", scenario.plume.model
     yield from (("search.methods", name) for name in scenario.search.methods)
-    names: list[tuple[str, object]] = [("payload", scenario.payload)]
+    names: list[tuple[str, object]] = [("payload", scenario.payload.instruments)]
     names += [(draw.key, choice) for draw in scenario.draws for choice in draw.choice or ()]
     for key, value in names:
         if key in ("reference.shape", "guidance.law", "vessel.track", "plume.model"):

@@ -5,7 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, SensorsConfig, VesselReportsConfig
+from scenarios.schema.emission import EmissionConfig
+from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, PayloadConfig, SensorsConfig, VesselReportsConfig
 from scenarios.schema.experiment import (
     FLIGHTS_MAX,
     CaseConfig,
@@ -71,8 +72,8 @@ class Scenario(Section):
     reports: VesselReportsConfig = VesselReportsConfig()
     sensors: SensorsConfig = SensorsConfig()
     fault: FaultConfig = FaultConfig()
-    payload: tuple[str, ...] = ()
-    """Instruments on board, each by its name or FILE.py:NAME; their readings are columns of the time history."""
+    emission: EmissionConfig = EmissionConfig()
+    payload: PayloadConfig = PayloadConfig()
     kinematic: KinematicConfig = KinematicConfig()
     reference: ReferenceConfig = ReferenceConfig()
     guidance: GuidanceConfig = GuidanceConfig()
@@ -97,6 +98,7 @@ class Scenario(Section):
             and not self.vessel.manoeuvres
             and self.vessel.track == "manoeuvres"
             and self.plume.model == "straight"
+            and self.emission.ship is None
             and self.reports.exact
             and self.sensors == SensorsConfig()
             and self.fault.kind == "none"

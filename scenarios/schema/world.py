@@ -1,9 +1,11 @@
 """What a scenario file may say of the world: vessel, plume, wind, turbulence, keep-out area. What is absent is ideal."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from scenarios.schema.extension_points import PLUME_MODELS
+from scenarios.schema.part_section import PartSection
 from scenarios.schema.section import Angle, NonNegative, Positive, Section
 
 Shape = Literal["sphere", "cylinder"]
@@ -47,11 +49,11 @@ class VesselConfig(Section):
         return self
 
 
-class PlumeConfig(Section):
-    """The axis of the smoke plume: a half-line from the funnel."""
+class PlumeConfig(PartSection):
+    """The smoke plume: its axis, a half-line from the funnel, and what its model adds."""
 
     model: str = "straight"
-    """Where the plume is: a half-line that follows its direction at once, or FILE.py:NAME."""
+    """straight: an axis without smoke; fluctuating: smoke that disperses, meanders and bends; or FILE.py:NAME."""
     direction: Literal["apparent_wind", "given"] | None = None
     """Behind the vessel's motion through the air, or, as in the paper, at heading_deg from the bow.
 
@@ -64,6 +66,10 @@ class PlumeConfig(Section):
     source_height_m: Annotated[float, Field(ge=10.0, le=500.0)] = 60.0
     """Height of the funnel's mouth above the sea, where the axis starts [m]."""
 
+    def parts(self) -> dict[str, Any]:
+        """Return the plume model by its name."""
+        return {self.model: PLUME_MODELS.get(self.model)}
+
 
 class KeepoutConfig(Section):
     """What the UAV must not enter: a sphere about the funnel's mouth, or an upright cylinder through it."""
@@ -75,12 +81,16 @@ class KeepoutConfig(Section):
 
 
 class WindConfig(Section):
-    """The steady wind."""
+    """The air: its steady wind, and what smoke meets."""
 
     speed_mps: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
     """Wind speed [m/s]."""
     from_deg: Angle = 0.0
     """Direction that it comes from, clockwise from north [deg]."""
+    temperature_c: Annotated[float, Field(ge=-40.0, le=50.0)] = 15.0
+    """Temperature of the air that exhaust rises in [degC]."""
+    stability_per_s: Annotated[float, Field(ge=0.0, le=0.1)] = 0.0
+    """Brunt-Vaisala frequency of the air that exhaust rises in; 0 for neutral air [1/s]."""
 
 
 class TurbulenceConfig(Section):

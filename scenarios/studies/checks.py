@@ -16,13 +16,12 @@ from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.limits import check_flyable
+from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.parts import part_names
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation.failure import failure
-from scenarios.vehicles.payload import PAYLOADS
 from scenarios.world.faults import SATELLITES, VESSEL_DATA
-from scenarios.world.plume import PLUME_MODELS
-from scenarios.world.vessel import VESSEL_TRACKS, check_manoeuvres
+from scenarios.world.vessel import check_manoeuvres
 
 _REGISTRIES: dict[str, Registry[Any]] = {
     "reference.shape": REFERENCE_SHAPES,

@@ -68,7 +68,7 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
             if not (isinstance(scenario, Scenario) and unused(scenario, parameter["key"])):
                 listed.append(parameter)
         listed += [
-            {"key": f"{section_name}.{key}", "value": value, "unit": "", "meaning": "Of the steering law"}
+            {"key": f"{section_name}.{key}", "value": value, "unit": "", "meaning": "Of a part that the section names"}
             for key, value in (section.model_extra or {}).items()
         ]
     return listed

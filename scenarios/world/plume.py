@@ -1,13 +1,12 @@
 """Where the plume's axis really is: behind the vessel's motion through the air, or at a given angle from its bow."""
 
 import math
-from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from common.registry import Registry
+from scenarios.schema.extension_points import PLUME_MODELS
 from scenarios.schema.world import PlumeConfig
 from scenarios.world.vessel import TRACK_STEP, SteadyVessel, VesselTruth, sampled
 
@@ -23,9 +22,6 @@ class Plume(Protocol):
     def axis(self, time: float) -> float:
         """Return the course along which the plume trails at a time [s], without jumps [rad]."""
 
-
-PLUME_MODELS: Registry[Callable[..., Any]] = Registry("plume_model", folder="scenarios.world", methods=("axis",))
-"""Plume models by name. Each is called as ``StraightPlume`` is, and returns a ``Plume``."""
 
 plume_model = PLUME_MODELS.register
 """Decorator that registers a plume model by a name."""

@@ -1,15 +1,14 @@
 """Where the vessel really is, at any time: at constant velocity, or through its manoeuvres."""
 
 import math
-from collections.abc import Callable
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from common.registry import Registry
 from gnc.errors import InfeasibleError
+from scenarios.schema.extension_points import VESSEL_TRACKS
 from scenarios.schema.world import VesselConfig
 
 TRACK_STEP = 0.05
@@ -37,9 +36,6 @@ class VesselTruth(Protocol):
     def manoeuvres_end(self) -> float:
         """Time at which the last manoeuvre ends, not a number without any [s]."""
 
-
-VESSEL_TRACKS: Registry[Callable[..., Any]] = Registry("vessel_track", folder="scenarios.world", methods=("motion", "course"))
-"""Vessel tracks by name. Each is called with the ``[vessel]`` section, the speed [m/s] and the duration [s] to cover."""
 
 vessel_track = VESSEL_TRACKS.register
 """Decorator that registers a vessel track by a name."""

@@ -6,13 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from aircraft.atmosphere.weather import Weather
+from scenarios.schema.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.scenario import Scenario
+from scenarios.world.exhaust import Exhaust
 from scenarios.world.faults import TimedFault
-from scenarios.world.plume import PLUME_MODELS, Plume
-from scenarios.world.vessel import VESSEL_TRACKS, SteadyVessel, VesselTruth, sampled
+from scenarios.world.plume import Plume
+from scenarios.world.vessel import SteadyVessel, VesselTruth, sampled
 from scenarios.world.weather import wind_ned
 
-_MARGIN = 5.0
+TRACK_MARGIN = 5.0
 """How long the track goes on after the longest flight [s]."""
 
 
@@ -26,6 +28,7 @@ class World:
     elevation, source_height : of the plume's axis, and of its origin above the sea [rad, m]
     weather : the air
     fault : what fails, and when
+    exhaust : the vessel's smoke, or none
     """
 
     vessel: VesselTruth
@@ -34,6 +37,7 @@ class World:
     source_height: float
     weather: Weather
     fault: TimedFault
+    exhaust: Exhaust | None = None
 
 
 def vessel_of(scenario: Scenario) -> VesselTruth:
@@ -46,7 +50,9 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
     config = scenario.vessel
     if config.track == "manoeuvres" and not config.manoeuvres:
         return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
-    track: VesselTruth = VESSEL_TRACKS.get(config.track)(config, scenario.vessel_speed, scenario.flight.duration_max_s + _MARGIN)
+    track: VesselTruth = VESSEL_TRACKS.get(config.track)(
+        config, scenario.vessel_speed, scenario.flight.duration_max_s + TRACK_MARGIN
+    )
     return track
 
 
@@ -58,7 +64,7 @@ def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
     PluginError : there is no such plume model
     """
     model = PLUME_MODELS.get(scenario.plume.model)
-    duration = scenario.flight.duration_max_s + _MARGIN
+    duration = scenario.flight.duration_max_s + TRACK_MARGIN
     plume: Plume = model(scenario.plume, vessel, wind_ned(scenario.wind), duration, by_wind=scenario.plume_by_wind)
     return plume
 
@@ -84,7 +90,7 @@ def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
         wind_north, wind_east = wind_ned(scenario.wind)
         steady = math.hypot(v_north - wind_north, v_east - wind_east)
         return ApparentWind(at_start=steady, least=steady, greatest=steady)
-    velocity, _ = sampled(vessel, scenario.flight.duration_max_s + _MARGIN)
+    velocity, _ = sampled(vessel, scenario.flight.duration_max_s + TRACK_MARGIN)
     through_air = velocity - np.array(wind_ned(scenario.wind))
     speeds = np.hypot(through_air[:, 0], through_air[:, 1])
     return ApparentWind(at_start=float(speeds[0]), least=float(speeds.min()), greatest=float(speeds.max()))

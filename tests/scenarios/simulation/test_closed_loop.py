@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from flight_cases import ASTERN, SPEED, fly, plan, scenario
 
+from scenarios.instruments.instrument import payload
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation import closed_loop
 from scenarios.simulation.record import COLUMNS, MEANINGS, unit_of
 from scenarios.simulation.release import release
 from scenarios.vehicles.kinematic import KinematicVehicle
-from scenarios.vehicles.payload import payload
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 SHORT = {"start": ASTERN, "flight": {"crossings": 0, "duration_max_s": 60.0}, "criteria": {"settles": False}}
