@@ -109,7 +109,6 @@ class FluctuatingPlume:
         if seed < 0:
             raise MeasurementError(f"seed of the plume is {seed}; give 0 or more")
         self._parcels = Parcels(time, north, east, settings.parcel_interval)
-        self._settings = settings
         self._molar_density = air.molar_density
         self._age_max = min(settings.age_max, self._parcels.end - self._parcels.start)
         winds = (self._parcels.wind_min, self._parcels.wind_max)
