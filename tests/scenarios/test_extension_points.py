@@ -49,7 +49,7 @@ def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path
     config = manifest(tmp_path / "run")["config"]
     section, _, last = key.partition(".")
     value = config[section][last] if last else config[section]
-    assert value == ([part] if key == "payload" else part)
+    assert value == ({"instruments": [part]} if key == "payload" else part)
 
 
 def test_parts_act_on_the_flight(tmp_path):

@@ -34,7 +34,7 @@ NOT_SCALED = {
     "sensors.airspeed_sigma_mps", "sensors.airspeed_bias_mps", "fault.at_s", "fault.vessel_data_s", "fault.satellite_navigation_s",
     # What a ship does, how well it is known, and how often the keep-out area may be touched.
     "following.apparent_wind_min_mps", "following.vessel_acceleration_mps2", "following.vessel_speed_max_mps",
-    "following.speed_error_mps", "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
+    "wind.stability_per_s", "following.speed_error_mps", "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
     # The paper's vehicle has no lag, however fast it turns.
     "kinematic.heading_rate_lag_s",
     # The budget of a search on this machine.
@@ -42,7 +42,7 @@ NOT_SCALED = {
     # The simulation runs at 120 Hz for every aircraft.
     "guidance.rate_hz", "flight.log_rate_hz",
     # Not set by default; who sets them means what they say.
-    "guidance.heading_rate_max_rad_s", "start.place_m", "start.range_m",
+    "flight.after_settling_s", "guidance.heading_rate_max_rad_s", "start.place_m", "start.range_m",
     "criteria.tracking_error_end_m", "criteria.crossing_interval_s",
     "criteria.crossing_distance_m",
 }  # fmt: skip
@@ -128,7 +128,7 @@ def test_keys_without_a_unit_in_their_names_have_no_length_and_no_time():
     for name in keys(scenario):
         section, key = name.split(".")
         unit = re.search(r"\[([^\]]+)\]", type(getattr(scenario, section)).model_fields[key].description or "")
-        assert (dimension(name) is not None) == (unit is not None and unit[1] not in ("-", "deg")), name
+        assert (dimension(name) is not None) == (unit is not None and unit[1] not in ("-", "deg", "%", "degC")), name
 
 
 def scaled_keys():
