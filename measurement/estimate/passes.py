@@ -88,6 +88,8 @@ def find_passes(record: Record, noise: float) -> tuple[Pass, ...]:
 
 def _bounded(time: Array, excess: Array, peaks: npt.NDArray[np.int64], noise: float) -> list[Pass]:
     """Return the passes at these peaks, each between the troughs to its neighbours, where it is above the noise."""
+    if not len(peaks):
+        return []
     inner = [int(a + np.argmin(excess[a : b + 1])) for a, b in itertools.pairwise(peaks)]
     cuts = [0, *inner, len(excess) - 1]
     passes = []

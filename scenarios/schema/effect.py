@@ -135,7 +135,10 @@ RULES = (
         user=_VESSEL,
     ),
     Rule(
-        keys=("plume.model", "plume.direction", "plume.heading_deg", "plume.elevation_deg", "flight.crossings", "flight.after_settling_s"),
+        keys=(
+            "plume.model", "plume.direction", "plume.heading_deg", "plume.elevation_deg", "flight.crossings",
+            "flight.after_settling_s",
+        ),
         acts=lambda s: not s.circles,
         user=_VESSEL,
     ),

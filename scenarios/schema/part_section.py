@@ -52,7 +52,8 @@ class PartSection(Section):
         keys = self.part_keys
         for name in given:
             if name not in keys:
-                known = f"; keys of {', '.join(map(repr, parts))} are {', '.join(keys)}" if keys else "; no part that takes it is named"
+                of_parts = f"; keys of {', '.join(map(repr, parts))} are {', '.join(keys)}"
+                known = of_parts if keys else "; no part that takes it is named"
                 raise ValueError(f"unknown key '{name}'{did_you_mean(name, [*type(self).model_fields, *keys]) or known}")
         for part in parts.values():
             if hasattr(part, "SETTINGS"):

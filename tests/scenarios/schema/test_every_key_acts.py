@@ -111,7 +111,8 @@ MEASURING = ("emission.", "flight.", "payload.", "plume.", "wind.")
 """Sections that act on what is measured: the others do nothing more in a flight that measures."""
 
 ELSEWHERE = {
-    "study", "title", "description", "fidelity", "aircraft", "payload.instruments", "vessel.track", "plume.model", "reference.shape",
+    "study", "title", "description", "fidelity", "aircraft", "payload.instruments", "vessel.track", "plume.model",
+    "reference.shape",
     "flights", "histories", "sweep", "cases", "draws", "comparison", "comparison.variants",
 }  # fmt: skip
 """Kinds of study, texts, experiments and parts, which tests of their own are about (test_extension_points, test_experiments)."""
