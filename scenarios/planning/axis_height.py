@@ -18,4 +18,11 @@ def axis_height(scenario: Scenario) -> AxisHeight:
     if scenario.emission.ship is None:
         return AxisHeight(source=source, climb=climb)
     expected = emission(scenario, load=None)
-    return AxisHeight(source=source, climb=climb, momentum_flux=expected.momentum_flux, buoyancy_flux=expected.buoyancy_flux)
+    return AxisHeight(
+        source=source,
+        climb=climb,
+        momentum_flux=expected.momentum_flux,
+        buoyancy_flux=expected.buoyancy_flux,
+        lowest=scenario.flight.altitude_min_m,
+        highest=scenario.flight.altitude_max_m,
+    )

@@ -29,7 +29,8 @@ NOT_SCALED = {
     "guidance.airspeed_mps",
     # World and equipment, and what is written for a circle about which the scenario says everything.
     "vessel.speed_mps", "plume.source_height_m", "keepout.radius_m", "reference.radius_m", "wind.speed_mps",
-    "turbulence.gust_speed_mps", "turbulence.gust_length_s", "reports.interval_s", "reports.position_sigma_m", "wind.stability_per_s",
+    "turbulence.gust_speed_mps", "turbulence.gust_length_s", "reports.interval_s", "reports.position_sigma_m",
+    "wind.stability_per_s",
     "reports.velocity_sigma_mps", "reports.latency_max_s", "sensors.position_sigma_m", "sensors.velocity_sigma_mps",
     "sensors.airspeed_sigma_mps", "sensors.airspeed_bias_mps", "fault.at_s", "fault.vessel_data_s", "fault.satellite_navigation_s",
     # What a ship does, how well it is known, and how often the keep-out area may be touched.
@@ -42,7 +43,8 @@ NOT_SCALED = {
     # The simulation runs at 120 Hz for every aircraft.
     "guidance.rate_hz", "flight.log_rate_hz",
     # Not set by default; who sets them means what they say.
-    "flight.after_settling_s", "guidance.heading_rate_max_rad_s", "start.place_m", "start.range_m",
+    "flight.after_settling_s", "flight.altitude_min_m", "flight.altitude_max_m",
+    "guidance.heading_rate_max_rad_s", "start.place_m", "start.range_m",
     "criteria.tracking_error_end_m", "criteria.crossing_interval_s",
     "criteria.crossing_distance_m",
 }  # fmt: skip
