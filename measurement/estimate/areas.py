@@ -18,8 +18,11 @@ _LEAD = 1.0
 _TAIL = 5.0
 """It ends so many of the slowest time constants after the pass."""
 
-_BASE_SAMPLES = 3
-"""Samples on either side of the window whose mean is the background."""
+_BASE = 15.0
+"""Length of the background on either side of the window, where no other pass is; one sample where there is no room [s]."""
+
+_SAME = 1e-9
+"""Times that differ by less are the same [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,11 +66,15 @@ def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
     shares = shares_of(instrument, gases)
     tail = _TAIL * max(instrument.known(gas).constants[0] for gas in gases)
     weights = {gas: np.zeros(len(record.time)) for gas in gases}
-    for i, found in enumerate(passes):
-        until = passes[i + 1].start_s - _LEAD if i + 1 < len(passes) else math.inf
-        for gas in gases:
-            late = instrument.known(gas).delay_s - instrument.known("co2").delay_s
-            _add_window(weights[gas], record, found.start_s - _LEAD + late, min(found.end_s + tail, until) + late)
+    onsets = [*(found.start_s for found in passes[1:]), math.inf]
+    ends = [min(found.end_s + tail, onset) for found, onset in zip(passes, onsets, strict=True)]
+    # Where the one before is over, the window leads its pass; where not, it begins at the trough.
+    starts = [max(found.start_s - _LEAD, before) for found, before in zip(passes, [-math.inf, *ends[:-1]], strict=True)]
+    for gas in gases:
+        late = instrument.known(gas).delay_s - instrument.known("co2").delay_s
+        for i, (start, end) in enumerate(zip(starts, ends, strict=True)):
+            free = (ends[i - 1] if i else -math.inf), (starts[i + 1] if i + 1 < len(starts) else math.inf)
+            _add_window(weights[gas], record, (start + late, end + late), (free[0] + late, free[1] + late))
     so2 = sum(shares[gas][0] * float(weights[gas] @ record.of(gas)) for gas in gases)
     co2 = sum(shares[gas][1] * float(weights[gas] @ record.of(gas)) for gas in gases)
     ratio = so2 / co2 if co2 > 0.0 else math.nan
@@ -75,7 +82,7 @@ def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
         ((shares[gas][0] - ratio * shares[gas][1]) * instrument.known(gas).noise) ** 2 * float(weights[gas] @ weights[gas])
         for gas in gases
     )
-    times = np.array([found.time_s for found in passes])
+    times = np.array([found.centre_s for found in passes])
     interval = float(np.median(np.diff(times))) if len(times) > 1 else math.nan
     share = float(weights["so2"] @ _puffs(record, instrument, passes)) / co2 if co2 > 0.0 else math.nan
     return Areas(ratio=ratio, noise=math.sqrt(variance) / co2 if co2 > 0.0 else math.nan, share=share, interval_s=interval)
@@ -94,18 +101,25 @@ def _puffs(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> A
     return read * so2.gain / co2.gain
 
 
-def _add_window(weights: Array, record: Record, start: float, end: float) -> None:
-    """Add to the samples' weights those of an area from ``start`` to ``end`` over its background [s]."""
+def _add_window(weights: Array, record: Record, window: tuple[float, float], free: tuple[float, float]) -> None:
+    """Add to the samples' weights those of an area over a window and its background [s].
+
+    The background is the straight line between the means of the samples before and after the window: of those within ``_BASE``, as
+    far as they belong to no other pass.
+    """
     before = 0
     for time in record.times:
-        first = max(int(np.searchsorted(time, start - 1e-9)), 0)
-        last = min(int(np.searchsorted(time, end + 1e-9)), len(time)) - 1
+        first = int(np.searchsorted(time, window[0] - _SAME))
+        last = int(np.searchsorted(time, window[1] + _SAME)) - 1
         if last > first + 1 and first < len(time):
             part = weights[before : before + len(time)]
             # Trapezoids: the ends count half. The background's line has the area of its ends' mean.
             part[first : last + 1] += record.step
             part[[first, last]] -= 0.5 * record.step
-            for base in (slice(max(0, first - _BASE_SAMPLES + 1), first + 1), slice(last, last + _BASE_SAMPLES)):
+            earliest = int(np.searchsorted(time, max(free[0], window[0] - _BASE) - _SAME))
+            latest = int(np.searchsorted(time, min(free[1], window[1] + _BASE) + _SAME)) - 1
+            sides = slice(min(earliest, first), first + 1), slice(last, max(latest, last) + 1)
+            for base in sides:
                 part[base] -= 0.5 * record.step * (last - first) / len(part[base])
             return
         before += len(time)

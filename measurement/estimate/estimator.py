@@ -71,23 +71,34 @@ def estimate(
     MeasurementError : the readings cannot be those of a flight through a plume: no CO2, times, units or shapes; or a parameter is
         out of range. What makes a record weak rather than wrong is a quality of C with its reason, and no verdict.
     """
+    check_parameters(method, carbon, limits_percent)
+    record = checked_record(readings, instrument)
+    noise = readings_noise(record, instrument)
+    instrument = replace(
+        instrument, channels=tuple(replace(channel, noise=noise.get(channel.gas, channel.noise)) for channel in instrument.channels)
+    )
+    passes = find_passes(record, instrument.known("co2"))
+    problems = [*record.problems, *_too_little(record, instrument, passes, noise["co2"])]
+    if not passes:
+        ratio = _nothing(instrument)
+    else:
+        ratio = _regressed(record, instrument) if method == "regression" else _areas(record, instrument, passes)
+    return _told(record, passes, ratio, method, carbon, tuple(limits_percent), [*problems, *ratio.problems])
+
+
+def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]) -> None:
+    """Refuse parameters of ``estimate`` that are out of range.
+
+    Raises
+    ------
+    MeasurementError : one is
+    """
     if method not in ("regression", "areas"):
         raise MeasurementError(f"method is {method!r}; it must be 'regression' or 'areas'")
     if not CARBON_LEAST <= carbon <= CARBON_MOST:
         raise MeasurementError(f"carbon is {carbon:g}; a fuel's mass share of carbon must be {CARBON_LEAST:g} to {CARBON_MOST:g}")
     if not limits_percent or not all(0.0 < limit <= 10.0 for limit in limits_percent):
         raise MeasurementError(f"limits are {tuple(limits_percent)} %; give one or more of 0 to 10")
-    record = checked_record(readings, instrument)
-    noise = readings_noise(record, instrument)
-    instrument = replace(
-        instrument, channels=tuple(replace(channel, noise=noise.get(channel.gas, channel.noise)) for channel in instrument.channels)
-    )
-    passes = find_passes(record, noise["co2"])
-    problems = [*record.problems, *_too_little(record, instrument, passes, noise["co2"])]
-    ratio = _regressed(record, instrument) if method == "regression" else _areas(record, instrument, passes)
-    if not passes:
-        ratio = replace(ratio, ratio=math.nan, noise=math.nan, misfit=math.nan)
-    return _told(record, passes, ratio, method, carbon, tuple(limits_percent), [*problems, *ratio.problems])
 
 
 def _too_little(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], noise: float) -> list[str]:
@@ -100,6 +111,12 @@ def _too_little(record: Record, instrument: SnifferSpec, passes: Sequence[Pass],
     if record.duration < width + response:
         return [f"the record lasts {record.duration:.0f} s; a pass and the response of SO2 take {width + response:.0f} s"]
     return []
+
+
+def _nothing(instrument: SnifferSpec) -> _Ratio:
+    """Return the ratio of a record without a pass."""
+    alignment = Alignment(instrument=instrument, slope_deviation=math.nan, t90_sd_s=math.nan, delay_sd_s=math.nan)
+    return _Ratio(ratio=math.nan, noise=math.nan, misfit=math.nan, common={}, alignment=alignment)
 
 
 def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
@@ -197,7 +214,7 @@ def _figures(record: Record, passes: tuple[Pass, ...], instrument: SnifferSpec, 
         int(np.sum(values["co2"] - co2_background(time, values["co2"], noise) > SNR_LEAST * noise))
         for time, values in zip(record.times, record.values, strict=True)
     )
-    times = np.array([found.time_s for found in passes])
+    times = np.array([found.centre_s for found in passes])
     return Figures(
         duration_s=record.duration,
         passes=len(passes),

@@ -7,7 +7,8 @@ import numpy as np
 import pandas as pd
 
 from measurement.errors import MeasurementError
-from measurement.estimate.estimator import estimate
+from measurement.estimate.estimator import check_parameters, estimate
+from measurement.estimate.record import checked_record
 from measurement.estimate.result import FscEstimate, Method
 from measurement.estimate.verdict import LIMITS_PERCENT, OPEN
 from measurement.gases import CARBON_FRACTION
@@ -35,9 +36,10 @@ def over_time(
 
     Raises
     ------
-    MeasurementError : as ``estimate`` for the whole record
+    MeasurementError : a parameter is out of range, or the whole record is not one of a flight, as for ``estimate``
     """
-    estimate(readings, instrument, method=method, carbon=carbon, limits_percent=limits_percent)
+    check_parameters(method, carbon, limits_percent)
+    checked_record(readings, instrument)
     start, end = float(readings.time[0]), float(readings.time[-1])
     rows = []
     for elapsed in elapsed_s:

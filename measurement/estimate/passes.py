@@ -10,6 +10,7 @@ from scipy.signal import find_peaks
 
 from measurement.estimate.record import Record
 from measurement.gases import GASES
+from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
@@ -19,12 +20,13 @@ SNR_LEAST = 5.0
 _WINDOW = 60.0
 """Length of the pieces of which the background is the low quantile [s]."""
 
-_QUANTILE, _QUANTILE_SIGMA = 0.2, 0.8416
+_QUANTILE, _QUANTILE_SIGMA = 0.05, 1.645
 """Share of the samples, less than those outside the plume, above which the background lies, and by how many standard deviations of
 the noise: the normal distribution's quantile."""
 
-_MEDIAN_SIGMA = 0.6745
-"""Median of the size of normal noise, over its standard deviation."""
+_CALM, _CALM_SIGMA = 0.1, 0.1257
+"""Share of the second differences that are noise alone, and the largest of them over their standard deviation: the quantile of the
+size of normal noise."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +38,7 @@ class Pass:
     time_s, centre_s : of the CO2 reading's peak, and of the centre of its area [s]
     start_s, end_s : where the CO2 reading leaves its background and is back, or the trough to the neighbour [s]
     height_ppm, snr : of the peak over the background, and over the noise [-]
-    dose_ppm_s : area of the CO2 excess [ppm s]
+    dose_ppm_s : area of the CO2 excess, with what the channel remembers at the end less that at the start [ppm s]
     """
 
     time_s: float
@@ -56,7 +58,7 @@ def readings_noise(record: Record, instrument: SnifferSpec) -> dict[str, float]:
         if math.isnan(stated):
             second = np.concatenate([np.diff(segment[gas], 2) for segment in record.values])
             # The variance of a second difference is 6 times that of a sample.
-            stated = float(np.median(np.abs(second))) / _MEDIAN_SIGMA / math.sqrt(6.0)
+            stated = float(np.quantile(np.abs(second), _CALM)) / _CALM_SIGMA / math.sqrt(6.0)
         noise[gas] = stated
     return noise
 
@@ -75,29 +77,30 @@ def co2_background(time: Array, values: Array, noise: float) -> Array:
     return np.interp(time, middles, levels)
 
 
-def find_passes(record: Record, noise: float) -> tuple[Pass, ...]:
-    """Return the passes of a record, given the noise of its CO2 readings [ppm]."""
+def find_passes(record: Record, channel: Channel) -> tuple[Pass, ...]:
+    """Return the passes of a record, given its CO2 channel."""
+    noise = channel.noise
     passes: list[Pass] = []
     for time, values in zip(record.times, record.values, strict=True):
         excess = values["co2"] - co2_background(time, values["co2"], noise)
         least = max(SNR_LEAST * noise, 1e-6 * float(np.abs(values["co2"]).max()))
         peaks, _ = find_peaks(np.concatenate([[-math.inf], excess, [-math.inf]]), height=least, prominence=least)
-        passes += _bounded(time, excess, peaks - 1, noise)
+        passes += _bounded(time, excess, peaks - 1, channel)
     return tuple(passes)
 
 
-def _bounded(time: Array, excess: Array, peaks: npt.NDArray[np.int64], noise: float) -> list[Pass]:
+def _bounded(time: Array, excess: Array, peaks: npt.NDArray[np.int64], channel: Channel) -> list[Pass]:
     """Return the passes at these peaks, each between the troughs to its neighbours, where it is above the noise."""
-    if not len(peaks):
-        return []
+    noise, memory = channel.noise, sum(channel.constants)
     inner = [int(a + np.argmin(excess[a : b + 1])) for a, b in itertools.pairwise(peaks)]
-    cuts = [0, *inner, len(excess) - 1]
     passes = []
-    for peak, low, high in zip(peaks, cuts[:-1], cuts[1:], strict=True):
+    for peak, low, high in zip(peaks, [0, *inner], [*inner, len(excess) - 1], strict=False):
         below = np.flatnonzero(excess <= noise)
         start = max(low, int(below[below < peak].max(initial=low)))
         end = min(high, int(below[below > peak].min(initial=high)))
         height, inside = float(excess[peak]), slice(start, end + 1)
+        # The low quantile lies above the background where a plume is never far: then the troughs tell it better.
+        level = min(0.0, 0.5 * float(excess[start] + excess[end]))
         weights = np.maximum(excess[inside], 0.0)
         passes.append(
             Pass(
@@ -107,7 +110,7 @@ def _bounded(time: Array, excess: Array, peaks: npt.NDArray[np.int64], noise: fl
                 end_s=float(time[end]),
                 height_ppm=height,
                 snr=height / noise if noise > 0.0 else math.inf,
-                dose_ppm_s=float(np.trapezoid(excess[inside], time[inside])),
+                dose_ppm_s=float(np.trapezoid(excess[inside] - level, time[inside]) + memory * (excess[end] - excess[start])),
             )
         )
     return passes

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from scipy.stats import norm
+from scipy.special import log_ndtr, ndtri
 
 Side = Literal["above", "below", "open"]
 
@@ -17,6 +17,9 @@ LIMITS_PERCENT = (0.10, 0.50)
 
 CONFIDENCE = 0.95
 """Probability from which on a verdict is given."""
+
+GUARD, COVERAGE = float(ndtri(CONFIDENCE)), float(ndtri(0.5 + 0.5 * CONFIDENCE))
+"""Standard uncertainties of a guard band, 1.645, and of half an interval, 1.960."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +42,7 @@ def probability_above(limit: float, fsc: float, deviation: float) -> float:
     """Return the probability of a sulphur content above a limit [% m/m]: a normal distribution cut at 0, as no fuel has less."""
     if not (math.isfinite(fsc) and deviation > 0.0):
         return math.nan
-    return math.exp(float(norm.logsf(limit, fsc, deviation) - norm.logsf(0.0, fsc, deviation)))
+    return math.exp(float(log_ndtr((fsc - limit) / deviation) - log_ndtr(fsc / deviation)))
 
 
 def judged(limit: float, fsc: float, deviation: float, *, admitted: bool) -> Verdict:
@@ -51,7 +54,7 @@ def judged(limit: float, fsc: float, deviation: float, *, admitted: bool) -> Ver
     probability = probability_above(limit, fsc, deviation)
     verdict = OPEN
     if admitted and math.isfinite(probability):
-        if fsc > limit + float(norm.ppf(CONFIDENCE)) * deviation:
+        if fsc > limit + GUARD * deviation:
             verdict = ABOVE
         elif probability < 1.0 - CONFIDENCE:
             verdict = BELOW
@@ -60,5 +63,5 @@ def judged(limit: float, fsc: float, deviation: float, *, admitted: bool) -> Ver
 
 def interval(fsc: float, deviation: float) -> tuple[float, float]:
     """Return the 95 % interval of a sulphur content [% m/m]; a reading below 0 is taken as 0 for its upper end."""
-    half = float(norm.ppf(0.5 + 0.5 * CONFIDENCE)) * deviation
+    half = COVERAGE * deviation
     return max(0.0, fsc - half), max(0.0, fsc) + half

@@ -1,6 +1,5 @@
 """Response time and delay of SO2, found from the record where they are not given: those that fit best."""
 
-import itertools
 import math
 from dataclasses import dataclass, replace
 
@@ -8,14 +7,16 @@ import numpy as np
 import numpy.typing as npt
 
 from measurement.errors import MeasurementError
+from measurement.estimate.fit.background import without
 from measurement.estimate.fit.regression import noise_covariance, residual_variance, slope_alone
+from measurement.estimate.fit.response import shifted
 from measurement.estimate.fit.signals import Signals, make_signals
 from measurement.estimate.record import Record
 from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
-_ROUNDS = 8
-"""Gauss-Newton steps at most."""
+_ROUNDS, _ROUNDS_NEAR = 8, 2
+"""Gauss-Newton steps at most, and from a start that is near the end."""
 
 _SMALL = 1e-3
 """Change of log(t90) and delay [s] at which the fit has settled."""
@@ -73,7 +74,7 @@ def align(record: Record, instrument: SnifferSpec, start: SnifferSpec | None = N
         return stated(instrument)
     place = _place(start) if start else _searched(record, instrument, free)
     covariance, slope_deviation = np.zeros((2, 2)), math.nan
-    for _ in range(_ROUNDS):
+    for _ in range(_ROUNDS if start is None else _ROUNDS_NEAR):
         step, covariance, slope_deviation = _round(record, instrument, place, free)
         place = place + step
         if np.abs(step).max() < _SMALL:
@@ -139,15 +140,15 @@ def _derivative(record: Record, instrument: SnifferSpec, place: Array, i: int, s
 
 def _searched(record: Record, instrument: SnifferSpec, free: npt.NDArray[np.int64]) -> Array:
     """Return the place on the grid at which CO2 leaves the smallest share of SO2 unexplained."""
-    best, least = _place(instrument), math.inf
-    times = np.log(_T90_SEARCH) if 0 in free else best[:1]
-    delays = np.array(_DELAY_SEARCH) if 1 in free else best[1:]
-    for log_t90, delay in itertools.product(times, delays):
-        place = np.array([log_t90, delay])
-        co2, so2 = make_signals(record, _applied(instrument, place)).excess()
-        product = float(co2 @ so2)
-        left = 1.0 - product**2 / max(float(co2 @ co2) * float(so2 @ so2), 1e-30)
-        # SO2 does not fall where CO2 rises: a fit of that sign is none.
-        if left < least and product > 0.0:
-            best, least = place, left
+    best, most = _place(instrument), 0.0
+    given = float(best[1])
+    for log_t90 in np.log(_T90_SEARCH) if 0 in free else best[:1]:
+        signals = make_signals(record, _applied(instrument, np.array([log_t90, given])))
+        _, so2 = signals.excess()
+        for delay in _DELAY_SEARCH if 1 in free else (given,):
+            co2 = without(signals.basis, shifted(signals.co2, record.step, delay - given))
+            # SO2 does not fall where CO2 rises: a negative share is none.
+            explained = float(co2 @ so2) / max(float(np.linalg.norm(co2)), 1e-30)
+            if explained > most * float(np.linalg.norm(so2)):
+                best, most = np.array([log_t90, delay]), explained / float(np.linalg.norm(so2))
     return best

@@ -60,13 +60,15 @@ def grouped(signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: f
     weights = np.asarray(np.linalg.pinv(co2), dtype=np.float64)
     found = weights @ signals.excess()[1]
     covariance = max(1.0, misfit) * noise_covariance(signals, weights.T, slope)
-    inverse = np.linalg.inv(covariance + response**2 * np.eye(len(found)))
-    mean = float(inverse.sum(axis=0) @ found / inverse.sum())
-    distance = float((found - mean) @ inverse @ (found - mean))
+    agreement = math.nan
+    if covariance.any():
+        inverse = np.linalg.inv(covariance + response**2 * np.eye(len(found)))
+        mean = float(inverse.sum(axis=0) @ found / inverse.sum())
+        agreement = float(chi2.sf(float((found - mean) @ inverse @ (found - mean)), len(found) - 1))
     return Groups(
         slopes=tuple(float(v) for v in found),
         deviations=tuple(float(v) for v in np.sqrt(np.diagonal(covariance))),
-        agreement=float(chi2.sf(distance, len(found) - 1)),
+        agreement=agreement,
     )
 
 

@@ -4,12 +4,14 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from measurement.sniffer.lag import Array, lag
 
 Poles = tuple[float, ...]
 """Time constants [s], the largest first."""
+
+_ON_SAMPLE = 1e-9
+"""Share of a step by which a delay may miss a whole number of steps and still be one."""
 
 
 def slowest(poles: Sequence[Poles]) -> Poles:
@@ -64,10 +66,22 @@ def transients(time: Array, common: Poles) -> Array:
 
 
 def shifted(signal: Array, step: float, delay: float) -> Array:
-    """Return a smooth signal ``delay`` later, by a cubic spline; beyond its ends it stays at its last value."""
-    if abs(delay) < 1e-9 or len(signal) < 4:
-        return signal
-    place = np.clip(np.arange(len(signal)) - delay / step, 0.0, len(signal) - 1.0)
-    if math.isclose(delay / step, round(delay / step), abs_tol=1e-9):
-        return np.asarray(signal[np.round(place).astype(np.int64)])
-    return np.asarray(CubicSpline(np.arange(len(signal)), signal)(place), dtype=np.float64)
+    """Return a smooth signal ``delay`` later, by a cubic through four samples; beyond its ends it stays at its last value."""
+    place = -delay / step
+    whole = math.floor(place)
+    share = place - whole
+    if share < _ON_SAMPLE or share > 1.0 - _ON_SAMPLE:
+        whole, share = round(place), 0.0
+    # Lagrange's weights of the samples before, at, after and two after.
+    weights = (
+        -share * (share - 1.0) * (share - 2.0) / 6.0,
+        (share + 1.0) * (share - 1.0) * (share - 2.0) / 2.0,
+        -(share + 1.0) * share * (share - 2.0) / 2.0,
+        (share + 1.0) * share * (share - 1.0) / 6.0,
+    )
+    samples = np.arange(len(signal)) + whole
+    moved = np.zeros(len(signal))
+    for offset, weight in zip((-1, 0, 1, 2), weights, strict=True):
+        if weight:
+            moved += weight * signal[np.clip(samples + offset, 0, len(signal) - 1)]
+    return moved

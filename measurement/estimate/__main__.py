@@ -1,0 +1,59 @@
+"""Command line: ``python -m measurement.estimate FLIGHT.csv`` estimates the fuel sulphur content of a logged flight."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from measurement.errors import MeasurementError
+from measurement.flight_log.analysis import analyse
+from measurement.flight_log.config import LogConfig, read_config
+from measurement.flight_log.csv_file import read_flight
+from measurement.flight_log.run_files import build_report, write_run
+from measurement.flight_log.words import summary
+
+BAD_INPUT = 2
+"""Exit status of input that cannot be used."""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Estimate, print, write; return the exit status."""
+    parser = argparse.ArgumentParser(
+        prog="python -m measurement.estimate",
+        description="Estimate the fuel sulphur content of a ship from a flight through its plume.",
+        epilog="Exit status: 0 done, 2 bad input.",
+    )
+    parser.add_argument(
+        "flight",
+        type=Path,
+        metavar="FLIGHT.csv",
+        help="time_s, so2_ppb, co2_ppm, and where known no_ppb, no2_ppb, place and height",
+    )
+    parser.add_argument(
+        "--config",
+        type=Path,
+        metavar="TOML",
+        help="instrument, columns, limits; without it nothing is taken as known of the instrument",
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where files and report go; runs/measurement_FLIGHT unless given")
+    parser.add_argument("--no-report", action="store_true", help="write no report")
+    given = parser.parse_args(arguments)
+    try:
+        config = read_config(given.config) if given.config else LogConfig()
+        flight = read_flight(given.flight, config)
+        analysis = analyse(
+            flight.readings, config.instrument, method=config.method, carbon=config.carbon, limits_percent=config.limits_percent
+        )
+        directory = given.out or Path("runs") / f"measurement_{given.flight.stem}"
+        write_run(directory, flight, analysis, given.flight, given.config)
+    except MeasurementError as error:
+        line = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in str(error))
+        print(f"error: {line}", file=sys.stderr)
+        return BAD_INPUT
+    for line in summary(analysis, given.flight.name):
+        print(line)
+    print(f"files: {directory}" if given.no_report else build_report(directory))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

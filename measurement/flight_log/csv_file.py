@@ -1,0 +1,116 @@
+"""A logged flight in a CSV file."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from measurement.errors import MeasurementError
+from measurement.flight_log.config import LogConfig
+from measurement.gases import GASES, UNITS
+from measurement.sniffer.lag import Array
+from measurement.sniffer.sniffer import Readings
+
+EARTH_RADIUS_M = 6_371_000.0
+"""Mean radius [m]: a track of a few kilometres is laid on a plane."""
+
+TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
+"""Columns of the true concentrations, which a simulated flight may have; they are shown, and take no part in the estimate."""
+
+
+@dataclass(frozen=True)
+class LoggedFlight:
+    """A flight as it was logged.
+
+    Attributes
+    ----------
+    readings : of the sniffer
+    place : ``time_s``, and of ``north_m``, ``east_m``, ``height_m`` and the true concentrations those that the file has
+    """
+
+    readings: Readings
+    place: pd.DataFrame
+
+
+def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
+    """Return the flight in a CSV file with a row per reading.
+
+    Times are seconds, or dates and times that pandas reads.
+
+    Raises
+    ------
+    MeasurementError : the file cannot be read, or lacks a column or has words in it
+    """
+    try:
+        table = pd.read_csv(path, skipinitialspace=True, low_memory=False)
+    except OSError as error:
+        raise MeasurementError(f"'{path}' cannot be read: {error.strerror}; give a CSV file") from None
+    except (UnicodeDecodeError, pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
+        raise MeasurementError(
+            f"'{path}' is not CSV: {str(error).splitlines()[0].strip()}; give a CSV file with a head line"
+        ) from None
+    table.columns = table.columns.map(str).str.strip()
+    time = _time(table, config.columns["time"], path)
+    values = np.full((len(table), len(GASES)), np.nan)
+    for i, gas in enumerate(GASES):
+        name = config.columns[gas]
+        if name in table:
+            values[:, i] = config.scale.get(gas, 1.0) * _numbers(table, name, path)
+        elif gas in ("so2", "co2"):
+            raise MeasurementError(_missing(path, gas.upper(), gas, name, table))
+    place = {"time_s": time, **_place(table, config, path)}
+    place |= {name: _numbers(table, name, path) for name in TRUE_COLUMNS if name in table}
+    return LoggedFlight(Readings(time, values), pd.DataFrame(place))
+
+
+def _missing(path: Path, what: str, key: str, name: str, table: pd.DataFrame) -> str:
+    there = ", ".join(f"'{column}'" for column in list(table.columns)[:12])
+    return f"'{path}' has no {what} column '{name}', but {there}; name it in [columns] of the configuration: {key} = \"...\""
+
+
+def _numbers(table: pd.DataFrame, name: str, path: Path) -> Array:
+    numbers = pd.to_numeric(table[name], errors="coerce")
+    words = numbers.isna() & table[name].notna() & (table[name].astype(str).str.strip() != "")
+    if words.any():
+        row = int(np.argmax(words.to_numpy()))
+        raise MeasurementError(
+            f"'{path}': column '{name}' has {str(table[name].iloc[row])!r} in row {row + 2}; it must hold numbers, or be empty"
+        )
+    return numbers.to_numpy(dtype=np.float64)
+
+
+def _time(table: pd.DataFrame, name: str, path: Path) -> Array:
+    if name not in table:
+        raise MeasurementError(_missing(path, "time", "time", name, table))
+    column = table[name]
+    if pd.api.types.is_numeric_dtype(column):
+        return column.to_numpy(dtype=np.float64)
+    try:
+        moments = pd.to_datetime(column, utc=True, format="ISO8601")
+    except (ValueError, TypeError):
+        raise MeasurementError(
+            f"'{path}': time '{column.iloc[0]}' in column '{name}' cannot be read; give seconds, or 2024-05-01T12:00:00.0"
+        ) from None
+    return np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
+
+
+def _place(table: pd.DataFrame, config: LogConfig, path: Path) -> dict[str, Array]:
+    """Return where the flight was, on a plane about its first known place."""
+    names = ("latitude", "longitude", "north", "east", "height")
+    found = {name: _numbers(table, config.columns[name], path) for name in names if config.columns[name] in table}
+    place = {}
+    if {"north", "east"} <= set(found):
+        place = {"north_m": found["north"], "east_m": found["east"]}
+    elif {"latitude", "longitude"} <= set(found) and np.isfinite(found["latitude"] + found["longitude"]).any():
+        latitude, longitude = np.radians(found["latitude"]), np.radians(found["longitude"])
+        first = int(np.argmax(np.isfinite(latitude + longitude)))
+        east = (longitude - longitude[first] + math.pi) % math.tau - math.pi
+        place = {
+            "north_m": EARTH_RADIUS_M * (latitude - latitude[first]),
+            "east_m": EARTH_RADIUS_M * math.cos(latitude[first]) * east,
+        }
+    if "height" in found:
+        place["height_m"] = found["height"]
+    return place

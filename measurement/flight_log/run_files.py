@@ -1,0 +1,100 @@
+"""The directory that an analysis leaves, of which reports are built."""
+
+import hashlib
+import importlib.metadata
+import importlib.util
+import json
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from measurement.errors import MeasurementError
+from measurement.estimate.result import plain
+from measurement.flight_log.analysis import Analysis
+from measurement.flight_log.csv_file import LoggedFlight
+
+MANIFEST, ESTIMATE, SAMPLES = "manifest.json", "estimate.json", "samples.csv"
+"""What the directory holds."""
+
+STUDY = "measurement"
+"""What the manifest calls the kind of run."""
+
+_PACKAGES = ("numpy", "scipy", "pandas")
+
+
+def write_run(directory: Path, flight: LoggedFlight, analysis: Analysis, source: Path, config: Path | None) -> None:
+    """Write manifest, estimate and samples of an analysis.
+
+    Raises
+    ------
+    MeasurementError : the directory cannot be written
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        _write_json(directory / ESTIMATE, analysis.record())
+        table = samples(analysis.estimate.signals, flight.place)
+        _whole(directory / SAMPLES, lambda part: table.to_csv(part, index=False, float_format="%.6g"))
+        _write_json(directory / MANIFEST, _manifest(analysis, source, config))
+    except OSError as error:
+        raise MeasurementError(f"'{directory}' cannot be written: {error.strerror}; give another --out") from None
+
+
+def samples(signals: pd.DataFrame, place: pd.DataFrame) -> pd.DataFrame:
+    """Return the signals of an estimate with place and truth at their times."""
+    table = signals.copy()
+    for name in place.columns:
+        known = np.isfinite(place[name].to_numpy())
+        if name != "time_s" and known.any():
+            table[name] = np.interp(table["time_s"], place["time_s"][known], place[name][known])
+    return table
+
+
+def build_report(directory: Path) -> str:
+    """Have the reports of a directory built by the room ``reports``, where it is installed; return what there is to say."""
+    if importlib.util.find_spec("reports") is None:
+        return "report: not built, as the package 'reports' is not installed; estimate.json has everything"
+    outcome = subprocess.run([sys.executable, "-m", "reports.build", str(directory)], capture_output=True, text=True, check=False)
+    if outcome.returncode:
+        last = (outcome.stderr.strip().splitlines() or ["no reason given"])[-1]
+        return f"report: not built: {last}"
+    return outcome.stdout.strip()
+
+
+def _manifest(analysis: Analysis, source: Path, config: Path | None) -> dict[str, Any]:
+    digest = hashlib.sha256(source.read_bytes() + (config.read_bytes() if config else b"")).hexdigest()
+    return {
+        "study": STUDY,
+        "name": source.stem,
+        "title": f"Fuel sulphur content of {source.stem}",
+        "state": "complete",
+        "overrides": [],
+        "config": {"description": f"Logged flight {source.name}, measured with: {analysis.instrument.title}."},
+        "config_hash": digest,
+        "git_revision": "not recorded",
+        "python": platform.python_version(),
+        "platform": f"{platform.system()} {platform.machine()}",
+        "packages": {name: importlib.metadata.version(name) for name in _PACKAGES},
+        "files": [ESTIMATE, SAMPLES],
+    }
+
+
+def _write_json(path: Path, value: dict[str, Any]) -> None:
+    text = json.dumps(plain(value), indent=1, allow_nan=False) + "\n"
+    _whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+
+
+def _whole(path: Path, write: Callable[[Path], object]) -> None:
+    """Write a file whole or not at all."""
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        write(part)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)

@@ -1,0 +1,58 @@
+"""An estimate in words."""
+
+import math
+from collections.abc import Iterator
+
+from measurement.estimate.result import FscEstimate
+from measurement.estimate.verdict import ABOVE, BELOW, Verdict
+from measurement.flight_log.analysis import Analysis
+
+ERRORS = {
+    "calibration": "calibration of SO2 and CO2",
+    "no": "correction for NO",
+    "no2": "correction for NO2",
+    "response": "response time and delay",
+    "carbon": "carbon content of the fuel",
+    "overlap": "passes that overlap",
+}
+"""Common errors by name."""
+
+
+def summary(analysis: Analysis, name: str) -> Iterator[str]:
+    """Yield the lines of a summary of a flight called ``name``."""
+    found, figures = analysis.estimate, analysis.estimate.figures
+    every = f" every {figures.interval_s:.1f} s" if figures.passes > 1 else ""
+    yield f"{name}, with: {analysis.instrument.title}"
+    yield f"{figures.duration_s:.0f} s, {figures.passes} passes{every}, CO2 signal to noise {figures.co2_snr:.0f}"
+    yield result(found)
+    parts = ", ".join(f"{ERRORS.get(key, key)} {value:.4f}" for key, value in by_size(found))
+    yield f"standard uncertainty {found.total_percent:.4f} %: noise {found.noise_percent:.4f}, {parts}"
+    yield f"quality {found.quality}" + (f": {'; '.join(found.quality_reasons)}" if found.quality_reasons else "")
+    for verdict in found.verdicts:
+        yield sentence(verdict)
+
+
+def result(found: FscEstimate) -> str:
+    """Return the result in words."""
+    if math.isnan(found.fsc_percent):
+        return "fuel sulphur content: none can be given"
+    return (
+        f"fuel sulphur content {found.fsc_percent:.3f} % m/m +- {found.total_percent:.3f} %;"
+        f" 95 % interval {found.low_percent:.3f} to {found.high_percent:.3f} %"
+    )
+
+
+def sentence(verdict: Verdict) -> str:
+    """Return a verdict in words, with its probability and its limit."""
+    limit, probability = f"{verdict.limit_percent:.2f} %", 100.0 * verdict.probability_above
+    told = "not known" if math.isnan(probability) else f"{probability:.1f} %"
+    if verdict.verdict == ABOVE:
+        return f"above the limit of {limit}: the probability that the fuel is above it is {told}"
+    if verdict.verdict == BELOW:
+        return f"below the limit of {limit}: the probability that the fuel is above it is {told}"
+    return f"open for the limit of {limit}: the probability that the fuel is above it is {told}; 95 % or 5 % are needed"
+
+
+def by_size(found: FscEstimate) -> list[tuple[str, float]]:
+    """Return the common errors, the largest first."""
+    return sorted(found.common_percent.items(), key=lambda item: -item[1])

@@ -1,0 +1,163 @@
+"""The command from a CSV file to its directory, and what it refuses."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+from crossings import flight
+
+from measurement.estimate.__main__ import main
+from measurement.flight_log.csv_file import EARTH_RADIUS_M
+
+
+@pytest.fixture
+def logged(tmp_path):
+    readings, _ = flight("electrochemical", 0.3, 4)
+    table = pd.DataFrame({
+        "time_s": readings.time,
+        "so2_ppb": readings.values[:, 0],
+        "co2_ppm": readings.values[:, 1],
+        "no_ppb": readings.values[:, 2],
+        "no2_ppb": readings.values[:, 3],
+        "north_m": 6.0 * readings.time,
+        "east_m": 50.0 * np.sin(0.33 * readings.time),
+        "height_m": 60.0,
+        "so2_true_ppb": 1.0,
+    })  # fmt: skip
+    path = tmp_path / "flight.csv"
+    table.to_csv(path, index=False)
+    (tmp_path / "instrument.toml").write_text('instrument = "electrochemical"\n', encoding="utf-8")
+    return path
+
+
+def run(logged, *more, config=True):
+    with_config = ["--config", str(logged.parent / "instrument.toml")] if config else []
+    return main([str(logged), "--out", str(logged.parent / "out"), "--no-report", *with_config, *more])
+
+
+def test_a_flight_is_estimated_printed_and_written(logged, capsys):
+    assert run(logged) == 0
+    printed = capsys.readouterr().out
+    assert "fuel sulphur content 0." in printed
+    assert "above the limit of 0.10 %: the probability that the fuel is above it is 100.0 %" in printed
+    assert "below the limit of 0.50 %" in printed
+    out = logged.parent / "out"
+    manifest, record = (json.loads((out / name).read_text(encoding="utf-8")) for name in ("manifest.json", "estimate.json"))
+    assert manifest["study"] == "measurement"
+    found = record["estimate"]
+    assert found["low_percent"] < 0.3 < found["high_percent"]
+    assert [row["elapsed_s"] for row in record["over_time"]][-1] == 300.0
+    assert record["time_to_verdict_s"]["0.1"] <= 120.0
+    assert record["other"]["method"] == "areas"
+    samples = pd.read_csv(out / "samples.csv")
+    assert len(samples) == 301
+    assert {"co2_excess_ppm", "so2_excess_ppb", "fit_ppb", "residual_ppb", "north_m", "height_m", "so2_true_ppb"} <= set(samples)
+    assert sorted(path.name for path in out.iterdir()) == ["estimate.json", "manifest.json", "samples.csv"]
+
+
+def test_columns_units_and_places_are_mapped(logged, capsys):
+    table = pd.read_csv(logged)
+    renamed = pd.DataFrame({
+        "Zeit": pd.Timestamp("2024-05-01T12:00:00Z") + pd.to_timedelta(table["time_s"], unit="s"),
+        "SO2 [ppm]": table["so2_ppb"] / 1000.0,
+        "CO2": table["co2_ppm"],
+        "NO": table["no_ppb"],
+        "NO2": table["no2_ppb"],
+        "lat": 54.0 + np.degrees(table["north_m"] / EARTH_RADIUS_M),
+        "lon": 8.0 + np.degrees(table["east_m"] / EARTH_RADIUS_M / np.cos(np.radians(54.0))),
+    })  # fmt: skip
+    other = logged.parent / "other.csv"
+    renamed.to_csv(other, index=False)
+    config = logged.parent / "other.toml"
+    config.write_text(
+        'instrument = "electrochemical"\n[columns]\ntime = "Zeit"\nso2 = "SO2 [ppm]"\nco2 = "CO2"\nno = "NO"\nno2 = "NO2"\n'
+        'latitude = "lat"\nlongitude = "lon"\n[scale]\nso2 = 1000.0\n',
+        encoding="utf-8",
+    )
+    assert run(logged) == 0
+    expected = json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8"))["estimate"]
+    assert main([str(other), "--config", str(config), "--out", str(logged.parent / "mapped"), "--no-report"]) == 0
+    found = json.loads((logged.parent / "mapped" / "estimate.json").read_text(encoding="utf-8"))["estimate"]
+    assert found["fsc_percent"] == pytest.approx(expected["fsc_percent"], rel=1e-9)
+    samples = pd.read_csv(logged.parent / "mapped" / "samples.csv")
+    # A degree is kept to 1e-16 of itself and the file to six digits.
+    np.testing.assert_allclose(samples["east_m"], table["east_m"], atol=0.01)
+    capsys.readouterr()
+
+
+def test_an_instrument_of_ones_own_and_one_of_which_nothing_is_known(logged, capsys):
+    (logged.parent / "instrument.toml").write_text(
+        "limits_percent = [0.2]\n[instrument]\ntitle = 'Mine'\n[instrument.channels.so2]\ncross = { no = 0.015, no2 = -0.16 }\n"
+        "[instrument.channels.co2]\nt90_s = 4.0\nnoise = 1.0\n[instrument.channels.no]\n[instrument.channels.no2]\n",
+        encoding="utf-8",
+    )
+    assert run(logged) == 0
+    assert "Mine" in capsys.readouterr().out
+    record = json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8"))
+    assert [verdict["limit_percent"] for verdict in record["estimate"]["verdicts"]] == [0.2]
+    assert record["other"] is None
+    assert record["estimate"]["so2_t90_s"] == pytest.approx(20.0, abs=4.0)
+    assert run(logged, config=False) == 0
+    assert "nothing is known" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("config", "message"),
+    [
+        ("instrument = 'nose'", "instrument is 'nose'; there are alphasense_a4"),
+        ("instrument = 3", "instrument is 3; give the name of a preset"),
+        ("colour = 1", "has the key 'colour'; it may have carbon"),
+        ("carbon = 'much'", "carbon is 'much'"),
+        ("method = 'magic'", "method is 'magic'"),
+        ("limits_percent = 0.1", "limits_percent is 0.1; give a list"),
+        ("[columns]\nso3 = 'x'", "[columns] has the key 'so3'"),
+        ("[columns]\nso2 = 3", "columns.so2 is 3; give a name"),
+        ("[columns]\nso2 = 'SO2'", "has no SO2 column 'SO2', but 'time_s', 'so2_ppb'"),
+        ("[columns]\ntime = 'when'", "has no time column 'when'"),
+        ("[scale]\nso2 = 0", "scale of so2 is 0; it must be positive"),
+        ("[scale]\nco2 = 0.01", "CO2 has a median of 4"),
+        ("[", "is not TOML"),
+    ],
+)
+def test_configurations_with_mistakes_are_refused_in_one_line(logged, capsys, config, message):
+    (logged.parent / "instrument.toml").write_text(config, encoding="utf-8")
+    assert run(logged) == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert message in told
+    assert not (logged.parent / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("", "is not CSV"),
+        ("time_s,so2_ppb\n1,2\n", "has no CO2 column 'co2_ppm', but 'time_s', 'so2_ppb'"),
+        ("time_s,so2_ppb,co2_ppm\n1,two,420\n", "column 'so2_ppb' has 'two' in row 2; it must hold numbers"),
+        ("time_s,so2_ppb,co2_ppm\nsoon,2,420\n", "time 'soon' in column 'time_s' cannot be read"),
+        ("time_s,so2_ppb,co2_ppm\n1,2,420\n", "the record has 1 samples; it needs at least 8"),
+        ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,4\n" for t in range(99)), "CO2 has a median of 4 ppm"),
+        ("\x00\x01\x02", "error: "),
+    ],
+)
+def test_files_with_mistakes_are_refused_in_one_line(logged, capsys, content, message):
+    logged.write_text(content, encoding="utf-8")
+    assert run(logged) == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert message in told
+
+
+def test_files_that_are_not_there_are_refused(tmp_path, capsys):
+    assert main([str(tmp_path / "none.csv"), "--no-report"]) == 2
+    assert "cannot be read" in capsys.readouterr().err
+    (tmp_path / "a.csv").write_text("time_s,so2_ppb,co2_ppm\n", encoding="utf-8")
+    assert main([str(tmp_path / "a.csv"), "--config", str(tmp_path / "none.toml"), "--no-report"]) == 2
+    assert "give a TOML file" in capsys.readouterr().err
+
+
+def test_a_directory_that_cannot_be_written_is_refused(logged, capsys):
+    (logged.parent / "out").write_text("in the way", encoding="utf-8")
+    assert run(logged) == 2
+    assert "give another --out" in capsys.readouterr().err

@@ -1,0 +1,150 @@
+"""Noise and its stated variance by Monte Carlo, coverage of the stated interval, response and delay that are not given."""
+
+import math
+
+import numpy as np
+import pytest
+from crossings import changed, crossings, flight, plain_sniffer, read
+
+from measurement.estimate import estimate
+from measurement.estimate.areas import area_ratio
+from measurement.estimate.fit.alignment import align
+from measurement.estimate.fit.regression import regress
+from measurement.estimate.fit.signals import make_signals
+from measurement.estimate.passes import find_passes
+from measurement.estimate.record import checked_record
+from measurement.gases import fsc_factor
+from measurement.sniffer import Readings, sensor_preset
+
+REPEATS = 400
+"""They give a standard deviation to 3.5 %; a tenth, which is asked for, is nearly three times that."""
+
+
+def repeated(spec, air, estimator):
+    """Return slopes and stated deviations of the same flight with other noise."""
+    found = [estimator(checked_record(read(spec, air, seed=seed, step=1.0 / spec.rate_hz), spec)) for seed in range(REPEATS)]
+    return np.array([slope for slope, _ in found]), np.array([noise for _, noise in found])
+
+
+@pytest.mark.parametrize(
+    "spec",
+    [
+        plain_sniffer(so2_noise=2.5),
+        plain_sniffer(so2_noise=2.5, co2_noise=8.0),
+        plain_sniffer(so2_noise=1.0, random_walk=1.0),
+        plain_sniffer(4.0, 20.0, so2_noise=2.5, co2_noise=1.0),
+        plain_sniffer(second_pole=0.5, so2_noise=2.5),
+    ],
+    ids=["white", "noise in both", "drift", "CO2 slower", "two poles"],
+)
+def test_the_stated_noise_of_the_regression_is_its_scatter(spec):
+    air = crossings(0.25, duration=120.0, step=1.0, width=1.5)
+
+    def estimator(record):
+        found = regress(make_signals(record, spec))
+        # The widening by the misfit is for what is not noise; here there is nothing else.
+        return found.slope, found.noise / math.sqrt(max(1.0, found.misfit))
+
+    slopes, stated = repeated(spec, air, estimator)
+    assert np.std(slopes) == pytest.approx(np.sqrt(np.mean(stated**2)), rel=0.1)
+
+
+def test_noise_in_co2_does_not_attenuate_the_slope():
+    air = crossings(0.25, duration=120.0, step=1.0, width=1.5, peak=60.0)
+    clean = regress(make_signals(checked_record(read(plain_sniffer(), air, step=1.0), plain_sniffer()), plain_sniffer())).slope
+    spec = plain_sniffer(co2_noise=4.0)
+    slopes, _ = repeated(spec, air, lambda record: (regress(make_signals(record, spec)).slope, 0.0))
+    record = checked_record(read(spec, air, step=1.0), spec)
+    found = regress(make_signals(record, spec))
+    attenuation = found.co2_noise_energy / found.co2_energy
+    error = np.std(slopes) / math.sqrt(REPEATS)
+    # A quotient of noisy sums keeps a bias of second order, its relative variance; without the correction the slope would be
+    # attenuated by the noise's share of the CO2 energy, several times as much.
+    tolerance = 4.0 * error + np.var(slopes) / clean
+    assert abs(np.mean(slopes) - clean) < tolerance
+    assert attenuation * clean > 2.0 * tolerance
+
+
+def test_the_stated_noise_of_areas_is_its_scatter():
+    spec = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
+    air = crossings(0.25, duration=240.0, step=1.0, width=1.5, interval=75.0)
+    passes = find_passes(checked_record(read(spec, air, step=1.0), spec), spec.known("co2"))
+
+    def estimator(record):
+        found = area_ratio(record, spec, passes)
+        return found.ratio, found.noise
+
+    slopes, stated = repeated(spec, air, estimator)
+    assert np.std(slopes) == pytest.approx(np.sqrt(np.mean(stated**2)), rel=0.1)
+
+
+def test_one_pass_is_as_good_as_a_matched_filter_can_be():
+    # u(area) >= sigma sqrt(2 tau / f_s) with a known background (section 4.4); a background to be found costs more.
+    spec = plain_sniffer(20.0, 0.5, so2_noise=2.5, rate_hz=10.0)
+    air = crossings(0.25, duration=200.0, interval=1000.0, first=60.0, width=0.3)
+    found = regress(make_signals(checked_record(read(spec, air), spec), spec))
+    dose = 0.1 * float(np.sum(air[:, 1] - 420.0))
+    least = 2.5 * math.sqrt(2.0 * 20.0 / math.log(10.0) / 10.0)
+    assert least < found.noise * dose < 1.35 * least
+
+
+def test_regression_halves_the_noise_of_areas():
+    # 0.3 to 0.65 of the areas' noise (section 4.3); passes 75 s apart, as areas need them.
+    spec = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
+    readings = read(spec, crossings(0.1, interval=75.0, duration=450.0))
+    by_regression, by_areas = (estimate(readings, spec, method=method) for method in ("regression", "areas"))
+    assert 0.3 < by_regression.noise_percent / by_areas.noise_percent < 0.7
+
+
+def test_noise_falls_with_the_root_of_passes_and_common_errors_do_not():
+    readings, spec = flight("electrochemical", 0.1, 3, duration=480.0)
+    short = estimate(Readings(readings.time[:121], readings.values[:121]), spec)
+    long = estimate(readings, spec)
+    assert long.noise_percent / short.noise_percent == pytest.approx(0.5, abs=0.12)
+    for name in ("no2", "calibration"):
+        assert long.common_percent[name] == pytest.approx(short.common_percent[name], rel=0.35), name
+
+
+@pytest.mark.parametrize(("preset", "largest"), [("electrochemical", 0.03), ("fast", 0.012)])
+def test_stated_intervals_cover_and_are_as_narrow_as_asked(preset, largest):
+    # 91 to 98 % are asked of 200 flights and more; of 60, 52 are fewer than 1 in 100 times fewer by chance where 95 % is true.
+    flights = [flight(preset, 0.1, seed, duration=120.0) for seed in range(60)]
+    found = [estimate(readings, spec) for readings, spec in flights]
+    assert sum(e.low_percent <= 0.1 <= e.high_percent for e in found) >= 52
+    assert np.std([e.fsc_percent for e in found]) < largest
+    assert np.mean([e.fsc_percent for e in found]) == pytest.approx(0.1, abs=0.005 + 3.0 * largest / math.sqrt(60))
+    # A simulation that states less than 0.01 % of an electrochemical sniffer misses an error (section 4.7).
+    assert preset != "electrochemical" or min(e.total_percent for e in found) > 0.01
+
+
+def test_response_and_delay_are_found_where_they_are_not_given():
+    actual = plain_sniffer(23.0, 4.0, so2_noise=2.5, co2_noise=1.0, delay_s=3.0)
+    readings = read(actual, crossings(0.5))
+    unknown = changed(actual, "so2", t90_s=8.0, t90_sd=math.inf, delay_s=0.0, delay_sd_s=math.inf)
+    found = estimate(readings, unknown)
+    assert found.so2_t90_s == pytest.approx(23.0, abs=3.0 * found.so2_t90_sd_s)
+    # Sampling at 1 Hz adds to the noise: 0.1 s.
+    assert found.delay_s == pytest.approx(3.0, abs=3.0 * found.delay_sd_s + 0.1)
+    assert found.fsc_percent == pytest.approx(0.5, abs=2.5 * found.total_percent)
+    given = estimate(readings, actual)
+    assert found.common_percent["response"] > given.common_percent["response"]
+
+
+def test_a_delay_before_co2_is_found_too():
+    actual = changed(plain_sniffer(20.0, 4.0, so2_noise=1.0, co2_noise=1.0), "co2", delay_s=2.5)
+    unknown = changed(actual, "so2", delay_sd_s=math.inf)
+    record = checked_record(read(actual, crossings(0.5)), unknown)
+    assert align(record, unknown).delay_sd_s < 0.1
+    fitted = align(record, unknown).instrument
+    assert fitted.known("so2").delay_s - fitted.known("co2").delay_s == pytest.approx(-2.5, abs=0.15)
+
+
+def test_gases_that_are_not_measured_widen_the_interval():
+    spec = sensor_preset("electrochemical")
+    readings, _ = flight("electrochemical", 0.5, 5)
+    blind = Readings(readings.time, np.where(np.arange(4) < 2, readings.values, np.nan))
+    seen, unseen = estimate(readings, spec), estimate(blind, spec)
+    # 0.015 of 18 +- 7.5 ppb/ppm, and 0.16 of 2 +- 1.2 with +-0.032: budget.EXPECTED_PPB_PER_PPM.
+    assert unseen.common_percent["no"] == pytest.approx(fsc_factor() * math.hypot(0.015 * 7.5, 0.0015 * 19.5), rel=0.01)
+    assert unseen.common_percent["no2"] > seen.common_percent["no2"]
+    assert unseen.low_percent < 0.5 < unseen.high_percent

@@ -1,0 +1,157 @@
+"""Verdicts and their guard bands, quality classes, the estimate over time."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from crossings import changed, crossings, flight, plain_sniffer, read
+from scipy.stats import norm
+
+from measurement.estimate import estimate, judged, over_time, time_to_verdict
+from measurement.estimate.quality import judged_quality
+from measurement.estimate.verdict import interval, probability_above
+from measurement.sniffer import Readings, sensor_preset
+
+
+def test_a_verdict_is_that_of_a_guard_band():
+    # JCGM 106: a guard band of 1.645 standard uncertainties for a probability of 95 %.
+    assert judged(0.1, 0.1 + 1.65 * 0.02, 0.02, admitted=True).verdict == "above"
+    assert judged(0.1, 0.1 + 1.64 * 0.02, 0.02, admitted=True).verdict == "open"
+    assert judged(0.5, 0.5 - 1.65 * 0.02, 0.02, admitted=True).verdict == "below"
+    assert judged(0.5, 0.5 - 1.64 * 0.02, 0.02, admitted=True).verdict == "open"
+    assert judged(0.1, 0.4, 0.02, admitted=False).verdict == "open"
+    assert judged(0.1, math.nan, math.nan, admitted=True).verdict == "open"
+
+
+def test_a_probability_knows_that_no_fuel_has_less_than_nothing():
+    # Far from 0 it is the normal distribution's; near 0 what lies below 0 is not counted.
+    assert probability_above(0.5, 0.5, 0.02) == pytest.approx(0.5, abs=1e-9)
+    whole, cut = norm.sf(0.1, 0.0, 0.05), probability_above(0.1, 0.0, 0.05)
+    assert cut == pytest.approx(2.0 * whole, rel=1e-9)
+    # A reading far below 0 is no proof of a clean fuel.
+    assert judged(0.1, -0.5, 0.3, admitted=True).verdict == "open"
+    assert judged(0.1, -0.5, 0.3, admitted=True).probability_above > 0.3
+
+
+def test_fuels_at_the_limit_are_called_above_in_five_of_a_hundred_at_most():
+    generator = np.random.default_rng(0)
+    for deviation in (0.005, 0.03, 0.1, 0.5):
+        found = 0.1 + deviation * generator.standard_normal(4000)
+        above = np.mean([judged(0.1, float(f), deviation, admitted=True).verdict == "above" for f in found])
+        # Of 4000 at 5 % the share is known to 0.35 %; three times that.
+        assert above == pytest.approx(0.05, abs=0.011)
+
+
+def test_an_interval_is_not_empty_and_not_negative():
+    assert interval(0.1, 0.02) == pytest.approx((0.0608, 0.1392), abs=1e-4)
+    assert interval(0.01, 0.02)[0] == 0.0
+    assert interval(-0.2, 0.02) == pytest.approx((0.0, 0.0392), abs=1e-4)
+
+
+GOOD = {
+    "problems": (), "snr": 50.0, "passes": 10, "fsc": 0.1, "deviation": 0.015, "agreement": 0.5, "misfit": 1.0, "so2_snr": 2.0,
+    "limit": 0.1,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("change", "quality", "reason"),
+    [
+        ({}, "A", ""),
+        ({"snr": 12.0}, "B", "CO2 signal to noise is 12.0; class A needs 20"),
+        ({"deviation": 0.03}, "B", "standard uncertainty is 0.030 %; class A needs 0.020 %"),
+        ({"passes": 2}, "B", "2 passes through the plume; class A needs 3"),
+        ({"agreement": 1e-4}, "B", "passes differ more than their noise explains"),
+        ({"problems": ("SO2 is saturated",)}, "C", "SO2 is saturated"),
+        ({"fsc": -0.2}, "C", "negative by more than 3 standard uncertainties"),
+        ({"fsc": math.nan, "deviation": math.nan}, "C", "the CO2 excess is not above its noise"),
+        ({"misfit": 30.0, "so2_snr": 1.0}, "C", "residuals are 5.5 times the stated noise"),
+        ({"misfit": 30.0, "so2_snr": 20.0}, "A", ""),
+    ],
+)
+def test_quality_is_told_with_its_reason(change, quality, reason):
+    found, reasons = judged_quality(**{**GOOD, **change})
+    assert found == quality
+    assert reason in " ".join(reasons)
+    assert bool(reasons) == (quality != "A")
+
+
+def test_high_sulphur_is_called_above_and_low_sulphur_below_half_a_percent():
+    found = {fsc: [estimate(*flight("electrochemical", fsc, seed, duration=120.0)) for seed in range(12)] for fsc in (0.05, 0.5)}
+    assert all(e.verdicts[0].verdict == "above" for e in found[0.5])
+    assert all(e.verdicts[1].verdict == "below" for e in found[0.05])
+    assert not any(e.verdicts[0].verdict == "above" for e in found[0.05])
+
+
+def test_an_estimate_is_told_over_time():
+    readings, spec = flight("electrochemical", 0.3, 2)
+    table = over_time(readings, spec, elapsed_s=(5.0, 30.0, 60.0, 120.0, 300.0, 600.0))
+    assert table["elapsed_s"].tolist() == [5.0, 30.0, 60.0, 120.0, 300.0]
+    assert math.isnan(table["fsc_percent"][0])
+    assert table["quality"][0] == "C"
+    assert table["verdict_0.1"][0] == "open"
+    whole = estimate(readings, spec)
+    assert table["fsc_percent"].iloc[-1] == whole.fsc_percent
+    assert table["noise_percent"].iloc[-1] < table["noise_percent"].iloc[2]
+    assert time_to_verdict(table, 0.1) in (30.0, 60.0, 120.0)
+    # The verdict of the last row has to have stood since.
+    table["verdict_0.1"] = ["open", "above", "open", "above", "above"]
+    assert time_to_verdict(table, 0.1) == 120.0
+    table["verdict_0.1"] = ["above", "above", "above", "above", "open"]
+    assert math.isnan(time_to_verdict(table, 0.1))
+
+
+def test_passes_and_doses_are_counted():
+    spec = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
+    air = crossings(0.25, meander=0.0)
+    figures = estimate(read(spec, air), spec).figures
+    # Passes from 12 s on every 9.5 s; a pass of 200 ppm and 0.6 s has a dose of 200 x 0.6 x sqrt(2 pi) = 301 ppm s,
+    # of which a background that is never clean takes some.
+    assert figures.passes == 31
+    assert figures.interval_s == pytest.approx(9.5, abs=0.1)
+    assert figures.dose_ppm_s == pytest.approx(301.0, rel=0.1)
+    assert 31 * 3.0 < figures.seconds_in_plume < 31 * 8.0
+
+
+def test_gaps_of_any_length_do_not_bias_the_result():
+    spec = plain_sniffer(rate_hz=10.0)
+    readings = read(spec, crossings(0.25))
+    rows = np.ones(len(readings), dtype=bool)
+    rows[700:850] = rows[2001:2003] = False
+    found = estimate(Readings(readings.time[rows], readings.values[rows]), spec)
+    # What the cell remembers of passes in the gap decays as the background's transient does.
+    assert found.fsc_percent == pytest.approx(0.25, rel=0.01)
+
+
+def test_a_long_record_may_drift():
+    spec = plain_sniffer(rate_hz=1.0, so2_noise=1.0, co2_noise=0.5)
+    readings = read(spec, crossings(0.25, duration=900.0))
+    drift = 20.0 * np.sin(readings.time / 300.0)
+    values = readings.values + drift[:, np.newaxis] * np.array([1.0, 0.5, 0.0, 0.0])
+    assert estimate(Readings(readings.time, values), spec).fsc_percent == pytest.approx(0.25, rel=0.05)
+
+
+def test_uneven_times_are_laid_on_a_grid():
+    spec = plain_sniffer(rate_hz=10.0)
+    readings = read(spec, crossings(0.25))
+    late = readings.time + 0.02 * np.sin(np.arange(len(readings)))
+    values = np.stack([np.interp(late, readings.time, column) for column in readings.values.T], axis=1)
+    assert estimate(Readings(late, values), spec).fsc_percent == pytest.approx(0.25, rel=0.005)
+
+
+def test_a_record_is_for_json():
+    readings, spec = flight("laser", 0.1, 1, duration=60.0)
+    record = estimate(readings, spec).record()
+    assert record["quality"] in ("A", "B")
+    assert record["common_percent"]["calibration"] > 0.0
+    assert "signals" not in record
+    weak = replace(estimate(readings, spec), agreement=math.nan).record()
+    assert weak["agreement"] is None
+
+
+def test_an_instrument_that_is_not_the_one_stated_is_noticed():
+    readings, spec = flight("electrochemical", 0.5, 1)
+    mistaken = changed(spec, "so2", t90_s=0.5)
+    assert estimate(readings, mistaken).quality == "C"
+    assert estimate(readings, sensor_preset("unspecified")).quality != "C"
