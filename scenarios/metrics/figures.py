@@ -12,6 +12,8 @@ from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import closest_approach, keepout_figures
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.record import FlightRecord
+from scenarios.world.ais.track import AisVessel
+from scenarios.world.place import Place, utc_text
 
 Array = npt.NDArray[np.float64]
 
@@ -49,8 +51,21 @@ def plan_row(plan: FlightPlan) -> Row:
         "crossing_interval_predicted_s": plan.oscillation.crossing_interval,
         "manoeuvre_end_s": world.vessel.manoeuvres_end,
     }
+    if isinstance(world.vessel, AisVessel):
+        row["vessel_speed_mps"] = math.hypot(*world.vessel.motion(0.0)[2:])
+    row |= _place_row(world.place)
     if plan.margin is not None:
         row |= {"keepout_margin_m": plan.margin.total, "spread_predicted_m": plan.margin.tracking_sigma}
+    return row
+
+
+def _place_row(place: Place) -> Row:
+    """Return where and when the flight began, as far as that is known."""
+    row: Row = {}
+    if math.isfinite(place.latitude):
+        row |= {"place_latitude_deg": math.degrees(place.latitude), "place_longitude_deg": math.degrees(place.longitude)}
+    if math.isfinite(place.utc):
+        row["start_utc"] = utc_text(place.utc)
     return row
 
 

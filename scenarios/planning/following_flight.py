@@ -29,12 +29,14 @@ from scenarios.planning.start import check_start, sampled_start
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.ais.track import AisVessel, usual_intervals
 from scenarios.world.ais_reports import no_outage, received_reports
 from scenarios.world.faults import VESSEL_DATA, sampled_fault
 from scenarios.world.noise import Noise, streams
-from scenarios.world.vessel import ManoeuvringVessel, VesselTruth, largest_acceleration, largest_speed
+from scenarios.world.place import utc_text
+from scenarios.world.vessel import SteadyVessel, VesselTruth, largest_acceleration, largest_speed
 from scenarios.world.weather import sampled_weather
-from scenarios.world.world import ApparentWind, World, apparent_wind, plume_of, vessel_of
+from scenarios.world.world import ApparentWind, World, apparent_wind, place_of, plume_of, vessel_of
 
 Spreads = Callable[[Scenario], SpreadTable | None]
 """Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air."""
@@ -52,13 +54,14 @@ def following_flight(
     g, f, flight = scenario.guidance, scenario.following, scenario.flight
     generators = streams(noise)
     vessel = vessel_of(scenario)
+    scenario = _with_intervals(scenario, vessel)
     plume = plume_of(scenario, vessel)
     wind = apparent_wind(scenario, vessel)
     _check_plume(scenario, wind)
-    _check_declared(scenario, vessel)
     nu = wind.at_start / g.airspeed_mps
     periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
     limits = vessel_limits(scenario, turn_time(scenario, setup.reversal))
+    _check_declared(scenario, vessel, limits)
     orbit = oscillation_at(g, scenario.reference, nu)
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
@@ -78,7 +81,7 @@ def following_flight(
         blowing = (weather.wind_north, weather.wind_east)
         check_start(start, guard, tube(first, limits, 0.0), wind=blowing, airspeed=g.airspeed_mps, keepout_radius=radius)
     received = None
-    if not scenario.reports.exact:
+    if not scenario.vessel_known:
         duration = flight.duration_max_s
         received = received_reports(scenario.reports, vessel, duration=duration, outage=outage, generator=generators.reports)
     steps = round(flight.duration_max_s * g.rate_hz) + 2
@@ -97,6 +100,7 @@ def following_flight(
             source_height=scenario.plume.source_height_m,
             weather=weather,
             fault=fault,
+            place=place_of(scenario, vessel),
         ),
         sensing=Sensing(
             received=received,
@@ -138,13 +142,21 @@ def _guidance(
     )
 
 
-def _check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
+def _with_intervals(scenario: Scenario, vessel: VesselTruth) -> Scenario:
+    """Return the scenario with the usual intervals of the reports of a track from a file, unless it gives others."""
+    if not isinstance(vessel, AisVessel) or not scenario.reports.exact:
+        return scenario
+    reports = scenario.reports.model_copy(update={"interval_s": usual_intervals(vessel)})
+    return scenario.model_copy(update={"reports": reports})
+
+
+def _check_declared(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
     """Raise an InfeasibleError for a vessel that does more than the keep-out guard is told, where it is not always known."""
-    f = scenario.following
-    known = scenario.reports.exact and scenario.fault.kind != VESSEL_DATA
-    if known or not scenario.guidance.keepout_guard or not isinstance(vessel, ManoeuvringVessel):
+    f, duration = scenario.following, scenario.flight.duration_max_s
+    known = scenario.vessel_known and scenario.fault.kind != VESSEL_DATA
+    if known or not scenario.guidance.keepout_guard or isinstance(vessel, SteadyVessel):
         return
-    acceleration, speed = largest_acceleration(vessel), largest_speed(vessel)
+    acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
     if acceleration > f.vessel_acceleration_mps2:
         raise InfeasibleError(
             f"the vessel accelerates by {acceleration:.3g} m/s2, changes of speed and course together; declared are at most"
@@ -157,6 +169,26 @@ def _check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
             f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
             " sail more slowly"
         )
+    if isinstance(vessel, AisVessel):
+        _check_reports(vessel, limits)
+
+
+def _check_reports(vessel: AisVessel, limits: VesselLimits) -> None:
+    """Raise an InfeasibleError for reports of a file from which the guard would take the vessel to be elsewhere.
+
+    From each report on to the next the smooth track has to stay within the disc of that report: errors are declared, too.
+    """
+    times = [report.time for report in vessel.reports]
+    for report, until in zip(vessel.reports, [*times[1:], times[-1]], strict=True):
+        for time in (max(0.0, report.time), max(0.0, 0.5 * (report.time + until)), max(0.0, until)):
+            disc, (north, east, _, _) = tube(report, limits, time), vessel.motion(time)
+            if (off := math.hypot(north - disc.north, east - disc.east)) > disc.radius:
+                raise InfeasibleError(
+                    f"the report of {utc_text(vessel.place.utc + report.time)} and the smooth track through all reports lie"
+                    f" {off:.1f} m apart after {time - report.time:.1f} s; {disc.radius:.1f} m are allowed for by"
+                    " reports.position_sigma_m, reports.velocity_sigma_mps and following.vessel_acceleration_mps2: declare more, or"
+                    " delete the report"
+                )
 
 
 def _check_plume(scenario: Scenario, wind: ApparentWind) -> None:

@@ -25,7 +25,7 @@ from scenarios.schema.experiment import TrialList
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation.time_history import UNFINISHED
 from scenarios.studies.checks import check_flights, plugins_explained
-from scenarios.studies.manifest import config_hash, initial_manifest, parameters, plugins
+from scenarios.studies.manifest import config_hash, initial_manifest, parameters, plugins, vessel_files
 from scenarios.studies.study import study
 from scenarios.studies.summary import FlightCounts
 from scenarios.vehicles.vehicle_setup import aircraft_setup, design_of, kinematic_setup, spec_of
@@ -76,6 +76,7 @@ class FlightStudy:
             self.tables[COMPARISON] = SUMMARY_COLUMNS
         points = [point.scenario for experiment in self.experiments.values() for point in experiment.points]
         self.plugins = plugins(points)
+        self.vessel_files = vessel_files(points)
         self.config_hash = config_hash(scenario, *self.trials.values(), files=self.plugins, names=list(self.trials))
         self._manifest = initial_manifest(scenario, name, overrides) | {
             # A list of trials does not change with what it lists.
@@ -85,6 +86,10 @@ class FlightStudy:
             "sampled_at_random": self._sampled_at_random(),
             "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},
             "plugins": self.plugins,
+            "vessel_files": {
+                name: {"rows": reports.rows, "used": len(reports.time), "dropped": reports.dropped}
+                for name, reports in self.vessel_files.items()
+            },
         }
 
     def _sampled_at_random(self) -> dict[str, bool]:
@@ -187,7 +192,8 @@ class FlightStudy:
         for row in journal.rows(SUMMARY):
             whole.add(row)
             trial_counts[row["trial"]].add(row)
-        lines = [f"flights: {whole.line()}"]
+        lines = [reports.described() for reports in self.vessel_files.values()]
+        lines.append(f"flights: {whole.line()}")
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
         if whole.flown and all(self._sampled_at_random().values()):

@@ -7,7 +7,9 @@ import numpy as np
 
 from aircraft.atmosphere.weather import Weather
 from scenarios.schema.scenario import Scenario
+from scenarios.world.ais.track import AisVessel, ais_vessel
 from scenarios.world.faults import TimedFault
+from scenarios.world.place import Place, given_place
 from scenarios.world.plume import PLUME_MODELS, Plume
 from scenarios.world.vessel import VESSEL_TRACKS, SteadyVessel, VesselTruth, sampled
 from scenarios.world.weather import wind_ned
@@ -26,6 +28,7 @@ class World:
     elevation, source_height : of the plume's axis, and of its origin above the sea [rad, m]
     weather : the air
     fault : what fails, and when
+    place : where on earth, and when
     """
 
     vessel: VesselTruth
@@ -34,6 +37,7 @@ class World:
     source_height: float
     weather: Weather
     fault: TimedFault
+    place: Place
 
 
 def vessel_of(scenario: Scenario) -> VesselTruth:
@@ -42,12 +46,20 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
     Raises
     ------
     PluginError : it has no such track
+    InputError : its file cannot be read, or does not cover the longest flight
     """
-    config = scenario.vessel
+    config, duration = scenario.vessel, scenario.flight.duration_max_s
+    if config.from_file:
+        return ais_vessel(config, utc=scenario.place.utc, duration=duration, margin=_MARGIN)
     if config.track == "manoeuvres" and not config.manoeuvres:
         return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
-    track: VesselTruth = VESSEL_TRACKS.get(config.track)(config, scenario.vessel_speed, scenario.flight.duration_max_s + _MARGIN)
+    track: VesselTruth = VESSEL_TRACKS.get(config.track)(config, scenario.vessel_speed, duration + _MARGIN)
     return track
+
+
+def place_of(scenario: Scenario, vessel: VesselTruth) -> Place:
+    """Return where and when a flight begins, as far as that is known."""
+    return vessel.place if isinstance(vessel, AisVessel) else given_place(scenario.place)
 
 
 def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:

@@ -49,6 +49,8 @@ VALUES = {
     "statistics.distance_quantile": 0.05,
     "search.population": 8, "search.generations": 1, "search.mutation": [0.4, 0.6], "search.recombination": 0.5, "search.kept": 1,
     "search.methods": ["local"], "search.time_s": 5.0, "search.restarts": 3, "search.confirmations": 1,
+    "place.latitude_deg": 57.0, "place.longitude_deg": 11.0, "place.utc": "2026-06-01T10:00:00Z",
+    "vessel.mmsi": 219999001, "vessel.gap_max_s": 100.0,
     "vessel.speed_mps": 7.0, "vessel.speed_ratio": 0.3, "vessel.course_deg": 40.0,
     "vessel.manoeuvres": [{"at_s": 20.0, "turn_deg": 30.0}],
     "vessel.manoeuvres.0.at_s": 50.0, "vessel.manoeuvres.0.turn_deg": 30.0, "vessel.manoeuvres.0.turn_rate_deg_s": 1.0,
