@@ -5,6 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from aircraft.atmosphere.wind import CALM
 from common.numeric import rms
 from gnc.mission.mode import Mode
 from scenarios.engine.task import Row
@@ -53,6 +54,9 @@ def plan_row(plan: FlightPlan) -> Row:
     }
     if isinstance(world.vessel, AisVessel):
         row["vessel_speed_mps"] = math.hypot(*world.vessel.motion(0.0)[2:])
+    if not world.weather.wind.constant:
+        north, east = world.weather.wind.now(0.0, world.source_height)
+        row |= {"wind_speed_mps": math.hypot(north, east), "wind_from_deg": math.degrees(math.atan2(-east, -north))}
     row |= _place_row(world.place)
     if plan.margin is not None:
         row |= {"keepout_margin_m": plan.margin.total, "spread_predicted_m": plan.margin.tracking_sigma}
@@ -204,8 +208,8 @@ def _estimation_figures(plan: FlightPlan, record: FlightRecord, settled: npt.NDA
         "guard_after_settling_s": plan.log_interval * plan.time_step * float(np.count_nonzero(column("guard") > 0.0)),
     }
     if weather is not None:
-        wind = np.hypot(column("wind_north_mps") - weather.wind_north, column("wind_east_mps") - weather.wind_east)
-        row["wind_error_rms_mps"] = rms(wind)
+        north, east = weather.wind.at(column("time_s"), column("altitude_m"))
+        row["wind_error_rms_mps"] = rms(np.hypot(column("wind_north_mps") - north, column("wind_east_mps") - east))
     return row
 
 
@@ -262,7 +266,7 @@ def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, la
     Where omega_0 changes with time, crossings come at the rate omega_0/pi: their number between two times is its integral.
     """
     time = np.linspace(first, last, max(2, math.ceil(last - first)))
-    wind = plan.world.weather.wind if plan.world else (0.0, 0.0)
+    wind = (plan.world.weather.wind if plan.world else CALM).at(time, plan.source_height)
     through_air = [
         np.interp(time, record.column("time_s"), record.column(f"vessel_velocity_{axis}_mps")) - of_air
         for axis, of_air in zip(("north", "east"), wind, strict=True)

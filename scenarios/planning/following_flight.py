@@ -36,7 +36,7 @@ from scenarios.world.noise import Noise, streams
 from scenarios.world.place import utc_text
 from scenarios.world.vessel import SteadyVessel, VesselTruth, largest_acceleration, largest_speed
 from scenarios.world.weather import sampled_weather
-from scenarios.world.world import ApparentWind, World, apparent_wind, place_of, plume_of, vessel_of
+from scenarios.world.world import ApparentWind, World, apparent_wind, mean_wind, place_of, plume_of, vessel_of
 
 Spreads = Callable[[Scenario], SpreadTable | None]
 """Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air."""
@@ -72,13 +72,13 @@ def following_flight(
     margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
-    weather = sampled_weather(scenario, generators.world)
+    weather = sampled_weather(scenario, mean_wind(scenario, vessel), generators.world)
     outage = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else no_outage()
     guard = None
     if g.keepout_guard:
         guard = guarded
         first = VesselReport(0.0, *vessel.motion(0.0))
-        blowing = (weather.wind_north, weather.wind_east)
+        blowing = weather.wind.now(0.0, scenario.plume.source_height_m)
         check_start(start, guard, tube(first, limits, 0.0), wind=blowing, airspeed=g.airspeed_mps, keepout_radius=radius)
     received = None
     if not scenario.vessel_known:

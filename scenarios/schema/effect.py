@@ -32,7 +32,10 @@ class Rule:
 _TRACKS = "the mission that tracks the paper's reference; here the reference is steered: set guidance.mission to 'track'"
 _FOLLOWS = "the mission that follows the vessel with a steered reference: set guidance.mission to 'follow'"
 _VESSEL = "an oscillation beside a vessel; here reference.path is 'circle'"
-_OPERATIONAL = ("wind.speed_mps", "turbulence.", "vessel.manoeuvres", "reports.", "sensors.", "fault.kind", "plume.direction")
+_OPERATIONAL = (
+    "wind.speed_mps", "wind.table", "turbulence.", "vessel.manoeuvres", "vessel.track", "reports.", "sensors.", "fault.kind",
+    "plume.direction",
+)  # fmt: skip
 """Keys from which the mission follows where guidance.mission is not given."""
 
 
@@ -146,8 +149,15 @@ RULES = (
     Rule(keys=("kinematic.",), acts=_kinematic, user="the kinematic vehicle: set fidelity to 'kinematic'"),
     Rule(keys=("turbulence.gust_length_s",), acts=lambda s: s.turbulence.gusts > 0, user="gusts: set turbulence.gusts",
          depends=("turbulence.gusts",)),
-    Rule(keys=("wind.from_deg",), acts=lambda s: s.wind.speed_mps > 0.0, user="wind: set wind.speed_mps",
+    Rule(keys=("wind.speed_mps", "wind.from_deg"), acts=lambda s: s.wind.table is None,
+         user="a wind without a table: leave this key or wind.table out", depends=("wind.table",)),
+    Rule(keys=("wind.from_deg",), acts=lambda s: s.wind.blows, user="wind: set wind.speed_mps",
          depends=("wind.speed_mps",)),
+    Rule(keys=("wind.roughness_m",), acts=lambda s: s.wind.blows, user="wind: set wind.speed_mps or wind.table",
+         depends=("wind.speed_mps", "wind.table")),
+    Rule(keys=("wind.height_m",), acts=lambda s: s.wind.blows and s.wind.roughness_m is not None,
+         user="a wind with a profile over height: set wind.roughness_m",
+         depends=("wind.speed_mps", "wind.table", "wind.roughness_m")),
     Rule(keys=("plume.heading_deg",), acts=lambda s: not s.plume_by_wind,
          user="a plume at an angle from the bow: set plume.direction to 'given'", by_mission=True, depends=("plume.direction",)),
     Rule(keys=("following.apparent_wind_min_mps",), acts=lambda s: s.follows and s.plume_by_wind,

@@ -23,11 +23,13 @@ def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
     yield "guidance.law", scenario.guidance.law
     yield "vessel.track", scenario.vessel.track
     yield "plume.model", scenario.plume.model
+    if scenario.wind.table is not None:
+        yield "wind.table", scenario.wind.table
     yield from (("search.methods", name) for name in scenario.search.methods)
     names: list[tuple[str, object]] = [("payload", scenario.payload)]
     names += [(draw.key, choice) for draw in scenario.draws for choice in draw.choice or ()]
     for key, value in names:
-        if key in ("reference.shape", "guidance.law", "vessel.track", "plume.model"):
+        if key in ("reference.shape", "guidance.law", "vessel.track", "plume.model", "wind.table"):
             yield key, str(value)
         elif key == "payload" and isinstance(value, Iterable):
             yield from ((key, str(name)) for name in value)

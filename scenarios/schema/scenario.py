@@ -93,7 +93,7 @@ class Scenario(Section):
         if self.guidance.mission is not None:
             return self.guidance.mission == "follow"
         return not (
-            self.wind.speed_mps == 0.0
+            not self.wind.blows
             and self.turbulence.calm
             and not self.vessel.manoeuvres
             and self.vessel.track == "manoeuvres"

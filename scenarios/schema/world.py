@@ -110,12 +110,30 @@ class KeepoutConfig(Section):
 
 
 class WindConfig(Section):
-    """The steady wind."""
+    """The mean wind: constant, or of a table; the same at every height, or with a profile."""
 
     speed_mps: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
     """Wind speed [m/s]."""
     from_deg: Angle = 0.0
     """Direction that it comes from, clockwise from north [deg]."""
+    table: str | None = None
+    """A file with the wind over time, height or both: a table (.csv), or netCDF as of ERA5 (.nc)."""
+    roughness_m: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    """Roughness length of a logarithmic profile over height, some 0.0002 over the sea; without one if not given [m]."""
+    height_m: Annotated[float, Field(ge=2.0, le=500.0)] = 10.0
+    """Height above the sea at which the wind is as given, where it has a logarithmic profile [m]."""
+
+    @field_validator("table")
+    @classmethod
+    def _of_data(cls, table: str | None) -> str | None:
+        if table is not None and not is_data_file(table):
+            raise ValueError(f"table is '{table}'; give a file .csv or .nc")
+        return table
+
+    @property
+    def blows(self) -> bool:
+        """Whether there is any."""
+        return self.speed_mps > 0.0 or self.table is not None
 
 
 class TurbulenceConfig(Section):

@@ -24,7 +24,7 @@ from scenarios.vehicles.payload import PAYLOADS
 from scenarios.world.faults import SATELLITES, VESSEL_DATA
 from scenarios.world.plume import PLUME_MODELS
 from scenarios.world.vessel import VESSEL_TRACKS, check_manoeuvres
-from scenarios.world.world import vessel_of
+from scenarios.world.world import mean_wind, vessel_of
 
 _REGISTRIES: dict[str, Registry[Any]] = {
     "reference.shape": REFERENCE_SHAPES,
@@ -102,14 +102,14 @@ def _check_fault(scenario: Scenario) -> None:
 
 
 def _check_vessel(scenario: Scenario) -> None:
-    """Refuse manoeuvres that overlap in every flight, and a track from a file that is of no use.
+    """Refuse manoeuvres that overlap in every flight, and files of a track or of wind that are of no use.
 
     Where they are sampled, a flight with such a vessel is not flown.
     """
-    if any(draw.key.startswith("vessel.") for draw in scenario.draws):
+    if any(draw.key.startswith(("vessel.", "wind.table")) for draw in scenario.draws):
         return
-    if scenario.vessel.from_file:
-        vessel_of(scenario)
+    if scenario.vessel.from_file or scenario.wind.table is not None:
+        mean_wind(scenario, vessel_of(scenario))
     try:
         check_manoeuvres(scenario.vessel, scenario.vessel_speed)
     except InfeasibleError as error:

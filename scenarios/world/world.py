@@ -1,18 +1,20 @@
 """The world of one flight: vessel, plume and air as they are, and what fails."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from aircraft.atmosphere.weather import Weather
+from aircraft.atmosphere.wind import WindField
 from scenarios.schema.scenario import Scenario
 from scenarios.world.ais.track import AisVessel, ais_vessel
 from scenarios.world.faults import TimedFault
 from scenarios.world.place import Place, given_place
 from scenarios.world.plume import PLUME_MODELS, Plume
-from scenarios.world.vessel import VESSEL_TRACKS, SteadyVessel, VesselTruth, sampled
-from scenarios.world.weather import wind_ned
+from scenarios.world.vessel import VESSEL_TRACKS, SteadyVessel, VesselTruth, sampled, track_times
+from scenarios.world.weather import wind_of
+from scenarios.world.wind_table import first_time
 
 _MARGIN = 5.0
 """How long the track goes on after the longest flight [s]."""
@@ -58,8 +60,18 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
 
 
 def place_of(scenario: Scenario, vessel: VesselTruth) -> Place:
-    """Return where and when a flight begins, as far as that is known."""
-    return vessel.place if isinstance(vessel, AisVessel) else given_place(scenario.place)
+    """Return where and when a flight begins, as far as that is known; without a time of its own when its wind does."""
+    if isinstance(vessel, AisVessel):
+        return vessel.place
+    place, table = given_place(scenario.place), scenario.wind.table
+    if table is None or math.isfinite(place.utc):
+        return place
+    return replace(place, utc=first_time(table, place))
+
+
+def mean_wind(scenario: Scenario, vessel: VesselTruth) -> WindField:
+    """Return the mean wind of a scenario's flights."""
+    return wind_of(scenario, place_of(scenario, vessel))
 
 
 def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
@@ -71,7 +83,7 @@ def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
     """
     model = PLUME_MODELS.get(scenario.plume.model)
     duration = scenario.flight.duration_max_s + _MARGIN
-    plume: Plume = model(scenario.plume, vessel, wind_ned(scenario.wind), duration, by_wind=scenario.plume_by_wind)
+    plume: Plume = model(scenario.plume, vessel, mean_wind(scenario, vessel), duration, by_wind=scenario.plume_by_wind)
     return plume
 
 
@@ -91,12 +103,14 @@ class ApparentWind:
 
 def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
     """Return how fast a vessel moves through the air, over the longest flight."""
-    if isinstance(vessel, SteadyVessel):
+    wind, height = mean_wind(scenario, vessel), scenario.plume.source_height_m
+    duration = scenario.flight.duration_max_s + _MARGIN
+    if isinstance(vessel, SteadyVessel) and wind.constant:
         _, _, v_north, v_east = vessel.motion(0.0)
-        wind_north, wind_east = wind_ned(scenario.wind)
+        wind_north, wind_east = wind.now(0.0, height)
         steady = math.hypot(v_north - wind_north, v_east - wind_east)
         return ApparentWind(at_start=steady, least=steady, greatest=steady)
-    velocity, _ = sampled(vessel, scenario.flight.duration_max_s + _MARGIN)
-    through_air = velocity - np.array(wind_ned(scenario.wind))
+    velocity, _ = sampled(vessel, duration)
+    through_air = velocity - np.column_stack(wind.at(track_times(duration)[: len(velocity)], height))
     speeds = np.hypot(through_air[:, 0], through_air[:, 1])
     return ApparentWind(at_start=float(speeds[0]), least=float(speeds.min()), greatest=float(speeds.max()))

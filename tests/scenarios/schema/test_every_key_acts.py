@@ -57,6 +57,7 @@ VALUES = {
     "vessel.manoeuvres.0.speed_mps": 8.0, "vessel.manoeuvres.0.acceleration_mps2": 0.1,
     "plume.direction": "apparent_wind", "plume.heading_deg": 170.0, "plume.elevation_deg": 10.0, "plume.source_height_m": 80.0,
     "keepout.radius_m": 180.0, "keepout.shape": "cylinder", "wind.speed_mps": 3.0, "wind.from_deg": 100.0,
+    "wind.roughness_m": 2e-4, "wind.height_m": 20.0,
     "turbulence.level": "light", "turbulence.gusts": 2, "turbulence.gust_speed_mps": 3.0, "turbulence.gust_length_s": 3.0,
     "reports.interval_s": [3.0, 6.0], "reports.position_sigma_m": 8.0, "reports.velocity_sigma_mps": 0.3,
     "reports.latency_max_s": 2.0, "reports.missing": 0.5,
@@ -95,7 +96,8 @@ OWN_VALUES = {
 """Where that is what a mission has anyway, or its flight fails one limit as it does the other."""
 
 ELSEWHERE = {
-    "study", "title", "description", "fidelity", "aircraft", "payload", "vessel.track", "plume.model", "reference.shape",
+    "study", "title", "description", "fidelity", "aircraft", "payload", "vessel.track", "wind.table",
+    "plume.model", "reference.shape",
     "flights", "histories", "sweep", "cases", "draws", "comparison", "comparison.variants",
 }  # fmt: skip
 """Kinds of study, texts, experiments and parts, which tests of their own are about (test_extension_points, test_experiments)."""
