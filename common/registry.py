@@ -118,19 +118,20 @@ def is_file_part(name: str) -> bool:
 
 
 def file_of(name: str) -> Path:
-    """Return the file of a part that is named by it."""
-    return Path(name.rpartition(":")[0])
+    """Return the file of a part that is named by it, or the file of data that ``name`` is."""
+    return Path(name.rpartition(":")[0] if is_file_part(name) else name)
 
 
 def file_hash(name: str) -> str:
-    """Return a hash of the file of a part that is named by it.
+    """Return a hash of the file of a part that is named by it, or of a file of data.
 
     Raises
     ------
     PluginError : the file cannot be read
     """
     try:
-        return hashlib.sha256(file_of(name).read_bytes()).hexdigest()[:16]
+        with file_of(name).open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()[:16]
     except OSError as error:
         raise PluginError(
             f"{file_of(name)}: cannot be read: {error.strerror}; check the path, relative to the scenario file"

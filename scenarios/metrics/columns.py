@@ -2,7 +2,8 @@
 
 SUMMARY_COLUMNS = (
     "flight_id", "trial", "variant", "outcome", "message", "criteria_met", "kept_out", "required", "aircraft", "fidelity",
-    "seed", "nu", "nu_min", "nu_max", "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "turbulence", "fault",
+    "seed", "nu", "nu_min", "nu_max", "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "turbulence",
+    "place_latitude_deg", "place_longitude_deg", "start_utc", "fault",
     "fault_time_s", "modes", "mode_at_end", "plume_heading_deg", "plume_elevation_deg", "start_distance_m",
     "start_aspect_deg", "eta", "omega_0_rad_s", "oscillation_limit", "r_co_m", "keepout_shape", "keepout_radius_m",
     "keepout_margin_m", "keepout_violations", "keepout_time_s", "keepout_depth_m", "min_distance_m",

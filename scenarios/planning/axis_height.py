@@ -7,8 +7,8 @@ from scenarios.schema.scenario import Scenario
 from scenarios.world.exhaust import emission
 
 
-def axis_height(scenario: Scenario) -> AxisHeight:
-    """Return the height that the guidance expects: of exhaust at the load that the vessel's speed takes.
+def axis_height(scenario: Scenario, vessel_speed: float) -> AxisHeight:
+    """Return the height that the guidance expects: of exhaust at the load that the vessel's speed [m/s] takes.
 
     Raises
     ------
@@ -17,7 +17,7 @@ def axis_height(scenario: Scenario) -> AxisHeight:
     source, climb = scenario.plume.source_height_m, math.tan(math.radians(scenario.plume.elevation_deg))
     if scenario.emission.ship is None:
         return AxisHeight(source=source, climb=climb)
-    expected = emission(scenario, load=None)
+    expected = emission(scenario, speed=vessel_speed)
     return AxisHeight(
         source=source,
         climb=climb,

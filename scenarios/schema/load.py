@@ -97,7 +97,7 @@ def load_document(name: str, overrides: Sequence[str] = ()) -> Document:
         if for_trials and isinstance(given, list):
             document["set"] = [*given, *for_trials]
         overrides = own
-    parsed = [(key, with_absolute_files(value, Path())) for key, value in map(parse_override, overrides)]
+    parsed = [(key, with_absolute_files(value, Path(), key)) for key, value in map(parse_override, overrides)]
     kind = _kind(document | {key: value for key, value in parsed if key == "study"})
     for key, value in parsed:
         apply_override(document, key, value, kind)
@@ -170,7 +170,7 @@ def _with_absolute_file(override: object, folder: Path) -> object:
     if not isinstance(override, str) or "=" not in override:
         return override
     key, value = parse_override(override)
-    absolute = with_absolute_files(value, folder)
+    absolute = with_absolute_files(value, folder, key)
     # Names and lists of names are written in JSON as in TOML.
     return override if absolute == value else f"{key}={json.dumps(absolute)}"
 

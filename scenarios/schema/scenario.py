@@ -21,7 +21,7 @@ from scenarios.schema.experiment import (
 from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
 from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig
 from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
-from scenarios.schema.world import KeepoutConfig, PlumeConfig, TurbulenceConfig, VesselConfig, WindConfig
+from scenarios.schema.world import KeepoutConfig, PlaceConfig, PlumeConfig, TurbulenceConfig, VesselConfig, WindConfig
 
 DEFAULT_AIRCRAFT = "x8"
 
@@ -64,6 +64,7 @@ class Scenario(Section):
     statistics: StatisticsConfig = StatisticsConfig()
     subset: SubsetConfig = SubsetConfig()
     search: SearchConfig = SearchConfig()
+    place: PlaceConfig = PlaceConfig()
     vessel: VesselConfig = VesselConfig()
     plume: PlumeConfig = PlumeConfig()
     keepout: KeepoutConfig = KeepoutConfig()
@@ -93,7 +94,7 @@ class Scenario(Section):
         if self.guidance.mission is not None:
             return self.guidance.mission == "follow"
         return not (
-            self.wind.speed_mps == 0.0
+            not self.wind.blows
             and self.turbulence.calm
             and not self.vessel.manoeuvres
             and self.vessel.track == "manoeuvres"
@@ -104,6 +105,11 @@ class Scenario(Section):
             and self.fault.kind == "none"
             and self.plume.direction != "apparent_wind"
         )
+
+    @property
+    def vessel_known(self) -> bool:
+        """Return whether the vessel's motion is known at all times, and not from reports."""
+        return self.reports.exact and not self.vessel.from_file
 
     @property
     def declared_faults(self) -> frozenset[str]:
@@ -207,6 +213,15 @@ class Scenario(Section):
                 f"reports.interval_s is {list(self.reports.interval_s)} s; in flight.duration_max_s, {room:g} s, this makes"
                 f" more than {REPORTS_MAX} reports: let at least {room / REPORTS_MAX:.2g} s pass between them on average, or fly"
                 " shorter"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _track_has_its_own_speed(self) -> "Scenario":
+        given = [key for key in ("nu", "vessel.speed_ratio", "vessel.speed_mps") if key in self.sweep.root]
+        if self.vessel.from_file and given:
+            raise ValueError(
+                f"sweep has {given[0]} beside vessel.track, a file that the vessel's speed comes from; leave one of them out"
             )
         return self
 

@@ -44,7 +44,7 @@ from scenarios.simulation.time_history import UNFINISHED
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
 from scenarios.statistics.sulphur import sulphur_statistics
 from scenarios.studies.checks import check_flights, plugins_explained
-from scenarios.studies.manifest import config_hash, initial_manifest, parameters, plugins
+from scenarios.studies.manifest import config_hash, initial_manifest, parameters, plugins, vessel_files
 from scenarios.studies.rows import frame
 from scenarios.studies.study import study
 from scenarios.studies.summary import FlightCounts
@@ -100,6 +100,7 @@ class FlightStudy:
         if self._numbers > self.planned:
             self.tables[COMPARISON] = figures
         self.plugins = plugins(points)
+        self.vessel_files = vessel_files(points)
         self.config_hash = config_hash(scenario, *self.trials.values(), files=self.plugins, names=list(self.trials))
         self._manifest = initial_manifest(scenario, name, overrides) | {
             # A list of trials does not change with what it lists.
@@ -109,6 +110,10 @@ class FlightStudy:
             "sampled_at_random": self._sampled_at_random(),
             "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},
             "plugins": self.plugins,
+            "vessel_files": {
+                name: {"rows": reports.rows, "used": len(reports.time), "dropped": reports.dropped}
+                for name, reports in self.vessel_files.items()
+            },
         }
 
     def _sampled_at_random(self) -> dict[str, bool]:
@@ -214,7 +219,8 @@ class FlightStudy:
         for row in journal.rows(SUMMARY):
             whole.add(row)
             trial_counts[row["trial"]].add(row)
-        lines = [f"flights: {whole.line()}"]
+        lines = [reports.described() for reports in self.vessel_files.values()]
+        lines.append(f"flights: {whole.line()}")
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
         if whole.flown and all(self._sampled_at_random().values()):

@@ -1,11 +1,14 @@
 """The exhaust of a vessel: how much of each gas is where, over the ground."""
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
 
+from aircraft.atmosphere.wind import WindField
 from gnc.errors import InfeasibleError
 from measurement.emission.emission import Emission, emission_of
 from measurement.emission.fuel import Fuel, fuel_preset
@@ -16,12 +19,14 @@ from measurement.plume.fluctuating_plume import PlumeSample
 from scenarios.schema.scenario import Scenario
 from scenarios.world.plume import Plume
 from scenarios.world.vessel import VesselTruth
-from scenarios.world.weather import wind_ned
 
 Array = npt.NDArray[np.float64]
 
 _ZERO_CELSIUS = 273.15
 """[K]"""
+
+_ANEMOMETER = 10.0
+"""Height of the wind that makes the turbulence [m]."""
 
 _PARTS = np.array([PARTS[gas] for gas in GASES])
 
@@ -43,7 +48,7 @@ class Smoke(Protocol):
         air: MarineAir,
         *,
         vessel: VesselTruth,
-        wind: tuple[float, float],
+        wind: WindField,
         duration: float,
         source_height: float,
         settings: Any,
@@ -60,17 +65,18 @@ class Exhaust:
     ----------
     fuel, emission : what is burnt, and what leaves the funnel
     dispersion : of it, in the frame of the air mass
-    wind : velocity of that frame, north and east [m/s]
+    displacement : how far that frame has moved north and east at some times [s], in metres
     """
 
     fuel: Fuel
     emission: Emission
     dispersion: Dispersion
-    wind: tuple[float, float]
+    displacement: Callable[[Array], tuple[Array, Array]]
 
     def sample(self, time: Array, north: Array, east: Array, up: Array) -> PlumeSample:
         """Return the plume at places over the ground, each shape (n,) [s, m]."""
-        return self.dispersion.sample(time, north - self.wind[0] * time, east - self.wind[1] * time, up)
+        moved_north, moved_east = self.displacement(time)
+        return self.dispersion.sample(time, north - moved_north, east - moved_east, up)
 
     def excess(self, dilution: Array) -> Array:
         """Return the gases above clean air, shape (n, 4), in the order and the units of ``measurement.gases``."""
@@ -82,8 +88,8 @@ def fuel_of(scenario: Scenario) -> Fuel:
     return fuel_preset(scenario.emission.fuel, scenario.emission.sulphur_percent)
 
 
-def emission(scenario: Scenario, *, load: float | None) -> Emission:
-    """Return what the vessel of a scenario emits at a load of its engine [-], or at that of its speed.
+def emission(scenario: Scenario, *, speed: float, load: float | None = None) -> Emission:
+    """Return what the vessel of a scenario emits at a speed [m/s], or at a load of its engine [-] where that is given.
 
     Raises
     ------
@@ -91,14 +97,14 @@ def emission(scenario: Scenario, *, load: float | None) -> Emission:
     """
     ship = ship_preset(scenario.emission.ship or "")
     if load is None:
-        return emission_of(ship, fuel_of(scenario), speed=scenario.vessel_speed)
+        return emission_of(ship, fuel_of(scenario), speed=speed)
     return emission_of(ship, fuel_of(scenario), power=load * ship.power_max)
 
 
 def exhaust_of(
-    scenario: Scenario, vessel: VesselTruth, plume: Plume, *, duration: float, generator: np.random.Generator
+    scenario: Scenario, vessel: VesselTruth, plume: Plume, wind: WindField, *, duration: float, generator: np.random.Generator
 ) -> Exhaust | None:
-    """Return the exhaust of a vessel that has any, over a duration [s].
+    """Return the exhaust of a vessel that has any, in some wind, over a duration [s]. It is that of her speed at the start.
 
     Raises
     ------
@@ -112,15 +118,26 @@ def exhaust_of(
             f"emission.ship is '{scenario.emission.ship}', and plume.model '{scenario.plume.model}' has no smoke: set plume.model"
             " to 'fluctuating', or leave emission.ship out"
         )
-    wind, emitted, air = wind_ned(scenario.wind), emission(scenario, load=scenario.emission.load), scenario.wind
+    air, height = scenario.wind, scenario.plume.source_height_m
+    _, _, v_north, v_east = vessel.motion(0.0)
+    emitted = emission(scenario, speed=math.hypot(v_north, v_east), load=scenario.emission.load)
     dispersion = plume.dispersion(
         emitted,
-        MarineAir(wind_speed=air.speed_mps, temperature=air.temperature_c + _ZERO_CELSIUS, brunt_vaisala=air.stability_per_s),
+        MarineAir(
+            wind_speed=math.hypot(*wind.now(0.0, _ANEMOMETER)),
+            temperature=air.temperature_c + _ZERO_CELSIUS,
+            brunt_vaisala=air.stability_per_s,
+        ),
         vessel=vessel,
         wind=wind,
         duration=duration,
-        source_height=scenario.plume.source_height_m,
+        source_height=height,
         settings=scenario.plume.settings(plume),
         seed=int(generator.integers(2**31)),
     )
-    return Exhaust(fuel=fuel_of(scenario), emission=emitted, dispersion=dispersion, wind=wind)
+    return Exhaust(
+        fuel=fuel_of(scenario),
+        emission=emitted,
+        dispersion=dispersion,
+        displacement=lambda time: wind.displacement(time, height),
+    )

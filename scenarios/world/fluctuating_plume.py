@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from aircraft.atmosphere.wind import WindField
 from measurement.emission.emission import Emission
 from measurement.plume.air import MarineAir
 from measurement.plume.fluctuating_plume import FluctuatingPlume
@@ -30,7 +31,7 @@ class FluctuatingSmoke(StraightPlume):
         air: MarineAir,
         *,
         vessel: VesselTruth,
-        wind: tuple[float, float],
+        wind: WindField,
         duration: float,
         source_height: float,
         settings: PlumeSettings,
@@ -41,7 +42,7 @@ class FluctuatingSmoke(StraightPlume):
         Parameters
         ----------
         emission, air : what leaves the funnel, and into what
-        vessel, wind : motion of the vessel over the ground, and of the air mass, north and east [m/s]
+        vessel, wind : motion of the vessel over the ground, and of the air
         duration : to be covered [s]
         source_height : of the funnel's mouth above the sea [m]
         settings, seed : of the realisation
@@ -56,12 +57,13 @@ class FluctuatingSmoke(StraightPlume):
         place = np.array([vessel.motion(t)[:2] for t in np.maximum(time, 0.0).tolist()])
         _, _, v_north, v_east = vessel.motion(0.0)
         earlier = np.minimum(time, 0.0)
+        moved_north, moved_east = wind.displacement(time, source_height)
         return FluctuatingPlume(
             emission,
             air,
             time=time,
-            north=place[:, 0] + earlier * v_north - time * wind[0],
-            east=place[:, 1] + earlier * v_east - time * wind[1],
+            north=place[:, 0] + earlier * v_north - moved_north,
+            east=place[:, 1] + earlier * v_east - moved_east,
             source_height=source_height,
             settings=settings,
             seed=seed,

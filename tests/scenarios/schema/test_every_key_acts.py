@@ -59,6 +59,8 @@ VALUES = {
     "statistics.distance_quantile": 0.05,
     "search.population": 8, "search.generations": 1, "search.mutation": [0.4, 0.6], "search.recombination": 0.5, "search.kept": 1,
     "search.methods": ["local"], "search.time_s": 5.0, "search.restarts": 3, "search.confirmations": 1,
+    "place.latitude_deg": 57.0, "place.longitude_deg": 11.0, "place.utc": "2026-06-01T10:00:00Z",
+    "vessel.mmsi": 219999001, "vessel.gap_max_s": 100.0,
     "vessel.speed_mps": 7.0, "vessel.speed_ratio": 0.3, "vessel.course_deg": 40.0,
     "vessel.manoeuvres": [{"at_s": 20.0, "turn_deg": 30.0}],
     "vessel.manoeuvres.0.at_s": 50.0, "vessel.manoeuvres.0.turn_deg": 30.0, "vessel.manoeuvres.0.turn_rate_deg_s": 1.0,
@@ -68,6 +70,7 @@ VALUES = {
     "wind.temperature_c": 30.0, "wind.stability_per_s": 0.03, "flight.after_settling_s": 60.0,
     "flight.altitude_min_m": 80.0, "flight.altitude_max_m": 40.0,
     "keepout.radius_m": 180.0, "keepout.shape": "cylinder", "wind.speed_mps": 3.0, "wind.from_deg": 100.0,
+    "wind.roughness_m": 2e-4, "wind.height_m": 20.0,
     "turbulence.level": "light", "turbulence.gusts": 2, "turbulence.gust_speed_mps": 3.0, "turbulence.gust_length_s": 3.0,
     "reports.interval_s": [3.0, 6.0], "reports.position_sigma_m": 8.0, "reports.velocity_sigma_mps": 0.3,
     "reports.latency_max_s": 2.0, "reports.missing": 0.5,
@@ -112,7 +115,7 @@ MEASURING = ("emission.", "flight.", "payload.", "plume.", "wind.")
 """Sections that act on what is measured: the others do nothing more in a flight that measures."""
 
 ELSEWHERE = {
-    "study", "title", "description", "fidelity", "aircraft", "payload.instruments", "vessel.track", "plume.model",
+    "study", "title", "description", "fidelity", "aircraft", "payload.instruments", "vessel.track", "wind.table", "plume.model",
     "reference.shape",
     "flights", "histories", "sweep", "cases", "draws", "comparison", "comparison.variants",
 }  # fmt: skip
