@@ -78,9 +78,8 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
     motions = history[names].itertuples(index=False, name=None)
     if plan.sensing is None or plan.world is None:
         return plan, [(at, motion) for at, *motion in motions]
-    v_north, v_east = (
-        history[f"velocity_{axis}_mps"] - of_air for axis, of_air in zip(("north", "east"), plan.world.weather.wind, strict=True)
-    )
+    wind = plan.world.weather.wind.at(history["time_s"], history["altitude_m"])
+    v_north, v_east = (history[f"velocity_{axis}_mps"] - of_air for axis, of_air in zip(("north", "east"), wind, strict=True))
     air_data = zip(history["airspeed_mps"], np.arctan2(v_east, v_north), history["roll_rad"], strict=True)
     return plan, [(at, (place, *read, rate, 0.0)) for (at, *place, rate), read in zip(motions, air_data, strict=True)]
 

@@ -11,6 +11,14 @@ from typing import Any
 
 from common.run_layout import EXPORT, REPORT_HTML, REPORT_PDF
 
+DATA_SUFFIXES = (".csv", ".nmea", ".txt", ".nc")
+"""How the names of files of data end that a scenario may name: tables, AIS sentences, netCDF."""
+
+
+def is_data_file(name: str) -> bool:
+    """Return whether ``name`` is that of a file of data, by how it ends."""
+    return name.lower().endswith(DATA_SUFFIXES)
+
 
 def is_file(path: Path) -> bool:
     """Return whether there is a file, which there is not under a name that no file can have."""

@@ -34,7 +34,7 @@ class Registry(Generic[Part]):
     ----------
     kind : of the parts, as in "steering_law"
     folder : package whose modules register the project's own parts when they are imported
-    methods : that every part has to have, unless it is a function that makes one: those of its Protocol
+    methods : that every part has to have, unless it is a function that makes one: those of its Protocol; of some, "this|that"
     """
 
     def __init__(self, kind: str, *, folder: str, methods: Sequence[str] = ()) -> None:
@@ -100,8 +100,9 @@ class Registry(Generic[Part]):
 
     def _checked(self, name: str, part: Any) -> Part:
         for method in () if isinstance(part, FunctionType) else self._methods:
-            if not callable(getattr(part, method, None)):
-                raise PluginError(f"{self.words} '{name}' has no method {method}(); see the Protocol in {self._folder}")
+            if not any(callable(getattr(part, alternative, None)) for alternative in method.split("|")):
+                missing = method.replace("|", "() or ")
+                raise PluginError(f"{self.words} '{name}' has no method {missing}(); see the Protocol in {self._folder}")
         found: Part = part
         return found
 
@@ -117,19 +118,20 @@ def is_file_part(name: str) -> bool:
 
 
 def file_of(name: str) -> Path:
-    """Return the file of a part that is named by it."""
-    return Path(name.rpartition(":")[0])
+    """Return the file of a part that is named by it, or the file of data that ``name`` is."""
+    return Path(name.rpartition(":")[0] if is_file_part(name) else name)
 
 
 def file_hash(name: str) -> str:
-    """Return a hash of the file of a part that is named by it.
+    """Return a hash of the file of a part that is named by it, or of a file of data.
 
     Raises
     ------
     PluginError : the file cannot be read
     """
     try:
-        return hashlib.sha256(file_of(name).read_bytes()).hexdigest()[:16]
+        with file_of(name).open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()[:16]
     except OSError as error:
         raise PluginError(
             f"{file_of(name)}: cannot be read: {error.strerror}; check the path, relative to the scenario file"

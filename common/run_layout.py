@@ -42,6 +42,12 @@ BOUNDS = "bounds.json"
 STATISTICS = "statistics.json"
 """Estimates of a Monte Carlo study."""
 
+SULPHUR_TABLE = "sulphur.csv"
+"""A row per flight with a sniffer, method and time after settling: what was known of the fuel by then."""
+
+SULPHUR = "sulphur.json"
+"""Statistics of the flights with a sniffer."""
+
 MODEL = "model"
 """Directory of the aircraft's model with the autopilot."""
 
@@ -84,6 +90,11 @@ def is_file_name(name: object) -> bool:
 def time_history_path(flight_id: str) -> str:
     """Return the path of a flight's time history, relative to the run directory."""
     return f"{FLIGHTS}/{flight_id}{HISTORY_SUFFIX}"
+
+
+def evaluation_path(flight_id: str) -> str:
+    """Return the path of what an instrument made of a flight, relative to the run directory."""
+    return f"{FLIGHTS}/{flight_id}.json"
 
 
 def trajectory_path(law: str, number: int) -> str:

@@ -8,14 +8,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.points import STUDY
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
+from scenarios.instruments.instrument import EvaluatedInstrument, Instrument
 from scenarios.metrics.criteria import failed_criteria, kept_out
 from scenarios.metrics.crossings import crossing_rows
 from scenarios.metrics.figures import flight_figures, plan_row
@@ -23,16 +24,14 @@ from scenarios.metrics.relative_state import flight_history
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.spreads import PredictedSpreads
+from scenarios.schema.extension_points import PAYLOADS
 from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.failure import failure, unflown
 from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.release import release
 from scenarios.simulation.time_history import history_files
-from scenarios.vehicles.payload import PAYLOADS, Instrument
 from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
-
-_PAYLOAD_STREAM = 1
-"""Number of the random stream of the payload, beside that of the flight's seed."""
+from scenarios.world.noise import PAYLOAD, own_generator
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,6 +89,7 @@ class FlightWork:
         began = time.perf_counter()
         row, tables = self._named(task), dict[str, list[Row]]()
         history: pd.DataFrame | None = None
+        document: Mapping[str, Any] | None = None
         try:
             request = self.request(task)
             row |= _request_row(request)
@@ -100,18 +100,27 @@ class FlightWork:
             plan = self.plan(request)
             row |= plan_row(plan)
             tables[DRAWS][0]["nu"] = row.get("nu")
-            record = fly(plan, release(plan, self._setup(request)), _payload(request, plan), every_step=task.every_step)
+            instruments = _payload(request, plan)
+            read = [instrument for instrument in instruments if isinstance(instrument, Instrument)]
+            record = fly(plan, release(plan, self._setup(request)), read, every_step=task.every_step)
             history = flight_history(plan, record)
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)
             tables[CROSSINGS] = [named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)]
             tables[INTERVENTIONS] = [named | stretch._asdict() for stretch in record.interventions]
+            for instrument in instruments:
+                if isinstance(instrument, EvaluatedInstrument):
+                    evaluation = instrument.evaluate(record.column, record.settled_at)
+                    history[list(instrument.COLUMNS)] = evaluation.columns
+                    row |= evaluation.figures
+                    tables |= {file: [named | of for of in rows] for file, rows in evaluation.tables.items()}
+                    document = evaluation.document or document
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
             row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}
         except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
             row |= failure(error)
-        return self._result(task, row | {"wall_time_s": time.perf_counter() - began}, tables, history)
+        return self._result(task, row | {"wall_time_s": time.perf_counter() - began}, tables, history, document)
 
     def lost(self, task: Task, reason: str) -> Result:
         """Return the result of a flight whose process was lost."""
@@ -138,14 +147,19 @@ class FlightWork:
         return {"flight_id": flight_id, "trial": experiment.name, "variant": variant}
 
     def _result(
-        self, task: Task, row: Row, tables: Mapping[str, list[Row]] | None = None, history: pd.DataFrame | None = None
+        self,
+        task: Task,
+        row: Row,
+        tables: Mapping[str, list[Row]] | None = None,
+        history: pd.DataFrame | None = None,
+        document: Mapping[str, Any] | None = None,
     ) -> Result:
         table = table_of(row["variant"])
         return Result(
             task=task,
             items=int(row["variant"] == STUDY),
             tables={table: [row], **(tables or {})},
-            files=history_files(task, history, planned=self._ends[-1], kept=self.histories, row=row),
+            files=history_files(task, history, document, planned=self._ends[-1], kept=self.histories, row=row),
         )
 
 
@@ -177,9 +191,9 @@ def _never_flown(request: FlightRequest, figures: Row) -> Row:
     return {"manoeuvres_unflown": sum(at >= figures["duration_s"] for at in begins)} if begins else {}
 
 
-def _payload(request: FlightRequest, plan: FlightPlan) -> list[Instrument]:
+def _payload(request: FlightRequest, plan: FlightPlan) -> list[Instrument | EvaluatedInstrument]:
     """Return the flight's instruments, fresh."""
-    generator = np.random.default_rng([request.seed, _PAYLOAD_STREAM])
+    generator = own_generator(request.noise, PAYLOAD)
     return [PAYLOADS.get(name)(request.scenario, plan.world, generator) for name in plan.payload]
 
 

@@ -16,7 +16,12 @@ from typing import TYPE_CHECKING
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest
-from hypothesis import settings
+
+try:
+    from hypothesis import settings
+except ModuleNotFoundError:
+    # tests/measurement runs with numpy, scipy, pandas and pytest alone.
+    settings = None
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -28,8 +33,9 @@ if TYPE_CHECKING:
     from innerloop.synthesis.schedule import Schedule
 
 # No deadline, for time is not what is tested, and the same examples on every machine.
-settings.register_profile("reproducible", deadline=None, derandomize=True)
-settings.load_profile("reproducible")
+if settings is not None:
+    settings.register_profile("reproducible", deadline=None, derandomize=True)
+    settings.load_profile("reproducible")
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -4,6 +4,8 @@ import io
 
 import pandas as pd
 
+from common.run_layout import HISTORY_SUFFIX
+
 
 def rows_of(directory, table="summary.csv"):
     """Return the rows of a run's table; a figure that a row lacks is no key of it."""
@@ -13,6 +15,7 @@ def rows_of(directory, table="summary.csv"):
 
 def history_in(result):
     """Return the time history among the files of a flight's result, or none."""
-    histories = [pd.read_parquet(io.BytesIO(content)) for content in result.files.values()]
+    files = result.files.items()
+    histories = [pd.read_parquet(io.BytesIO(content)) for name, content in files if name.endswith(HISTORY_SUFFIX)]
     assert len(histories) <= 1
     return histories[0] if histories else None

@@ -1,10 +1,10 @@
-"""The air that an aircraft flies in: steady wind, turbulence and gusts."""
+"""The air that an aircraft flies in: mean wind, turbulence and gusts."""
 
-import math
 from dataclasses import dataclass
 
 from aircraft.atmosphere.gusts import Gust, end_gust
 from aircraft.atmosphere.turbulence import JSBSIM_TYPE, Turbulence
+from aircraft.atmosphere.wind import CALM, WindField
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
 from common.units import METRES_PER_FOOT
@@ -20,7 +20,7 @@ class Weather:
 
     Attributes
     ----------
-    wind_north, wind_east : velocity of the air mass, so where the wind blows to [m/s]
+    wind : velocity of the air mass over time and height
     turbulence : about the wind, from the release on; None for smooth air
     gusts : discrete gusts, one at a time
     seed : of the turbulence, 0 to 2^31 - 1, which is what JSBSim holds
@@ -30,23 +30,14 @@ class Weather:
     AircraftError : a value out of range
     """
 
-    wind_north: float = 0.0
-    wind_east: float = 0.0
+    wind: WindField = CALM
     turbulence: Turbulence | None = None
     gusts: tuple[Gust, ...] = ()
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name, value in (("wind_north", self.wind_north), ("wind_east", self.wind_east)):
-            if not math.isfinite(value):
-                raise AircraftError(f"weather: {name} is {value} m/s; it must be finite")
         if not 0 <= self.seed <= _SEED_MAX:
             raise AircraftError(f"weather: seed is {self.seed}; JSBSim takes whole numbers from 0 to {_SEED_MAX}")
-
-    @property
-    def wind(self) -> tuple[float, float]:
-        """Return the velocity of the air mass, north and east [m/s]."""
-        return self.wind_north, self.wind_east
 
 
 def begin_turbulence(fdm: Fdm, weather: Weather) -> None:

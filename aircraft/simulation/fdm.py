@@ -66,6 +66,7 @@ class Fdm:
         self._exec.disable_output()
         self._properties = self._exec.get_property_manager()
         self._initial = [self.writable_node(name) for name in INITIAL_STATE]
+        self._wind = [self.writable_node(name) for name in WIND]
         self._accelerations = [
             self.node(name) for name in (*component_names(ACCELERATION, "uvw"), *component_names(ANGULAR_ACCELERATION, "pqr"))
         ]
@@ -161,9 +162,14 @@ class Fdm:
             self.write(name, value)
         if wind:
             # Running its initial conditions, JSBSim sets their wind, which is 0.
-            north, east = (speed / METRES_PER_FOOT for speed in wind)
-            for name, value in zip(WIND, (north if abs(north) > NORTH_WIND_MIN else NORTH_WIND_MIN, east, 0.0), strict=True):
-                self.write(name, value)
+            self.blow(*wind)
+
+    def blow(self, north: float, east: float) -> None:
+        """Let the wind blow north and east [m/s] from now on."""
+        north, east = north / METRES_PER_FOOT, east / METRES_PER_FOOT
+        values = (north if abs(north) > NORTH_WIND_MIN else NORTH_WIND_MIN, east, 0.0)
+        for node, value in zip(self._wind, values, strict=True):
+            node.set_double_value(value)
 
     def _start_engines(self) -> bool:
         """Start every engine, at once or as a pilot does, and run them up, the body held; return whether that took any

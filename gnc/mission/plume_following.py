@@ -7,8 +7,10 @@ from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
 from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
+from gnc.mission.axis_height import AxisHeight
 from gnc.mission.egress import Egress
 from gnc.mission.mode import Mode
+from gnc.numeric import limited
 from gnc.reference.mean_motion import mean_motion
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
 from gnc.reference.steered import SteeredReference
@@ -20,6 +22,10 @@ MANOEUVRE_RANGE, REPORTED_SCATTER = 200.0, 0.03
 
 GLIDE_ALTITUDE = -1000.0
 """Altitude that a gliding vehicle is commanded [m]: so far below that the autopilot holds its airspeed by pitch, and sinks."""
+
+
+_HEIGHT_TIME, _CLIMB_GRADIENT = 20.0, 0.05
+"""Time in which the altitude follows that of the plume's axis [s], and the steepest climb on the way [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +45,7 @@ class FollowingParameters:
     reach, reach_time : how far the vessel may be, that time ahead, from where it is taken to be, while its reports come [m, s]
     drift_rate : how fast dead reckoning goes wrong [m/s]
     plan_interval : guidance steps between plans
-    source_altitude, climb : altitude of the plume's origin [m], and by how much its axis rises per distance [-]
+    height : of the plume's axis, and so of the flight
     """
 
     centre: CentreParameters
@@ -54,8 +60,7 @@ class FollowingParameters:
     reach_time: float
     drift_rate: float
     plan_interval: int
-    source_altitude: float
-    climb: float
+    height: AxisHeight
 
 
 class PlumeFollowing:
@@ -101,7 +106,7 @@ class PlumeFollowing:
         self._orbit_range = self._orbit_rate = self.centre_error = 0.0
         self.centre = MovingCentre(parameters.centre)
         self.mode = Mode.APPROACH
-        self.airspeed, self.altitude = parameters.approach.airspeed, parameters.source_altitude
+        self.airspeed, self.altitude = parameters.approach.airspeed, parameters.height.source
         self.tracker: Tracker[SteeredReference]
         self._reference: SteeredReference
 
@@ -143,7 +148,7 @@ class PlumeFollowing:
         self._decide()
         if self.leaving:
             return
-        self.altitude = p.source_altitude + p.climb * centre.distance
+        self._climb()
         if own.lost > 0.0:
             self.mode = Mode.DEAD_RECKONING
         elif age > p.stale:
@@ -154,6 +159,13 @@ class PlumeFollowing:
             self.mode = Mode.NO_PLUME
         else:
             self.mode = Mode.TRACKING if self._tracking else Mode.APPROACH
+
+    def _climb(self) -> None:
+        """Bring the altitude to that of the plume's axis at the centre: slowly, because it follows wind that is estimated."""
+        height = self._parameters.height
+        expected = height.at(self.centre.distance, self.centre.speed_ratio * self._speed)
+        climb = _CLIMB_GRADIENT * self._speed
+        self.altitude += self._plan_time * limited((expected - self.altitude) / _HEIGHT_TIME, climb)
 
     def _widen_margin(self) -> None:
         """Keep farther off while the vessel may be farther from where it is taken to be than as long as its reports come."""

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from aircraft.atmosphere.gusts import gusty_run
 from aircraft.atmosphere.weather import Weather, begin_turbulence, end_weather
+from aircraft.atmosphere.wind import windy_run
 from aircraft.errors import AircraftError
 from aircraft.simulation.faults import Faults, failable_root
 from aircraft.simulation.fdm import Fdm
@@ -71,7 +72,8 @@ class AutopilotedAircraft:
         self.command_heading_rate(0.0)
         self.fdm.write(ELEVATOR_HELD, 0.0)
         self.fdm.write(RESET, -1.0)
-        self.fdm.hold(state, round(self.fdm.spec.settle_time / self.fdm.time_step), weather.wind if weather else None)
+        wind = weather.wind.now(0.0, altitude) if weather else None
+        self.fdm.hold(state, round(self.fdm.spec.settle_time / self.fdm.time_step), wind)
         self.fdm.write(RESET, 0.0)
         self.fdm.write(HELD_ELEVATOR, self.fdm.read(CONTROL_COMMAND.format("elevator")))
         if self._faults:
@@ -79,7 +81,7 @@ class AutopilotedAircraft:
         self.run = self.fdm.run
         if weather:
             begin_turbulence(self.fdm, weather)
-            self.run = gusty_run(self.fdm, weather.gusts)
+            self.run = windy_run(self.fdm, weather.wind, gusty_run(self.fdm, weather.gusts))
 
     def hold_elevator(self) -> None:
         """Hold the elevator at its position at the release; the aircraft's own stability then controls pitch.

@@ -19,7 +19,7 @@ _CLOSE = 1e-7
 """Emission times of nearest parcels are found to within this [s]: to a micrometre along the plume."""
 
 _ROUNDS = 60
-"""Most rounds of the search: halving alone takes ten hours to below the tolerance in 39."""
+"""Most rounds of the search. It takes 3 to 6; near a centre of curvature each round only halves what is left, of an hour in 35."""
 
 
 @dataclass(frozen=True)

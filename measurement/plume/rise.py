@@ -37,7 +37,8 @@ def rise(emission: Emission, wind: Array, age: Array, brunt_vaisala: float = 0.0
         frequency = _FREQUENCY * brunt_vaisala
         crest = np.arctan2(frequency * momentum, -buoyancy) / frequency
         phase = frequency * np.minimum(age, crest)
-        stable = frequency * momentum * np.sin(phase) + buoyancy * (1.0 - np.cos(phase))
+        # 1 - cos of a small phase would be lost in rounding.
+        stable = frequency * momentum * np.sin(phase) + 2.0 * buoyancy * np.sin(0.5 * phase) ** 2
         cube = np.minimum(cube, _STABLE**3 * stable / (brunt_vaisala**2 * wind))
     result: Array = np.cbrt(cube)
     return result

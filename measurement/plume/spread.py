@@ -70,8 +70,8 @@ def spreads(
     age: Array = STEP * np.arange(math.ceil(age_max / STEP) + 2, dtype=np.float64)
     column = wind[:, np.newaxis]
     climb = rise(emission, column, age, air.brunt_vaisala)
-    stack = source_height - settings.downwash * downwash(emission, column)
-    final = np.maximum(0.0, stack + rise(emission, column, np.array(_FINAL), air.brunt_vaisala))
+    stack = np.maximum(0.0, source_height - settings.downwash * downwash(emission, column))
+    final = stack + rise(emission, column, np.array(_FINAL), air.brunt_vaisala)
     absolute = np.stack([_across(air, final, age), _up(air, final, age)])
     start = emission.stack_diameter**2 / 8.0 * np.maximum(emission.exhaust_speed / column, 1.0) + emission.wake_spread**2
     source = start + (_BUOYANT * climb) ** 2
@@ -79,7 +79,7 @@ def spreads(
     turbulent = _turbulent(source, absolute, dissipation, air.sigma_w, settings.richardson)
     relative = np.sqrt(source + turbulent)
     meander = np.sqrt(np.maximum(0.0, absolute - turbulent))
-    return Spreads(np.maximum(0.0, stack + climb), relative[0], relative[1], meander[0], meander[1])
+    return Spreads(stack + climb, relative[0], relative[1], meander[0], meander[1])
 
 
 def _across(air: MarineAir, height: Array, age: Array) -> Array:

@@ -7,7 +7,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.draws import speed_ratios, values_at
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
-from scenarios.world.vessel import ManoeuvringVessel, check_manoeuvres, largest_acceleration
+from scenarios.world.vessel import SteadyVessel, check_manoeuvres, largest_acceleration
 from scenarios.world.world import vessel_of
 
 
@@ -34,6 +34,6 @@ def beyond_declared(scenario: Scenario, point: Sequence[float]) -> float:
 def _acceleration_excess(flight: Scenario) -> float:
     declared = flight.following.vessel_acceleration_mps2
     vessel = vessel_of(flight)
-    if declared == 0.0 or not isinstance(vessel, ManoeuvringVessel):
+    if declared == 0.0 or isinstance(vessel, SteadyVessel):
         return 0.0
-    return max(0.0, largest_acceleration(vessel) / declared - 1.0)
+    return max(0.0, largest_acceleration(vessel, flight.flight.duration_max_s) / declared - 1.0)

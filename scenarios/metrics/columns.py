@@ -2,7 +2,8 @@
 
 SUMMARY_COLUMNS = (
     "flight_id", "trial", "variant", "outcome", "message", "criteria_met", "kept_out", "required", "aircraft", "fidelity",
-    "seed", "nu", "nu_min", "nu_max", "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "turbulence", "fault",
+    "seed", "nu", "nu_min", "nu_max", "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "turbulence",
+    "place_latitude_deg", "place_longitude_deg", "start_utc", "fault",
     "fault_time_s", "modes", "mode_at_end", "plume_heading_deg", "plume_elevation_deg", "start_distance_m",
     "start_aspect_deg", "eta", "omega_0_rad_s", "oscillation_limit", "r_co_m", "keepout_shape", "keepout_radius_m",
     "keepout_margin_m", "keepout_violations", "keepout_time_s", "keepout_depth_m", "min_distance_m",
@@ -20,15 +21,16 @@ SUMMARY_COLUMNS = (
 )  # fmt: skip
 """Of ``summary.csv`` and ``comparison.csv``: a row per flight."""
 
-_FLIGHT = ("flight_id", "trial", "variant")
+FLIGHT_COLUMNS = ("flight_id", "trial", "variant")
+"""Of every table: what names a flight."""
 
-CROSSING_COLUMNS = (*_FLIGHT, "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
+CROSSING_COLUMNS = (*FLIGHT_COLUMNS, "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
 """Of ``crossings.csv``: a row per crossing."""
 
-INTERVENTION_COLUMNS = (*_FLIGHT, "time_s", "duration_s", "distance_min_m", "lost")
+INTERVENTION_COLUMNS = (*FLIGHT_COLUMNS, "time_s", "duration_s", "distance_min_m", "lost")
 """Of ``interventions.csv``: a row per stretch in which the keep-out guard changed commands."""
 
-INPUT_COLUMNS = (*_FLIGHT, "nu")
+INPUT_COLUMNS = (*FLIGHT_COLUMNS, "nu")
 """Of ``draws.csv``, before the keys that differ from flight to flight: a row per flight."""
 
 SEARCH_COLUMNS = ("search_method", "confirms")

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from aircraft.atmosphere.wind import CALM
 from common.numeric import rms
 from gnc.mission.mode import Mode
 from scenarios.engine.task import Row
@@ -12,6 +13,8 @@ from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import closest_approach, keepout_figures
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.record import FlightRecord
+from scenarios.world.ais.track import AisVessel
+from scenarios.world.place import Place, utc_text
 
 Array = npt.NDArray[np.float64]
 
@@ -49,8 +52,24 @@ def plan_row(plan: FlightPlan) -> Row:
         "crossing_interval_predicted_s": plan.oscillation.crossing_interval,
         "manoeuvre_end_s": world.vessel.manoeuvres_end,
     }
+    if isinstance(world.vessel, AisVessel):
+        row["vessel_speed_mps"] = math.hypot(*world.vessel.motion(0.0)[2:])
+    if not world.weather.wind.constant:
+        north, east = world.weather.wind.now(0.0, world.source_height)
+        row |= {"wind_speed_mps": math.hypot(north, east), "wind_from_deg": math.degrees(math.atan2(-east, -north))}
+    row |= _place_row(world.place)
     if plan.margin is not None:
         row |= {"keepout_margin_m": plan.margin.total, "spread_predicted_m": plan.margin.tracking_sigma}
+    return row
+
+
+def _place_row(place: Place) -> Row:
+    """Return where and when the flight began, as far as that is known."""
+    row: Row = {}
+    if math.isfinite(place.latitude):
+        row |= {"place_latitude_deg": math.degrees(place.latitude), "place_longitude_deg": math.degrees(place.longitude)}
+    if math.isfinite(place.utc):
+        row["start_utc"] = utc_text(place.utc)
     return row
 
 
@@ -189,8 +208,8 @@ def _estimation_figures(plan: FlightPlan, record: FlightRecord, settled: npt.NDA
         "guard_after_settling_s": plan.log_interval * plan.time_step * float(np.count_nonzero(column("guard") > 0.0)),
     }
     if weather is not None:
-        wind = np.hypot(column("wind_north_mps") - weather.wind_north, column("wind_east_mps") - weather.wind_east)
-        row["wind_error_rms_mps"] = rms(wind)
+        north, east = weather.wind.at(column("time_s"), column("altitude_m"))
+        row["wind_error_rms_mps"] = rms(np.hypot(column("wind_north_mps") - north, column("wind_east_mps") - east))
     return row
 
 
@@ -247,7 +266,7 @@ def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, la
     Where omega_0 changes with time, crossings come at the rate omega_0/pi: their number between two times is its integral.
     """
     time = np.linspace(first, last, max(2, math.ceil(last - first)))
-    wind = plan.world.weather.wind if plan.world else (0.0, 0.0)
+    wind = (plan.world.weather.wind if plan.world else CALM).at(time, plan.source_height)
     through_air = [
         np.interp(time, record.column("time_s"), record.column(f"vessel_velocity_{axis}_mps")) - of_air
         for axis, of_air in zip(("north", "east"), wind, strict=True)

@@ -59,6 +59,7 @@ class FlightPlan:
     speed_ratio_max : up to which a vessel is followed [-]
     heading_rate_max : omega_max, whether commands are cut at it or not [rad/s]
     duration_max, crossings : when to stop [s, -]
+    after_settling : how long to go on after settling, infinite for no end [s]
     settling_band, settling_period : distance from the reference to stay within, and for how long, to be settled [m, s]
     log_interval : of the record, in guidance steps
     payload : instruments on board
@@ -82,6 +83,7 @@ class FlightPlan:
     heading_rate_max: float
     duration_max: float
     crossings: int
+    after_settling: float
     settling_band: float
     settling_period: float
     log_interval: int
@@ -120,10 +122,11 @@ class FlightPlan:
             heading_rate_max=omega_max(g),
             duration_max=flight.duration_max_s,
             crossings=flight.crossings,
+            after_settling=math.inf if flight.after_settling_s is None else flight.after_settling_s,
             settling_band=flight.settling_band_m,
             settling_period=period,
             log_interval=round(g.rate_hz / flight.log_rate_hz),
-            payload=scenario.payload,
+            payload=scenario.payload.instruments,
             **parts,
         )
 

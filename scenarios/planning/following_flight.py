@@ -8,10 +8,12 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.reachable_set import VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
+from gnc.mission.axis_height import AxisHeight
 from gnc.parameters import GuardParameters, GuidanceParameters, ReportedVessel
 from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
 from scenarios.margin.orbit_room import orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
+from scenarios.planning.axis_height import axis_height
 from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
@@ -29,12 +31,24 @@ from scenarios.planning.start import check_start, sampled_start
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.ais.track import AisVessel, usual_intervals
 from scenarios.world.ais_reports import no_outage, received_reports
+from scenarios.world.exhaust import exhaust_of
 from scenarios.world.faults import VESSEL_DATA, sampled_fault
-from scenarios.world.noise import Noise, streams
-from scenarios.world.vessel import ManoeuvringVessel, VesselTruth, largest_acceleration, largest_speed
+from scenarios.world.noise import EXHAUST, Noise, own_generator, streams
+from scenarios.world.place import utc_text
+from scenarios.world.vessel import SteadyVessel, VesselTruth, largest_acceleration, largest_speed
 from scenarios.world.weather import sampled_weather
-from scenarios.world.world import ApparentWind, World, apparent_wind, plume_of, vessel_of
+from scenarios.world.world import (
+    TRACK_MARGIN,
+    ApparentWind,
+    World,
+    apparent_wind,
+    mean_wind,
+    place_of,
+    plume_of,
+    vessel_of,
+)
 
 Spreads = Callable[[Scenario], SpreadTable | None]
 """Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air."""
@@ -52,13 +66,14 @@ def following_flight(
     g, f, flight = scenario.guidance, scenario.following, scenario.flight
     generators = streams(noise)
     vessel = vessel_of(scenario)
+    scenario = _with_intervals(scenario, vessel)
     plume = plume_of(scenario, vessel)
     wind = apparent_wind(scenario, vessel)
     _check_plume(scenario, wind)
-    _check_declared(scenario, vessel)
     nu = wind.at_start / g.airspeed_mps
     periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
     limits = vessel_limits(scenario, turn_time(scenario, setup.reversal))
+    _check_declared(scenario, vessel, limits)
     orbit = oscillation_at(g, scenario.reference, nu)
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
@@ -69,24 +84,28 @@ def following_flight(
     margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
-    weather = sampled_weather(scenario, generators.world)
+    weather = sampled_weather(scenario, mean_wind(scenario, vessel), generators.world)
+    generator = own_generator(noise, EXHAUST)
+    covered = flight.duration_max_s + TRACK_MARGIN
+    exhaust = exhaust_of(scenario, vessel, plume, weather.wind, duration=covered, generator=generator)
     outage = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else no_outage()
     guard = None
     if g.keepout_guard:
         guard = guarded
         first = VesselReport(0.0, *vessel.motion(0.0))
-        blowing = (weather.wind_north, weather.wind_east)
+        blowing = weather.wind.now(0.0, scenario.plume.source_height_m)
         check_start(start, guard, tube(first, limits, 0.0), wind=blowing, airspeed=g.airspeed_mps, keepout_radius=radius)
     received = None
-    if not scenario.reports.exact:
+    if not scenario.vessel_known:
         duration = flight.duration_max_s
         received = received_reports(scenario.reports, vessel, duration=duration, outage=outage, generator=generators.reports)
     steps = round(flight.duration_max_s * g.rate_hz) + 2
+    height = axis_height(scenario, math.hypot(*vessel.motion(0.0)[2:]))
     return FlightPlan.of(
         scenario,
         flight_id,
         nu=nu,
-        guidance=_guidance(scenario, setup, margin, widths, guard, limits),
+        guidance=_guidance(scenario, setup, margin, widths, guard, limits, height),
         steering=given_steering(g),
         start=start,
         period=orbit.period,
@@ -97,6 +116,8 @@ def following_flight(
             source_height=scenario.plume.source_height_m,
             weather=weather,
             fault=fault,
+            exhaust=exhaust,
+            place=place_of(scenario, vessel),
         ),
         sensing=Sensing(
             received=received,
@@ -116,6 +137,7 @@ def _guidance(
     widths: tuple[tuple[float, float], ...],
     guard: GuardParameters | None,
     limits: VesselLimits,
+    height: AxisHeight,
 ) -> GuidanceParameters:
     g = scenario.guidance
     tracking, hold = tracking_parameters(scenario, setup), speed_hold(scenario, setup)
@@ -127,7 +149,7 @@ def _guidance(
         navigation=navigation_parameters(scenario, setup),
         vessel=ReportedVessel(filter=filter_parameters(scenario.reports), limits=limits),
         guard=guard,
-        mission=following_parameters(scenario, setup, margin, widths),
+        mission=following_parameters(scenario, setup, margin, widths, height),
         health=HealthParameters(
             airspeed_error=THRUST_LOST_FRACTION * (g.airspeed_mps - hold.airspeed_min),
             speed=g.airspeed_mps,
@@ -138,13 +160,21 @@ def _guidance(
     )
 
 
-def _check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
+def _with_intervals(scenario: Scenario, vessel: VesselTruth) -> Scenario:
+    """Return the scenario with the usual intervals of the reports of a track from a file, unless it gives others."""
+    if not isinstance(vessel, AisVessel) or not scenario.reports.exact:
+        return scenario
+    reports = scenario.reports.model_copy(update={"interval_s": usual_intervals(vessel)})
+    return scenario.model_copy(update={"reports": reports})
+
+
+def _check_declared(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
     """Raise an InfeasibleError for a vessel that does more than the keep-out guard is told, where it is not always known."""
-    f = scenario.following
-    known = scenario.reports.exact and scenario.fault.kind != VESSEL_DATA
-    if known or not scenario.guidance.keepout_guard or not isinstance(vessel, ManoeuvringVessel):
+    f, duration = scenario.following, scenario.flight.duration_max_s
+    known = scenario.vessel_known and scenario.fault.kind != VESSEL_DATA
+    if known or not scenario.guidance.keepout_guard or isinstance(vessel, SteadyVessel):
         return
-    acceleration, speed = largest_acceleration(vessel), largest_speed(vessel)
+    acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
     if acceleration > f.vessel_acceleration_mps2:
         raise InfeasibleError(
             f"the vessel accelerates by {acceleration:.3g} m/s2, changes of speed and course together; declared are at most"
@@ -157,6 +187,26 @@ def _check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
             f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
             " sail more slowly"
         )
+    if isinstance(vessel, AisVessel):
+        _check_reports(vessel, limits)
+
+
+def _check_reports(vessel: AisVessel, limits: VesselLimits) -> None:
+    """Raise an InfeasibleError for reports of a file from which the guard would take the vessel to be elsewhere.
+
+    From each report on to the next the smooth track has to stay within the disc of that report: errors are declared, too.
+    """
+    times = [report.time for report in vessel.reports]
+    for report, until in zip(vessel.reports, [*times[1:], times[-1]], strict=True):
+        for time in (max(0.0, report.time), max(0.0, 0.5 * (report.time + until)), max(0.0, until)):
+            disc, (north, east, _, _) = tube(report, limits, time), vessel.motion(time)
+            if (off := math.hypot(north - disc.north, east - disc.east)) > disc.radius:
+                raise InfeasibleError(
+                    f"the report of {utc_text(vessel.place.utc + report.time)} and the smooth track through all reports lie"
+                    f" {off:.1f} m apart after {time - report.time:.1f} s; {disc.radius:.1f} m are allowed for by"
+                    " reports.position_sigma_m, reports.velocity_sigma_mps and following.vessel_acceleration_mps2: declare more, or"
+                    " delete the report"
+                )
 
 
 def _check_plume(scenario: Scenario, wind: ApparentWind) -> None:

@@ -7,6 +7,7 @@ from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_length
 from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
 from gnc.estimation.navigation import NavigationParameters
 from gnc.mission.approach import ApproachParameters
+from gnc.mission.axis_height import AxisHeight
 from gnc.mission.plume_following import FollowingParameters
 from gnc.parameters import GuardParameters
 from gnc.reference.moving_centre import CentreParameters
@@ -128,7 +129,7 @@ def approach_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) 
 
 
 def following_parameters(
-    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, widths: Sequence[tuple[float, float]]
+    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, widths: Sequence[tuple[float, float]], height: AxisHeight
 ) -> FollowingParameters:
     """Return how the plume of a moving vessel is followed.
 
@@ -137,6 +138,7 @@ def following_parameters(
     scenario, setup : the flight, and its vehicle
     margin : of the keep-out area
     widths : half-widths of the orbit along and across its course, at equal steps of nu from 0 [m]
+    height : of the plume's axis
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports
     fastest, radius = omega_max(g), scenario.keepout.radius_m
@@ -164,6 +166,5 @@ def following_parameters(
         reach_time=turn_time(scenario, setup.reversal),
         drift_rate=f.drift_rate_mps,
         plan_interval=plan_interval(scenario),
-        source_altitude=scenario.plume.source_height_m,
-        climb=math.tan(math.radians(scenario.plume.elevation_deg)),
+        height=height,
     )

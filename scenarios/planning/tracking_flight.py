@@ -19,7 +19,7 @@ from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.faults import NO_FAULT
 from scenarios.world.noise import Noise, start_generator
 from scenarios.world.weather import STILL_AIR
-from scenarios.world.world import World, plume_of, vessel_of
+from scenarios.world.world import World, place_of, plume_of, vessel_of
 
 
 def circling_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: VehicleSetup) -> FlightPlan:
@@ -103,6 +103,7 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
             source_height=scenario.plume.source_height_m,
             weather=STILL_AIR,
             fault=NO_FAULT,
+            place=place_of(scenario, vessel),
         ),
         oscillation=oscillation,
         centre_distance=distance,

@@ -32,7 +32,10 @@ class Rule:
 _TRACKS = "the mission that tracks the paper's reference; here the reference is steered: set guidance.mission to 'track'"
 _FOLLOWS = "the mission that follows the vessel with a steered reference: set guidance.mission to 'follow'"
 _VESSEL = "an oscillation beside a vessel; here reference.path is 'circle'"
-_OPERATIONAL = ("wind.speed_mps", "turbulence.", "vessel.manoeuvres", "reports.", "sensors.", "fault.kind", "plume.direction")
+_OPERATIONAL = (
+    "wind.speed_mps", "wind.table", "turbulence.", "vessel.manoeuvres", "vessel.track", "reports.", "sensors.", "fault.kind",
+    "plume.direction", "emission.ship",
+)  # fmt: skip
 """Keys from which the mission follows where guidance.mission is not given."""
 
 
@@ -121,12 +124,15 @@ RULES = (
         by_mission=True,
     ),
     Rule(
-        keys=("guidance.keepout_guard", "guidance.reserve", "guidance.roll_rate_max_deg_s", "keepout.", "vessel."),
+        keys=("guidance.keepout_guard", "guidance.reserve", "guidance.roll_rate_max_deg_s", "keepout.", "vessel.", "place."),
         acts=lambda s: not s.circles,
         user=_VESSEL,
     ),
     Rule(
-        keys=("plume.model", "plume.direction", "plume.heading_deg", "plume.elevation_deg", "flight.crossings"),
+        keys=(
+            "plume.model", "plume.direction", "plume.heading_deg", "plume.elevation_deg", "flight.crossings",
+            "flight.after_settling_s",
+        ),
         acts=lambda s: not s.circles,
         user=_VESSEL,
     ),
@@ -146,8 +152,18 @@ RULES = (
     Rule(keys=("kinematic.",), acts=_kinematic, user="the kinematic vehicle: set fidelity to 'kinematic'"),
     Rule(keys=("turbulence.gust_length_s",), acts=lambda s: s.turbulence.gusts > 0, user="gusts: set turbulence.gusts",
          depends=("turbulence.gusts",)),
-    Rule(keys=("wind.from_deg",), acts=lambda s: s.wind.speed_mps > 0.0, user="wind: set wind.speed_mps",
+    Rule(keys=("emission.fuel", "emission.sulphur_percent", "emission.load", "wind.temperature_c", "wind.stability_per_s",
+               "flight.altitude_min_m", "flight.altitude_max_m"),
+         acts=lambda s: s.emission.ship is not None, user="a ship with exhaust: set emission.ship", depends=("emission.ship",)),
+    Rule(keys=("wind.speed_mps", "wind.from_deg"), acts=lambda s: s.wind.table is None,
+         user="a wind without a table: leave this key or wind.table out", depends=("wind.table",)),
+    Rule(keys=("wind.from_deg",), acts=lambda s: s.wind.blows, user="wind: set wind.speed_mps",
          depends=("wind.speed_mps",)),
+    Rule(keys=("wind.roughness_m",), acts=lambda s: s.wind.blows, user="wind: set wind.speed_mps or wind.table",
+         depends=("wind.speed_mps", "wind.table")),
+    Rule(keys=("wind.height_m",), acts=lambda s: s.wind.blows and s.wind.roughness_m is not None,
+         user="a wind with a profile over height: set wind.roughness_m",
+         depends=("wind.speed_mps", "wind.table", "wind.roughness_m")),
     Rule(keys=("plume.heading_deg",), acts=lambda s: not s.plume_by_wind,
          user="a plume at an angle from the bow: set plume.direction to 'given'", by_mission=True, depends=("plume.direction",)),
     Rule(keys=("following.apparent_wind_min_mps",), acts=lambda s: s.follows and s.plume_by_wind,
@@ -168,17 +184,24 @@ RULES = (
     ),
     Rule(
         keys=("reports.position_sigma_m", "reports.velocity_sigma_mps", "reports.latency_max_s", "reports.missing"),
-        acts=lambda s: not s.reports.exact,
+        acts=lambda s: not s.vessel_known,
         user="reports that come now and then: set reports.interval_s",
-        depends=("reports.interval_s",),
+        depends=("reports.interval_s", "vessel.track"),
     ),
+    Rule(keys=("vessel.mmsi", "vessel.gap_max_s"), acts=lambda s: s.vessel.from_file,
+         user="a track from a file: set vessel.track to a file of AIS reports", depends=("vessel.track",)),
+    Rule(keys=("vessel.speed_mps", "vessel.speed_ratio", "vessel.course_deg", "vessel.manoeuvres", "place.latitude_deg",
+               "place.longitude_deg"),
+         acts=lambda s: not s.vessel.from_file,
+         user="a vessel whose track is not from a file, which says where it goes: leave out this key or vessel.track",
+         depends=("vessel.track",)),
     Rule(keys=("fault.at_s",), acts=lambda s: s.fault.kind != "none", user="a fault: set fault.kind", depends=("fault.kind",)),
     Rule(keys=("fault.vessel_data_s",), acts=lambda s: s.fault.kind == "vessel_data",
          user="a loss of vessel data: set fault.kind to 'vessel_data'", depends=("fault.kind",)),
     Rule(keys=("fault.satellite_navigation_s",), acts=lambda s: s.fault.kind == "satellite_navigation",
          user="a loss of satellites: set fault.kind to 'satellite_navigation'", depends=("fault.kind",)),
     Rule(
-        keys=("turbulence.", "wind.", "reports.", "sensors.", "fault.", "vessel.manoeuvres", "vessel.track"),
+        keys=("turbulence.", "wind.", "emission.", "reports.", "sensors.", "fault.", "vessel.manoeuvres", "vessel.track"),
         acts=lambda s: s.follows,
         user="the mission that follows what it estimates; guidance.mission is 'track', in still air beside a steady vessel: leave"
         " guidance.mission out, or set it to 'follow'",
@@ -190,8 +213,8 @@ RULES = (
          user="a random distance: leave out start.place_m and start.range_m", depends=("start.",)),
     Rule(keys=("start.spread_deg",), acts=lambda s: s.start.place_m is None and s.start.aspect_deg is None,
          user="a random bearing: leave out start.place_m and start.aspect_deg", depends=("start.",)),
-    Rule(keys=("criteria.resumes_within_periods",), acts=lambda s: bool(s.vessel.manoeuvres),
-         user="a vessel that manoeuvres: set vessel.manoeuvres", depends=("vessel.manoeuvres",)),
+    Rule(keys=("criteria.resumes_within_periods",), acts=lambda s: bool(s.vessel.manoeuvres) or s.vessel.from_file,
+         user="a vessel that manoeuvres: set vessel.manoeuvres", depends=("vessel.manoeuvres", "vessel.track")),
     Rule(
         keys=("criteria.tracking_error_rms_m", "criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"),
         acts=lambda s: s.criteria.settles,

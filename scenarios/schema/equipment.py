@@ -4,6 +4,8 @@ from typing import Annotated, Any
 
 from pydantic import Field, field_validator, model_validator
 
+from scenarios.schema.extension_points import PAYLOADS
+from scenarios.schema.part_section import PartSection
 from scenarios.schema.section import NonNegative, Positive, Section, check_ordered
 
 REPORTS_MAX = 200_000
@@ -74,6 +76,23 @@ class FaultConfig(Section):
     def _ordered(self) -> "FaultConfig":
         check_ordered("at_s", self.at_s)
         return self
+
+
+class PayloadConfig(PartSection):
+    """The instruments on board; each may bring keys of its own."""
+
+    instruments: tuple[str, ...] = ()
+    """Each by its name, as sniffer, or FILE.py:NAME; their readings are columns of the time history."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _names_alone(cls, given: Any) -> Any:
+        """Take a list for the instruments' names, without any settings."""
+        return {"instruments": given} if isinstance(given, list | tuple) else given
+
+    def parts(self) -> dict[str, Any]:
+        """Return the instruments by their names."""
+        return {name: PAYLOADS.get(name) for name in self.instruments}
 
 
 class KinematicConfig(Section):

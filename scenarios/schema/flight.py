@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from scenarios.schema.section import Angle, Limit, Positive, Section, check_ordered
+from scenarios.schema.section import Angle, Limit, NonNegative, Positive, Section, check_ordered
 
 
 class StartConfig(Section):
@@ -36,12 +36,27 @@ class FlightConfig(Section):
 
     crossings: Annotated[int, Field(ge=0, le=10_000)] = 30
     """Crossings to fly after settling; 0 to fly for the whole duration [-]."""
+    after_settling_s: Positive | None = None
+    """How long to fly after settling, with crossings at least as many; only crossings count if not given [s]."""
     duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 1500.0
     """Longest flight [s]."""
+    altitude_min_m: NonNegative = 20.0
+    """Lowest altitude at which rising exhaust is crossed [m]."""
+    altitude_max_m: Positive = 120.0
+    """Highest altitude at which rising exhaust is crossed [m]."""
     settling_band_m: Positive = 5.0
     """Distance to the reference below which a flight counts as settled [m]."""
     log_rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 10.0
     """Recording rate [Hz], at least 5 so that keep-out figures are true to centimetres; must divide the guidance rate."""
+
+    @model_validator(mode="after")
+    def _altitudes(self) -> "FlightConfig":
+        if self.altitude_min_m >= self.altitude_max_m:
+            raise ValueError(
+                f"altitude_min_m is {self.altitude_min_m:g} m and altitude_max_m {self.altitude_max_m:g} m; the first must be"
+                " the lower one"
+            )
+        return self
 
 
 class CriteriaConfig(Section):

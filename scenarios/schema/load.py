@@ -97,7 +97,7 @@ def load_document(name: str, overrides: Sequence[str] = ()) -> Document:
         if for_trials and isinstance(given, list):
             document["set"] = [*given, *for_trials]
         overrides = own
-    parsed = [(key, with_absolute_files(value, Path())) for key, value in map(parse_override, overrides)]
+    parsed = [(key, with_absolute_files(value, Path(), key)) for key, value in map(parse_override, overrides)]
     kind = _kind(document | {key: value for key, value in parsed if key == "study"})
     for key, value in parsed:
         apply_override(document, key, value, kind)
@@ -170,7 +170,7 @@ def _with_absolute_file(override: object, folder: Path) -> object:
     if not isinstance(override, str) or "=" not in override:
         return override
     key, value = parse_override(override)
-    absolute = with_absolute_files(value, folder)
+    absolute = with_absolute_files(value, folder, key)
     # Names and lists of names are written in JSON as in TOML.
     return override if absolute == value else f"{key}={json.dumps(absolute)}"
 
@@ -206,6 +206,10 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
         # Keys that only the other law has, such as those of a steering law that is added, go with it.
         for key in scenario.guidance.keys_lost_with(values["guidance.law"]):
             del document["guidance"][key]
+    for name in ("plume", "payload"):
+        changed = {key.partition(".")[2]: value for key, value in values.items() if key.startswith(f"{name}.")}
+        for key in getattr(scenario, name).keys_lost_with(changed):
+            del document[name][key]
     for key, value in values.items():
         set_value(document, key, value, Scenario)
     return checked(document, Scenario)

@@ -5,11 +5,15 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from common.files import is_data_file
 from common.registry import is_file_part
 from scenarios.schema.scenario import Scenario
 
 _WORDS = ("title", "description")
 """Keys whose values are no names."""
+
+_DATA = ("track", "table")
+"""Last words of keys whose values may be files of data."""
 
 
 def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
@@ -19,28 +23,45 @@ def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
     yield "guidance.law", scenario.guidance.law
     yield "vessel.track", scenario.vessel.track
     yield "plume.model", scenario.plume.model
+    if scenario.wind.table is not None:
+        yield "wind.table", scenario.wind.table
     yield from (("search.methods", name) for name in scenario.search.methods)
-    names: list[tuple[str, object]] = [("payload", scenario.payload)]
+    names: list[tuple[str, object]] = [("payload", scenario.payload.instruments)]
     names += [(draw.key, choice) for draw in scenario.draws for choice in draw.choice or ()]
     for key, value in names:
-        if key in ("reference.shape", "guidance.law", "vessel.track", "plume.model"):
+        if key in ("reference.shape", "guidance.law", "vessel.track", "plume.model", "wind.table"):
             yield key, str(value)
         elif key == "payload" and isinstance(value, Iterable):
             yield from ((key, str(name)) for name in value)
 
 
-def with_absolute_files(value: Any, folder: Path) -> Any:
-    """Return a document, or a value of one, in which the files of parts have absolute paths.
+def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
+    """Return a document, or a value of one, in which the files of parts and of data have absolute paths.
 
     Parameters
     ----------
     value : the document, a table, a list or a single value
     folder : directory that the files are relative to
+    key : whose value it is; files of data are those of ``_DATA`` alone
     """
     if isinstance(value, dict):
-        return {key: below if key in _WORDS else with_absolute_files(below, folder) for key, below in value.items()}
+        # A random variable has its key beside its choices.
+        named = str(value.get("key", ""))
+        return {
+            name: below if name in _WORDS else with_absolute_files(below, folder, named if name == "choice" else name)
+            for name, below in value.items()
+        }
     if isinstance(value, list):
-        return [with_absolute_files(below, folder) for below in value]
-    if isinstance(value, str) and is_file_part(value) and "=" not in value:
+        return [with_absolute_files(below, folder, key) for below in value]
+    if isinstance(value, str) and "=" not in value and (is_file_part(value) or (_is_data_key(key) and is_data_file(value))):
         return os.path.normpath(folder.absolute() / value)
     return value
+
+
+def names_file(name: str) -> bool:
+    """Return whether the name of a part is that of a file: FILE.py:NAME, or a file of data."""
+    return is_file_part(name) or is_data_file(name)
+
+
+def _is_data_key(key: str) -> bool:
+    return key.rpartition(".")[2] in _DATA

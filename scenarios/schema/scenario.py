@@ -5,7 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, SensorsConfig, VesselReportsConfig
+from scenarios.schema.emission import EmissionConfig
+from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, PayloadConfig, SensorsConfig, VesselReportsConfig
 from scenarios.schema.experiment import (
     FLIGHTS_MAX,
     CaseConfig,
@@ -20,7 +21,7 @@ from scenarios.schema.experiment import (
 from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
 from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig
 from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
-from scenarios.schema.world import KeepoutConfig, PlumeConfig, TurbulenceConfig, VesselConfig, WindConfig
+from scenarios.schema.world import KeepoutConfig, PlaceConfig, PlumeConfig, TurbulenceConfig, VesselConfig, WindConfig
 
 DEFAULT_AIRCRAFT = "x8"
 
@@ -63,6 +64,7 @@ class Scenario(Section):
     statistics: StatisticsConfig = StatisticsConfig()
     subset: SubsetConfig = SubsetConfig()
     search: SearchConfig = SearchConfig()
+    place: PlaceConfig = PlaceConfig()
     vessel: VesselConfig = VesselConfig()
     plume: PlumeConfig = PlumeConfig()
     keepout: KeepoutConfig = KeepoutConfig()
@@ -71,8 +73,8 @@ class Scenario(Section):
     reports: VesselReportsConfig = VesselReportsConfig()
     sensors: SensorsConfig = SensorsConfig()
     fault: FaultConfig = FaultConfig()
-    payload: tuple[str, ...] = ()
-    """Instruments on board, each by its name or FILE.py:NAME; their readings are columns of the time history."""
+    emission: EmissionConfig = EmissionConfig()
+    payload: PayloadConfig = PayloadConfig()
     kinematic: KinematicConfig = KinematicConfig()
     reference: ReferenceConfig = ReferenceConfig()
     guidance: GuidanceConfig = GuidanceConfig()
@@ -92,16 +94,22 @@ class Scenario(Section):
         if self.guidance.mission is not None:
             return self.guidance.mission == "follow"
         return not (
-            self.wind.speed_mps == 0.0
+            not self.wind.blows
             and self.turbulence.calm
             and not self.vessel.manoeuvres
             and self.vessel.track == "manoeuvres"
             and self.plume.model == "straight"
+            and self.emission.ship is None
             and self.reports.exact
             and self.sensors == SensorsConfig()
             and self.fault.kind == "none"
             and self.plume.direction != "apparent_wind"
         )
+
+    @property
+    def vessel_known(self) -> bool:
+        """Return whether the vessel's motion is known at all times, and not from reports."""
+        return self.reports.exact and not self.vessel.from_file
 
     @property
     def declared_faults(self) -> frozenset[str]:
@@ -205,6 +213,15 @@ class Scenario(Section):
                 f"reports.interval_s is {list(self.reports.interval_s)} s; in flight.duration_max_s, {room:g} s, this makes"
                 f" more than {REPORTS_MAX} reports: let at least {room / REPORTS_MAX:.2g} s pass between them on average, or fly"
                 " shorter"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _track_has_its_own_speed(self) -> "Scenario":
+        given = [key for key in ("nu", "vessel.speed_ratio", "vessel.speed_mps") if key in self.sweep.root]
+        if self.vessel.from_file and given:
+            raise ValueError(
+                f"sweep has {given[0]} beside vessel.track, a file that the vessel's speed comes from; leave one of them out"
             )
         return self
 

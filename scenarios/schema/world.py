@@ -1,9 +1,13 @@
 """What a scenario file may say of the world: vessel, plume, wind, turbulence, keep-out area. What is absent is ideal."""
 
-from typing import Annotated, Literal
+from datetime import datetime
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
+from common.files import is_data_file
+from scenarios.schema.extension_points import PLUME_MODELS
+from scenarios.schema.part_section import PartSection
 from scenarios.schema.section import Angle, NonNegative, Positive, Section
 
 Shape = Literal["sphere", "cylinder"]
@@ -35,7 +39,11 @@ class VesselConfig(Section):
     course_deg: Angle = 0.0
     """Course, clockwise from north [deg]."""
     track: str = "manoeuvres"
-    """Where it is over time: by its speed, course and manoeuvres, or FILE.py:NAME."""
+    """Where it is over time: by its speed, course and manoeuvres, by a file of AIS reports (.csv, .nmea), or FILE.py:NAME."""
+    mmsi: Annotated[int, Field(ge=0, le=999_999_999)] | None = None
+    """Its identity in a file of AIS reports; not needed where that has one vessel alone."""
+    gap_max_s: Positive = 180.0
+    """Longest time without a report that the track from a file is bridged over [s]."""
     manoeuvres: tuple[ManoeuvreConfig, ...] = ()
     """Its manoeuvres, one after the other."""
 
@@ -46,12 +54,41 @@ class VesselConfig(Section):
             raise ValueError(f"manoeuvres begin at {times} s; put them in their order")
         return self
 
+    @property
+    def from_file(self) -> bool:
+        """Whether its track is that of a file of AIS reports."""
+        return is_data_file(self.track)
 
-class PlumeConfig(Section):
-    """The axis of the smoke plume: a half-line from the funnel."""
+
+class PlaceConfig(Section):
+    """Where on earth a flight begins, and when; a track from a file has a place of its own."""
+
+    latitude_deg: Annotated[float, Field(ge=-90.0, le=90.0)] | None = None
+    """Geodetic latitude of the vessel at the start [deg]."""
+    longitude_deg: Annotated[float, Field(ge=-180.0, le=180.0)] | None = None
+    """Its longitude, east of Greenwich [deg]."""
+    utc: datetime | None = None
+    """Time of the start, as in 2026-06-01T12:00:00Z; of a track from a file the first report's if not given."""
+
+    @field_validator("utc")
+    @classmethod
+    def _with_a_zone(cls, utc: datetime | None) -> datetime | None:
+        if utc is not None and utc.tzinfo is None:
+            raise ValueError(f"value is {utc.isoformat()}, without a zone; give a time in UTC, as in {utc.isoformat()}Z")
+        return utc
+
+    @model_validator(mode="after")
+    def _whole(self) -> "PlaceConfig":
+        if (self.latitude_deg is None) != (self.longitude_deg is None):
+            raise ValueError("one of place.latitude_deg and place.longitude_deg is given; give both, or neither")
+        return self
+
+
+class PlumeConfig(PartSection):
+    """The smoke plume: its axis, a half-line from the funnel, and what its model adds."""
 
     model: str = "straight"
-    """Where the plume is: a half-line that follows its direction at once, or FILE.py:NAME."""
+    """straight: an axis without smoke; fluctuating: smoke that disperses, meanders and bends; or FILE.py:NAME."""
     direction: Literal["apparent_wind", "given"] | None = None
     """Behind the vessel's motion through the air, or, as in the paper, at heading_deg from the bow.
 
@@ -64,6 +101,10 @@ class PlumeConfig(Section):
     source_height_m: Annotated[float, Field(ge=10.0, le=500.0)] = 60.0
     """Height of the funnel's mouth above the sea, where the axis starts [m]."""
 
+    def parts(self) -> dict[str, Any]:
+        """Return the plume model by its name."""
+        return {self.model: PLUME_MODELS.get(self.model)}
+
 
 class KeepoutConfig(Section):
     """What the UAV must not enter: a sphere about the funnel's mouth, or an upright cylinder through it."""
@@ -75,12 +116,34 @@ class KeepoutConfig(Section):
 
 
 class WindConfig(Section):
-    """The steady wind."""
+    """The mean wind: constant, or of a table; the same at every height, or with a profile. And what smoke meets."""
 
     speed_mps: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
     """Wind speed [m/s]."""
     from_deg: Angle = 0.0
     """Direction that it comes from, clockwise from north [deg]."""
+    temperature_c: Annotated[float, Field(ge=-40.0, le=50.0)] = 15.0
+    """Temperature of the air that exhaust rises in [degC]."""
+    stability_per_s: Annotated[float, Field(ge=0.0, le=0.1)] = 0.0
+    """Brunt-Vaisala frequency of the air that exhaust rises in; 0 for neutral air [1/s]."""
+    table: str | None = None
+    """A file with the wind over time, height or both: a table (.csv), or netCDF as of ERA5 (.nc)."""
+    roughness_m: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    """Roughness length of a logarithmic profile over height, some 0.0002 over the sea; without one if not given [m]."""
+    height_m: Annotated[float, Field(ge=2.0, le=500.0)] = 10.0
+    """Height above the sea at which the wind is as given, where it has a logarithmic profile [m]."""
+
+    @field_validator("table")
+    @classmethod
+    def _of_data(cls, table: str | None) -> str | None:
+        if table is not None and not is_data_file(table):
+            raise ValueError(f"table is '{table}'; give a file .csv or .nc")
+        return table
+
+    @property
+    def blows(self) -> bool:
+        """Whether there is any."""
+        return self.speed_mps > 0.0 or self.table is not None
 
 
 class TurbulenceConfig(Section):

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from gnc.compose import compose
 from gnc.guidance import Guidance
+from scenarios.instruments.instrument import Instrument
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.ending import Ending
 from scenarios.simulation.interventions import interventions
@@ -12,7 +13,6 @@ from scenarios.simulation.onboard import OnboardSensing
 from scenarios.simulation.record import FlightRecord
 from scenarios.simulation.recorder import Recorder
 from scenarios.simulation.settling import Settling
-from scenarios.vehicles.payload import Instrument
 from scenarios.vehicles.vehicle import Vehicle
 
 
@@ -24,7 +24,7 @@ def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), 
     the flight.
     """
     guidance = compose(plan.guidance)
-    settling = Settling(band=plan.settling_band, period=plan.settling_period, crossings=plan.crossings)
+    settling = Settling(band=plan.settling_band, period=plan.settling_period, crossings=plan.crossings, after=plan.after_settling)
     recorder = Recorder(guidance, vehicle, plan.world, payload, settling)
     sensing = _sensing(plan, vehicle, guidance)
     mission, target, guard = guidance.mission, guidance.target, guidance.guard

@@ -60,10 +60,16 @@ class Ending:
             return Outcome.COMPLETED
         if math.isnan(self._settling.at):
             return Outcome.NOT_SETTLED
-        flown = self._settling.crossings >= max(1, self._plan.crossings)
-        # One that has flown all its crossings is over, whatever its guidance is about to do.
-        given_up = not self._plan.crossings and mode in _GIVEN_UP
+        flown = self._settling.crossings >= max(1, self._plan.crossings) and not self._missing
+        # One that has flown all that it is to fly is over, whatever its guidance is about to do.
+        given_up = not self._plan.crossings and self._plan.after_settling == math.inf and mode in _GIVEN_UP
         return Outcome.COMPLETED if flown and not given_up else Outcome.INCOMPLETE
+
+    @property
+    def _missing(self) -> float:
+        """Return how much of the time after settling that is asked for has not been flown [s]."""
+        asked = self._plan.after_settling
+        return 0.0 if asked == math.inf else max(0.0, asked - (self._end - self._settling.at))
 
     @property
     def message(self) -> str:
@@ -88,6 +94,8 @@ class Ending:
         settling, plan, mode = self._settling, self._plan, self._guidance.mission.mode
         if math.isnan(settling.at):
             flown = "did not settle"
+        elif self._missing:
+            flown = f"flew {plan.after_settling - self._missing:.0f} of {plan.after_settling:g} s after settling"
         elif plan.crossings or not settling.crossings:
             flown = f"flew {settling.crossings}{f' of {plan.crossings}' if plan.crossings else ''} crossings after settling"
         else:

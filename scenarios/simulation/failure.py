@@ -5,6 +5,7 @@ from pathlib import Path
 
 from aircraft.errors import AircraftError
 from gnc.errors import InfeasibleError
+from measurement.errors import MeasurementError
 from scenarios.engine.task import Row
 from scenarios.errors import InputError
 from scenarios.simulation.outcome import Outcome
@@ -19,7 +20,7 @@ def failure(error: Exception) -> Row:
     """
     if isinstance(error, MemoryError):
         raise error
-    if isinstance(error, InfeasibleError):
+    if isinstance(error, InfeasibleError | MeasurementError):
         return {"outcome": Outcome.INFEASIBLE.value, "message": str(error), "criteria_met": False}
     message = str(error)
     if not isinstance(error, AircraftError | InputError):

@@ -106,7 +106,16 @@ class FlightRecord:
 
 def unit_of(column: str) -> str:
     """Return the unit that a column's name ends in, or 1."""
-    for suffix, unit in (("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"), ("_deg", "deg")):
+    for suffix, unit in (
+        ("_rad_s", "rad/s"),
+        ("_mps", "m/s"),
+        ("_rad", "rad"),
+        ("_m", "m"),
+        ("_s", "s"),
+        ("_deg", "deg"),
+        ("_ppb", "ppb"),
+        ("_ppm", "ppm"),
+    ):
         if column.endswith(suffix):
             return unit
     return "1"

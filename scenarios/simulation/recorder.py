@@ -8,9 +8,9 @@ import numpy as np
 
 from gnc.estimation.own_motion import Motion
 from gnc.guidance import Guidance
+from scenarios.instruments.instrument import Instrument
 from scenarios.simulation.record import COLUMNS, Array
 from scenarios.simulation.settling import Settling
-from scenarios.vehicles.payload import Instrument
 from scenarios.vehicles.vehicle import Vehicle
 from scenarios.world.world import World
 

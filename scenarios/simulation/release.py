@@ -1,5 +1,6 @@
 """The vehicle at the start of a flight."""
 
+from aircraft.atmosphere.wind import CALM
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.vehicles.jsbsim import JsbsimVehicle
@@ -20,9 +21,8 @@ def release(plan: FlightPlan, setup: VehicleSetup) -> Vehicle:
     where = {"north": start.north, "east": start.east, "altitude": plan.altitude, "course": start.course}
     aircraft = setup.aircraft
     if aircraft is None:
-        north, east = world.weather.wind if world else (0.0, 0.0)
-        speed = plan.guidance.speed
-        return KinematicVehicle(**where, speed=speed, time_step=plan.time_step, lag=setup.lag, wind_north=north, wind_east=east)
+        wind = world.weather.wind if world else CALM
+        return KinematicVehicle(**where, speed=plan.guidance.speed, time_step=plan.time_step, lag=setup.lag, wind=wind)
     failable = world is not None and world.fault.of_aircraft()
     flown = AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable)
     # Still air needs no weather of its own.

@@ -17,6 +17,7 @@ class Settling:
     band : distance from the reference that counts as near [m]
     period : of the oscillation [s]
     crossings : to be flown; 0 for no end
+    after : how long the flight goes on once it has settled, infinite for no end [s]
 
     Attributes
     ----------
@@ -24,15 +25,28 @@ class Settling:
     crossings : flown since
     """
 
-    __slots__ = ("_band", "_centre_band", "_complete", "_demanded", "_open", "_period", "_side", "_since", "at", "crossings")
+    __slots__ = (
+        "_after",
+        "_band",
+        "_centre_band",
+        "_complete",
+        "_demanded",
+        "_open",
+        "_period",
+        "_side",
+        "_since",
+        "at",
+        "crossings",
+    )
 
-    def __init__(self, *, band: float, period: float, crossings: int) -> None:
+    def __init__(self, *, band: float, period: float, crossings: int, after: float = math.inf) -> None:
         self._band, self._centre_band, self._period, self._demanded = band, _CENTRE_BANDS * band, period, crossings
+        self._after = after
         self._since, self._side, self._complete, self._open = math.inf, 0.0, False, True
         self.at, self.crossings = math.nan, 0
 
     def update(self, time: float, tracking_error: float, centre_error: float, x: float, y: float, axis: float) -> bool:
-        """Take note of a sample; return whether the flight had all crossings that it is to fly by the last one.
+        """Take note of a sample; return whether the flight had flown all that it is to fly by the last one.
 
         Parameters
         ----------
@@ -52,5 +66,12 @@ class Settling:
             self.crossings += 1
         if self._open and time - self._since >= self._period:
             self.at, self._open = self._since, False
-        complete, self._complete = self._complete, not self._open and 0 < self._demanded <= self.crossings
+        complete, self._complete = self._complete, not self._open and self._flown(time)
         return complete
+
+    def _flown(self, time: float) -> bool:
+        """Return whether it has settled for as long, and has the crossings, that are asked for; not where nothing is."""
+        crossed = 0 < self._demanded <= self.crossings
+        if self._after == math.inf:
+            return crossed
+        return time - self.at >= self._after and self.crossings >= self._demanded

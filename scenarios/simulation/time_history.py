@@ -1,12 +1,15 @@
 """Which time histories a study keeps, and how they are written."""
 
 import io
+import json
+from collections.abc import Mapping
+from typing import Any
 
 import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from common.run_layout import time_history_path
+from common.run_layout import evaluation_path, time_history_path
 from scenarios.engine.task import Row, Task
 from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.record import MEANINGS, unit_of
@@ -35,17 +38,23 @@ def keeps_history(task: Task, *, planned: int, kept: int, row: Row) -> bool:
     return not row["criteria_met"]
 
 
-def history_files(task: Task, history: pd.DataFrame | None, *, planned: int, kept: int, row: Row) -> dict[str, bytes]:
-    """Return the time history of a flight as a Parquet file, by its path, if there is one and it is kept.
+def history_files(
+    task: Task, history: pd.DataFrame | None, document: Mapping[str, Any] | None, *, planned: int, kept: int, row: Row
+) -> dict[str, bytes]:
+    """Return the time history of a flight as a Parquet file, by its path, if there is one and it is kept; and the document.
 
     Parameters
     ----------
     history : of the flight, if it has one
+    document : what an instrument made of the flight, if any did
     task, planned, kept, row : as of ``keeps_history``
     """
     if history is None or not keeps_history(task, planned=planned, kept=kept, row=row):
         return {}
-    return {time_history_path(row["flight_id"]): as_parquet(history)}
+    files = {time_history_path(row["flight_id"]): as_parquet(history)}
+    if document is not None:
+        files[evaluation_path(row["flight_id"])] = json.dumps(document).encode()
+    return files
 
 
 def as_parquet(history: pd.DataFrame) -> bytes:

@@ -7,7 +7,8 @@ from typing import Any
 from aircraft.fleet.find import find_spec
 from aircraft.simulation.faults import fault_names
 from aircraft.spec import Envelope
-from common.registry import PluginError, Registry, is_file_part
+from common.files import is_data_file
+from common.registry import PluginError, Registry
 from common.run_layout import NAME_BYTES_MAX, is_file_name
 from common.spelling import did_you_mean
 from gnc.errors import InfeasibleError
@@ -16,13 +17,13 @@ from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.limits import check_flyable
-from scenarios.schema.parts import part_names
+from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRACKS
+from scenarios.schema.parts import names_file, part_names
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation.failure import failure
-from scenarios.vehicles.payload import PAYLOADS
 from scenarios.world.faults import SATELLITES, VESSEL_DATA
-from scenarios.world.plume import PLUME_MODELS
-from scenarios.world.vessel import VESSEL_TRACKS, check_manoeuvres
+from scenarios.world.vessel import check_manoeuvres
+from scenarios.world.world import mean_wind, vessel_of
 
 _REGISTRIES: dict[str, Registry[Any]] = {
     "reference.shape": REFERENCE_SHAPES,
@@ -72,7 +73,7 @@ def plugins_explained(what: str, scenarios: Iterable[Scenario]) -> Iterator[None
     except InputError:
         raise
     except Exception as error:
-        if not any(is_file_part(name) for scenario in scenarios for _, name in part_names(scenario)):
+        if not any(names_file(name) for scenario in scenarios for _, name in part_names(scenario)):
             raise
         raise InputError(f"{what}: {failure(error)['message']}") from error
 
@@ -100,9 +101,14 @@ def _check_fault(scenario: Scenario) -> None:
 
 
 def _check_vessel(scenario: Scenario) -> None:
-    """Refuse manoeuvres that overlap in every flight; where they are sampled a flight in which they do is not flown."""
-    if any(draw.key.startswith("vessel.") for draw in scenario.draws):
+    """Refuse manoeuvres that overlap in every flight, and files of a track or of wind that are of no use.
+
+    Where they are sampled, a flight with such a vessel is not flown.
+    """
+    if any(draw.key.startswith(("vessel.", "wind.table")) for draw in scenario.draws):
         return
+    if scenario.vessel.from_file or scenario.wind.table is not None:
+        mean_wind(scenario, vessel_of(scenario))
     try:
         check_manoeuvres(scenario.vessel, scenario.vessel_speed)
     except InfeasibleError as error:
@@ -112,7 +118,7 @@ def _check_vessel(scenario: Scenario) -> None:
 def _check_parts(scenario: Scenario) -> None:
     for key, name in part_names(scenario):
         try:
-            if key in _REGISTRIES:
+            if key in _REGISTRIES and not is_data_file(name):
                 _REGISTRIES[key].get(name)
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None

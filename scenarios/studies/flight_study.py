@@ -7,7 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from common.run_layout import COMPARISON, CROSSINGS, DRAWS, INTERVENTIONS, SUMMARY, time_history_path
+from common.binomial import CONFIDENCE
+from common.run_layout import (
+    COMPARISON,
+    CROSSINGS,
+    DRAWS,
+    INTERVENTIONS,
+    SULPHUR,
+    SULPHUR_TABLE,
+    SUMMARY,
+    time_history_path,
+)
 from gnc.mission.mode import Mode
 from gnc.reference.oscillation import bank_for_heading_rate
 from scenarios.engine.journal import Journal
@@ -16,7 +26,14 @@ from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
-from scenarios.metrics.columns import CROSSING_COLUMNS, INPUT_COLUMNS, INTERVENTION_COLUMNS, SUMMARY_COLUMNS
+from scenarios.instruments.instrument import evaluated_instruments
+from scenarios.metrics.columns import (
+    CROSSING_COLUMNS,
+    FLIGHT_COLUMNS,
+    INPUT_COLUMNS,
+    INTERVENTION_COLUMNS,
+    SUMMARY_COLUMNS,
+)
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
@@ -24,8 +41,11 @@ from scenarios.planning.theory import theory_over_speed_ratio
 from scenarios.schema.experiment import TrialList
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation.time_history import UNFINISHED
+from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
+from scenarios.statistics.sulphur import sulphur_statistics
 from scenarios.studies.checks import check_flights, plugins_explained
-from scenarios.studies.manifest import config_hash, initial_manifest, parameters, plugins
+from scenarios.studies.manifest import config_hash, initial_manifest, parameters, plugins, vessel_files
+from scenarios.studies.rows import frame
 from scenarios.studies.study import study
 from scenarios.studies.summary import FlightCounts
 from scenarios.vehicles.vehicle_setup import aircraft_setup, design_of, kinematic_setup, spec_of
@@ -66,16 +86,21 @@ class FlightStudy:
         self.histories = scenario.histories
         self.flights = {trial: experiment.counted for trial, experiment in self.experiments.items()}
         keys = dict.fromkeys(key for experiment in self.experiments.values() for key in experiment.keys)
+        points = [point.scenario for experiment in self.experiments.values() for point in experiment.points]
+        instruments = evaluated_instruments(points)
+        figures = (*SUMMARY_COLUMNS, *dict.fromkeys(name for instrument in instruments for name in instrument.FIGURES))
         self.tables = {
-            SUMMARY: SUMMARY_COLUMNS,
+            SUMMARY: figures,
             CROSSINGS: CROSSING_COLUMNS,
             INTERVENTIONS: INTERVENTION_COLUMNS,
             DRAWS: (*INPUT_COLUMNS, *keys),
         }
+        for instrument in instruments:
+            self.tables |= {file: (*FLIGHT_COLUMNS, *columns) for file, columns in instrument.TABLES.items()}
         if self._numbers > self.planned:
-            self.tables[COMPARISON] = SUMMARY_COLUMNS
-        points = [point.scenario for experiment in self.experiments.values() for point in experiment.points]
+            self.tables[COMPARISON] = figures
         self.plugins = plugins(points)
+        self.vessel_files = vessel_files(points)
         self.config_hash = config_hash(scenario, *self.trials.values(), files=self.plugins, names=list(self.trials))
         self._manifest = initial_manifest(scenario, name, overrides) | {
             # A list of trials does not change with what it lists.
@@ -85,6 +110,10 @@ class FlightStudy:
             "sampled_at_random": self._sampled_at_random(),
             "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},
             "plugins": self.plugins,
+            "vessel_files": {
+                name: {"rows": reports.rows, "used": len(reports.time), "dropped": reports.dropped}
+                for name, reports in self.vessel_files.items()
+            },
         }
 
     def _sampled_at_random(self) -> dict[str, bool]:
@@ -173,8 +202,11 @@ class FlightStudy:
         """Return the task of a flight."""
         return Task(number=number)
 
-    def postprocess(self, run: RunDirectory, _journal: Journal, progress: Progress) -> None:
-        """Do nothing: everything is in the tables."""
+    def postprocess(self, run: RunDirectory, journal: Journal, _progress: Progress) -> None:
+        """Write ``sulphur.json`` where flights had a sniffer; everything else is in the tables."""
+        if SULPHUR_TABLE in self.tables:
+            rows = frame((row for row in journal.rows(SUMMARY) if "fsc_percent" in row), SULPHUR_COLUMNS)
+            run.write_json(run.path / SULPHUR, sulphur_statistics(rows, confidence=CONFIDENCE))
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
         """Write its tables."""
@@ -187,7 +219,8 @@ class FlightStudy:
         for row in journal.rows(SUMMARY):
             whole.add(row)
             trial_counts[row["trial"]].add(row)
-        lines = [f"flights: {whole.line()}"]
+        lines = [reports.described() for reports in self.vessel_files.values()]
+        lines.append(f"flights: {whole.line()}")
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
         if whole.flown and all(self._sampled_at_random().values()):

@@ -10,11 +10,14 @@ from pydantic import BaseModel
 from pydantic_core import to_jsonable_python
 
 from common.provenance import provenance
-from common.registry import file_hash, is_file_part
+from common.registry import file_hash
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.schema.effect import unused
-from scenarios.schema.parts import part_names
+from scenarios.schema.parts import names_file, part_names
 from scenarios.schema.scenario import Scenario
+from scenarios.world.ais.reports import AisReports
+from scenarios.world.ais.track import AisVessel
+from scenarios.world.world import vessel_of
 
 
 def initial_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -> dict[str, Any]:
@@ -42,7 +45,13 @@ def initial_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -
 def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
     """Return a hash of each file that scenarios take parts from, by the part: a resumed run and a replay have to find the same."""
     names = dict.fromkeys(name for scenario in scenarios for _, name in part_names(scenario))
-    return {name: file_hash(name) for name in names if is_file_part(name)}
+    return {name: file_hash(name) for name in names if names_file(name)}
+
+
+def vessel_files(scenarios: Iterable[Scenario]) -> dict[str, AisReports]:
+    """Return the reports in each file that the vessels of scenarios take their tracks from, by its path and the vessel's MMSI."""
+    found = (vessel_of(scenario) for scenario in scenarios if scenario.vessel.from_file)
+    return {f"{v.source.path} {v.source.mmsi}": v.source for v in found if isinstance(v, AisVessel)}
 
 
 def config_hash(*scenarios: BaseModel, files: Mapping[str, str] | None = None, names: Sequence[str] = ()) -> str:
@@ -68,7 +77,7 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
             if not (isinstance(scenario, Scenario) and unused(scenario, parameter["key"])):
                 listed.append(parameter)
         listed += [
-            {"key": f"{section_name}.{key}", "value": value, "unit": "", "meaning": "Of the steering law"}
+            {"key": f"{section_name}.{key}", "value": value, "unit": "", "meaning": "Of a part that the section names"}
             for key, value in (section.model_extra or {}).items()
         ]
     return listed

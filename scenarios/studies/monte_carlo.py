@@ -1,21 +1,20 @@
 """Monte Carlo: how often, how much, what it depends on, and how sure that is."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-
-import pandas as pd
 
 from common.run_layout import DRAWS, SUMMARY
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
-from scenarios.engine.task import Row, Task
+from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.sampling import Points
 from scenarios.schema.scenario import Scenario
 from scenarios.statistics.estimates import COLUMNS, study_statistics
 from scenarios.statistics.stopping import looks, tight_enough
 from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.rows import frame
 from scenarios.studies.study import study
 
 
@@ -66,7 +65,7 @@ class MonteCarloStudy(FlightStudy):
 
     def _tight(self, journal: Journal, flights: int) -> bool:
         s = self._scenario.statistics
-        rows = _frame(journal.rows(SUMMARY, below=flights), COLUMNS)
+        rows = frame(journal.rows(SUMMARY, below=flights), COLUMNS)
         return tight_enough(
             rows,
             look_number=self._looks,
@@ -78,10 +77,11 @@ class MonteCarloStudy(FlightStudy):
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
         """Write ``statistics.json``."""
+        super().postprocess(run, journal, progress)
         progress("estimating", self.planned, self.planned)
         statistics = study_statistics(
-            _frame(journal.rows(SUMMARY), COLUMNS),
-            _frame(journal.rows(DRAWS), self.tables[DRAWS]),
+            frame(journal.rows(SUMMARY), COLUMNS),
+            frame(journal.rows(DRAWS), self.tables[DRAWS]),
             confidence=self._scenario.statistics.confidence,
             seed=self._scenario.seed,
             look_number=self._looks if self._scenario.statistics.stops else None,
@@ -108,7 +108,3 @@ def monte_carlo_study(
 
         return SubsetStudy(scenario, name, trials, overrides=overrides)
     return MonteCarloStudy(scenario, name, trials, overrides=overrides)
-
-
-def _frame(rows: Iterable[Row], columns: Sequence[str]) -> pd.DataFrame:
-    return pd.DataFrame([[row.get(name) for name in columns] for row in rows], columns=list(columns))

@@ -1,1 +1,1 @@
-"""The vehicles, their sensors and their payload."""
+"""The vehicles, and their sensors."""

@@ -2,6 +2,7 @@
 
 import math
 
+from aircraft.atmosphere.wind import CALM, WindField
 from gnc.reference.oscillation import bank_for_heading_rate
 from gnc.unicycle import lagged_move, unicycle_move
 from scenarios.errors import InputError
@@ -13,7 +14,7 @@ _NONE = (math.nan,) * (len(SAMPLE_COLUMNS) - 4)
 class KinematicVehicle:
     """A vehicle that flies the commanded airspeed at once and turns at the commanded heading rate, at once or with a lag.
 
-    It takes a commanded altitude at once, and drifts with a steady wind. Its bank is that of a coordinated turn, for
+    It takes a commanded altitude at once, and drifts with the wind. Its bank is that of a coordinated turn, for
     comparison only: nothing bounds it.
 
     Parameters
@@ -23,11 +24,12 @@ class KinematicVehicle:
     speed : against the air [m/s]
     time_step : of the guidance [s]
     lag : time constant of the heading rate behind its command [s]; 0 for equation (1) as it stands
-    wind_north, wind_east : velocity of the air, so where the wind blows to [m/s]
+    wind : velocity of the air over time and height
     """
 
     __slots__ = (
-        "_altitude", "_course", "_east", "_heading_rate", "_lag", "_north", "_speed", "_time_step", "_wind_east", "_wind_north",
+        "_altitude", "_course", "_east", "_heading_rate", "_lag", "_north", "_speed", "_time", "_time_step", "_wind",
+        "_wind_east", "_wind_north",
     )  # fmt: skip
 
     def __init__(
@@ -40,14 +42,14 @@ class KinematicVehicle:
         speed: float,
         time_step: float,
         lag: float,
-        wind_north: float = 0.0,
-        wind_east: float = 0.0,
+        wind: WindField = CALM,
     ) -> None:
         self._north, self._east, self._altitude = north, east, altitude
         self._course, self._speed = course, speed
         self._heading_rate = 0.0
         self._time_step, self._lag = time_step, lag
-        self._wind_north, self._wind_east = wind_north, wind_east
+        self._wind, self._time = None if wind.constant else wind, 0.0
+        self._wind_north, self._wind_east = wind.now(0.0, altitude)
 
     def motion(self) -> tuple[float, float, float, float, float]:
         """Return north, east [m], north and east velocity over the ground [m/s] and heading rate against the air [rad/s]."""
@@ -78,6 +80,9 @@ class KinematicVehicle:
             self._heading_rate = heading_rate
         self._north += self._wind_north * self._time_step
         self._east += self._wind_east * self._time_step
+        if self._wind is not None:
+            self._time += self._time_step
+            self._wind_north, self._wind_east = self._wind.now(self._time, self._altitude)
 
     def command_altitude(self, altitude: float, /) -> None:
         """Take an altitude [m] at once: equation (1) has none of its own."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from gnc.estimation.vessel_filter import VesselReport
 from scenarios.schema.equipment import VesselReportsConfig
+from scenarios.world.ais.track import AisVessel
 from scenarios.world.vessel import VesselTruth
 
 
@@ -29,6 +30,8 @@ def received_reports(
     outage : nothing is received between these times [s]
     generator : of the random numbers
     """
+    if isinstance(vessel, AisVessel):
+        return _received_from_file(reports, vessel, outage=outage, generator=generator)
     received = []
     time = 0.0
     while time <= duration:
@@ -46,6 +49,21 @@ def received_reports(
         if time == 0.0 or not (missed or outage[0] <= time + late < outage[1]):
             received.append((time + late, report))
         time += float(generator.uniform(*reports.interval_s))
+    return sorted(received, key=lambda entry: entry[0])
+
+
+def _received_from_file(
+    reports: VesselReportsConfig, vessel: AisVessel, *, outage: tuple[float, float], generator: np.random.Generator
+) -> list[tuple[float, VesselReport]]:
+    """Return the file's own reports as they are received: late or missing where the scenario says so, but for those before."""
+    received = []
+    for report in vessel.reports:
+        late = float(generator.uniform(0.0, reports.latency_max_s))
+        missed = bool(generator.random() < reports.missing)
+        if report.time <= 0.0:
+            received.append((report.time, report))
+        elif not (missed or outage[0] <= report.time + late < outage[1]):
+            received.append((report.time + late, report))
     return sorted(received, key=lambda entry: entry[0])
 
 

@@ -19,6 +19,9 @@ Array = npt.NDArray[np.float64]
 
 _STREAMS = 3
 
+PAYLOAD, EXHAUST = 1, 2
+"""Numbers of streams beside those of ``Streams``: what uses them changes nothing of a flight that is without it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Noise:
@@ -74,6 +77,11 @@ def streams(noise: Noise) -> Streams:
 def start_generator(noise: Noise) -> np.random.Generator:
     """Return the random numbers of a flight that has a random start and no other noise."""
     return streams(noise).world if noise.blend else np.random.default_rng(noise.seed)
+
+
+def own_generator(noise: Noise, stream: int) -> np.random.Generator:
+    """Return the random numbers of ``PAYLOAD`` or ``EXHAUST``."""
+    return np.random.default_rng([noise.seed, stream])
 
 
 class BlendedGenerator(np.random.Generator):

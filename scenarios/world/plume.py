@@ -1,15 +1,15 @@
 """Where the plume's axis really is: behind the vessel's motion through the air, or at a given angle from its bow."""
 
 import math
-from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from common.registry import Registry
+from aircraft.atmosphere.wind import WindField
+from scenarios.schema.extension_points import PLUME_MODELS
 from scenarios.schema.world import PlumeConfig
-from scenarios.world.vessel import TRACK_STEP, SteadyVessel, VesselTruth, sampled
+from scenarios.world.vessel import TRACK_STEP, SteadyVessel, VesselTruth, sampled, track_times
 
 _AT_REST = 1e-9
 """Speed through the air below which its direction is rounding alone [m/s]."""
@@ -24,9 +24,6 @@ class Plume(Protocol):
         """Return the course along which the plume trails at a time [s], without jumps [rad]."""
 
 
-PLUME_MODELS: Registry[Callable[..., Any]] = Registry("plume_model", folder="scenarios.world", methods=("axis",))
-"""Plume models by name. Each is called as ``StraightPlume`` is, and returns a ``Plume``."""
-
 plume_model = PLUME_MODELS.register
 """Decorator that registers a plume model by a name."""
 
@@ -39,27 +36,27 @@ class StraightPlume:
     ----------
     plume : the ``[plume]`` section
     vessel : its motion
-    wind : velocity of the air mass, north and east [m/s]
+    wind : velocity of the air mass; that at the plume's origin turns it
     duration : to be covered [s]
     by_wind : whether it trails behind the vessel's motion through the air; otherwise at ``plume.heading_deg`` from the bow
     """
 
     __slots__ = ("_axis", "_steady")
 
-    def __init__(
-        self, plume: PlumeConfig, vessel: VesselTruth, wind: tuple[float, float], duration: float, *, by_wind: bool
-    ) -> None:
+    def __init__(self, plume: PlumeConfig, vessel: VesselTruth, wind: WindField, duration: float, *, by_wind: bool) -> None:
         heading = math.radians(plume.heading_deg)
         self._axis: list[float] = []
         self._steady: float | None = None
-        if isinstance(vessel, SteadyVessel):
+        if isinstance(vessel, SteadyVessel) and (wind.constant or not by_wind):
             _, _, v_north, v_east = vessel.motion(0.0)
-            self._steady = math.atan2(wind[1] - v_east, wind[0] - v_north) if by_wind else vessel.course(0.0) + heading
+            wind_north, wind_east = wind.now(0.0, plume.source_height_m)
+            self._steady = math.atan2(wind_east - v_east, wind_north - v_north) if by_wind else vessel.course(0.0) + heading
             return
         velocity, course = sampled(vessel, duration)
         axis = course + heading
         if by_wind:
-            through_air = velocity - np.array(wind)
+            blowing = wind.at(track_times(duration)[: len(velocity)], plume.source_height_m)
+            through_air = velocity - np.column_stack(blowing)
             axis = np.unwrap(np.arctan2(-through_air[:, 1], -through_air[:, 0])[_last_moving(through_air)])
         self._axis = axis.tolist()
 

@@ -1,15 +1,14 @@
 """Where the vessel really is, at any time: at constant velocity, or through its manoeuvres."""
 
 import math
-from collections.abc import Callable
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from common.registry import Registry
 from gnc.errors import InfeasibleError
+from scenarios.schema.extension_points import VESSEL_TRACKS
 from scenarios.schema.world import VesselConfig
 
 TRACK_STEP = 0.05
@@ -37,9 +36,6 @@ class VesselTruth(Protocol):
     def manoeuvres_end(self) -> float:
         """Time at which the last manoeuvre ends, not a number without any [s]."""
 
-
-VESSEL_TRACKS: Registry[Callable[..., Any]] = Registry("vessel_track", folder="scenarios.world", methods=("motion", "course"))
-"""Vessel tracks by name. Each is called with the ``[vessel]`` section, the speed [m/s] and the duration [s] to cover."""
 
 vessel_track = VESSEL_TRACKS.register
 """Decorator that registers a vessel track by a name."""
@@ -69,37 +65,21 @@ class SteadyVessel:
         return self._course
 
 
-class ManoeuvringVessel:
-    """A vessel whose course and speed change at the steady rates of its manoeuvres, which do not overlap (``check_manoeuvres``).
+class TabledVessel:
+    """A vessel whose velocity and course are tabled at ``track_times``; its place is their integral from the origin.
 
     Parameters
     ----------
-    vessel : its manoeuvres and its course before them
-    speed : before them [m/s]
-    duration : for how long it is followed [s]
-
-    Attributes
-    ----------
+    velocity : north and east, shape (n, 2) [m/s]
+    course : shape (n,) [rad]
     manoeuvres_end : when the last manoeuvre ends, not a number without any [s]
     """
 
-    def __init__(self, vessel: VesselConfig, speed: float, duration: float) -> None:
-        times = track_times(duration)
-        course = np.full_like(times, math.radians(vessel.course_deg))
-        speeds, before = np.full_like(times, speed), speed
-        self.manoeuvres_end = max(manoeuvre_ends(vessel, speed), default=math.nan)
-        for m in vessel.manoeuvres:
-            turn, rate = math.radians(m.turn_deg), math.radians(m.turn_rate_deg_s)
-            since = np.maximum(0.0, times - m.at_s)
-            course += np.sign(turn) * np.minimum(abs(turn), rate * since)
-            change = 0.0 if m.speed_mps is None else m.speed_mps - before
-            speeds += np.sign(change) * np.minimum(abs(change), m.acceleration_mps2 * since)
-            before += change
-        speeds = np.maximum(speeds, 0.0)
-        velocity = np.stack([speeds * np.cos(course), speeds * np.sin(course)], axis=-1)
+    def __init__(self, velocity: Array, course: Array, manoeuvres_end: float) -> None:
         place = np.zeros_like(velocity)
         place[1:] = np.cumsum(0.5 * TRACK_STEP * (velocity[1:] + velocity[:-1]), axis=0)
         self._table = np.column_stack([place, velocity, course])
+        self.manoeuvres_end = manoeuvres_end
 
     @property
     def samples(self) -> tuple[Array, Array]:
@@ -131,6 +111,32 @@ class ManoeuvringVessel:
         at = _COLUMNS * min(int(time / TRACK_STEP), len(self._table) - 2)
         course, after = self._flat[at + 4], self._flat[at + _COLUMNS + 4]
         return course + (time / TRACK_STEP - at // _COLUMNS) * (after - course)
+
+
+class ManoeuvringVessel(TabledVessel):
+    """A vessel whose course and speed change at the steady rates of its manoeuvres, which do not overlap (``check_manoeuvres``).
+
+    Parameters
+    ----------
+    vessel : its manoeuvres and its course before them
+    speed : before them [m/s]
+    duration : for how long it is followed [s]
+    """
+
+    def __init__(self, vessel: VesselConfig, speed: float, duration: float) -> None:
+        times = track_times(duration)
+        course = np.full_like(times, math.radians(vessel.course_deg))
+        speeds, before = np.full_like(times, speed), speed
+        for m in vessel.manoeuvres:
+            turn, rate = math.radians(m.turn_deg), math.radians(m.turn_rate_deg_s)
+            since = np.maximum(0.0, times - m.at_s)
+            course += np.sign(turn) * np.minimum(abs(turn), rate * since)
+            change = 0.0 if m.speed_mps is None else m.speed_mps - before
+            speeds += np.sign(change) * np.minimum(abs(change), m.acceleration_mps2 * since)
+            before += change
+        speeds = np.maximum(speeds, 0.0)
+        velocity = np.stack([speeds * np.cos(course), speeds * np.sin(course)], axis=-1)
+        super().__init__(velocity, course, max(manoeuvre_ends(vessel, speed), default=math.nan))
 
 
 def manoeuvre_ends(vessel: VesselConfig, speed: float) -> list[float]:
@@ -166,15 +172,15 @@ def by_manoeuvres(vessel: VesselConfig, speed: float, duration: float) -> Vessel
     return ManoeuvringVessel(vessel, speed, duration)
 
 
-def largest_acceleration(vessel: ManoeuvringVessel) -> float:
+def largest_acceleration(vessel: VesselTruth, duration: float) -> float:
     """Return the largest acceleration of a vessel, along its course and across it together, rounded down by 0.1 % [m/s^2]."""
-    velocity, _ = vessel.samples
+    velocity, _ = sampled(vessel, duration)
     return (1.0 - _ROUNDING) * float(np.hypot(*np.diff(velocity, axis=0).T).max()) / TRACK_STEP
 
 
-def largest_speed(vessel: ManoeuvringVessel) -> float:
+def largest_speed(vessel: VesselTruth, duration: float) -> float:
     """Return the largest speed of a vessel over the ground, rounded down by 0.1 % [m/s]."""
-    velocity, _ = vessel.samples
+    velocity, _ = sampled(vessel, duration)
     return (1.0 - _ROUNDING) * float(np.hypot(*velocity.T).max())
 
 
@@ -185,7 +191,7 @@ def track_times(duration: float) -> Array:
 
 def sampled(vessel: VesselTruth, duration: float) -> tuple[Array, Array]:
     """Return velocity over the ground [m/s], shape (n, 2), and course [rad], shape (n,), at ``track_times``."""
-    if isinstance(vessel, ManoeuvringVessel):
+    if isinstance(vessel, TabledVessel):
         return vessel.samples
     times = track_times(duration).tolist()
     return np.array([vessel.motion(time)[2:] for time in times]), np.array([vessel.course(time) for time in times])

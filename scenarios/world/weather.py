@@ -1,4 +1,4 @@
-"""The air that a flight goes through: steady wind, turbulence, discrete gusts."""
+"""The air that a flight goes through: mean wind, turbulence, discrete gusts."""
 
 import math
 
@@ -7,10 +7,13 @@ import numpy as np
 from aircraft.atmosphere.gusts import Gust
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
+from aircraft.atmosphere.wind import CALM, WindField, constant_wind, over_the_sea
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.world import WindConfig
+from scenarios.world.place import Place
+from scenarios.world.wind_table import tabled_wind
 
-STILL_AIR = Weather(wind_north=0.0, wind_east=0.0, turbulence=None, gusts=(), seed=0)
+STILL_AIR = Weather(wind=CALM, turbulence=None, gusts=(), seed=0)
 
 
 def wind_ned(wind: WindConfig) -> tuple[float, float]:
@@ -19,9 +22,23 @@ def wind_ned(wind: WindConfig) -> tuple[float, float]:
     return wind.speed_mps * math.cos(to), wind.speed_mps * math.sin(to)
 
 
-def sampled_weather(scenario: Scenario, generator: np.random.Generator) -> Weather:
-    """Return the air that the flight goes through."""
-    north, east = wind_ned(scenario.wind)
+def wind_of(scenario: Scenario, place: Place) -> WindField:
+    """Return the mean wind of a flight that begins at a place, timed from its start.
+
+    Raises
+    ------
+    InputError : its table cannot be read, or does not cover the longest flight
+    """
+    wind = scenario.wind
+    if wind.table is not None:
+        return tabled_wind(wind, place, scenario.flight.duration_max_s)
+    if wind.roughness_m is None or not wind.blows:
+        return constant_wind(*wind_ned(wind))
+    return over_the_sea(np.array([wind_ned(wind)]), [0.0], roughness=wind.roughness_m, height=wind.height_m)
+
+
+def sampled_weather(scenario: Scenario, wind: WindField, generator: np.random.Generator) -> Weather:
+    """Return the air that the flight goes through, with some mean wind."""
     turbulence = scenario.turbulence
     rise = turbulence.gust_length_s
     gusts = []
@@ -34,8 +51,7 @@ def sampled_weather(scenario: Scenario, generator: np.random.Generator) -> Weath
         velocity = (speed * math.cos(towards), speed * math.sin(towards), 0.0)
         gusts.append(Gust(start=start, rise=rise, fall=rise, velocity_ned=velocity))
     return Weather(
-        wind_north=north,
-        wind_east=east,
+        wind=wind,
         turbulence=None if turbulence.level == "none" else TURBULENCE[turbulence.level],
         gusts=tuple(gusts),
         seed=int(generator.integers(2**31 - 1)),

@@ -1,18 +1,24 @@
 """The world of one flight: vessel, plume and air as they are, and what fails."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from aircraft.atmosphere.weather import Weather
+from aircraft.atmosphere.wind import WindField
+from scenarios.schema.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.scenario import Scenario
+from scenarios.world.ais.track import AisVessel, ais_vessel
+from scenarios.world.exhaust import Exhaust
 from scenarios.world.faults import TimedFault
-from scenarios.world.plume import PLUME_MODELS, Plume
-from scenarios.world.vessel import VESSEL_TRACKS, SteadyVessel, VesselTruth, sampled
-from scenarios.world.weather import wind_ned
+from scenarios.world.place import Place, given_place
+from scenarios.world.plume import Plume
+from scenarios.world.vessel import SteadyVessel, VesselTruth, sampled, track_times
+from scenarios.world.weather import wind_of
+from scenarios.world.wind_table import first_time
 
-_MARGIN = 5.0
+TRACK_MARGIN = 5.0
 """How long the track goes on after the longest flight [s]."""
 
 
@@ -26,6 +32,8 @@ class World:
     elevation, source_height : of the plume's axis, and of its origin above the sea [rad, m]
     weather : the air
     fault : what fails, and when
+    exhaust : the vessel's smoke, or none
+    place : where on earth, and when
     """
 
     vessel: VesselTruth
@@ -34,6 +42,8 @@ class World:
     source_height: float
     weather: Weather
     fault: TimedFault
+    place: Place
+    exhaust: Exhaust | None = None
 
 
 def vessel_of(scenario: Scenario) -> VesselTruth:
@@ -42,12 +52,30 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
     Raises
     ------
     PluginError : it has no such track
+    InputError : its file cannot be read, or does not cover the longest flight
     """
-    config = scenario.vessel
+    config, duration = scenario.vessel, scenario.flight.duration_max_s
+    if config.from_file:
+        return ais_vessel(config, utc=scenario.place.utc, duration=duration, margin=TRACK_MARGIN)
     if config.track == "manoeuvres" and not config.manoeuvres:
         return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
-    track: VesselTruth = VESSEL_TRACKS.get(config.track)(config, scenario.vessel_speed, scenario.flight.duration_max_s + _MARGIN)
+    track: VesselTruth = VESSEL_TRACKS.get(config.track)(config, scenario.vessel_speed, duration + TRACK_MARGIN)
     return track
+
+
+def place_of(scenario: Scenario, vessel: VesselTruth) -> Place:
+    """Return where and when a flight begins, as far as that is known; without a time of its own when its wind does."""
+    if isinstance(vessel, AisVessel):
+        return vessel.place
+    place, table = given_place(scenario.place), scenario.wind.table
+    if table is None or math.isfinite(place.utc):
+        return place
+    return replace(place, utc=first_time(table, place))
+
+
+def mean_wind(scenario: Scenario, vessel: VesselTruth) -> WindField:
+    """Return the mean wind of a scenario's flights."""
+    return wind_of(scenario, place_of(scenario, vessel))
 
 
 def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
@@ -58,8 +86,8 @@ def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
     PluginError : there is no such plume model
     """
     model = PLUME_MODELS.get(scenario.plume.model)
-    duration = scenario.flight.duration_max_s + _MARGIN
-    plume: Plume = model(scenario.plume, vessel, wind_ned(scenario.wind), duration, by_wind=scenario.plume_by_wind)
+    duration = scenario.flight.duration_max_s + TRACK_MARGIN
+    plume: Plume = model(scenario.plume, vessel, mean_wind(scenario, vessel), duration, by_wind=scenario.plume_by_wind)
     return plume
 
 
@@ -79,12 +107,14 @@ class ApparentWind:
 
 def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
     """Return how fast a vessel moves through the air, over the longest flight."""
-    if isinstance(vessel, SteadyVessel):
+    wind, height = mean_wind(scenario, vessel), scenario.plume.source_height_m
+    duration = scenario.flight.duration_max_s + TRACK_MARGIN
+    if isinstance(vessel, SteadyVessel) and wind.constant:
         _, _, v_north, v_east = vessel.motion(0.0)
-        wind_north, wind_east = wind_ned(scenario.wind)
+        wind_north, wind_east = wind.now(0.0, height)
         steady = math.hypot(v_north - wind_north, v_east - wind_east)
         return ApparentWind(at_start=steady, least=steady, greatest=steady)
-    velocity, _ = sampled(vessel, scenario.flight.duration_max_s + _MARGIN)
-    through_air = velocity - np.array(wind_ned(scenario.wind))
+    velocity, _ = sampled(vessel, duration)
+    through_air = velocity - np.column_stack(wind.at(track_times(duration)[: len(velocity)], height))
     speeds = np.hypot(through_air[:, 0], through_air[:, 1])
     return ApparentWind(at_start=float(speeds[0]), least=float(speeds.min()), greatest=float(speeds.max()))

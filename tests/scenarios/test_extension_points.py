@@ -49,7 +49,7 @@ def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path
     config = manifest(tmp_path / "run")["config"]
     section, _, last = key.partition(".")
     value = config[section][last] if last else config[section]
-    assert value == ([part] if key == "payload" else part)
+    assert value == ({"instruments": [part]} if key == "payload" else part)
 
 
 def test_parts_act_on_the_flight(tmp_path):
@@ -148,7 +148,7 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
         ("guidance.law", "class Part:\n    def heading_rate(self): ...\n", "is not a dataclass; its fields are the keys"),
         ("plume.model", "class Part: ...\n", "plume.model: plume model '"),
         ("vessel.track", "class Part:\n    def motion(self, time): ...\n", "has no method course(); see the Protocol"),
-        ("payload", "class Part: ...\n", "has no method read(); see the Protocol in scenarios.vehicles"),
+        ("payload", "class Part: ...\n", "has no method read() or evaluate(); see the Protocol in scenarios.instruments"),
         ("reference.shape", "class Part: ...\n", "has no method design(); see the Protocol in gnc.reference"),
         ("aircraft", "Part = 3\n", "own.py:Part' is of type int; it must be an AircraftSpec"),
     ],

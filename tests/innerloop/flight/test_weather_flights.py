@@ -8,6 +8,7 @@ import pytest
 from aircraft.atmosphere.gusts import Gust
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
+from aircraft.atmosphere.wind import constant_wind
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.local_frame import LocalFrame
 from aircraft.simulation.properties import EARTH_RATE
@@ -45,7 +46,7 @@ def fly(aircraft, start, weather, duration, turn_at=5.0):
 def test_in_wind_an_aircraft_flies_the_calm_path_carried_along(x8_schedule, x8_root, toward):
     start, wind = x8_schedule.level(MIDDLE), (10.0 * math.cos(math.radians(toward)), 10.0 * math.sin(math.radians(toward)))
     calm = fly(AutopilotedAircraft(X8, x8_root), start, None, 25.0)
-    windy = fly(AutopilotedAircraft(X8, x8_root), start, Weather(wind_north=wind[0], wind_east=wind[1]), 25.0)
+    windy = fly(AutopilotedAircraft(X8, x8_root), start, Weather(wind=constant_wind(*wind)), 25.0)
     course = YAW + start.course_offset()
     # The velocity triangle at the release, to the last digits that are left of a globe's coordinates and 1e-6 ft/s of north wind.
     ground = (start.airspeed * math.cos(course) + wind[0], start.airspeed * math.sin(course) + wind[1])
@@ -76,7 +77,7 @@ def test_a_used_aircraft_flies_a_weather_as_a_fresh_one_does(x8_schedule, x8_roo
     start = x8_schedule.level(MIDDLE)
     gusts = [Gust(start=1.0, rise=0.5, hold=0.5, fall=0.5, velocity_ned=v) for v in ((0.0, 3.0, 0.0), (2.0, 0.0, -1.0))]
     rough, other = (
-        Weather(wind_north=3.0, wind_east=-5.0, turbulence=TURBULENCE["moderate"], gusts=(gust,), seed=seed)
+        Weather(wind=constant_wind(3.0, -5.0), turbulence=TURBULENCE["moderate"], gusts=(gust,), seed=seed)
         for seed, gust in enumerate(gusts)
     )
     used = AutopilotedAircraft(X8, x8_root)

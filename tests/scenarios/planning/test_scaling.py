@@ -30,6 +30,7 @@ NOT_SCALED = {
     # World and equipment, and what is written for a circle about which the scenario says everything.
     "vessel.speed_mps", "plume.source_height_m", "keepout.radius_m", "reference.radius_m", "wind.speed_mps",
     "turbulence.gust_speed_mps", "turbulence.gust_length_s", "reports.interval_s", "reports.position_sigma_m",
+    "wind.stability_per_s", "wind.roughness_m", "wind.height_m", "vessel.gap_max_s",
     "reports.velocity_sigma_mps", "reports.latency_max_s", "sensors.position_sigma_m", "sensors.velocity_sigma_mps",
     "sensors.airspeed_sigma_mps", "sensors.airspeed_bias_mps", "fault.at_s", "fault.vessel_data_s", "fault.satellite_navigation_s",
     # What a ship does, how well it is known, and how often the keep-out area may be touched.
@@ -42,6 +43,7 @@ NOT_SCALED = {
     # The simulation runs at 120 Hz for every aircraft.
     "guidance.rate_hz", "flight.log_rate_hz",
     # Not set by default; who sets them means what they say.
+    "flight.after_settling_s", "flight.altitude_min_m", "flight.altitude_max_m",
     "guidance.heading_rate_max_rad_s", "start.place_m", "start.range_m",
     "criteria.tracking_error_end_m", "criteria.crossing_interval_s",
     "criteria.crossing_distance_m",
@@ -128,7 +130,7 @@ def test_keys_without_a_unit_in_their_names_have_no_length_and_no_time():
     for name in keys(scenario):
         section, key = name.split(".")
         unit = re.search(r"\[([^\]]+)\]", type(getattr(scenario, section)).model_fields[key].description or "")
-        assert (dimension(name) is not None) == (unit is not None and unit[1] not in ("-", "deg")), name
+        assert (dimension(name) is not None) == (unit is not None and unit[1] not in ("-", "deg", "%", "degC")), name
 
 
 def scaled_keys():

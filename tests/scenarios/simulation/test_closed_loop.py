@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from flight_cases import ASTERN, SPEED, fly, plan, scenario
 
+from scenarios.instruments.instrument import payload
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation import closed_loop
 from scenarios.simulation.record import COLUMNS, MEANINGS, unit_of
 from scenarios.simulation.release import release
 from scenarios.vehicles.kinematic import KinematicVehicle
-from scenarios.vehicles.payload import payload
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 SHORT = {"start": ASTERN, "flight": {"crossings": 0, "duration_max_s": 60.0}, "criteria": {"settles": False}}
@@ -97,18 +97,12 @@ def test_a_following_flight_in_a_rising_plume_is_commanded_to_the_height_of_its_
     record = flown(scenario(plume={"elevation_deg": 10.0}, **SHORT))
     centre, seen = ([record.column(f"{of}_{axis}_m") for axis in ("north", "east")] for of in ("centre", "vessel_seen"))
     to_centre = np.hypot(*np.subtract(centre, seen))
-    # Above the funnel's 60 m as the axis rises to the centre of oscillation, when that was last planned.
+    # Above the funnel's 60 m as the axis rises to the centre of oscillation.
     expected = 60.0 + math.tan(math.radians(10.0)) * to_centre
-    assert commanded[-1] == pytest.approx(expected[-1], abs=1e-9)
-    assert set(np.round(commanded, 6)) <= set(np.round(expected, 6))
-    # A hundred metres nearer once the reference is tracked, and lower.
-    assert commanded[0] - commanded[-1] > 10.0
-
-
-@pytest.mark.parametrize("from_deg", [0.0, 120.0, 250.0])
-def test_kinematic_flights_follow_a_plume_in_wind(from_deg):
-    result = fly(wind={"speed_mps": 6.0, "from_deg": from_deg}, start=ASTERN, flight={"crossings": 4})
-    assert (result.row["outcome"], result.row["keepout_violations"]) == ("completed", 0), result.row["message"]
-    assert result.row["crossing_count"] == 4
-    # Exact sensors and no gusts: what the moving centre and held commands leave, decimetres.
-    assert result.row["tracking_error_rms_m"] < 1.0
+    climbs = np.diff(commanded) * 2.0
+    # It follows in 20 s, no steeper than 5 % at 19.42 m/s; plans come every half a second.
+    assert np.max(np.abs(climbs)) <= 0.05 * SPEED * (1.0 + 1e-9)
+    assert commanded[0] == pytest.approx(60.0, abs=0.5)
+    towards = np.sign(expected[-1] - 60.0)
+    assert towards * (commanded[-1] - commanded[0]) > 25.0
+    assert abs(commanded[-1] - expected[-1]) < 0.05 * abs(expected[-1] - 60.0)

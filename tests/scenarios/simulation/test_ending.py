@@ -13,9 +13,20 @@ from scenarios.simulation.outcome import Outcome
 AT_THE_MAST, ON_THE_WATER = (60.0,), (1.0,)
 
 
-def ended(*, asked=0, flown=12, settled=80.0, mode=Mode.TRACKING, fault=Fault.NONE, sample=AT_THE_MAST, trouble="", vessel=True):
+def ended(
+    *,
+    asked=0,
+    flown=12,
+    settled=80.0,
+    mode=Mode.TRACKING,
+    fault=Fault.NONE,
+    sample=AT_THE_MAST,
+    trouble="",
+    vessel=True,
+    after=math.inf,
+):
     """Return how a flight ended at 300 s."""
-    plan = SimpleNamespace(crossings=asked, duration_max=300.0, world=object() if vessel else None)
+    plan = SimpleNamespace(crossings=asked, after_settling=after, duration_max=300.0, world=object() if vessel else None)
     vehicle = SimpleNamespace(fault=lambda _: trouble)
     guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mission=SimpleNamespace(mode=mode))
     ending = Ending(plan, vehicle, guidance, SimpleNamespace(at=settled, crossings=flown))
@@ -37,6 +48,10 @@ def ended(*, asked=0, flown=12, settled=80.0, mode=Mode.TRACKING, fault=Fault.NO
         ({"settled": math.nan, "mode": Mode.OUTRUN}, Outcome.NOT_SETTLED, "did not settle within 300 s, and ended outrun"),
         ({"flown": 0}, Outcome.INCOMPLETE, "flew 0 crossings after settling within 300 s"),
         ({"asked": 30}, Outcome.INCOMPLETE, "flew 12 of 30 crossings after settling within 300 s"),
+        ({"after": 220.0}, Outcome.COMPLETED, ""),
+        ({"after": 220.0, "mode": Mode.NO_PLUME}, Outcome.COMPLETED, ""),
+        ({"after": 300.0}, Outcome.INCOMPLETE, "flew 220 of 300 s after settling within 300 s"),
+        ({"after": 100.0, "asked": 30}, Outcome.INCOMPLETE, "flew 12 of 30 crossings after settling within 300 s"),
         ({"mode": Mode.OUTRUN}, Outcome.INCOMPLETE, "ended outrun after 12 crossings"),
         ({"mode": Mode.NO_PLUME}, Outcome.INCOMPLETE, "ended no plume after 12 crossings"),
         (

@@ -8,8 +8,8 @@ PERIOD = 19.0
 AXIS = 2.0
 
 
-def make(crossings=0):
-    return Settling(band=8.0, period=PERIOD, crossings=crossings)
+def make(crossings=0, **more):
+    return Settling(band=8.0, period=PERIOD, crossings=crossings, **more)
 
 
 def sample(settling, time, *, tracking=1.0, centre=1.0, along=200.0, across=5.0):
@@ -107,3 +107,12 @@ def test_without_a_number_of_crossings_there_is_no_end():
     for step in range(400):
         assert not sample(settling, 0.5 * step, across=(-1.0) ** step)
     assert settling.crossings > 300
+
+
+@pytest.mark.parametrize(("crossings", "end"), [(0, 60.5), (20, 60.5), (40, 100.5)])
+def test_a_flight_that_goes_on_after_settling_ends_when_both_its_time_and_its_crossings_are_flown(crossings, end):
+    settling = make(crossings=crossings, after=60.0)
+    # It settles with the first sample, and crosses every 2.5 s from then on.
+    done = [sample(settling, 0.5 * step, across=5.0 * (-1.0) ** (step // 5)) for step in range(300)]
+    assert settling.at == 0.0
+    assert 0.5 * done.index(True) == end

@@ -1,5 +1,7 @@
 """Which time histories a run keeps."""
 
+import json
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -49,7 +51,8 @@ def test_a_history_comes_back_from_its_file_exactly():
     result = Result(
         task=Task(number=0),
         tables={},
-        files=history_files(Task(number=0), history, planned=1, kept=1, row=MET | {"flight_id": "a"}),
+        files=history_files(Task(number=0), history, {"fsc": 0.1}, planned=1, kept=1, row=MET | {"flight_id": "a"}),
     )
-    assert list(result.files) == ["flights/a.parquet"]
+    assert list(result.files) == ["flights/a.parquet", "flights/a.json"]
+    assert json.loads(result.files["flights/a.json"]) == {"fsc": 0.1}
     pd.testing.assert_frame_equal(history_in(result), history, check_exact=True)

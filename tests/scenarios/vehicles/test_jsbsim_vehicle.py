@@ -5,6 +5,7 @@ import math
 import pytest
 
 from aircraft.atmosphere.weather import Weather
+from aircraft.atmosphere.wind import constant_wind
 from aircraft.fleet.x8 import X8
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.vehicles.jsbsim import JsbsimVehicle
@@ -35,7 +36,7 @@ def place(x8_schedule, x8_root):
 
 def test_it_starts_with_its_course_against_the_air_and_the_wind_on_top(place, x8_schedule):
     airspeed = x8_schedule.level(MIDDLE).airspeed
-    north, east, velocity_north, velocity_east, _ = place(Weather(wind_north=WIND[0], wind_east=WIND[1])).motion()
+    north, east, velocity_north, velocity_east, _ = place(Weather(wind=constant_wind(*WIND))).motion()
     assert (north, east) == pytest.approx((10.0, -20.0), abs=0.1)  # of plumes and tracks of hundreds of metres
     ground = (airspeed * math.cos(0.7) + WIND[0], airspeed * math.sin(0.7) + WIND[1])
     assert (velocity_north, velocity_east) == pytest.approx(ground, abs=1e-5)  # 1e-6 ft/s of north wind, and a globe's roundings
@@ -43,7 +44,7 @@ def test_it_starts_with_its_course_against_the_air_and_the_wind_on_top(place, x8
 
 def test_its_sensors_read_airspeed_heading_and_roll_against_the_air(place, x8_schedule):
     start = x8_schedule.level(MIDDLE)
-    airspeed, heading, roll = place(Weather(wind_north=WIND[0], wind_east=WIND[1])).air_data()
+    airspeed, heading, roll = place(Weather(wind=constant_wind(*WIND))).air_data()
     assert airspeed == pytest.approx(start.airspeed, abs=1e-6)  # not the 22 m/s over the ground
     assert heading == pytest.approx(0.7 - start.course_offset(), abs=1e-6)
     assert roll == pytest.approx(start.roll, abs=1e-6)

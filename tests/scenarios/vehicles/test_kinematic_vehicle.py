@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from aircraft.atmosphere.wind import WindField, constant_wind
 from gnc.compose import compose
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
@@ -69,7 +70,7 @@ def test_without_a_lag_it_turns_at_once_and_with_one_it_takes_its_time():
 
 @pytest.mark.parametrize("lag", [0.0, 0.3])
 def test_in_wind_it_flies_the_calm_path_carried_along(lag):
-    calm, windy = make(lag), make(lag, wind_north=-6.0, wind_east=2.5)
+    calm, windy = make(lag), make(lag, wind=constant_wind(-6.0, 2.5))
     for _ in range(200):
         calm.advance(0.3, SPEED)
         windy.advance(0.3, SPEED)
@@ -79,8 +80,24 @@ def test_in_wind_it_flies_the_calm_path_carried_along(lag):
     assert windy.air_data() == calm.air_data()
 
 
+def test_in_a_wind_that_changes_it_is_carried_by_what_blows_at_its_time_and_height():
+    # From rest to 10 m/s northward within 10 s, and twice that at twice the height of 50 m.
+    wind = WindField([[[0.0, 0.0], [0.0, 0.0]], [[10.0, 0.0], [20.0, 0.0]]], times=(0.0, 10.0), heights=(50.0, 100.0))
+    for height, speed in ((50.0, 10.0), (100.0, 20.0)):
+        windy = make(wind=wind)
+        windy.command_altitude(height)
+        still = make()
+        for _ in range(200):
+            still.advance(0.3, SPEED)
+            windy.advance(0.3, SPEED)
+        # Velocity is held for a step of 0.05 s: the sum lags half a step behind the integral, 0.25 m at most.
+        off_north, off_east, faster, *_ = np.subtract(windy.motion(), still.motion())
+        assert (off_north, off_east) == pytest.approx((0.5 * speed * 10.0, 0.0), abs=0.6)
+        assert faster == pytest.approx(speed, rel=1e-9)
+
+
 def test_its_sensors_read_airspeed_heading_and_the_bank_of_a_coordinated_turn():
-    vehicle = make(course=0.5, wind_north=5.0)
+    vehicle = make(course=0.5, wind=constant_wind(5.0, 0.0))
     vehicle.advance(0.3, SPEED)
     # tan(bank) = speed times heading rate over 9.80665 m/s^2; the heading after 0.05 s.
     expected = (SPEED, 0.5 + 0.3 * 0.05, math.atan(SPEED * 0.3 / 9.80665))

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from aircraft.atmosphere.wind import constant_wind
 from scenarios.schema.world import PlumeConfig, VesselConfig
 from scenarios.world.plume import StraightPlume
 from scenarios.world.vessel import ManoeuvringVessel, SteadyVessel
@@ -15,7 +16,7 @@ DURATION = 600.0
 def behind(vessel, *, wind=(0.0, 0.0), heading_deg=None):
     """Return the plume behind a vessel; by the wind, or at an angle from its bow."""
     config = PlumeConfig() if heading_deg is None else PlumeConfig(heading_deg=heading_deg)
-    return StraightPlume(config, vessel, wind, DURATION, by_wind=heading_deg is None)
+    return StraightPlume(config, vessel, constant_wind(*wind), DURATION, by_wind=heading_deg is None)
 
 
 def steady(speed, course_deg=0.0):

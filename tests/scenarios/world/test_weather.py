@@ -5,11 +5,12 @@ import pytest
 from flight_cases import scenario
 
 from scenarios.schema.world import WindConfig
-from scenarios.world.weather import sampled_weather, wind_ned
+from scenarios.world.place import given_place
+from scenarios.world.weather import sampled_weather, wind_ned, wind_of
 
 
-def generator():
-    return np.random.default_rng(9)
+def sampled(given, seed=9):
+    return sampled_weather(given, wind_of(given, given_place(given.place)), np.random.default_rng(seed))
 
 
 @pytest.mark.parametrize(
@@ -21,7 +22,7 @@ def test_the_wind_blows_to_where_it_does_not_come_from(from_deg, blows_to):
 
 def test_gusts_come_one_after_the_other_and_are_no_stronger_than_they_may():
     turbulence = {"gusts": 5, "gust_speed_mps": 8.0, "gust_length_s": 4.0}
-    weather = sampled_weather(scenario(fidelity="six_dof", turbulence=turbulence, flight={"duration_max_s": 500.0}), generator())
+    weather = sampled(scenario(fidelity="six_dof", turbulence=turbulence, flight={"duration_max_s": 500.0}))
     assert len(weather.gusts) == 5
     for i, gust in enumerate(weather.gusts):
         # A hundred seconds for each, of which it takes four to rise and four to fall.
@@ -35,6 +36,6 @@ def test_gusts_come_one_after_the_other_and_are_no_stronger_than_they_may():
 def test_the_seed_determines_the_air():
     turbulence = {"level": "light", "gusts": 2, "gust_speed_mps": 4.0}
     blown = scenario(fidelity="six_dof", turbulence=turbulence, wind={"speed_mps": 5.0, "from_deg": 30.0})
-    assert sampled_weather(blown, generator()) == sampled_weather(blown, generator())
-    assert sampled_weather(blown, np.random.default_rng(10)) != sampled_weather(blown, generator())
-    assert sampled_weather(blown, generator()).wind == wind_ned(blown.wind)
+    assert sampled(blown) == sampled(blown)
+    assert sampled(blown, 10) != sampled(blown)
+    assert sampled(blown).wind.now(100.0, 60.0) == wind_ned(blown.wind)

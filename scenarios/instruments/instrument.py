@@ -1,0 +1,93 @@
+"""Instruments on board: what they read goes into the time history."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+import numpy.typing as npt
+
+from gnc.estimation.own_motion import Motion
+from scenarios.schema.extension_points import PAYLOADS
+from scenarios.schema.scenario import Scenario
+
+Array = npt.NDArray[np.float64]
+
+payload = PAYLOADS.register
+"""Decorator that registers an instrument by a name."""
+
+
+@runtime_checkable
+class Instrument(Protocol):
+    """An instrument that is read in flight, made fresh for each flight with its scenario and world and a random generator.
+
+    Attributes
+    ----------
+    COLUMNS : of the time history that it fills; their names end in their units, as in ``so2_ppb``
+    """
+
+    COLUMNS: tuple[str, ...]
+
+    def read(self, time: float, motion: Motion, sample: tuple[float, ...], /) -> tuple[float, ...]:
+        """Return a value for each column.
+
+        Parameters
+        ----------
+        time : [s]
+        motion : true north, east [m], their rates [m/s], heading rate [rad/s]
+        sample : ``scenarios.vehicles.vehicle.SAMPLE_COLUMNS``
+        """
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Evaluation:
+    """What an instrument makes of a flight.
+
+    Attributes
+    ----------
+    columns : values of ``COLUMNS``, shape (samples, columns)
+    figures : of the flight's row in the summary
+    tables : rows by file
+    document : what a report shows beside all this, or none; it is written as JSON beside the time history
+    """
+
+    columns: Array
+    figures: Mapping[str, Any] = field(default_factory=dict)
+    tables: Mapping[str, Sequence[dict[str, Any]]] = field(default_factory=dict)
+    document: Mapping[str, Any] | None = None
+
+
+@runtime_checkable
+class EvaluatedInstrument(Protocol):
+    """An instrument whose readings are computed after the flight, all at once; otherwise as ``Instrument``.
+
+    Attributes
+    ----------
+    COLUMNS : as of ``Instrument``
+    FIGURES : columns of the summary that it fills
+    TABLES : columns of the tables that it fills, by file, beside those that name the flight
+    """
+
+    COLUMNS: tuple[str, ...]
+    FIGURES: tuple[str, ...]
+    TABLES: Mapping[str, tuple[str, ...]]
+
+    def evaluate(self, column: Callable[[str], Array], settled_at: float, /) -> Evaluation:
+        """Return what it makes of the flight.
+
+        Parameters
+        ----------
+        column : returns a column of the flight's record by name, shape (samples,)
+        settled_at : when the flight had settled, not a number if it never had [s]
+        """
+
+
+def evaluated_instruments(scenarios: Iterable[Scenario]) -> list[Any]:
+    """Return the instruments of scenarios that are evaluated after their flights, as classes, each once.
+
+    Raises
+    ------
+    PluginError : there is no such instrument
+    """
+    found = {name: part for scenario in scenarios for name, part in scenario.payload.parts().items()}
+    return [part for part in found.values() if hasattr(part, "evaluate")]

@@ -1,0 +1,73 @@
+"""Passes through a plume: how well it was hit, and for how long."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from measurement.plume.fluctuating_plume import PlumeSample
+
+Array = npt.NDArray[np.float64]
+
+HIT = 0.6
+"""Concentration at the peak of a pass, over that on the plume's own axis, from which it counts as a hit [-]."""
+
+INSIDE = math.exp(-2.0)
+"""Concentration over that of the axis from which a place counts as inside the plume [-]: two spreads from the axis."""
+
+
+PASS_FIGURES = (
+    "plume_passes", "hit_rate", "seconds_in_plume_s", "dose_per_pass_ppm_s", "axis_height_error_mean_m", "axis_height_error_rms_m",
+)  # fmt: skip
+"""Columns of the summary."""
+
+
+def fraction_of_axis(plume: PlumeSample) -> Array:
+    """Return the concentration over that in the centre of the plume's cross-section; 0 where there is no plume."""
+    inside = plume.axis_dilution > 0.0
+    return np.divide(plume.dilution, plume.axis_dilution, out=np.zeros_like(plume.dilution), where=inside)
+
+
+def passes(across: Array) -> Iterator[slice]:
+    """Yield the samples of each pass: from half-way since the last change of sides to half-way to the next.
+
+    Parameters
+    ----------
+    across : distance from the plume's axis, positive on one side, not a number where there is no plume, shape (n,) [m]
+    """
+    change = np.flatnonzero(across[:-1] * across[1:] < 0.0)
+    if not len(change):
+        return
+    middle = (change[:-1] + change[1:]) // 2 + 1
+    begins = [max(0, 2 * change[0] - middle[0]) if len(middle) else 0, *middle]
+    ends = [*middle, min(len(across), 2 * change[-1] - middle[-1]) if len(middle) else len(across)]
+    yield from (slice(int(begin), int(end)) for begin, end in zip(begins, ends, strict=True))
+
+
+def pass_figures(plume: PlumeSample, up: Array, time_step: float, excess_co2: Array) -> dict[str, float]:
+    """Return figures of the passes of a flight.
+
+    Parameters
+    ----------
+    plume : along the flight, shape (n,)
+    up : height of the aircraft above the sea [m]
+    time_step : between samples [s]
+    excess_co2 : above clean air [ppm]
+    """
+    fraction = fraction_of_axis(plume)
+    found = list(passes(plume.across))
+    if not found:
+        return {"plume_passes": 0}
+    peaks = np.array([np.max(fraction[at]) for at in found])
+    nearest = [at.start + int(np.nanargmin(np.abs(plume.across[at]))) for at in found]
+    above = up[nearest] - plume.axis_height[nearest]
+    inside = time_step * np.count_nonzero(fraction > INSIDE)
+    return {
+        "plume_passes": len(found),
+        "hit_rate": float(np.mean(peaks > HIT)),
+        "seconds_in_plume_s": float(inside),
+        "dose_per_pass_ppm_s": float(time_step * np.sum(excess_co2) / len(found)),
+        "axis_height_error_mean_m": float(np.mean(above)),
+        "axis_height_error_rms_m": float(np.sqrt(np.mean(above**2))),
+    }

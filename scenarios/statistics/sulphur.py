@@ -1,0 +1,93 @@
+"""What flights with a sniffer show of the method: bias, spread, coverage of what is stated, and how ships are called."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from scenarios.statistics.intervals import clopper_pearson
+
+METHODS = {"regression": "fsc", "areas": "areas_fsc"}
+"""Methods, and what the columns of their figures begin with."""
+
+COLUMNS = (
+    "flight_id", "sensor", "fsc_fuel_percent", "fsc_expected_percent", "sulphur_limit_percent", "sulphur_verdict", "verdict_2min",
+    *(f"{method}_{figure}percent" for method in METHODS.values() for figure in ("", "low_", "high_", "uncertainty_", "noise_")),
+)  # fmt: skip
+"""Columns of the summary that these statistics use."""
+
+Array = npt.NDArray[np.float64]
+Json = dict[str, Any]
+
+
+def sulphur_statistics(rows: pd.DataFrame, *, confidence: float) -> Json:
+    """Return the content of ``sulphur.json``.
+
+    Parameters
+    ----------
+    rows : columns ``COLUMNS`` of the summary, a row per flight
+    confidence : of each interval, between 0 and 1
+    """
+    return {
+        "confidence": confidence,
+        "accuracy": [_accuracy(group, confidence) | named for named, group in _accuracy_groups(rows)],
+        "operating_curve": [
+            _calls(group, confidence) | {"sensor": str(group["sensor"].iloc[0])}
+            for _, group in rows.dropna(subset="fsc_fuel_percent").groupby(["sensor", "fsc_fuel_percent"])
+        ],
+    }
+
+
+def _accuracy_groups(rows: pd.DataFrame) -> Iterator[tuple[Json, pd.DataFrame]]:
+    """Yield the flights by sensor and method; and by the fuel's sulphur, where several flights share it."""
+    for sensor, of_sensor in rows.groupby("sensor"):
+        for method, prefix in METHODS.items():
+            figures = {f"{prefix}_{of}percent": f"{of}percent" for of in ("", "low_", "high_", "uncertainty_", "noise_")}
+            named = (
+                of_sensor[["fsc_fuel_percent", "fsc_expected_percent", *figures]].rename(columns=figures).dropna(subset="percent")
+            )
+            if len(named):
+                yield {"sensor": str(sensor), "method": method, "fsc_fuel_percent": None}, named
+            for _, group in named.groupby("fsc_fuel_percent"):
+                if 1 < len(group) < len(named):
+                    yield {"sensor": str(sensor), "method": method, "fsc_fuel_percent": _fuel(group)}, group
+
+
+def _accuracy(flights: pd.DataFrame, confidence: float) -> Json:
+    expected = flights["fsc_expected_percent"].to_numpy(dtype=np.float64)
+    found = flights["percent"].to_numpy(dtype=np.float64)
+    error = found - expected
+    inside = (flights["low_percent"] <= expected) & (expected <= flights["high_percent"])
+    covered, n = int(inside.sum()), len(flights)
+    interval = clopper_pearson(covered, n, confidence)
+    return {
+        "flights": n,
+        "bias_percent": float(np.mean(error)),
+        "bias_relative": float(np.mean(error) / np.mean(expected)) if np.mean(expected) > 0.0 else None,
+        "bias_standard_error_percent": float(np.std(error, ddof=1) / np.sqrt(n)) if n > 1 else None,
+        "spread_percent": float(np.std(error, ddof=1)) if n > 1 else None,
+        "stated_percent": float(np.sqrt(np.mean(flights["uncertainty_percent"].to_numpy(dtype=np.float64) ** 2))),
+        "stated_noise_percent": float(np.sqrt(np.mean(flights["noise_percent"].to_numpy(dtype=np.float64) ** 2))),
+        "coverage": covered / n,
+        "coverage_interval": [interval.low, interval.high],
+    }
+
+
+def _calls(flights: pd.DataFrame, confidence: float) -> Json:
+    """Return how often ships of one fuel were called above the limit: at the end, and after two minutes."""
+    called: Json = {}
+    for name, column in (("above", "sulphur_verdict"), ("above_2min", "verdict_2min")):
+        above = int((flights[column] == "above").sum())
+        called[name] = above / len(flights)
+        interval = clopper_pearson(above, len(flights), confidence)
+        called[f"{name}_interval"] = [interval.low, interval.high]
+    open_share = float((flights["sulphur_verdict"] == "open").mean())
+    limit = float(flights["sulphur_limit_percent"].iloc[0])
+    return {"flights": len(flights), "fsc_fuel_percent": _fuel(flights), "limit_percent": limit, "open": open_share} | called
+
+
+def _fuel(flights: pd.DataFrame) -> float:
+    """Return the sulphur content that flights share [% m/m]."""
+    return float(flights["fsc_fuel_percent"].iloc[0])

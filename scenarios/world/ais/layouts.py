@@ -1,0 +1,127 @@
+"""Layouts of files of AIS reports, each recognised by its header, and the rows of one vessel in them."""
+
+import csv
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TextIO
+
+from scenarios.errors import InputError
+from scenarios.world.ais.nmea import nmea_rows
+from scenarios.world.ais.rows import AisRow, number_of, seconds_of
+
+_NAMED = 5
+"""Vessels of a file that a message names at most."""
+
+
+def _danish_time(text: str) -> float:
+    return datetime.strptime(text.strip(), "%d/%m/%Y %H:%M:%S").replace(tzinfo=UTC).timestamp()
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Columns of a table of reports.
+
+    Attributes
+    ----------
+    name : of the layout
+    columns : heads of time, identity, latitude, longitude, speed [kt] and course [deg], in lower case
+    seconds : time since 1970 of what the first of them holds [s]
+    """
+
+    name: str
+    columns: tuple[str, ...]
+    seconds: Callable[[str], float]
+
+
+LAYOUTS = (
+    Layout("plain", ("time_utc", "mmsi", "lat_deg", "lon_deg", "sog_kn", "cog_deg"), seconds_of),
+    Layout("Danish Maritime Authority", ("timestamp", "mmsi", "latitude", "longitude", "sog", "cog"), _danish_time),
+    Layout("Marine Cadastre up to 2024", ("basedatetime", "mmsi", "lat", "lon", "sog", "cog"), seconds_of),
+    Layout("Marine Cadastre from 2025", ("base_date_time", "mmsi", "latitude", "longitude", "sog", "cog"), seconds_of),
+)
+"""The project's own; that of the Danish Maritime Authority ("# Timestamp,Type of mobile,MMSI,..."); and those of NOAA's Marine
+Cadastre ("MMSI,BaseDateTime,LAT,LON,...", and "mmsi,base_date_time,longitude,latitude,...")."""
+
+
+def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow]]:
+    """Return the vessel's identity and its rows, in the order of the file.
+
+    Parameters
+    ----------
+    path : of a table with one of ``LAYOUTS``, or of NMEA sentences
+    mmsi : of the vessel; may be left out where the file has one vessel alone
+
+    Raises
+    ------
+    InputError : the file cannot be read, its layout is unknown, or it has no rows of the vessel
+    """
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            return _of_one(path, mmsi, _all_rows(path, file, mmsi))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}; check the path, relative to the scenario file") from None
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path}: not a table or NMEA sentences as text ({error}); unpack it, or save it in UTF-8") from None
+
+
+def _all_rows(path: Path, file: TextIO, mmsi: int | None) -> Iterator[tuple[int, AisRow]]:
+    head = file.readline()
+    if not head.strip():
+        raise InputError(f"{path}: the file is empty; give a file of AIS reports")
+    if "!AI" in head or path.suffix.lower() == ".nmea":
+        file.seek(0)
+        return nmea_rows(file, path)
+    return _table_rows(path, head, file, mmsi)
+
+
+def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterator[tuple[int, AisRow]]:
+    heads = [name.strip().removeprefix("#").strip().lower() for name in next(csv.reader([head]))]
+    layout = next((layout for layout in LAYOUTS if set(layout.columns) <= set(heads)), None)
+    if layout is None:
+        plain = ",".join(LAYOUTS[0].columns)
+        raise InputError(
+            f"{path}, line 1: the header is {head.strip()[:80]!r}; known are those of the Danish Maritime Authority and of Marine"
+            f" Cadastre, and {plain}: rename the columns to these"
+        )
+    places = [heads.index(column) for column in layout.columns]
+    wanted = "" if mmsi is None else str(mmsi)
+    # Files of a day have millions of lines: those of other vessels are passed over as they are.
+    lines = ((number, line) for number, line in enumerate(file, start=2) if wanted in line)
+    for number, line in lines:
+        cells = next(csv.reader([line]), [])
+        if len(cells) <= max(places):
+            continue
+        time, identity, *others = (cells[place] for place in places)
+        if not identity.strip().isdigit():
+            continue
+        try:
+            seconds = layout.seconds(time)
+        except ValueError:
+            raise InputError(
+                f"{path}, line {number}: {time[:40]!r} is no time of the layout {layout.name}; correct it, or delete the line"
+            ) from None
+        yield int(identity), AisRow(number, seconds, *map(number_of, others))
+
+
+def _of_one(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) -> tuple[int, list[AisRow]]:
+    """Return the rows of the vessel asked for, or of the only one."""
+    found: list[AisRow] = []
+    counts: Counter[int] = Counter()
+    for identity, row in rows:
+        counts[identity] += 1
+        if mmsi is None or identity == mmsi:
+            found.append(row)
+    if mmsi is None and len(counts) > 1:
+        raise InputError(f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one: vessel.mmsi")
+    if not found:
+        asked = "any vessel" if mmsi is None else f"MMSI {mmsi}"
+        known = f"; it has {_most(counts)}" if counts else ""
+        raise InputError(f"{path}: no row of {asked}{known}: check vessel.mmsi")
+    return mmsi if mmsi is not None else next(iter(counts)), found
+
+
+def _most(counts: Counter[int]) -> str:
+    return ", ".join(f"{identity} ({rows} rows)" for identity, rows in counts.most_common(_NAMED))

@@ -1,0 +1,44 @@
+"""Where on earth a flight begins, and when."""
+
+import math
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cached_property
+
+from common.geodesy import LocalFrame
+from scenarios.schema.world import PlaceConfig
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """Where and when a flight begins; what is not known is not a number.
+
+    Attributes
+    ----------
+    latitude, longitude : of the origin [rad]
+    utc : of the start, since 1970 [s]
+    """
+
+    latitude: float
+    longitude: float
+    utc: float
+
+    @cached_property
+    def frame(self) -> LocalFrame:
+        """The frame that north and east metres are in."""
+        return LocalFrame(self.latitude, self.longitude)
+
+
+def given_place(config: PlaceConfig) -> Place:
+    """Return the place that a scenario gives."""
+    return Place(
+        latitude=math.nan if config.latitude_deg is None else math.radians(config.latitude_deg),
+        longitude=math.nan if config.longitude_deg is None else math.radians(config.longitude_deg),
+        utc=math.nan if config.utc is None else config.utc.timestamp(),
+    )
+
+
+def utc_text(seconds: float) -> str:
+    """Return a time since 1970 [s] in ISO 8601, to a millisecond where it is no whole second."""
+    time = datetime.fromtimestamp(seconds, UTC)
+    return time.isoformat(timespec="milliseconds" if time.microsecond else "seconds").replace("+00:00", "Z")

@@ -1,0 +1,87 @@
+"""The wind of one place from netCDF, such as ERA5 of the Copernicus Climate Data Store, read by xarray."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.errors import InputError
+
+Array = npt.NDArray[np.float64]
+
+_PAIRS = ((10.0, "u10", "v10"), (100.0, "u100", "v100"))
+"""Height [m] and names of ERA5's wind near the surface, eastward and northward."""
+
+_TIMES = ("valid_time", "time")
+
+_PLACES = ("latitude", "longitude")
+
+
+def read_netcdf(path: Path, latitude_deg: float, longitude_deg: float) -> tuple[tuple[float, ...], tuple[float, ...], Array]:
+    """Return times since 1970 [s], heights [m], and north and east velocity at each, shape (n, m, 2) [m/s].
+
+    The wind is that of ``u10``, ``v10`` and ``u100``, ``v100``, or of ``u`` and ``v`` over a coordinate ``height`` in metres;
+    between points of the grid of ``latitude`` and ``longitude`` it is interpolated.
+
+    Raises
+    ------
+    InputError : xarray is missing, the file cannot be read or has no such wind, or the place is beyond its grid
+    """
+    try:
+        import xarray
+    except ImportError:
+        raise InputError(
+            f"wind.table: {path}: netCDF needs xarray and h5netcdf; install the extra: pip install 'plume-flight-study[weather]'"
+        ) from None
+    try:
+        with xarray.open_dataset(path) as data:
+            return _wind_at(path, data, latitude_deg, longitude_deg)
+    except (OSError, ValueError, KeyError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = str(error).splitlines()[0][:160]
+        raise InputError(f"wind.table: {path}: cannot be read as netCDF ({reason}); check the file") from None
+
+
+def _wind_at(
+    path: Path, data: Any, latitude_deg: float, longitude_deg: float
+) -> tuple[tuple[float, ...], tuple[float, ...], Array]:
+    time = next((name for name in _TIMES if name in data.dims), None)
+    pairs = [(height, u, v) for height, u, v in _PAIRS if u in data and v in data]
+    if time is None or not (pairs or {"u", "v", "height"} <= {*data.variables}):
+        raise InputError(
+            f"wind.table: {path}: it has {', '.join(sorted(map(str, data.variables)))[:120]}; needed are a time and u10 with v10,"
+            " or u and v over height"
+        )
+    if set(_PLACES) <= set(data.dims):
+        data = _at_place(path, data, latitude_deg, longitude_deg)
+    if pairs:
+        heights = tuple(height for height, _, _ in pairs)
+        layers = [(data[v].transpose(time).values, data[u].transpose(time).values) for _, u, v in pairs]
+        velocity = np.stack([np.stack(layer, axis=-1) for layer in layers], axis=1)
+    else:
+        data = data.sortby("height")
+        heights = tuple(float(height) for height in data["height"].values)
+        velocity = np.stack([data[name].transpose(time, "height").values for name in ("v", "u")], axis=-1)
+    data_times = data[time].values.astype("datetime64[ms]").astype(np.int64) / 1000.0
+    if not np.isfinite(velocity).all():
+        raise InputError(f"wind.table: {path}: it has no wind at {latitude_deg:.3f}, {longitude_deg:.3f} deg; give another place")
+    return tuple(float(t) for t in data_times), heights, np.asarray(velocity, dtype=np.float64)
+
+
+def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) -> Any:
+    """Return the data of one place, by bilinear interpolation."""
+    east = data["longitude"].values
+    # ERA5 counts longitudes from 0 to 360, others from -180 to 180.
+    longitude_deg = longitude_deg % 360.0 if east.max() > 180.0 else longitude_deg
+    for name, value in zip(_PLACES, (latitude_deg, longitude_deg), strict=True):
+        low, high = float(data[name].min()), float(data[name].max())
+        if not low <= value <= high:
+            raise InputError(
+                f"wind.table: {path}: {name}s go from {low:g} to {high:g} deg, and the flight begins at {value:.3f}; give a file"
+                " of that place"
+            )
+        data = data.sel({name: low}) if low == high else data.sortby(name)
+    left = [name for name in _PLACES if name in data.dims]
+    return data.interp({name: value for name, value in zip(_PLACES, (latitude_deg, longitude_deg), strict=True) if name in left})

@@ -1,0 +1,166 @@
+"""The mean wind from a file: a table over time, height or both, or netCDF."""
+
+import csv
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from aircraft.atmosphere.wind import WindField, over_the_sea
+from scenarios.errors import InputError
+from scenarios.schema.world import WindConfig
+from scenarios.world.ais.rows import number_of, seconds_of
+from scenarios.world.place import Place, utc_text
+from scenarios.world.wind_netcdf import read_netcdf
+
+Array = npt.NDArray[np.float64]
+
+COLUMNS = ("time_utc", "height_m", "speed_mps", "from_deg")
+"""Of a table; one of the first two may be missing."""
+
+_SPEED_MAX = 100.0
+"""Fastest wind that a table may have: a hurricane's is 90 m/s [m/s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TabledWind:
+    """The wind of a file on a grid.
+
+    Attributes
+    ----------
+    times : since 1970 in UTC, shape (n,); empty where it does not change with time [s]
+    heights : above the sea, shape (m,); empty where it does not change with height [m]
+    velocity : where it blows to, north and east, shape (max(n, 1), max(m, 1), 2) [m/s]
+    """
+
+    times: tuple[float, ...]
+    heights: tuple[float, ...]
+    velocity: Array
+
+
+def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
+    """Return the wind of a scenario that has it from a file, timed from the flight's start.
+
+    Parameters
+    ----------
+    config : the ``[wind]`` section, with a table
+    place : where and when the flight begins
+    duration : of the longest flight [s]
+
+    Raises
+    ------
+    InputError : the file cannot be read, or does not cover the flight
+    """
+    found, name = _read(str(config.table), place), config.table
+    if found.times:
+        first, last = found.times[0], found.times[-1]
+        if not first <= place.utc <= place.utc + duration <= last:
+            raise InputError(
+                f"wind.table: {name} goes from {utc_text(first)} to {utc_text(last)}; the longest flight goes from"
+                f" {utc_text(place.utc)} to {utc_text(place.utc + duration)}: give a longer table, or set place.utc or"
+                " flight.duration_max_s"
+            )
+    times = [time - place.utc for time in found.times] or [0.0]
+    if config.roughness_m is None:
+        return WindField(found.velocity, times, found.heights or (10.0,))
+    if found.heights:
+        raise InputError(f"wind.roughness_m is given beside heights in {name}; leave one of them out")
+    return over_the_sea(found.velocity[:, 0], times, roughness=config.roughness_m, height=config.height_m)
+
+
+def first_time(table: str, place: Place) -> float:
+    """Return the first time of a file of wind, since 1970 [s]; not a number where it has none.
+
+    Raises
+    ------
+    InputError : the file cannot be read
+    """
+    times = _read(table, place).times
+    return times[0] if times else math.nan
+
+
+def _read(table: str, place: Place) -> TabledWind:
+    path = Path(table)
+    try:
+        stamp = path.stat().st_mtime_ns, path.stat().st_size
+    except OSError as error:
+        raise InputError(f"wind.table: {path}: cannot be read: {error.strerror}; check the path") from None
+    if path.suffix.lower() != ".nc":
+        return _read_table(path, stamp)
+    if not math.isfinite(place.latitude):
+        raise InputError(f"wind.table: {path} has winds of many places; say which: place.latitude_deg, place.longitude_deg")
+    return _read_netcdf(path, stamp, math.degrees(place.latitude), math.degrees(place.longitude))
+
+
+@lru_cache(maxsize=8)
+def _read_netcdf(path: Path, _stamp: tuple[int, int], latitude_deg: float, longitude_deg: float) -> TabledWind:
+    times, heights, velocity = read_netcdf(path, latitude_deg, longitude_deg)
+    return TabledWind(times=times, heights=heights, velocity=velocity)
+
+
+@lru_cache(maxsize=8)
+def _read_table(path: Path, _stamp: tuple[int, int]) -> TabledWind:
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            return _on_grid(path, list(_rows(path, csv.reader(file))))
+    except OSError as error:
+        raise InputError(f"wind.table: {path}: cannot be read: {error.strerror}; check the path") from None
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"wind.table: {path}: not a table as text ({error}); save it in UTF-8") from None
+
+
+def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, float, float, float]]:
+    """Yield line, time [s], height [m], and where the wind blows to, north and east [m/s]; not a number for what has no column."""
+    heads = [head.strip().lower() for head in next(cells, [])]
+    if not set(COLUMNS[2:]) <= set(heads) or not set(COLUMNS[:2]) & set(heads):
+        raise InputError(f"wind.table: {path}, line 1: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)},"
+                         " without time_utc or without height_m if need be")  # fmt: skip
+    for line, row in enumerate(cells, start=2):
+        if not any(cell.strip() for cell in row):
+            continue
+        named = dict(zip(heads, row, strict=False))
+        try:
+            time = seconds_of(named.get("time_utc", "")) if "time_utc" in heads else math.nan
+        except ValueError:
+            raise InputError(
+                f"wind.table: {path}, line {line}: {named.get('time_utc', '')[:40]!r} is no time, as in 2026-06-01T12:00:00Z;"
+                " correct it"
+            ) from None
+        height, speed, direction = (number_of(named.get(column)) for column in COLUMNS[1:])
+        good = 0.0 <= speed <= _SPEED_MAX and abs(direction) <= 360.0 and ("height_m" not in heads or 0.0 < height <= 20e3)
+        if not good:
+            raise InputError(
+                f"wind.table: {path}, line {line}: {','.join(row)[:80]!r}; speeds go from 0 to {_SPEED_MAX:g} m/s, directions"
+                " from 0 to 360 deg, heights are above 0: correct the line, or delete it"
+            )
+        to = math.radians(direction) + math.pi
+        yield line, time, height, speed * math.cos(to), speed * math.sin(to)
+
+
+def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> TabledWind:
+    if not rows:
+        raise InputError(f"wind.table: {path}: no row with a wind; give one at least")
+    timed, layered = math.isfinite(rows[0][1]), math.isfinite(rows[0][2])
+    at: dict[float, dict[float, tuple[float, float]]] = {}
+    before = -math.inf
+    for line, time, height, north, east in rows:
+        key = time if timed else 0.0
+        if key < before:
+            raise InputError(f"wind.table: {path}, line {line}: {utc_text(time)} is before the line above; sort the table by time")
+        layers = at.setdefault(key, {})
+        if (layer := height if layered else 0.0) in layers:
+            raise InputError(f"wind.table: {path}, line {line}: the time and height of a line above once more; delete one of them")
+        layers[layer], before = (north, east), key
+    heights = tuple(sorted(next(iter(at.values()))))
+    for time, layers in at.items():
+        if tuple(sorted(layers)) != heights:
+            raise InputError(
+                f"wind.table: {path}: at {utc_text(time)} heights are {sorted(layers)} m, at first {list(heights)}; give the same"
+                " at all times"
+            )
+    velocity = np.array([[layers[height] for height in heights] for layers in at.values()])
+    return TabledWind(times=tuple(at) if timed else (), heights=heights if layered else (), velocity=velocity)

@@ -1,0 +1,69 @@
+import numpy as np
+import pytest
+from plume_cases import HEIGHT, straight
+
+from measurement.plume.meander import Meander
+
+SCALE = 90.0
+
+
+def covariance(distance, integral_scale=SCALE):
+    # Section 1.5 of the specification: (1 + |l|/L) exp(-|l|/L), whose integral scale is 2 L.
+    ratio = np.abs(distance) / (0.5 * integral_scale)
+    return (1.0 + ratio) * np.exp(-ratio)
+
+
+def correlation(values, lag):
+    return float(np.mean(values[:-lag] * values[lag:]))
+
+
+def test_the_process_has_the_covariance_that_it_should():
+    length, step = 4e6, 15.0
+    process = Meander(0.0, length, SCALE, np.random.default_rng(5))
+    values = process.at(np.arange(0.0, length, step))
+    # About length/(2 SCALE) = 22,000 independent values: a standard error of 0.007 and, with Bartlett's sum, of at most 0.01.
+    assert np.mean(values) == pytest.approx(0.0, abs=0.03)
+    assert np.var(values) == pytest.approx(1.0, abs=0.03)
+    for lag in (1, 2, 4, 8, 16):
+        assert correlation(values, lag) == pytest.approx(covariance(lag * step), abs=0.03)
+    # Gaussian: kurtosis 3, whose standard error is sqrt(24/22,000) = 0.03.
+    assert np.mean(values**4) == pytest.approx(3.0, abs=0.2)
+
+
+def test_the_integral_of_the_covariance_is_the_integral_scale():
+    distance = np.linspace(0.0, 30.0 * SCALE, 20001)
+    assert np.trapezoid(covariance(distance), distance) == pytest.approx(SCALE, rel=1e-4)
+
+
+def test_the_process_is_smooth_between_its_steps():
+    process = Meander(0.0, 2000.0, SCALE, np.random.default_rng(1))
+    place = np.linspace(0.0, 1999.0, 200001)
+    slope = np.diff(process.at(place)) / np.diff(place)
+    # No corner: from one centimetre to the next the slope changes by what white noise of its stationary strength gives; it has a
+    # standard deviation of 1/L = 0.022 and changes by 4 noise^(1/2) at most, of which a corner would be a hundred times as much.
+    assert np.abs(np.diff(slope)).max() < 5e-4
+    # Stationary slope: variance 1/L^2 (about 22 independent stretches).
+    assert np.std(slope) == pytest.approx(2.0 / SCALE, rel=0.4)
+
+
+def test_it_is_stationary_from_its_first_place_on():
+    first = np.array([Meander(0.0, 10.0, SCALE, np.random.default_rng(k)).at(np.zeros(1))[0] for k in range(2000)])
+    # Standard errors of 2,000: 0.022 and 0.032; three of them.
+    assert np.mean(first) == pytest.approx(0.0, abs=0.07)
+    assert np.var(first) == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize(("name", "scale"), [("across", 2.5 * HEIGHT), ("up", 0.5 * HEIGHT)])
+def test_successive_crossings_are_correlated_as_the_integral_scale_says(name, scale):
+    wind, interval, until = 3.0, 9.5, 60000.0
+    plume = straight(wind, 8.0, since=-100.0, until=until, age_max=60.0)
+    time = np.arange(0.0, until, interval / 2.0)
+    sample = plume.sample(time, wind * time - 150.0, np.zeros(len(time)), np.full(len(time), 70.0))
+    centre = sample.centre_across if name == "across" else sample.centre_height - sample.axis_height
+    # The centre is seldom at the sea here, where it is mirrored.
+    values = centre / centre.std()
+    # 60,000 s times 3 m/s over twice the integral scale: at least 1,000 independent values; three standard errors are 0.1.
+    for crossings in (1, 2, 4):
+        assert correlation(values, 2 * crossings) == pytest.approx(covariance(crossings * interval * wind, scale), abs=0.1)
+    # Paper's interval: across, successive crossings see nearly the same meander; up, hardly.
+    assert correlation(values, 2) > 0.7 if name == "across" else correlation(values, 2) < 0.4

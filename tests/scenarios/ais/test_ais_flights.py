@@ -1,0 +1,105 @@
+"""Flights beside a ship from a file of AIS reports, with the kinematic vehicle."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from flight_cases import fly
+
+from scenarios.errors import InputError
+from scenarios.schema.load import CATALOG, load_study
+from scenarios.schema.scenario import Scenario
+from scenarios.studies.flight_study import FlightStudy
+
+DANISH = {"track": str(CATALOG / "ais" / "made_danish.csv"), "mmsi": 219999001}
+DECLARED = {"vessel_acceleration_mps2": 0.1, "vessel_speed_max_mps": 8.0, "speed_error_mps": 0.5}
+LONG = {"crossings": 0, "duration_max_s": 3600.0}
+
+
+@pytest.fixture(scope="module")
+def hour():
+    """An hour with a turn of 90 degrees and a slow-down, as the scenario of the catalog has it."""
+    return fly(vessel=DANISH, following=DECLARED, flight=LONG, wind={"speed_mps": 5.0, "from_deg": 60.0})
+
+
+def test_an_hour_beside_a_ship_from_a_file_keeps_out_and_crossings_resume(hour):
+    assert (hour.row["outcome"], hour.row["keepout_violations"]) == ("completed", 0), hour.row["message"]
+    assert hour.row["resume_periods"] <= 2.0
+    crossings = pd.DataFrame(hour.tables["crossings.csv"])["time_s"].to_numpy()
+    for ends in (1380.0, 2486.0):
+        # The turn, 90 degrees at 0.5 deg/s from 1200 s on, and the slow-down, 2.57 m/s at 0.03 m/s^2 from 2400 s on. There are two
+        # crossings a period, so that the mean interval is half of one.
+        after = crossings[crossings >= ends]
+        assert after[0] - ends < 2.0 * 2.0 * np.diff(after[:20]).mean()
+    assert crossings[-1] > 3550.0
+
+
+def test_the_vessel_is_heard_at_the_times_of_the_file_alone(hour):
+    seen = np.hypot(*(hour.history[f"vessel_seen_{axis}_m"] - hour.history[f"vessel_{axis}_m"] for axis in ("north", "east")))
+    # Errors of the reports are 3 m, and reports up to 20 s old.
+    assert 0.5 < np.sqrt(np.mean(seen**2)) < 10.0
+
+
+def test_its_row_says_where_and_when_and_how_fast_the_ship_was(hour):
+    # 57.2 N, 11.3 E at 10 o'clock, at 12 kn (scenarios.world.ais.made); the smooth track begins within its reports' errors.
+    assert hour.row["place_latitude_deg"] == pytest.approx(57.2, abs=1e-4)
+    assert hour.row["place_longitude_deg"] == pytest.approx(11.3, abs=2e-4)
+    assert hour.row["start_utc"] == "2026-06-01T10:00:00Z"
+    assert hour.row["vessel_speed_mps"] == pytest.approx(6.17, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"vessel_acceleration_mps2": 0.03}, ["accelerates by", "following.vessel_acceleration_mps2 = 0.03", "declare more"]),
+        ({"vessel_speed_max_mps": 5.0}, ["moves at up to", "following.vessel_speed_max_mps = 5"]),
+    ],
+)
+def test_a_ship_that_does_more_than_is_declared_is_a_row_with_that_reason(changes, words):
+    row = fly(vessel=DANISH, following=DECLARED | changes, flight=LONG, wind={"speed_mps": 5.0, "from_deg": 60.0}).row
+    assert row["outcome"] == "infeasible"
+    for word in words:
+        assert word in row["message"]
+
+
+def test_reports_that_are_farther_off_than_declared_are_a_row_with_that_reason():
+    reports = {"position_sigma_m": 0.1, "velocity_sigma_mps": 0.01}
+    row = fly(vessel=DANISH, following=DECLARED, reports=reports, flight=LONG, wind={"speed_mps": 5.0, "from_deg": 60.0}).row
+    assert row["outcome"] == "infeasible"
+    assert "the report of 2026-06-01T10:" in row["message"]
+    assert "reports.position_sigma_m" in row["message"]
+
+
+def test_a_track_file_is_relative_to_the_scenario_file_and_its_hash_is_in_the_manifest(tmp_path):
+    (tmp_path / "ship.csv").write_bytes((CATALOG / "ais" / "made_danish.csv").read_bytes())
+    (tmp_path / "mine.toml").write_text(
+        'extends = "ship_from_ais"\ntitle = "mine"\nfidelity = "kinematic"\nvessel.track = "ship.csv"\n', encoding="utf-8"
+    )
+    scenario = load_study(str(tmp_path / "mine.toml"))
+    assert isinstance(scenario, Scenario)
+    assert scenario.vessel.track == str(tmp_path / "ship.csv")
+    study = FlightStudy(scenario, "mine", {"mine": scenario})
+    manifest = study.initial_manifest()
+    assert list(manifest["plugins"]) == [str(tmp_path / "ship.csv")]
+    ((name, rows),) = manifest["vessel_files"].items()
+    assert name.endswith("ship.csv 219999001")
+    assert rows["rows"] - rows["used"] == sum(rows["dropped"].values()) > 0
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("vessel.speed_mps=8", "vessel whose track is not from a file"),
+        ("sweep.nu=[0.3]", "vessel.track, a file that the vessel's speed comes from"),
+        ("place.latitude_deg=57", "give both, or neither"),
+        ("place.utc=2026-06-01T10:00:00", "without a zone"),
+    ],
+)
+def test_keys_that_contradict_a_track_from_a_file_are_refused(override, words):
+    with pytest.raises(InputError, match=words):
+        load_study("ship_from_ais", [override])
+
+
+def test_a_track_from_a_file_that_is_not_there_is_refused_before_any_flight(tmp_path):
+    scenario = load_study("ship_from_ais", [f"vessel.track={tmp_path / 'none.csv'}", "fidelity=kinematic"])
+    with pytest.raises(InputError, match=r"none\.csv: cannot be read"):
+        FlightStudy(scenario, "mine", {"mine": scenario})

@@ -1,0 +1,168 @@
+"""Files of AIS reports: known layouts, rows of no use, and files of no use."""
+
+import math
+
+import numpy as np
+import pytest
+
+from common.units import METRES_PER_SECOND_PER_KNOT
+from scenarios.errors import InputError
+from scenarios.schema.load import CATALOG
+from scenarios.world.ais import read_ais
+from scenarios.world.ais.made import MADE, danish_file, marine_cadastre_file
+
+PLAIN = "time_utc,mmsi,lat_deg,lon_deg,sog_kn,cog_deg"
+
+ROW = "2026-06-01T10:00:{:02d}Z,219999001,{:.6f},11.3,12.0,20.5"
+
+LAYOUTS = {
+    # Heads as published: web.ais.dk/aisdata, and the data dictionaries of marinecadastre.gov.
+    "danish": (
+        "# Timestamp,Type of mobile,MMSI,Latitude,Longitude,Navigational status,ROT,SOG,COG,Heading,IMO,Callsign,Name,Ship type,"
+        "Cargo type,Width,Length,Type of position fixing device,Draught,Destination,ETA,Data source type,A,B,C,D",
+        "01/06/2026 10:00:{0:02d},Class A,219999001,{1:.6f},11.300000,Under way,,12.0,20.5,511,Unknown,,,,,,,,,,,AIS,,,,",
+    ),
+    "up to 2024": (
+        "MMSI,BaseDateTime,LAT,LON,SOG,COG,Heading,VesselName,IMO,CallSign,VesselType,Status,Length,Width,Draft,Cargo,"
+        "TransceiverClass",
+        "219999001,2026-06-01T10:00:{0:02d},{1:.6f},11.3,12.0,20.5,511.0,,,,70,0,,,,,A",
+    ),
+    "from 2025": (
+        "mmsi,base_date_time,longitude,latitude,sog,cog,heading,vessel_name,imo,call_sign,vessel_type,status,length,width,draft,"
+        "cargo,transceiver",
+        "219999001,2026-06-01 10:00:{0:02d},11.3,{1:.6f},12.0,20.5,511,,,,70,0,,,,,A",
+    ),
+    "plain": (PLAIN, ROW),
+}
+
+
+def table(*rows, head=PLAIN):
+    return "\n".join([head, *rows]) + "\n"
+
+
+def rows(seconds=(0, 10, 20), latitude=57.0):
+    return [ROW.format(second, latitude + 1e-5 * second) for second in seconds]
+
+
+@pytest.fixture
+def read(tmp_path):
+    def of(text, mmsi=None, name="ais.csv"):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        return read_ais(tmp_path / name, mmsi)
+
+    return of
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_every_layout_says_the_same(read, layout):
+    head, row = LAYOUTS[layout]
+    found = read(table(*(row.format(second, 57.0 + 1e-5 * second) for second in (0, 10, 20)), head=head), 219999001)
+    np.testing.assert_allclose(np.degrees(found.latitude), [57.0, 57.0001, 57.0002], rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(np.degrees(found.longitude), 11.3, rtol=1e-12)
+    # 2026-06-01T10:00:00Z is 1780308000 s after 1970 began (date -u -d ... +%s).
+    np.testing.assert_array_equal(found.time, [1780308000.0, 1780308010.0, 1780308020.0])
+    np.testing.assert_allclose(found.speed, 12.0 * METRES_PER_SECOND_PER_KNOT, rtol=1e-12)
+    np.testing.assert_allclose(found.course, math.radians(20.5), rtol=1e-12)
+    assert (found.rows, found.dropped) == (3, {})
+
+
+def test_a_byte_order_mark_and_windows_lines_are_read_over(read):
+    assert len(read("\ufeff" + table(*rows()).replace("\n", "\r\n")).time) == 3
+
+
+@pytest.mark.parametrize(
+    ("row", "reason"),
+    [
+        # Values that say "not available" (ITU-R M.1371-5, table 48), and what no receiver should have written.
+        ("2026-06-01T10:00:05Z,219999001,91.0,181.0,12.0,20.5", "without a possible position"),
+        ("2026-06-01T10:00:05Z,219999001,57.0,190.0,12.0,20.5", "without a possible position"),
+        ("2026-06-01T10:00:05Z,219999001,,11.3,12.0,20.5", "without a possible position"),
+        ("2026-06-01T10:00:05Z,219999001,57.0,11.3,102.3,20.5", "without speed or course"),
+        ("2026-06-01T10:00:05Z,219999001,57.0,11.3,12.0,360.0", "without speed or course"),
+        ("2026-06-01T10:00:05Z,219999001,57.0,11.3,,", "without speed or course"),
+        ("2026-06-01T10:00:00Z,219999001,57.0,11.3,12.0,20.5", "with the time of another"),
+        ("2026-06-01T09:59:00Z,219999001,57.0,11.3,12.0,20.5", "out of order"),
+        ("2036-06-01T10:00:00Z,219999001,57.0,11.3,12.0,20.5", "out of order"),
+        # 10 km off.
+        ("2026-06-01T10:00:05Z,219999001,57.1,11.3,12.0,20.5", "out of reach of others"),
+        # On the other side of the earth, which a tangent plane takes for near.
+        ("2026-06-01T10:00:05Z,219999001,-57.0,-168.7,12.0,20.5", "out of reach of others"),
+    ],
+)
+def test_a_row_of_no_use_is_dropped_and_counted(read, row, reason):
+    first, second, third = rows()
+    found = read(table(first, row, second, third))
+    assert (len(found.time), found.rows, found.dropped) == (3, 4, {reason: 1})
+    assert found.described() == f"ais.csv: 3 of 4 rows of MMSI 219999001 used; dropped: 1 {reason}"
+
+
+@pytest.mark.parametrize("at", [0, 3])
+def test_a_place_that_is_out_of_reach_is_dropped_at_the_ends_as_well(read, at):
+    lines = rows((10, 20, 30))
+    lines.insert(at, ROW.format(0 if at == 0 else 40, 58.0))
+    assert read(table(*lines)).dropped == {"out of reach of others": 1}
+
+
+def test_a_vessel_at_rest_needs_no_course(read):
+    found = read(table(*(f"2026-06-01T10:00:{s:02d}Z,1,57.0,11.3,0.1,360.0" for s in (0, 30))))
+    assert (len(found.time), found.dropped) == (2, {})
+
+
+@pytest.mark.parametrize(
+    ("text", "mmsi", "words"),
+    [
+        ("", None, ["the file is empty"]),
+        ("a,b,c\n1,2,3\n", None, ["line 1", "the header is 'a,b,c'", PLAIN]),
+        (table(*rows()), 5, ["no row of MMSI 5", "219999001 (3 rows)", "check vessel.mmsi"]),
+        (table(), None, ["no row of any vessel"]),
+        (table(*rows(), "2026-06-01T10:00:05Z,7,57.0,11.3,12.0,20.5"), None, ["2 vessels", "name one: vessel.mmsi"]),
+        (table(*rows(), "yesterday,219999001,57.0,11.3,12.0,20.5"), None, ["line 5", "'yesterday' is no time of the layout plain"]),
+        (
+            table(*(f"2026-06-01T10:00:{s:02d}Z,1,91.0,11.3,12.0,20.5" for s in range(4))), None,
+            ["of 4 rows of MMSI 1 0 are of use", "4 without a possible position (first in line 2)", "two at least"],
+        ),
+        ("PK\x03\x04\x00", None, ["the header is"]),
+    ],
+)  # fmt: skip
+def test_a_file_of_no_use_is_refused_in_one_line(read, text, mmsi, words):
+    with pytest.raises(InputError) as refusal:
+        read(text, mmsi)
+    assert "\n" not in str(refusal.value)
+    for word in ["ais.csv", *words]:
+        assert word in str(refusal.value)
+
+
+def test_a_file_that_cannot_be_read_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"none\.csv: cannot be read: No such file"):
+        read_ais(tmp_path / "none.csv")
+    (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00" * 9)
+    with pytest.raises(InputError, match=r"bytes\.csv: not a table"):
+        read_ais(tmp_path / "bytes.csv")
+
+
+def test_nmea_sentences_are_decoded_with_the_time_before_them(read):
+    encode = pytest.importorskip("pyais.encode", reason="pyais is an extra")
+    lines = []
+    for second, prefix in ((0, "\\s:r1,c:1780308000*00\\"), (10, "2026-06-01T10:00:10Z "), (20, "1780308020 ")):
+        said = {"msg_type": 1, "mmsi": 219999001, "lat": 57.0 + 1e-4 * second, "lon": 11.3, "speed": 12.0, "course": 20.5}
+        lines.append(prefix + encode.encode_dict(said, talker_id="AI")[0])
+    lines.insert(1, "!AIVDM,1,1,,A,garbage,0*00")
+    found = read("\n".join(lines) + "\n", name="ais.nmea")
+    np.testing.assert_array_equal(found.time - found.time[0], [0.0, 10.0, 20.0])
+    # In a sentence a place is a whole number of 1/10,000 minutes: rounded to 8e-7 deg.
+    np.testing.assert_allclose(np.degrees(found.latitude), [57.0, 57.001, 57.002], rtol=0.0, atol=9e-7)
+    with pytest.raises(InputError, match="line 1: the sentence has no time"):
+        read(lines[0].rpartition("\\")[2] + "\n", name="ais.nmea")
+
+
+def test_the_files_that_come_with_the_project_are_those_that_are_made():
+    for name, text in zip(MADE, (danish_file(), marine_cadastre_file()), strict=True):
+        assert (CATALOG / "ais" / name).read_text(encoding="utf-8") == text
+
+
+def test_what_is_wrong_in_the_made_file_is_dropped_and_counted():
+    found = read_ais(CATALOG / "ais" / "made_danish.csv", MADE["made_danish.csv"])
+    # ``danish_file`` adds one row of each kind; a row twice and one out of order have times that are there.
+    assert sum(found.dropped.values()) == found.rows - len(found.time) >= 5
+    assert found.dropped["out of reach of others"] == found.dropped["without speed or course"] == 1
+    assert np.diff(found.time).min() > 0.0

@@ -1,0 +1,136 @@
+"""The smooth track through reports, and what is refused of it."""
+
+import math
+from datetime import UTC, datetime
+
+import numpy as np
+import pytest
+
+from scenarios.errors import InputError
+from scenarios.schema.load import CATALOG
+from scenarios.schema.world import VesselConfig
+from scenarios.world.ais.made import MADE
+from scenarios.world.ais.smoothing import JERK_DENSITY, POSITION_SIGMA, VELOCITY_SIGMA, smooth_motion
+from scenarios.world.ais.track import ais_vessel, usual_intervals
+from scenarios.world.vessel import largest_acceleration, sampled
+
+HOUR = 3600.0
+
+
+def vessel(name="made_danish.csv", *, utc=None, duration=HOUR, **changes):
+    config = VesselConfig(track=str(CATALOG / "ais" / name), mmsi=MADE[name], **changes)
+    return ais_vessel(config, utc=utc, duration=duration, margin=5.0)
+
+
+def residuals(of):
+    """Return report minus smooth track of each report within the flight: north, east, and their rates."""
+    return np.array([np.subtract(report[1:], of.motion(report.time)) for report in of.reports if report.time >= 0.0])
+
+
+@pytest.mark.parametrize(
+    ("name", "scatter"),
+    # Errors of the made reports: 2.5 m and 0.8 m of each coordinate, and up to a second of their time at 6 m/s, 1.8 m rms.
+    [("made_danish.csv", math.sqrt(2.0) * math.hypot(2.5, 0.8, 1.3)), ("made_marine_cadastre.csv", 0.0)],
+)
+def test_the_track_keeps_to_the_reports_but_for_their_scatter(name, scatter):
+    found = residuals(vessel(name))
+    assert np.sqrt(np.mean(found[:, :2] ** 2) * 2.0) <= max(scatter, 1.0)
+    assert np.hypot(found[:, 0], found[:, 1]).max() <= 5.0 + scatter
+    # Speed and course as reported: 0.05 m/s of each component, and rounding of 0.1 kn and 0.1 degrees.
+    assert np.sqrt(np.mean(found[:, 2:] ** 2)) < 0.08
+
+
+def test_it_turns_and_slows_as_the_ship_did():
+    ship = vessel()
+    # 90 degrees from 1200 s on at 0.5 deg/s, and from 12 to 7 kn from 2400 s on (scenarios.world.ais.made).
+    assert math.degrees(ship.course(1500.0) - ship.course(1100.0)) == pytest.approx(90.0, abs=2.0)
+    speeds = [math.hypot(*ship.motion(time)[2:]) / (1852.0 / 3600.0) for time in (2300.0, 3000.0)]
+    assert speeds == pytest.approx([12.0, 7.0], abs=0.2)
+    # The slow-down lasts 2.57 m/s over 0.03 m/s^2 = 86 s; its end is known to half of the 30 s over which it is looked for.
+    assert ship.manoeuvres_end == pytest.approx(2486.0, abs=25.0)
+    # 12 kn at 0.5 deg/s is 0.054 m/s^2.
+    assert 0.05 < largest_acceleration(ship, HOUR) < 0.08
+
+
+def test_it_begins_at_the_origin_and_place_and_velocity_agree():
+    ship = vessel()
+    assert ship.motion(0.0)[:2] == (0.0, 0.0)
+    velocity, _ = sampled(ship, HOUR)
+    for time in (100.0, 1300.03, 2450.0, HOUR):
+        before, after = ship.motion(time - 0.5), ship.motion(time + 0.5)
+        # Central differences over 1 s: 1/24 of the jerk, 0.01 m/s^3, and the table's 0.05 s.
+        assert np.subtract(after[:2], before[:2]) == pytest.approx(ship.motion(time)[2:], abs=2e-3)
+    assert np.abs(np.diff(velocity, axis=0)).max() < 0.1 * 0.05
+
+
+def test_a_flight_may_begin_at_any_time_of_the_file_and_knows_the_reports_before():
+    whole = vessel()
+    later = vessel(utc=datetime(2026, 6, 1, 10, 30, tzinfo=UTC), duration=600.0)
+    assert later.place.utc - whole.place.utc == pytest.approx(1800.0)
+    assert -60.0 <= min(report.time for report in later.reports) <= 0.0
+    # The same ship at the same time, seen from another origin; of the reports within 600 s of the flight the track is made.
+    apart = np.subtract(later.motion(300.0)[2:], whole.motion(2100.0)[2:])
+    assert np.abs(apart).max() < 0.01
+    north, east = whole.place.frame.to_local(later.place.latitude, later.place.longitude)
+    assert (float(north), float(east)) == pytest.approx(whole.motion(1800.0)[:2], abs=0.05)
+
+
+def test_usual_intervals_leave_out_the_longest_gaps():
+    shortest, longest = usual_intervals(vessel())
+    # Every 10 s, 10/3 s while turning; a tenth is lost.
+    assert 2.0 <= shortest <= 4.0
+    assert longest == pytest.approx(20.0, abs=1.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"duration": 5000.0},
+            ["go from 2026-06-01T10:00:00Z to 2026-06-01T11:", "the longest flight goes", "flight.duration_max_s"],
+        ),
+        ({"utc": datetime(2026, 6, 1, 9, 0, tzinfo=UTC)}, ["goes from 2026-06-01T09:00:00Z", "place.utc"]),
+        ({"gap_max_s": 15.0}, ["there is no report", "vessel.gap_max_s = 15 s"]),
+    ],
+)
+def test_a_file_that_does_not_cover_the_flight_is_refused(changes, words):
+    with pytest.raises(InputError) as refusal:
+        vessel(**changes)
+    for word in ["made_danish.csv", *words]:
+        assert word in str(refusal.value)
+
+
+def test_smoothing_is_the_least_squares_solution_of_its_model():
+    generator = np.random.default_rng(5)
+    time = np.cumsum(generator.uniform(1.0, 90.0, 12))
+    place, velocity = generator.normal(0.0, 300.0, (12, 2)), generator.normal(0.0, 3.0, (12, 2))
+    smooth = smooth_motion(time, place, velocity)
+    # The mean given all reports, by solving all equations at once: reports, jerk, and what is known of the first state.
+    equations, wanted = [], []
+    for i in range(12):
+        for known, sigma, seen in ((0, POSITION_SIGMA, place[i]), (1, VELOCITY_SIGMA, velocity[i])):
+            row = np.zeros(36)
+            row[3 * i + known] = 1.0
+            equations.append(row / sigma)
+            wanted.append(seen / sigma)
+        if i:
+            t = time[i] - time[i - 1]
+            ahead = np.array([[1.0, t, 0.5 * t * t], [0.0, 1.0, t], [0.0, 0.0, 1.0]])
+            noise = JERK_DENSITY * np.array(
+                [[t**5 / 20, t**4 / 8, t**3 / 6], [t**4 / 8, t**3 / 3, t**2 / 2], [t**3 / 6, t**2 / 2, t]]
+            )
+            root = np.linalg.inv(np.linalg.cholesky(noise))
+            block = np.zeros((3, 36))
+            block[:, 3 * i : 3 * i + 3] = root
+            block[:, 3 * i - 3 : 3 * i] = -root @ ahead
+            equations.extend(block)
+            wanted.extend(np.zeros((3, 2)))
+        else:
+            row = np.zeros(36)
+            row[2] = 1.0 / 0.1
+            equations.append(row)
+            wanted.append(np.zeros(2))
+    states, *_ = np.linalg.lstsq(np.array(equations), np.array(wanted), rcond=None)
+    # Conditioned by gaps of up to 90 s: 1e-8 of the places.
+    np.testing.assert_allclose(smooth(time), states[::3], rtol=0.0, atol=1e-4)
+    np.testing.assert_allclose(smooth.derivative()(time), states[1::3], rtol=0.0, atol=1e-5)

@@ -1,0 +1,161 @@
+"""The mean wind from a table or from netCDF, and what is refused of them."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from flight_cases import fly, scenario
+
+from scenarios.errors import InputError
+from scenarios.schema.load import load_study
+from scenarios.schema.world import WindConfig
+from scenarios.studies.flight_study import FlightStudy
+from scenarios.world.place import Place
+from scenarios.world.wind_table import first_time, tabled_wind
+from scenarios.world.world import mean_wind, place_of, vessel_of
+
+HOURLY = """time_utc,speed_mps,from_deg
+2026-06-01T10:00:00Z,4.0,0
+2026-06-01T11:00:00Z,8.0,0
+2026-06-01T12:00:00Z,8.0,90
+"""
+START = 1780308000.0
+"""2026-06-01T10:00:00Z (date -u -d ... +%s)."""
+
+KATTEGAT = Place(latitude=math.radians(57.2), longitude=math.radians(11.3), utc=START)
+
+
+@pytest.fixture
+def table(tmp_path):
+    def written(text, name="wind.csv"):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        return str(tmp_path / name)
+
+    return written
+
+
+def wind(path, place=KATTEGAT, duration=3600.0, **changes):
+    return tabled_wind(WindConfig(table=path, **changes), place, duration)
+
+
+def test_an_hourly_table_is_timed_from_the_start_of_the_flight(table):
+    field = wind(table(HOURLY), replace(KATTEGAT, utc=START + 1800.0))
+    # From the north it blows south. After half an hour it has grown half-way to 8 m/s.
+    assert field.now(0.0, 60.0) == pytest.approx((-6.0, 0.0), abs=1e-12)
+    assert field.now(1800.0, 60.0) == pytest.approx((-8.0, 0.0), abs=1e-12)
+    assert field.now(5400.0, 60.0) == pytest.approx((0.0, -8.0), abs=1e-12)
+    assert first_time(table(HOURLY), KATTEGAT) == START
+
+
+def test_a_table_over_height_holds_at_all_times(table):
+    field = wind(table("height_m,speed_mps,from_deg\n100,10,270\n10,5,270\n"))
+    assert field.now(1e6, 10.0) == pytest.approx((0.0, 5.0), abs=1e-12)
+    assert field.now(0.0, math.sqrt(1000.0)) == pytest.approx((0.0, 7.5), abs=1e-12)
+
+
+def test_a_table_over_time_and_height_is_both(table):
+    rows = "".join(f"2026-06-01T{10 + hour}:00:00Z,{height},{hour + height / 10},180\n" for hour in (0, 1) for height in (10, 100))
+    field = wind(table("time_utc,height_m,speed_mps,from_deg\n" + rows))
+    assert field.now(1800.0, 100.0) == pytest.approx((10.5, 0.0), abs=1e-12)
+
+
+def test_a_table_over_time_may_have_a_profile_over_height(table):
+    field = wind(table(HOURLY), roughness_m=2e-4)
+    assert field.now(0.0, 10.0) == pytest.approx((-4.0, 0.0), abs=1e-12)
+    assert field.now(0.0, 60.0)[0] == pytest.approx(-4.0 * math.log(60.0 / 2e-4) / math.log(10.0 / 2e-4), rel=1e-12)
+    assert wind(table(HOURLY), roughness_m=2e-4, height_m=60.0).now(0.0, 60.0) == pytest.approx((-4.0, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "changes", "words"),
+    [
+        ("", {}, ["line 1", "the header is ''", "time_utc,height_m,speed_mps,from_deg"]),
+        ("speed_mps,from_deg\n5,0\n", {}, ["line 1", "the header is 'speed_mps,from_deg'"]),
+        ("height_m,speed_mps,from_deg\n", {}, ["no row with a wind"]),
+        (HOURLY + "noon,5,0\n", {}, ["line 5", "'noon' is no time"]),
+        (HOURLY + "2026-06-01T11:30:00Z,5,0\n", {}, ["line 5", "2026-06-01T11:30:00Z is before the line above", "sort"]),
+        (HOURLY + "2026-06-01T12:00:00Z,5,0\n", {}, ["line 5", "once more"]),
+        (HOURLY + "2026-06-01T13:00:00Z,-5,0\n", {}, ["line 5", "speeds go from 0 to 100 m/s"]),
+        (HOURLY + "2026-06-01T13:00:00Z,5,\n", {}, ["line 5", "directions"]),
+        (HOURLY + "2026-06-01T13:00:00Z,5,400\n", {}, ["line 5", "directions"]),
+        (HOURLY, {"duration": 8000.0}, ["goes from 2026-06-01T10:00:00Z to 2026-06-01T12:00:00Z", "to 2026-06-01T12:13:20Z"]),
+        (HOURLY, {"place": replace(KATTEGAT, utc=START - 60.0)}, ["goes from 2026-06-01T09:59:00Z", "set place.utc"]),
+        ("height_m,speed_mps,from_deg\n10,5,0\n", {"roughness_m": 1e-3}, ["wind.roughness_m is given beside heights"]),
+        (
+            "time_utc,height_m,speed_mps,from_deg\n2026-06-01T10:00:00Z,10,5,0\n2026-06-01T12:00:00Z,20,5,0\n", {},
+            ["heights are [20.0] m, at first [10.0]"],
+        ),
+    ],
+)  # fmt: skip
+def test_a_table_of_no_use_is_refused_in_one_line(table, text, changes, words):
+    with pytest.raises(InputError) as refusal:
+        wind(table(text), **changes)
+    assert "\n" not in str(refusal.value)
+    for word in ["wind.csv", *words]:
+        assert word in str(refusal.value)
+
+
+def test_a_table_is_relative_to_its_scenario_and_its_start_is_that_of_a_flight_without_a_time(table, tmp_path):
+    table(HOURLY)
+    (tmp_path / "mine.toml").write_text('title = "mine"\nwind.table = "wind.csv"\nfidelity = "kinematic"\n', encoding="utf-8")
+    given = load_study(str(tmp_path / "mine.toml"))
+    assert given.follows
+    assert place_of(given, vessel_of(given)).utc == START
+    study = FlightStudy(given, "mine", {"mine": given})
+    assert list(study.initial_manifest()["plugins"]) == [str(tmp_path / "wind.csv")]
+    with pytest.raises(InputError, match="wind without a table"):
+        load_study(str(tmp_path / "mine.toml"), ["wind.speed_mps=5"])
+    with pytest.raises(InputError, match=r"give a file \.csv or \.nc"):
+        load_study(str(tmp_path / "mine.toml"), ["wind.table=hourly"])
+
+
+def test_a_flight_in_a_wind_that_changes_knows_it_and_crosses_as_predicted(table):
+    # From 4 m/s ahead to 8 m/s from abeam within 20 minutes.
+    rows = "time_utc,speed_mps,from_deg\n2026-06-01T10:00:00Z,4.0,0\n2026-06-01T10:20:00Z,8.0,90\n"
+    flown = fly(wind={"table": table(rows)}, flight={"crossings": 0, "duration_max_s": 900.0}, start={"distance_m": (400.0, 400.0)})
+    assert (flown.row["outcome"], flown.row["keepout_violations"]) == ("completed", 0), flown.row["message"]
+    assert (flown.row["wind_speed_mps"], flown.row["wind_from_deg"]) == pytest.approx((4.0, 0.0), abs=1e-9)
+    assert flown.row["nu_max"] > flown.row["nu_min"] + 0.05
+    # The wind changes by up to 9 m/s in 1200 s; the filter follows 20 s behind at most.
+    assert flown.row["wind_error_rms_mps"] < 0.15
+    assert flown.row["crossing_interval_mean_s"] == pytest.approx(flown.row["crossing_interval_predicted_s"], rel=0.02)
+    # The plume turns with the wind: behind the vessel's motion north at 8 m/s through the air.
+    field = mean_wind(given := scenario(wind={"table": table(rows)}, flight={"duration_max_s": 900.0}), vessel_of(given))
+    for time in (10.0, 500.0, 890.0):
+        north, east = field.now(time, 60.0)
+        axis = flown.history["plume_axis_rad"].iloc[round(10 * time)]
+        assert math.remainder(axis - math.atan2(east, north - 8.0), math.tau) == pytest.approx(0.0, abs=1e-4)
+
+
+def test_netcdf_of_era5_is_interpolated_at_the_place(tmp_path):
+    xarray = pytest.importorskip("xarray", reason="xarray is an extra")
+    pytest.importorskip("h5netcdf", reason="h5netcdf is an extra")
+    # As ERA5 has it: latitudes from the north, longitudes from 0 to 360, hours.
+    latitude, longitude = np.array([58.0, 57.0]), np.array([11.0, 12.0])
+    hours = np.array(["2026-06-01T10:00", "2026-06-01T11:00"], dtype="datetime64[ns]")
+    east = np.zeros((2, 2, 2)) + longitude - 11.0
+    north = np.zeros((2, 2, 2)) + latitude[:, None] - 57.0
+    north[1] += 1.0
+    dims = ("valid_time", "latitude", "longitude")
+    data = xarray.Dataset(
+        {"u10": (dims, east), "v10": (dims, north), "u100": (dims, 2.0 * east), "v100": (dims, 2.0 * north)},
+        coords={"valid_time": hours, "latitude": latitude, "longitude": longitude},
+    )
+    data.to_netcdf(tmp_path / "era5.nc", engine="h5netcdf")
+    field = wind(str(tmp_path / "era5.nc"))
+    # At 57.2 N, 11.3 E.
+    assert field.now(0.0, 10.0) == pytest.approx((0.2, 0.3), abs=1e-6)
+    assert field.now(3600.0, 100.0) == pytest.approx((2.4, 0.6), abs=1e-6)
+    for place, words in (
+        (replace(KATTEGAT, latitude=0.0), "latitudes go from 57 to 58 deg"),
+        (replace(KATTEGAT, latitude=math.nan), "place.latitude_deg"),
+    ):
+        with pytest.raises(InputError, match=words):
+            wind(str(tmp_path / "era5.nc"), place)
+    (tmp_path / "no.nc").write_bytes(b"no")
+    with pytest.raises(InputError, match=r"no\.nc: cannot be read as netCDF"):
+        wind(str(tmp_path / "no.nc"))
+    data[["u10"]].to_netcdf(tmp_path / "half.nc", engine="h5netcdf")
+    with pytest.raises(InputError, match="needed are a time and u10 with v10"):
+        wind(str(tmp_path / "half.nc"))
