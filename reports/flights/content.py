@@ -9,6 +9,7 @@ from reports.flights.selection import flight_section
 from reports.flights.trial_charts import trial_charts
 from reports.flights.trial_tables import criteria_table, failed_blocks, fault_table, flight_table, trial_table
 from reports.flights.verdict import flight_verdict
+from reports.measurement.flights import sulphur_sections
 from reports.monte_carlo.content import monte_carlo_sections
 from reports.monte_carlo.falsification import falsification_sections
 from reports.run.run_data import RunData
@@ -24,6 +25,7 @@ def flights_content(run: RunData) -> tuple[Verdict, list[Section]]:
     sections = [
         *monte_carlo_sections(run),
         *falsification_sections(run),
+        *sulphur_sections(run),
         _overview(trials),
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
         comparison_section(run, trials),

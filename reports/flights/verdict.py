@@ -9,6 +9,7 @@ from common.binomial import CONFIDENCE, percent, upper_bound
 from reports.document.blocks import Verdict
 from reports.document.tables import limit, number, vehicles_flown
 from reports.flights.criteria import MEASURED, Criterion, criteria_of
+from reports.measurement.flights import sulphur_cards
 from reports.run.columns import (
     clearance,
     column,
@@ -47,7 +48,7 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
         headline=_headline(run, trials, flown, planned),
         detail=_detail(run, trials, flown, planned),
         failures=[*(line for trial in trials for line in _not_met(trial)), *_noteworthy(flown)],
-        figures=[*_bound_figure(run, trials, flown), *_figures(trials, flown, planned)],
+        figures=[*sulphur_cards(run), *_bound_figure(run, trials, flown), *_figures(trials, flown, planned)],
     )
 
 

@@ -18,7 +18,9 @@ from common.run_layout import (
     FILES,
     MANIFEST,
     STATISTICS,
+    SULPHUR,
     SUMMARY,
+    evaluation_path,
     is_file_name,
     time_history_path,
     trajectory_path,
@@ -59,6 +61,15 @@ class RunData:
     def history(self, flight_id: str) -> pd.DataFrame | None:
         """Return a flight's time history, or None if it has none that can be read."""
         return self._parquet(time_history_path(flight_id)) if is_file_name(flight_id) else None
+
+    def evaluation(self, flight_id: str) -> dict[str, Any] | None:
+        """Return what an instrument made of a flight, or None if there is nothing that can be read."""
+        return _record(self.path / evaluation_path(flight_id), self.unread) if is_file_name(flight_id) else None
+
+    @property
+    def sulphur(self) -> dict[str, Any] | None:
+        """Statistics of the flights with a sniffer, or None of a run without."""
+        return _record(self.path / SULPHUR, self.unread)
 
     def has_history(self, flight_id: str) -> bool:
         """Return whether a flight has a time history."""

@@ -10,12 +10,14 @@ import pandas as pd
 
 from common.run_layout import SULPHUR_TABLE
 from measurement.errors import MeasurementError
-from measurement.estimate import FscEstimate, estimate, over_time, time_to_verdict
+from measurement.estimate import FscEstimate, time_to_verdict
+from measurement.estimate.flight_log.analysis import analyse
+from measurement.estimate.verdict import OPEN
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
-ELAPSED = (30.0, 60.0, 90.0, 120.0, 180.0, 240.0, 300.0, 450.0, 600.0, 900.0, 1200.0)
-"""Times after settling at which the estimate is made anew [s]."""
+_INTERVAL = 60.0
+"""About the time between estimates of a flight [s]: the time to a verdict is known to that."""
 
 _SHOWN = ("fsc_percent", "noise_percent", "total_percent", "low_percent", "high_percent")
 
@@ -39,7 +41,7 @@ class FuelEstimate:
     Attributes
     ----------
     figures, over_time : of the summary, and rows of ``SULPHUR_TABLE``
-    document : the estimates by method, their signals, and how the first one came about over time
+    document : record of the analysis, and the signals of its readings
     """
 
     figures: dict[str, Any]
@@ -47,7 +49,7 @@ class FuelEstimate:
     document: Mapping[str, Any] | None = None
 
 
-def fuel_estimate(readings: Readings, instrument: SnifferSpec, *, limit: float) -> FuelEstimate:
+def fuel_estimate(readings: Readings, instrument: SnifferSpec, *, limit: float, expected: float) -> FuelEstimate:
     """Return what readings say of the fuel, by regression and by areas.
 
     Parameters
@@ -55,38 +57,43 @@ def fuel_estimate(readings: Readings, instrument: SnifferSpec, *, limit: float) 
     readings : from settling on
     instrument : as its data sheet says, which is all that the analyst knows
     limit : that the verdict is on [% m/m]
+    expected : what a perfect instrument reads [% m/m]
     """
     try:
-        found = estimate(readings, instrument, limits_percent=(limit,))
-        areas = estimate(readings, instrument, method="areas", limits_percent=(limit,))
+        found = analyse(readings, instrument, limits_percent=(limit,), points=_points(readings))
     except MeasurementError as error:
-        return FuelEstimate(figures={"sulphur_quality": "C", "sulphur_reason": str(error), "sulphur_verdict": "open"})
-    end = float(readings.time[-1] - readings.time[0])
-    table = over_time(readings, instrument, elapsed_s=[*(t for t in ELAPSED if t < end), end], limits_percent=(limit,))
-    table = table.rename(columns={f"verdict_{limit:g}": "verdict", f"probability_above_{limit:g}": "probability_above"})
-    verdict = found.verdicts[0]
-    figures = _figures(found, "fsc") | _figures(areas, "areas_fsc")
+        return FuelEstimate(figures={"sulphur_quality": "C", "sulphur_reason": str(error), "sulphur_verdict": OPEN})
+    by, verdict = found.estimate, found.estimate.verdicts[0]
+    figures = _figures(by, "fsc") | (_figures(found.other, "areas_fsc") if found.other else {})
     figures |= {
-        "fsc_common_percent": math.sqrt(sum(value**2 for value in found.common_percent.values())),
-        "sulphur_quality": found.quality,
-        "sulphur_reason": "; ".join(found.quality_reasons),
+        "fsc_common_percent": math.sqrt(sum(value**2 for value in by.common_percent.values())),
+        "sulphur_quality": by.quality,
+        "sulphur_reason": "; ".join(by.quality_reasons),
         "sulphur_verdict": verdict.verdict,
         "probability_above": verdict.probability_above,
-        "verdict_2min": _verdict_after(table, 120.0),
-        "verdict_time_s": time_to_verdict(table.rename(columns={"verdict": f"verdict_{limit:g}"}), limit),
-        "co2_signal_to_noise": found.figures.co2_snr,
-        "so2_signal_to_noise": found.figures.so2_snr,
+        "verdict_2min": _verdict_after(found.table, 120.0, f"verdict_{limit:g}"),
+        "verdict_time_s": time_to_verdict(found.table, limit),
+        "co2_signal_to_noise": by.figures.co2_snr,
+        "so2_signal_to_noise": by.figures.so2_snr,
     }
-    document = {"estimate": found.record(), "areas": areas.record(), "over_time": table.to_dict("list")}
-    rows = [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
-    signals = {name: np.round(values, 4).tolist() for name, values in found.signals.items()}
-    return FuelEstimate(figures=figures, over_time=rows, document=document | {"signals": signals})
+    named = found.table.rename(columns=lambda name: name.removesuffix(f"_{limit:g}"))
+    signals = {str(name): np.round(values, 4).tolist() for name, values in by.signals.items()}
+    return FuelEstimate(
+        figures=figures,
+        over_time=[{str(name): value for name, value in row.items()} for row in named.to_dict("records")],
+        document=found.record(expected) | {"signals": signals},
+    )
 
 
-def _verdict_after(table: pd.DataFrame, elapsed: float) -> str:
+def _points(readings: Readings) -> int:
+    """Return at how many even times the estimate is made anew."""
+    return max(1, round(float(readings.time[-1] - readings.time[0]) / _INTERVAL)) if len(readings) else 0
+
+
+def _verdict_after(table: pd.DataFrame, elapsed: float, name: str) -> str:
     """Return the verdict after some time [s]; open before there is one."""
-    known = table.loc[table["elapsed_s"] <= elapsed, "verdict"]
-    return str(known.iloc[-1]) if len(known) else "open"
+    known = table.loc[table["elapsed_s"] <= elapsed, name]
+    return str(known.iloc[-1]) if len(known) else OPEN
 
 
 def _figures(found: FscEstimate, name: str) -> dict[str, Any]:

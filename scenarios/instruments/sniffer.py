@@ -110,16 +110,15 @@ class SnifferOnBoard:
         columns = np.column_stack([*along[: len(GASES)], readings.values[held], *along[len(GASES) :]])
         if not settled_at < at[-1]:
             return Evaluation(columns=columns)
-        settled = readings.time >= settled_at
-        known = fuel_estimate(
-            Readings(readings.time[settled], readings.values[settled]), self._spec, limit=self._settings.limit_percent
-        )
-        fuel, flown = self._exhaust.fuel, at >= settled_at
+        settled, flown = readings.time >= settled_at, at >= settled_at
+        limit, fuel, expected = self._settings.limit_percent, self._exhaust.fuel, expected_fsc(self._exhaust.fuel)
+        measured = Readings(readings.time[settled], readings.values[settled])
+        known = fuel_estimate(measured, self._spec, limit=limit, expected=expected)
         figures = {
             "sensor": self._settings.sensor,
             "fsc_fuel_percent": fuel.sulphur_percent,
-            "fsc_expected_percent": expected_fsc(fuel),
-            "sulphur_limit_percent": self._settings.limit_percent,
+            "fsc_expected_percent": expected,
+            "sulphur_limit_percent": limit,
         }
         passed = pass_figures(
             PlumeSample(*(getattr(plume, of.name)[flown] for of in fields(plume))),
@@ -131,5 +130,5 @@ class SnifferOnBoard:
             columns=columns,
             figures=figures | passed | known.figures,
             tables={SULPHUR_TABLE: known.over_time},
-            document={**known.document, "truth": figures} if known.document else None,
+            document=known.document,
         )

@@ -54,7 +54,7 @@ class PartSection(Section):
             if name not in keys:
                 of_parts = f"; keys of {', '.join(map(repr, parts))} are {', '.join(keys)}"
                 known = of_parts if keys else "; no part that takes it is named"
-                raise ValueError(f"unknown key '{name}'{did_you_mean(name, [*type(self).model_fields, *keys]) or known}")
+                raise ValueError(f"key '{name}' is not known{did_you_mean(name, [*type(self).model_fields, *keys]) or known}")
         for part in parts.values():
             if hasattr(part, "SETTINGS"):
                 self._check(part)

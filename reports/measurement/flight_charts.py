@@ -1,0 +1,152 @@
+"""Figures of flights that measured the fuel: how the method does, and what a trajectory is worth to a sensor."""
+
+import numpy as np
+import pandas as pd
+
+from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.panels import level
+from reports.measurement.data import Record
+from reports.run.columns import column
+from reports.run.run_data import RunData
+
+_COLOURS = ("blue", "vermillion", "green", "purple", "orange", "sky")
+
+_METHODS = {"fsc": "regression", "areas_fsc": "areas"}
+"""What the columns of each method begin with."""
+
+_POINTS_MAX = 4000
+"""Points of a track at most."""
+
+_AXES = {"crossing_interval_mean_s": "Crossing interval [s]", "crossing_distance_mean_m": "Crossing distance [m]"}
+
+
+def error_chart(rows: pd.DataFrame) -> Chart | None:
+    """Return the result of each flight against what a perfect instrument reads, by method."""
+    panels = []
+    for prefix, title in _METHODS.items():
+        lines = []
+        for (sensor, group), colour in zip(rows.groupby("sensor"), _COLOURS, strict=False):
+            expected, found = column(group, "fsc_expected_percent"), column(group, f"{prefix}_percent")
+            # Flights of one fuel stand beside each other, in the order of their numbers.
+            shown = expected * (1.0 + 0.1 * (np.linspace(-0.5, 0.5, len(group)) if len(group) > 1 else 0.0))
+            error = 1.96 * column(group, f"{prefix}_uncertainty_percent") if len(group) <= 60 else None
+            lines.append(Line(x=shown, y=found, label=str(sensor), colour=colour, style="points", error=error))
+        ends = np.array([0.8, 1.25]) * [float(rows["fsc_expected_percent"].min()), float(rows["fsc_expected_percent"].max())]
+        lines.append(Line(x=ends, y=ends, label="perfect", colour="black", style="dash"))
+        wide = ends[1] / ends[0] > 10.0
+        panels.append(
+            Panel(
+                x_label="A perfect instrument [% m/m]", y_label="Measured [% m/m]", title=title, lines=lines,
+                log_x=wide, log_y=wide, y_range=_positive(rows, prefix) if wide else None,
+            )
+        )  # fmt: skip
+    caption = "What flights measured over what a perfect instrument reads. Flights of one fuel are drawn side by side."
+    return Chart(name="sulphur-errors", caption=caption, panels=panels, columns=2, panel_height=0.4)
+
+
+def _positive(rows: pd.DataFrame, prefix: str) -> tuple[float, float]:
+    found = column(rows, f"{prefix}_percent")
+    return 0.2 * float(rows["fsc_expected_percent"].min()), 1.5 * float(np.nanmax(found))
+
+
+def operating_curve(statistics: Record) -> Chart | None:
+    """Return the share of ships called above the limit over their fuel's sulphur; none where there is one fuel alone."""
+    entries = pd.DataFrame(statistics["operating_curve"])
+    if not len(entries) or entries["fsc_fuel_percent"].nunique() < 3:
+        return None
+    lines = []
+    for (sensor, group), colour in zip(entries.groupby("sensor"), _COLOURS, strict=False):
+        fuel = column(group, "fsc_fuel_percent")
+        bounds = np.array(group["above_interval"].tolist(), dtype=np.float64)
+        around = np.concatenate([bounds[:, 0], bounds[::-1, 1]])
+        lines += [
+            Line(x=np.concatenate([fuel, fuel[::-1]]), y=around, label="", colour=colour, fill=True),
+            Line(x=fuel, y=column(group, "above"), label=f"{sensor}, at the end", colour=colour),
+            Line(x=fuel, y=column(group, "above_2min"), label=f"{sensor}, after 2 min", colour=colour, style="dot"),
+        ]
+    limit = float(entries["limit_percent"].iloc[0])
+    fuels = column(entries, "fsc_fuel_percent")
+    lines.append(Line(x=np.array([limit, limit]), y=np.array([0.0, 1.0]), label="limit", colour="black", style="dash"))
+    lines.append(level(np.array([fuels.min(), fuels.max()]), 0.05, "5 %", "grey"))
+    panel = Panel(
+        x_label="Sulphur in the fuel [% m/m]", y_label="Called above the limit [-]", lines=lines, log_x=True, y_range=(0.0, 1.0)
+    )
+    caption = "Operating curve: the share of ships that are called above the limit, with its intervals."
+    return Chart(name="operating-curve", caption=caption, panels=[panel], panel_height=0.4)
+
+
+def trajectory_chart(run: RunData, rows: pd.DataFrame) -> Chart | None:
+    """Return the error of a minute over crossing interval and distance, where these were varied on purpose; otherwise None."""
+    if not {"guidance.bank_deg", "keepout.radius_m"} & set(map(str, run.draws)):
+        return None
+    minutes = (column(rows, "duration_s") - column(rows, "settling_time_s")) / 60.0
+    rows = rows.assign(**{of: column(rows, f"{of}_noise_percent") * np.sqrt(minutes) for of in _METHODS})
+    interval, distance = "crossing_interval_mean_s", "crossing_distance_mean_m"
+    minute = "1σ in a minute [% m/m]"
+    panels = [
+        *(_scattered(rows, interval, of, minute, f"Noise, {method}") for of, method in _METHODS.items()),
+        _scattered(rows, distance, "fsc", minute, "Noise over distance, regression"),
+        _shares(rows, interval),
+    ]
+    caption = (
+        "What a trajectory is worth to a sensor: the standard deviation by noise that a minute of crossings leaves, over their"
+        " interval and their distance; and the share of the truth that each method reads."
+    )
+    return Chart(name="sulphur-trajectory", caption=caption, panels=panels, columns=2, panel_height=0.36)
+
+
+def _scattered(rows: pd.DataFrame, x: str, y: str, y_label: str, title: str) -> Panel:
+    lines = [
+        Line(x=column(group, x), y=column(group, y), label=str(sensor), colour=colour, style="points")
+        for (sensor, group), colour in zip(rows.groupby("sensor"), _COLOURS, strict=False)
+    ]
+    return Panel(x_label=_AXES[x], y_label=y_label, title=title, lines=lines, log_y=True)
+
+
+def _shares(rows: pd.DataFrame, x: str) -> Panel:
+    """Return the share of the truth that each method reads."""
+    styles: dict[str, Style] = {"fsc": "points", "areas_fsc": "diamonds"}
+    lines = [
+        Line(
+            x=column(group, x),
+            y=column(group, f"{of}_percent") / column(group, "fsc_expected_percent"),
+            label=f"{sensor}, {method}",
+            colour=colour,
+            style=styles[of],
+        )
+        for (sensor, group), colour in zip(rows.groupby("sensor"), _COLOURS, strict=False)
+        for of, method in _METHODS.items()
+    ]
+    return Panel(x_label=_AXES[x], y_label="Measured over true [-]", title="Share of the truth", lines=lines)
+
+
+def track_chart(history: pd.DataFrame) -> Chart:
+    """Return the concentration along a flight by the colour of its track: seen from the ship, and in height over distance.
+
+    Parameters
+    ----------
+    history : of the flight once it had settled
+    """
+    rows = history.iloc[:: max(1, -(-len(history) // _POINTS_MAX))]
+    north, east = (column(rows, f"{axis}_m") - column(rows, f"vessel_{axis}_m") for axis in ("north", "east"))
+    height, above, co2 = (column(rows, name) for name in ("altitude_m", "plume_above_m", "co2_ppm"))
+    distance = np.hypot(north, east)
+    order = np.argsort(distance)
+    axis = Line(x=distance[order], y=(height - above)[order], label="plume's axis", colour="vermillion", style="points")
+    panels = [
+        Panel(
+            x_label="East of the ship [m]",
+            y_label="North of the ship [m]",
+            title="Seen from the ship",
+            lines=[Line(x=east, y=north, label="", colour="blue", style="points", values=co2)],
+            equal=True,
+        ),
+        Panel(
+            x_label="Distance from the ship [m]",
+            y_label="Height [m]",
+            title="In height",
+            lines=[axis, Line(x=distance, y=height, label="", colour="blue", style="points", values=co2)],
+        ),
+    ]
+    caption = "CO2 along the track by its colour, as it was, and the height of the plume's mean axis where it was crossed."
+    return Chart(name="sulphur-track", caption=caption, panels=panels, columns=2, panel_height=0.4, scale_label="CO2 [ppm]")

@@ -1,0 +1,111 @@
+"""Tables of flights that measured the fuel: their results, and how the method does."""
+
+import pandas as pd
+
+from common.binomial import percent
+from reports.document.blocks import Table
+from reports.document.tables import number
+from reports.measurement.data import Record
+
+_FSC = "% m/m"
+
+_METHODS = {"regression": "equalise and regress", "areas": "areas of passes"}
+
+
+def flight_table(rows: pd.DataFrame) -> Table:
+    """Return a row per flight: result, uncertainty, verdict."""
+    return Table(
+        head=["Flight", "Sensor", "Fuel [%]", "Perfect [%]", "Measured [%]", "± 95 % [%]", "Quality", "P(above)", "Verdict"],
+        rows=[
+            [
+                str(row["flight_id"]),
+                str(row["sensor"]),
+                number(row["fsc_fuel_percent"], "{:.3f}"),
+                number(row["fsc_expected_percent"], "{:.3f}"),
+                number(row["fsc_percent"], "{:.3f}"),
+                number(1.96 * row["fsc_uncertainty_percent"], "{:.3f}"),
+                str(row["sulphur_quality"]),
+                number(row["probability_above"], "{:.3f}"),
+                str(row["sulphur_verdict"]),
+            ]
+            for _, row in rows.iterrows()
+        ],
+        widths=[2.2, 1.4, 0.8, 0.9, 1.0, 1.0, 0.7, 0.8, 0.8],
+        left_columns=2,
+        breakable=True,
+    )
+
+
+def accuracy_table(statistics: Record) -> Table:
+    """Return bias, spread and coverage by sensor and method."""
+    rows = [entry for entry in statistics["accuracy"] if entry["fsc_fuel_percent"] is None]
+    return Table(
+        head=[
+            "Sensor", "Method", "Flights", f"Bias [{_FSC}]", "Bias [%]", f"Spread, 1σ [{_FSC}]", f"Stated, 1σ [{_FSC}]",
+            f"Of it noise [{_FSC}]", "Covered", f"Interval at {percent(statistics['confidence'])}",
+        ],
+        rows=[
+            [
+                entry["sensor"],
+                _METHODS[entry["method"]],
+                f"{entry['flights']:,}",
+                number(entry["bias_percent"], "{:+.4f}"),
+                number(_times(entry["bias_relative"], 100.0), "{:+.1f}"),
+                number(entry["spread_percent"], "{:.4f}"),
+                number(entry["stated_percent"], "{:.4f}"),
+                number(entry["stated_noise_percent"], "{:.4f}"),
+                percent(entry["coverage"]),
+                " to ".join(percent(bound) for bound in entry["coverage_interval"]),
+            ]
+            for entry in rows
+        ],
+        widths=[1.4, 1.6, 0.7, 1.0, 0.8, 1.0, 1.0, 1.0, 0.8, 1.4],
+        left_columns=2,
+    )  # fmt: skip
+
+
+def calls_table(statistics: Record) -> Table:
+    """Return how often ships of each fuel were called above the limit."""
+    return Table(
+        head=["Sensor", "Fuel [%]", "Limit [%]", "Flights", "Called above", "Interval", "Above after 2 min", "Open at the end"],
+        rows=[
+            [
+                entry["sensor"],
+                f"{entry['fsc_fuel_percent']:g}",
+                f"{entry['limit_percent']:g}",
+                f"{entry['flights']:,}",
+                percent(entry["above"]),
+                " to ".join(percent(bound) for bound in entry["above_interval"]),
+                percent(entry["above_2min"]),
+                percent(entry["open"]),
+            ]
+            for entry in statistics["operating_curve"]
+        ],
+        widths=[1.4, 0.8, 0.8, 0.7, 1.0, 1.5, 1.2, 1.0],
+        breakable=True,
+    )
+
+
+def hit_table(rows: pd.DataFrame) -> Table:
+    """Return figures of the passes: over all flights, median and the tenth that is worst on either side."""
+    named = {
+        "hit_rate": ("Passes that hit the plume, peak above 0.6 of its axis [-]", "{:.2f}"),
+        "axis_height_error_rms_m": ("Height off the plume's axis, rms [m]", "{:.1f}"),
+        "seconds_in_plume_s": ("Time in the plume [s]", "{:.0f}"),
+        "dose_per_pass_ppm_s": ("CO2 dose of a pass [ppm s]", "{:.0f}"),
+        "co2_signal_to_noise": ("CO2 signal to noise [-]", "{:.0f}"),
+        "verdict_time_s": ("Time to a verdict, of flights that reached one [s]", "{:.0f}"),
+    }
+    return Table(
+        head=["Figure", "Lowest tenth", "Median", "Highest tenth", "Flights"],
+        rows=[
+            [title, *(number(rows[name].quantile(q), pattern) for q in (0.1, 0.5, 0.9)), f"{rows[name].notna().sum():,}"]
+            for name, (title, pattern) in named.items()
+            if name in rows
+        ],
+        widths=[3.0, 1.0, 1.0, 1.0, 0.8],
+    )
+
+
+def _times(value: float | None, factor: float) -> float | None:
+    return None if value is None else factor * value

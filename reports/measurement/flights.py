@@ -1,0 +1,136 @@
+"""What flights with a sniffer show of the fuel, and of the method: one flight as a client reads it, many as a method is judged."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from common.binomial import percent
+from reports.document.blocks import Block, Heading, Section, Text
+from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
+from reports.measurement.data import Record
+from reports.measurement.flight_charts import error_chart, operating_curve, track_chart, trajectory_chart
+from reports.measurement.flight_tables import accuracy_table, calls_table, flight_table, hit_table
+from reports.measurement.tables import over_time_table, result_table
+from reports.run.columns import column
+from reports.run.run_data import RunData
+
+_TRUTH = {"co2_true_ppm": "co2_ppm", "so2_true_ppb": "so2_ppb"}
+"""What figures call the truth, and what a time history does."""
+
+_FEW = 8
+"""Flights of which figures are not spread: of so few there are no statistics."""
+
+
+def sulphur_sections(run: RunData) -> list[Section]:
+    """Return the sections of a run whose flights measured the fuel, and none of any other."""
+    if "fsc_percent" not in run.summary or not run.summary["fsc_percent"].notna().any():
+        return []
+    measured = run.summary[run.summary["fsc_percent"].notna()]
+    shown = _flight(run, measured)
+    if shown is not None and len(measured) == 1:
+        return [shown]
+    whole = Section(anchor="sulphur", title="Fuel sulphur content", nav_title="Sulphur", blocks=_blocks(run, measured))
+    return [whole, shown] if shown is not None else [whole]
+
+
+def sulphur_cards(run: RunData) -> list[tuple[str, str, str]]:
+    """Return what was measured of the fuel, for the head of the report: name, value and limit; nothing of a run without."""
+    if "fsc_percent" not in run.summary or not run.summary["fsc_percent"].notna().any():
+        return []
+    measured = run.summary[run.summary["fsc_percent"].notna()]
+    if len(measured) == 1:
+        row = measured.iloc[0]
+        result = f"{row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} %"
+        return [
+            ("Sulphur in the fuel, with its 95 % interval", result, ""),
+            (
+                f"Verdict on {row['sulphur_limit_percent']:g} %, and probability of more",
+                f"{row['sulphur_verdict']}, {percent(row['probability_above'])}",
+                "",
+            ),
+        ]
+    expected, found = (column(measured, name) for name in ("fsc_expected_percent", "fsc_percent"))
+    inside = (column(measured, "fsc_low_percent") <= expected) & (expected <= column(measured, "fsc_high_percent"))
+    return [
+        ("Bias of the sulphur content, mean of flights", f"{float(np.mean(found - expected)):+.4f} %", ""),
+        ("Flights whose 95 % interval holds the truth", percent(float(np.mean(inside))), ""),
+    ]
+
+
+def _blocks(run: RunData, measured: pd.DataFrame) -> list[Block]:
+    statistics = run.sulphur
+    if len(measured) < _FEW or statistics is None:
+        return [flight_table(measured)]
+    charts = [
+        chart
+        for chart in (error_chart(measured), operating_curve(statistics), trajectory_chart(run, measured))
+        if chart is not None
+    ]
+    return [
+        Text(
+            "Each result is compared with what a perfect instrument would read, which is less than the fuel's own content by the"
+            " sulphur that leaves as sulphate. Covered: the stated 95 % interval holds it."
+        ),
+        accuracy_table(statistics),
+        *charts,
+        Heading("Ships called above the limit"),
+        calls_table(statistics),
+        Heading("How well the plume was hit"),
+        hit_table(measured),
+    ]
+
+
+def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
+    """Return the section on the first flight whose signals were kept."""
+    for _, row in measured.iterrows():
+        flight_id = str(row["flight_id"])
+        record, history = run.evaluation(flight_id), run.history(flight_id)
+        if record is not None and history is not None:
+            samples = _samples(record, history)
+            blocks: list[Block | None] = [
+                Text(_told(row)),
+                result_table(record),
+                track_chart(history[history["time_s"] >= row["settling_time_s"]]),
+                over_time_chart(record),
+                over_time_table(record),
+                budget_chart(record),
+                channels_chart(samples),
+                regression_chart(samples, record),
+            ]
+            title = "Fuel sulphur content" if len(measured) == 1 else f"Measurement of flight {flight_id}"
+            shown = [block for block in blocks if block is not None]
+            return Section(anchor="measurement", title=title, nav_title="Measurement", blocks=shown)
+    return None
+
+
+def _told(row: "pd.Series[Any]") -> str:
+    """Return the verdict in words, with probability and limit."""
+    limit, probability = float(row["sulphur_limit_percent"]), float(row["probability_above"])
+    called = {
+        "above": f"The fuel is above the limit of {limit:g} %",
+        "below": f"The fuel is below the limit of {limit:g} %",
+        "open": f"Whether the fuel is above the limit of {limit:g} % stays open",
+    }[str(row["sulphur_verdict"])]
+    return (
+        f"{called}: it holds {row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} % sulphur (95 %), and with a"
+        f" probability of {percent(probability)} more than the limit. Quality {row['sulphur_quality']}"
+        + (f": {row['sulphur_reason']}." if row["sulphur_reason"] else ".")
+        + f" The fuel's own content is {row['fsc_fuel_percent']:.3f} %, of which a perfect instrument reads"
+        f" {row['fsc_expected_percent']:.3f} %."
+    )
+
+
+def _samples(record: Record, history: pd.DataFrame) -> pd.DataFrame:
+    """Return the signals of a flight, with the truth at the times of its readings."""
+    samples = pd.DataFrame(record["signals"])
+    time = column(samples, "time_s")
+    names = {
+        "north_m": "north_m",
+        "east_m": "east_m",
+        "height_m": "altitude_m",
+        "co2_true_ppm": "co2_ppm",
+        "so2_true_ppb": "so2_ppb",
+    }
+    known = {name: np.interp(time, column(history, "time_s"), column(history, of)) for name, of in names.items()}
+    return samples.assign(**known)

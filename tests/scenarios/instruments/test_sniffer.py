@@ -1,0 +1,151 @@
+"""The sniffer on board: what it reads of a flight, and what that says of the fuel."""
+
+import json
+
+import numpy as np
+import pytest
+
+from measurement.emission.fuel import expected_fsc, fuel_preset
+from scenarios.engine.task import Task
+from scenarios.errors import InputError
+from scenarios.experiment.requests import Experiment
+from scenarios.flight import FlightWork
+from scenarios.planning.spreads import PredictedSpreads
+from scenarios.schema.load import load_study
+from tests.run_tables import history_in
+
+# Astern of a ship on a straight course, where the kinematic vehicle settles within a minute or two.
+QUICK = (
+    "fidelity=kinematic",
+    "reports.interval_s=[0,0]",
+    "sensors={}",
+    "following={}",
+    "start.place_m=[-250,-120]",
+    "start.course_deg=-90",
+    "wind.speed_mps=2",
+    "wind.from_deg=0",
+    "vessel.speed_mps=10",
+    "flight.after_settling_s=60",
+)
+PERFECT = ("payload.sensor=laser", "payload.exact=true")
+
+
+def flown(*overrides):
+    scenario = load_study("sulphur", (*QUICK, *overrides))
+    work = FlightWork(experiments=(Experiment("sulphur", scenario),), histories=1, setup=None, spreads=PredictedSpreads())
+    result = work.fly(Task(number=0))
+    (row,) = result.tables["summary.csv"]
+    return row, history_in(result), result
+
+
+@pytest.fixture(scope="module")
+def slow():
+    return flown()
+
+
+def test_truth_and_reading_are_columns_of_the_time_history(slow):
+    row, history, _ = slow
+    assert row["outcome"] == "completed"
+    for gas in ("so2", "no", "no2"):
+        assert {f"{gas}_ppb", f"{gas}_reading_ppb"} <= set(history)
+    # The sensor reads once a second, and the history has ten samples of a second: each reading stands for ten.
+    changes = np.diff(history["co2_reading_ppm"]) != 0.0
+    assert 0.08 < np.count_nonzero(changes) / len(changes) <= 0.1
+    # Clean air on the way there, and smoke at the crossings; the reading of a cell of 4 s is lower and wider.
+    settled = history[history["time_s"] > row["settling_time_s"]]
+    assert settled["co2_ppm"].max() > 500.0
+    assert 430.0 < settled["co2_reading_ppm"].max() < settled["co2_ppm"].max()
+    assert settled["co2_ppm"].min() == pytest.approx(420.0, abs=0.1)
+
+
+def test_gases_are_in_the_ratio_of_the_emission(slow):
+    _, history, _ = slow
+    excess = history[history["co2_ppm"] > 450.0]
+    ratio = (excess["so2_ppb"] - 0.2) / (excess["co2_ppm"] - 420.0)
+    # 0.2322 is the published factor at 87 % carbon (measurement.md, section 4.1).
+    expected = expected_fsc(fuel_preset("mgo", 0.1)) / 0.2322
+    assert np.allclose(ratio, expected, rtol=2e-4)
+
+
+def test_a_good_instrument_reads_what_a_perfect_one_does():
+    row, _, _ = flown(*PERFECT)
+    # Noise alone is left, which the estimate states; four of its standard deviations, and the lag that 5 Hz leaves (2 %).
+    error = row["fsc_percent"] - row["fsc_expected_percent"]
+    assert abs(error) < 4.0 * row["fsc_noise_percent"] + 0.02 * row["fsc_expected_percent"]
+    assert row["fsc_fuel_percent"] == 0.1
+    assert row["fsc_expected_percent"] == pytest.approx(0.0972, abs=5e-5)
+
+
+def test_the_passes_hit_a_plume_of_which_the_height_is_expected(slow):
+    row, _, _ = slow
+    assert row["plume_passes"] >= 5
+    assert row["hit_rate"] > 0.6
+    # The guidance expects the rise without what the stack's tip draws it down by: a metre or so.
+    assert row["axis_height_error_rms_m"] < 3.0
+
+
+def test_the_table_over_time_and_the_document_tell_the_same_result(slow):
+    row, _, result = slow
+    last = result.tables["sulphur.csv"][-1]
+    assert last["flight_id"] == "sulphur_00000"
+    document = json.loads(result.files["flights/sulphur_00000.json"])
+    assert document["estimate"]["fsc_percent"] == row["fsc_percent"] == pytest.approx(last["fsc_percent"], rel=0.05)
+    assert document["true_percent"] == row["fsc_expected_percent"]
+    assert len(document["signals"]["time_s"]) > 50
+
+
+def test_the_same_flight_reads_the_same(slow):
+    _, history, _ = slow
+    _, again, _ = flown()
+    assert history.equals(again)
+
+
+def test_a_flight_without_payload_is_flown_alike(slow):
+    _, history, _ = slow
+    _, bare, result = flown("payload=[]")
+    assert list(result.files) == ["flights/sulphur_00000.parquet"]
+    assert bare.equals(history[list(bare)])
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("payload.sensor=nose", "payload: instrument is 'nose'; there are alphasense_a4"),
+        ("payload.limit_percent=0", "limit_percent is 0"),
+        ("payload.sensr=fast", "payload: key 'sensr' is not known; did you mean 'sensor'?"),
+        ("emission.ship=canoe", "emission.ship: ship 'canoe' is not known; there are container"),
+        ("emission.fuel=coal", "fuel 'coal' is not known; there are mgo"),
+        ("emission.sulphur_percent=7", "emission.sulphur_percent: value is 7"),
+        ("plume.richardson=5", "plume setting richardson is 5"),
+        ("flight.altitude_min_m=200", "altitude_min_m is 200 m and altitude_max_m 120 m"),
+    ],
+)
+def test_bad_values_are_refused_in_one_line(override, words):
+    with pytest.raises(InputError) as refused:
+        load_study("sulphur", (*QUICK, override))
+    message = str(refused.value)
+    assert words in message
+    assert "\n" not in message
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        (("vessel.speed_mps=14", "wind.speed_mps=1"), "speed of container is 14 m/s; it makes 0 to 13.03"),
+        (("plume.model=straight", "plume.direction=apparent_wind"), "plume.model 'straight' has no smoke"),
+        (("emission.load=0.001",), None),
+    ],
+)
+def test_what_shows_in_planning_is_a_row_with_its_reason(overrides, words):
+    row, _, _ = flown(*overrides)
+    if words is None:
+        assert row["outcome"] == "completed"
+        return
+    assert (row["outcome"], row["criteria_met"]) == ("infeasible", False)
+    assert words in row["message"]
+
+
+def test_a_ship_that_hardly_emits_has_no_verdict():
+    row, _, _ = flown("emission.load=0.001")
+    assert (row["sulphur_quality"], row["sulphur_verdict"]) == ("C", "open")
+    assert row["sulphur_reason"]

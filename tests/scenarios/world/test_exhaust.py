@@ -1,0 +1,102 @@
+"""The smoke of a vessel over the ground: it bends with her own track, and a velocity that all share changes nothing."""
+
+import numpy as np
+import pytest
+
+from aircraft.atmosphere.wind import WindField, constant_wind
+from measurement.errors import MeasurementError
+from scenarios.schema.load import load_study
+from scenarios.world.exhaust import exhaust_of
+from scenarios.world.vessel import SteadyVessel
+from scenarios.world.world import mean_wind, plume_of, vessel_of
+
+TIME = np.linspace(10.0, 110.0, 41)
+
+
+def smoke(wind, vessel, *overrides):
+    scenario = load_study("sulphur", overrides)
+    plume = plume_of(scenario, vessel)
+    return exhaust_of(scenario, vessel, plume, wind, duration=200.0, generator=np.random.default_rng(5))
+
+
+def behind(exhaust, vessel, wind, *, distance, across=0.0):
+    """Return the dilution at places behind the vessel's motion through the air, on the plume's mean height."""
+    places = np.array([vessel.motion(t) for t in TIME])
+    through_air = places[:, 2:] - wind
+    ahead = through_air / np.linalg.norm(through_air, axis=1)[:, None]
+    north = places[:, 0] - distance * ahead[:, 0] - across * ahead[:, 1]
+    east = places[:, 1] - distance * ahead[:, 1] + across * ahead[:, 0]
+    return exhaust.sample(TIME, north, east, np.full_like(TIME, 55.0)).dilution
+
+
+@pytest.mark.parametrize("common", [(7.0, 0.0), (-3.0, 11.0)])
+def test_a_velocity_that_ship_and_air_share_changes_nothing(common):
+    vessel, moved = SteadyVessel(10.0, 0.3), Moved(SteadyVessel(10.0, 0.3), common)
+    # The turbulence is that of the true wind: it has to be the same for the comparison to hold.
+    wind = np.array([0.0, 4.0])
+    still, carried = smoke(constant_wind(*wind), vessel), smoke(constant_wind(*wind), vessel)
+    carried = type(carried)(
+        fuel=carried.fuel,
+        emission=carried.emission,
+        dispersion=carried.dispersion,
+        displacement=lambda time: tuple(d + v * time for d, v in zip(still.displacement(time), common, strict=True)),
+    )
+    here = behind(still, vessel, wind, distance=220.0, across=6.0)
+    there = behind(carried, moved, wind + common, distance=220.0, across=6.0)
+    assert here.max() > 0.0
+    # Rounding of places of a kilometre.
+    assert np.allclose(there, here, rtol=1e-8)
+
+
+class Moved:
+    """A vessel with a velocity more."""
+
+    def __init__(self, vessel, velocity):
+        self._vessel, self._velocity = vessel, velocity
+
+    def motion(self, time):
+        north, east, v_north, v_east = self._vessel.motion(time)
+        return (
+            north + self._velocity[0] * time,
+            east + self._velocity[1] * time,
+            v_north + self._velocity[0],
+            v_east + self._velocity[1],
+        )
+
+
+def test_the_smoke_of_a_ship_that_turned_lies_along_her_own_track():
+    overrides = (
+        "vessel.manoeuvres=[{at_s=20,turn_deg=90,turn_rate_deg_s=1.0}]", "wind.speed_mps=2", "wind.from_deg=90", "plume.meander=false",
+    )  # fmt: skip
+    vessel = vessel_of(load_study("sulphur", overrides))
+    exhaust = smoke(mean_wind(load_study("sulphur", overrides), vessel), vessel, *overrides)
+    # At 125 s she sails east; what she emitted at 30 s, before half her turn, the wind has carried 190 m west of there.
+    north, east, _, _ = vessel.motion(30.0)
+    at = np.array([125.0])
+    old = exhaust.sample(at, np.array([north]), np.array([east - 2.0 * 95.0]), np.array([70.0]))
+    assert old.dilution[0] > 0.0
+    assert old.age[0] == pytest.approx(95.0, abs=1.0)
+    assert abs(old.across[0]) < 1.0
+    # Straight behind her, along the apparent wind of now, it would be 1,400 m away.
+    now = vessel.motion(125.0)
+    straight = exhaust.sample(at, np.array([now[0] - 300.0]), np.array([now[1]]), np.array([60.0]))
+    assert straight.dilution[0] == 0.0
+
+
+def test_wind_that_turns_bends_the_plume():
+    vessel = SteadyVessel(8.0, 0.0)
+    turning = WindField([[[0.0, 6.0]], [[0.0, -6.0]]], times=(0.0, 60.0))
+    exhaust = smoke(turning, vessel, "plume.meander=false")
+    # Emitted at 10 s, at (80, 0); until 60 s it is carried by the integral of the wind.
+    moved = [
+        d[0] for d in (np.subtract(turning.displacement(np.array([60.0]), 35.0), turning.displacement(np.array([10.0]), 35.0)))
+    ]
+    found = exhaust.sample(np.array([60.0]), np.array([80.0 + moved[0]]), np.array([moved[1]]), np.array([65.0]))
+    assert found.age[0] == pytest.approx(50.0, abs=0.5)
+    assert abs(found.across[0]) < 0.5
+    assert found.dilution[0] > 0.0
+
+
+def test_air_that_hardly_moves_past_the_ship_has_no_plume():
+    with pytest.raises(MeasurementError, match=r"apparent wind"):
+        smoke(constant_wind(11.5, 0.0), SteadyVessel(12.0, 0.0))
