@@ -21,6 +21,9 @@ _TAIL = 5.0
 _BASE = 15.0
 """Length of the background on either side of the window, where no other pass is; one sample where there is no room [s]."""
 
+_SHARE_LEAST = 0.05
+"""Share that remains of an area under which nothing follows from the rest."""
+
 _SAME = 1e-9
 """Times that differ by less are the same [s]."""
 
@@ -33,13 +36,15 @@ class Areas:
     ----------
     ratio : SO2 over CO2 [ppb/ppm]
     noise : its standard deviation by the noise [ppb/ppm]
-    share : of the truth that the areas are expected to read, as passes overlap in the SO2 channel [-]
+    share : of an area of SO2 that remains, as passes overlap in its channel [-]
+    separate : the ratio that areas of separate passes would read, by the share that remains of each gas [ppb/ppm]
     interval_s : between passes, median [s]; not a number for one pass
     """
 
     ratio: float
     noise: float
     share: float
+    separate: float
     interval_s: float
 
 
@@ -57,13 +62,33 @@ def overlap_ratio(interval: float, instrument: SnifferSpec) -> float:
 
 
 def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> Areas:
-    """Return the ratio of the areas, each over the straight line between the means before and after its window.
+    """Return the ratio of the areas of SO2, corrected for the gases that its cell responds to, and of CO2.
 
-    A window begins before its pass, and ends when the slowest channel has forgotten it or the next one begins. Each gas has its own
-    delay; SO2 is corrected by the areas of the gases that its cell responds to.
+    Areas are of the excess over the straight line between the means before and after a window.
     """
     gases = used_gases(record)
-    shares = shares_of(instrument, gases)
+    counted, weights = shares_of(instrument, gases), _windows(record, instrument, passes)
+    areas = {gas: float(weights[gas] @ record.of(gas)) for gas in gases}
+    co2 = sum(counted[gas][1] * areas[gas] for gas in gases)
+    times = np.array([found.centre_s for found in passes])
+    interval = float(np.median(np.diff(times))) if len(times) > 1 else math.nan
+    if co2 <= 0.0:
+        return Areas(ratio=math.nan, noise=math.nan, share=math.nan, separate=math.nan, interval_s=interval)
+    ratio = sum(counted[gas][0] * areas[gas] for gas in gases) / co2
+    noises = {gas: (counted[gas][0] - ratio * counted[gas][1]) * instrument.known(gas).noise for gas in gases}
+    variance = sum(noises[gas] ** 2 * float(weights[gas] @ weights[gas]) for gas in gases)
+    remains = {gas: max(float(weights[gas] @ _puffs(record, instrument, passes, gas)) / co2, _SHARE_LEAST) for gas in gases}
+    separate = sum(counted[gas][0] * areas[gas] / remains[gas] for gas in gases) / co2
+    return Areas(ratio=ratio, noise=math.sqrt(variance) / co2, share=remains["so2"], separate=separate, interval_s=interval)
+
+
+def _windows(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> dict[str, Array]:
+    """Return the weights of each gas's samples in the areas of all passes together.
+
+    A window begins before its pass, and ends when the slowest channel has forgotten it or the next one begins. Each gas has its own
+    delay.
+    """
+    gases = used_gases(record)
     tail = _TAIL * max(instrument.known(gas).constants[0] for gas in gases)
     weights = {gas: np.zeros(len(record.time)) for gas in gases}
     onsets = [*(found.start_s for found in passes[1:]), math.inf]
@@ -75,30 +100,19 @@ def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
         for i, (start, end) in enumerate(zip(starts, ends, strict=True)):
             free = (ends[i - 1] if i else -math.inf), (starts[i + 1] if i + 1 < len(starts) else math.inf)
             _add_window(weights[gas], record, (start + late, end + late), (free[0] + late, free[1] + late))
-    so2 = sum(shares[gas][0] * float(weights[gas] @ record.of(gas)) for gas in gases)
-    co2 = sum(shares[gas][1] * float(weights[gas] @ record.of(gas)) for gas in gases)
-    ratio = so2 / co2 if co2 > 0.0 else math.nan
-    variance = sum(
-        ((shares[gas][0] - ratio * shares[gas][1]) * instrument.known(gas).noise) ** 2 * float(weights[gas] @ weights[gas])
-        for gas in gases
-    )
-    times = np.array([found.centre_s for found in passes])
-    interval = float(np.median(np.diff(times))) if len(times) > 1 else math.nan
-    share = float(weights["so2"] @ _puffs(record, instrument, passes)) / co2 if co2 > 0.0 else math.nan
-    return Areas(ratio=ratio, noise=math.sqrt(variance) / co2 if co2 > 0.0 else math.nan, share=share, interval_s=interval)
+    return weights
 
 
-def _puffs(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> Array:
-    """Return what the SO2 channel reads of puffs with the dose of each pass, if SO2 and CO2 were alike: sums of exponentials."""
-    so2, co2 = instrument.known("so2"), instrument.known("co2")
-    since = (
-        record.time[:, np.newaxis] - np.array([found.centre_s for found in passes]) - so2.delay_s + co2.delay_s + sum(co2.constants)
-    )
+def _puffs(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], gas: str) -> Array:
+    """Return what a gas's channel reads of puffs with the dose of each pass, if it read CO2: sums of exponentials."""
+    channel, co2 = instrument.known(gas), instrument.known("co2")
+    arrivals = np.array([found.centre_s for found in passes]) - sum(co2.constants) + channel.delay_s - co2.delay_s
+    since = record.time[:, np.newaxis] - arrivals
     doses = np.array([found.dose_ppm_s for found in passes])
     read = np.zeros(len(since))
-    for weight, constant in parallel(so2.constants):
+    for weight, constant in parallel(channel.constants):
         read += weight / constant * (np.where(since >= 0.0, np.exp(-np.maximum(since, 0.0) / constant), 0.0) @ doses)
-    return read * so2.gain / co2.gain
+    return read * channel.gain / co2.gain
 
 
 def _add_window(weights: Array, record: Record, window: tuple[float, float], free: tuple[float, float]) -> None:

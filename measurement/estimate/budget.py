@@ -2,9 +2,12 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from measurement.gases import fsc_factor
+from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
 CARBON_SD = 0.015
@@ -36,22 +39,41 @@ def unmeasured(instrument: SnifferSpec, measured: tuple[str, ...], carbon: float
     return found
 
 
-def common_errors(instrument: SnifferSpec, measured: tuple[str, ...], fsc: Callable[[SnifferSpec], float]) -> dict[str, float]:
-    """Return the standard uncertainty of the result by gains, responses, delays and cross-sensitivities, by name.
+@dataclass(frozen=True)
+class CommonErrors:
+    """What the instrument's uncertainty does.
 
-    Each property is moved by its standard deviation, and the result found anew with ``fsc``; those of a name add in squares.
+    Attributes
+    ----------
+    parts : standard uncertainty of the result, by name
+    residual_energy : expected sum of squares that it adds to the residuals
+    """
+
+    parts: dict[str, float]
+    residual_energy: float
+
+
+def common_errors(
+    instrument: SnifferSpec, measured: tuple[str, ...], fitted: Callable[[SnifferSpec], tuple[float, Array]]
+) -> CommonErrors:
+    """Return what gains, responses, delays and cross-sensitivities do that are not known exactly.
+
+    Each property is moved by its standard deviation, and the result found anew with ``fitted``; those of a name add in squares.
 
     Parameters
     ----------
     instrument : as it is known, with response and delay of SO2 as they fit where they are not given
     measured : gases of the record
-    fsc : result as a function of the instrument, in the unit of what is returned
+    fitted : result and residuals as a function of the instrument
     """
-    found = fsc(instrument)
+    found, residual = fitted(instrument)
     squares: dict[str, float] = {}
+    energy = 0.0
     for name, moved in _moved(instrument, measured):
-        squares[name] = squares.get(name, 0.0) + (fsc(moved) - found) ** 2
-    return {name: math.sqrt(square) for name, square in squares.items()}
+        other, left = fitted(moved)
+        squares[name] = squares.get(name, 0.0) + (other - found) ** 2
+        energy += float(np.sum((left - residual) ** 2))
+    return CommonErrors({name: math.sqrt(square) for name, square in squares.items()}, energy)
 
 
 def _moved(instrument: SnifferSpec, measured: tuple[str, ...]) -> Iterator[tuple[str, SnifferSpec]]:

@@ -12,14 +12,15 @@ from measurement.estimate.areas import area_ratio
 from measurement.estimate.budget import CARBON_SD, SULPHATE_SHARE, common_errors, unmeasured
 from measurement.estimate.fit.alignment import Alignment, align, stated
 from measurement.estimate.fit.groups import grouped
-from measurement.estimate.fit.regression import regress, slope_alone
+from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Signals, make_signals, used_gases
 from measurement.estimate.passes import SNR_LEAST, Pass, co2_background, find_passes, readings_noise
-from measurement.estimate.quality import judged_quality
+from measurement.estimate.quality import judged_quality, stranger
 from measurement.estimate.record import Record, checked_record
 from measurement.estimate.result import Figures, FscEstimate, Method
 from measurement.estimate.verdict import LIMITS_PERCENT, interval, judged
 from measurement.gases import CARBON_FRACTION, UNITS, fsc_factor
+from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
@@ -31,9 +32,6 @@ OVERLAP_LEAST = 0.95
 
 _OUTSIDE = 0.1
 """Share of the samples with the least CO2, by which the level outside the plume is shown."""
-
-_SHARE_LEAST = 0.05
-"""Share of the truth under which the error of overlapping areas is not told larger."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,26 +121,31 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
     alignment = align(record, instrument)
     found = regress(make_signals(record, alignment.instrument))
 
-    def slope(moved: SnifferSpec) -> float:
-        return slope_alone(make_signals(record, align(record, moved, start=alignment.instrument).instrument))
+    def anew(moved: SnifferSpec) -> tuple[float, Array]:
+        return fitted(make_signals(record, align(record, moved, start=alignment.instrument).instrument))
 
-    common = common_errors(alignment.instrument, used_gases(record), slope)
-    common["response"] = math.hypot(common.get("response", 0.0), alignment.slope_deviation)
-    return _Ratio(ratio=found.slope, noise=found.noise, misfit=found.misfit, common=common, alignment=alignment)
+    errors = common_errors(alignment.instrument, used_gases(record), anew)
+    common = {**errors.parts, "response": math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation)}
+    problems = stranger(found.misfit, found.residual_energy, errors.residual_energy, len(record.time))
+    return _Ratio(ratio=found.slope, noise=found.noise, misfit=found.misfit, common=common, alignment=alignment, problems=problems)
 
 
 def _areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _Ratio:
     """Return the ratio of areas; passes that overlap in the slow channel add a common error as large as the closed form tells."""
     alignment = stated(instrument)
     found = area_ratio(record, instrument, passes)
-    common = common_errors(instrument, used_gases(record), lambda moved: area_ratio(record, moved, passes).ratio)
+
+    def anew(moved: SnifferSpec) -> tuple[float, Array]:
+        return area_ratio(record, moved, passes).ratio, np.zeros(1)
+
+    common = common_errors(instrument, used_gases(record), anew).parts
     problems: tuple[str, ...] = ()
     if found.share < OVERLAP_LEAST:
         problems = (
             f"passes every {found.interval_s:.1f} s overlap in an SO2 channel with a t90 of {instrument.known('so2').t90_s:g} s:"
-            f" areas read about {100.0 * found.share:.0f} % of the truth; use the regression",
+            f" about {100.0 * found.share:.0f} % of an area of SO2 remains; use the regression",
         )
-    common["overlap"] = abs(found.ratio) * abs(1.0 / max(found.share, _SHARE_LEAST) - 1.0)
+    common["overlap"] = abs(found.separate - found.ratio)
     return _Ratio(ratio=found.ratio, noise=found.noise, misfit=1.0, common=common, alignment=alignment, problems=problems)
 
 
@@ -176,8 +179,6 @@ def _told(
         fsc=fsc,
         deviation=total,
         agreement=groups.agreement,
-        misfit=ratio.misfit,
-        so2_snr=so2_snr,
         limit=min(limits),
     )
     low, high = interval(fsc, total)

@@ -17,10 +17,9 @@ PASSES_GOOD = 3
 AGREEMENT_LEAST = 0.01
 """Least probability that passes of one fuel differ as much, for class A."""
 
-MISFIT_MOST, EXPLAINED_LEAST = 4.0, 2.0
-"""Mean square of the residuals over that of the noise, and what the plume explains of SO2 over the residuals: beyond the one and
-under the other the instrument is not the one that is stated. In a strong plume residuals are always larger than the noise, as a
-response is never known exactly."""
+STRANGE_SIGMA = 4.0
+"""By so many of its standard deviations each property of the instrument may differ, and the residuals by so many of theirs, until
+the instrument is not the one that is stated."""
 
 NEGATIVE_SIGMA = 3.0
 """A result below 0 by so many standard uncertainties contradicts them."""
@@ -34,8 +33,6 @@ def judged_quality(
     fsc: float,
     deviation: float,
     agreement: float,
-    misfit: float,
-    so2_snr: float,
     limit: float,
 ) -> tuple[Quality, tuple[str, ...]]:
     """Return the quality class and why it is not A.
@@ -46,8 +43,6 @@ def judged_quality(
     snr, passes : of CO2, median of the passes, and how many there are
     fsc, deviation : result and its standard uncertainty [% m/m]
     agreement : probability that passes differ as much
-    misfit : mean square of the residuals over that of the stated noise
-    so2_snr : standard deviation of the SO2 that the plume explains, over that of the residuals
     limit : lowest limit [% m/m]
     """
     rejected = list(problems)
@@ -56,11 +51,6 @@ def judged_quality(
     if math.isfinite(fsc) and fsc < -NEGATIVE_SIGMA * deviation:
         rejected.append(
             f"the result is {fsc:.3f} %, negative by more than {NEGATIVE_SIGMA:g} standard uncertainties: check the corrections"
-        )
-    if misfit > MISFIT_MOST and so2_snr < EXPLAINED_LEAST:
-        rejected.append(
-            f"residuals are {math.sqrt(misfit):.1f} times the stated noise, and more than half of what CO2 explains: check the"
-            " instrument's noise, response and other gases"
         )
     if rejected:
         return "C", tuple(rejected)
@@ -74,3 +64,24 @@ def judged_quality(
     if math.isfinite(agreement) and agreement < AGREEMENT_LEAST:
         reasons.append(f"passes differ more than their noise explains (p = {agreement:.1g}; class A needs {AGREEMENT_LEAST:g})")
     return ("B" if reasons else "A"), tuple(reasons)
+
+
+def stranger(misfit: float, residual_energy: float, instrument_energy: float, samples: int) -> tuple[str, ...]:
+    """Return the problem of residuals that neither noise nor the instrument's stated uncertainty explain, if they are such.
+
+    Parameters
+    ----------
+    misfit : mean square of the residuals over that of the stated noise
+    residual_energy, instrument_energy : sum of squares of the residuals, and what the instrument's uncertainty adds to it
+    samples : of the record
+    """
+    if not misfit > 0.0 or residual_energy == 0.0:
+        return ()
+    unexplained = 1.0 / (1.0 / misfit + STRANGE_SIGMA**2 * instrument_energy / residual_energy)
+    # The mean square of white noise over so many samples has a relative standard deviation of sqrt(2/samples).
+    if unexplained <= 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / samples):
+        return ()
+    return (
+        f"residuals are {math.sqrt(misfit):.1f} times the noise, more than the stated uncertainty of the instrument explains:"
+        " check its response, delay, noise and other gases",
+    )

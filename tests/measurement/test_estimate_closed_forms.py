@@ -10,7 +10,7 @@ from scipy.integrate import quad
 
 from measurement.estimate import estimate
 from measurement.estimate.areas import area_ratio, overlap_ratio
-from measurement.estimate.fit.regression import slope_alone
+from measurement.estimate.fit.regression import fitted
 from measurement.estimate.fit.signals import make_signals
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import Record, checked_record
@@ -103,7 +103,7 @@ def slopes_of_one_pass(actual, *believed):
     values = {"so2": readings.values[:, 0], "co2": readings.values[:, 1]}
     record = Record(step=0.1, times=(readings.time,), values=(values,), problems=())
     nothing = np.zeros((len(readings), 1))
-    return [slope_alone(replace(make_signals(record, spec), basis=nothing)) for spec in believed]
+    return [fitted(replace(make_signals(record, spec), basis=nothing))[0] for spec in believed]
 
 
 @pytest.mark.parametrize("wrong", [0.8, 0.9, 1.1, 1.25])

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from measurement.errors import MeasurementError
 from measurement.estimate.fit.background import without
-from measurement.estimate.fit.regression import noise_covariance, residual_variance, slope_alone
+from measurement.estimate.fit.regression import fitted, noise_covariance, residual_variance
 from measurement.estimate.fit.response import shifted
 from measurement.estimate.fit.signals import Signals, make_signals
 from measurement.estimate.record import Record
@@ -79,12 +79,12 @@ def align(record: Record, instrument: SnifferSpec, start: SnifferSpec | None = N
         place = place + step
         if np.abs(step).max() < _SMALL:
             break
-    fitted = _applied(instrument, place)
+    found = _applied(instrument, place)
     spread = np.sqrt(np.diagonal(covariance))
     return Alignment(
-        instrument=fitted,
+        instrument=found,
         slope_deviation=slope_deviation,
-        t90_sd_s=fitted.known("so2").t90_s * (float(spread[0]) if 0 in free else so2.t90_sd),
+        t90_sd_s=found.known("so2").t90_s * (float(spread[0]) if 0 in free else so2.t90_sd),
         delay_sd_s=float(spread[1]) if 1 in free else math.hypot(so2.delay_sd_s, co2.delay_sd_s),
     )
 
@@ -105,12 +105,11 @@ def _applied(instrument: SnifferSpec, place: Array) -> SnifferSpec:
 def _round(record: Record, instrument: SnifferSpec, place: Array, free: npt.NDArray[np.int64]) -> tuple[Array, Array, float]:
     """Return the Gauss-Newton step, the covariance of log(t90) and delay, and what it adds to the slope's deviation."""
     signals = make_signals(record, _applied(instrument, place))
-    slope = slope_alone(signals)
+    slope, residual = fitted(signals)
     if not math.isfinite(slope):
         return np.zeros(2), np.zeros((2, 2)), math.nan
     derivatives = np.stack([-signals.excess()[0], *(_derivative(record, instrument, place, i, slope) for i in free)], axis=1)
     inverse = np.linalg.pinv(derivatives.T @ derivatives, hermitian=True)
-    residual = _residual(signals, slope)
     step = np.zeros(2)
     step[free] = np.clip(-(inverse @ (derivatives.T @ residual))[1:], -_JUMPS[free], _JUMPS[free])
     # The residuals' noise is not white: it reaches the fit by its own covariance.

@@ -18,6 +18,7 @@ class Slope:
     slope : SO2 over CO2 [ppb/ppm]
     noise : its standard deviation by the noise [ppb/ppm]
     misfit : mean square of the residuals over that of the stated noise [-]
+    residual_energy : sum of squares of the residuals [ppb^2]
     co2_energy : sum of squares of the CO2 excess without that of its noise [ppm^2]
     co2_noise_energy : that of its noise [ppm^2]
     """
@@ -25,15 +26,20 @@ class Slope:
     slope: float
     noise: float
     misfit: float
+    residual_energy: float
     co2_energy: float
     co2_noise_energy: float
 
 
-def slope_alone(signals: Signals) -> float:
-    """Return the slope, corrected for the noise of CO2, which would attenuate it; not a number where CO2 is noise alone."""
+def fitted(signals: Signals) -> tuple[float, Array]:
+    """Return the slope and the residuals.
+
+    The slope is corrected for the noise of CO2, which would attenuate it; it is not a number where CO2 is noise alone.
+    """
     co2, so2 = signals.excess()
     energy = float(co2 @ co2) - _noise_energy(signals, 0.0, 1.0)
-    return float(co2 @ so2) / energy if energy > 0.0 else math.nan
+    slope = float(co2 @ so2) / energy if energy > 0.0 else math.nan
+    return slope, so2 - slope * co2
 
 
 def regress(signals: Signals) -> Slope:
@@ -41,20 +47,25 @@ def regress(signals: Signals) -> Slope:
 
     The noise that the instrument's figures predict is widened by the root of the misfit where the residuals are larger than that.
     """
-    co2, so2 = signals.excess()
-    noise_energy = _noise_energy(signals, 0.0, 1.0)
+    slope, residual = fitted(signals)
+    co2, _ = signals.excess()
+    noise_energy, residual_energy = _noise_energy(signals, 0.0, 1.0), float(residual @ residual)
     energy = float(co2 @ co2) - noise_energy
-    if energy <= 0.0:
-        return Slope(slope=math.nan, noise=math.nan, misfit=math.nan, co2_energy=energy, co2_noise_energy=noise_energy)
-    slope = float(co2 @ so2) / energy
-    residual = so2 - slope * co2
-    expected = _noise_energy(signals, 1.0, -slope)
-    misfit = float(residual @ residual) / expected if expected > 0.0 else 1.0
-    variance = float(noise_covariance(signals, (co2 / energy)[:, np.newaxis], slope)[0, 0])
-    variance += slope**2 * _correlated(signals) / energy**2
+    if not math.isfinite(slope):
+        misfit = variance = math.nan
+    else:
+        expected = _noise_energy(signals, 1.0, -slope)
+        misfit = residual_energy / expected if expected > 0.0 else 1.0
+        variance = float(noise_covariance(signals, (co2 / energy)[:, np.newaxis], slope)[0, 0])
+        variance += slope**2 * _correlated(signals) / energy**2
     return Slope(
-        slope=slope, noise=math.sqrt(variance * max(1.0, misfit)), misfit=misfit, co2_energy=energy, co2_noise_energy=noise_energy
-    )  # fmt: skip
+        slope=slope,
+        noise=math.sqrt(variance * max(1.0, misfit)),
+        misfit=misfit,
+        residual_energy=residual_energy,
+        co2_energy=energy,
+        co2_noise_energy=noise_energy,
+    )
 
 
 def noise_covariance(signals: Signals, weights: Array, slope: float) -> Array:

@@ -25,8 +25,10 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
     yield f"{name}, with: {analysis.instrument.title}"
     yield f"{figures.duration_s:.0f} s, {figures.passes} passes{every}, CO2 signal to noise {figures.co2_snr:.0f}"
     yield result(found)
-    parts = ", ".join(f"{ERRORS.get(key, key)} {value:.4f}" for key, value in by_size(found))
-    yield f"standard uncertainty {found.total_percent:.4f} %: noise {found.noise_percent:.4f}, {parts}"
+    yield f"standard uncertainty {found.total_percent:.4f} %, of which"
+    yield f"  noise {found.noise_percent:.4f}"
+    for key, size in by_size(found):
+        yield f"  {ERRORS.get(key, key)} {size:.4f}"
     yield f"quality {found.quality}" + (f": {'; '.join(found.quality_reasons)}" if found.quality_reasons else "")
     for verdict in found.verdicts:
         yield sentence(verdict)
