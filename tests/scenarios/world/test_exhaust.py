@@ -66,7 +66,8 @@ class Moved:
 
 def test_the_smoke_of_a_ship_that_turned_lies_along_her_own_track():
     overrides = (
-        "vessel.manoeuvres=[{at_s=20,turn_deg=90,turn_rate_deg_s=1.0}]", "wind.speed_mps=2", "wind.from_deg=90", "plume.meander=false",
+        "vessel.manoeuvres=[{at_s=20,turn_deg=90,turn_rate_deg_s=1.0}]", "wind.speed_mps=2", "wind.from_deg=90",
+        "plume.meander=false",
     )  # fmt: skip
     vessel = vessel_of(load_study("sulphur", overrides))
     exhaust = smoke(mean_wind(load_study("sulphur", overrides), vessel), vessel, *overrides)
