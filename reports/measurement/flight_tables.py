@@ -41,8 +41,8 @@ def accuracy_table(statistics: Record) -> Table:
     rows = [entry for entry in statistics["accuracy"] if entry["fsc_fuel_percent"] is None]
     return Table(
         head=[
-            "Sensor", "Method", "Flights", f"Bias [{_FSC}]", "Bias [%]", f"Spread, 1σ [{_FSC}]", f"Stated, 1σ [{_FSC}]",
-            f"Of it noise [{_FSC}]", "Covered", f"Interval at {percent(statistics['confidence'])}",
+            "Sensor", "Method", "Flights", f"Bias [{_FSC}]", "Share read", "Predicted", f"Spread, 1σ [{_FSC}]",
+            f"Stated, 1σ [{_FSC}]", f"Of it noise [{_FSC}]", "Covered", f"Interval at {percent(statistics['confidence'])}",
         ],
         rows=[
             [
@@ -50,7 +50,8 @@ def accuracy_table(statistics: Record) -> Table:
                 _METHODS[entry["method"]],
                 f"{entry['flights']:,}",
                 number(entry["bias_percent"], "{:+.4f}"),
-                number(_times(entry["bias_relative"], 100.0), "{:+.1f}"),
+                percent(entry["share_read"]) if entry["share_read"] is not None else "–",
+                percent(entry["share_predicted"]),
                 number(entry["spread_percent"], "{:.4f}"),
                 number(entry["stated_percent"], "{:.4f}"),
                 number(entry["stated_noise_percent"], "{:.4f}"),
@@ -59,7 +60,7 @@ def accuracy_table(statistics: Record) -> Table:
             ]
             for entry in rows
         ],
-        widths=[1.4, 1.6, 0.7, 1.0, 0.8, 1.0, 1.0, 1.0, 0.8, 1.4],
+        widths=[1.4, 1.6, 0.7, 1.0, 0.8, 0.8, 1.0, 1.0, 1.0, 0.8, 1.4],
         left_columns=2,
     )  # fmt: skip
 
@@ -105,7 +106,3 @@ def hit_table(rows: pd.DataFrame) -> Table:
         ],
         widths=[3.0, 1.0, 1.0, 1.0, 0.8],
     )
-
-
-def _times(value: float | None, factor: float) -> float | None:
-    return None if value is None else factor * value

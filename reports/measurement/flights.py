@@ -70,7 +70,8 @@ def _blocks(run: RunData, measured: pd.DataFrame) -> list[Block]:
     return [
         Text(
             "Each result is compared with what a perfect instrument would read, which is less than the fuel's own content by the"
-            " sulphur that leaves as sulphate. Covered: the stated 95 % interval holds it."
+            " sulphur that leaves as sulphate. Share read: mean of the results over mean of that. Predicted: by the closed form of"
+            " passes that overlap in the slow channel. Covered: the stated 95 % interval holds it."
         ),
         accuracy_table(statistics),
         *charts,

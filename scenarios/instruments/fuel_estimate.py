@@ -24,7 +24,8 @@ _SHOWN = ("fsc_percent", "noise_percent", "total_percent", "low_percent", "high_
 FIGURES = (
     "sensor", "fsc_fuel_percent", "fsc_expected_percent", "sulphur_limit_percent", "fsc_percent", "fsc_uncertainty_percent",
     "fsc_noise_percent", "fsc_common_percent", "fsc_low_percent", "fsc_high_percent", "areas_fsc_percent",
-    "areas_fsc_uncertainty_percent", "areas_fsc_noise_percent", "areas_fsc_low_percent", "areas_fsc_high_percent",
+    "areas_fsc_uncertainty_percent", "areas_fsc_separate_percent",
+    "areas_fsc_noise_percent", "areas_fsc_low_percent", "areas_fsc_high_percent",
     "sulphur_quality", "sulphur_reason", "sulphur_verdict", "probability_above", "verdict_2min", "verdict_time_s",
     "co2_signal_to_noise", "so2_signal_to_noise",
 )  # fmt: skip
@@ -64,7 +65,9 @@ def fuel_estimate(readings: Readings, instrument: SnifferSpec, *, limit: float, 
     except MeasurementError as error:
         return FuelEstimate(figures={"sulphur_quality": "C", "sulphur_reason": str(error), "sulphur_verdict": OPEN})
     by, verdict = found.estimate, found.estimate.verdicts[0]
-    figures = _figures(by, "fsc") | (_figures(found.other, "areas_fsc") if found.other else {})
+    figures = _figures(by, "fsc")
+    if found.other:
+        figures |= _figures(found.other, "areas_fsc") | {"areas_fsc_separate_percent": _separate(found.other)}
     figures |= {
         "fsc_common_percent": math.sqrt(sum(value**2 for value in by.common_percent.values())),
         "sulphur_quality": by.quality,
@@ -94,6 +97,11 @@ def _verdict_after(table: pd.DataFrame, elapsed: float, name: str) -> str:
     """Return the verdict after some time [s]; open before there is one."""
     known = table.loc[table["elapsed_s"] <= elapsed, name]
     return str(known.iloc[-1]) if len(known) else OPEN
+
+
+def _separate(areas: FscEstimate) -> float:
+    """Return what areas would read if passes did not overlap in the slow channel, by the closed form [% m/m]."""
+    return areas.fsc_percent + areas.common_percent.get("overlap", 0.0)
 
 
 def _figures(found: FscEstimate, name: str) -> dict[str, Any]:

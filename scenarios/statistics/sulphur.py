@@ -12,9 +12,13 @@ from scenarios.statistics.intervals import clopper_pearson
 METHODS = {"regression": "fsc", "areas": "areas_fsc"}
 """Methods, and what the columns of their figures begin with."""
 
+_FIGURES = ("", "low_", "high_", "uncertainty_", "noise_", "separate_")
+"""Of a result: what it is, its bounds, its parts, and what areas would read of passes that do not overlap."""
+
 COLUMNS = (
     "flight_id", "sensor", "fsc_fuel_percent", "fsc_expected_percent", "sulphur_limit_percent", "sulphur_verdict", "verdict_2min",
-    *(f"{method}_{figure}percent" for method in METHODS.values() for figure in ("", "low_", "high_", "uncertainty_", "noise_")),
+    "areas_fsc_separate_percent",
+    *(f"{method}_{figure}percent" for method in METHODS.values() for figure in _FIGURES if figure != "separate_"),
 )  # fmt: skip
 """Columns of the summary that these statistics use."""
 
@@ -44,10 +48,9 @@ def _accuracy_groups(rows: pd.DataFrame) -> Iterator[tuple[Json, pd.DataFrame]]:
     """Yield the flights by sensor and method; and by the fuel's sulphur, where several flights share it."""
     for sensor, of_sensor in rows.groupby("sensor"):
         for method, prefix in METHODS.items():
-            figures = {f"{prefix}_{of}percent": f"{of}percent" for of in ("", "low_", "high_", "uncertainty_", "noise_")}
-            named = (
-                of_sensor[["fsc_fuel_percent", "fsc_expected_percent", *figures]].rename(columns=figures).dropna(subset="percent")
-            )
+            figures = {f"{prefix}_{of}percent": f"{of}percent" for of in _FIGURES}
+            known = [name for name in ("fsc_fuel_percent", "fsc_expected_percent", *figures) if name in of_sensor]
+            named = of_sensor[known].rename(columns=figures).dropna(subset="percent")
             if len(named):
                 yield {"sensor": str(sensor), "method": method, "fsc_fuel_percent": None}, named
             for _, group in named.groupby("fsc_fuel_percent"):
@@ -72,6 +75,8 @@ def _accuracy(flights: pd.DataFrame, confidence: float) -> Json:
         "stated_noise_percent": float(np.sqrt(np.mean(flights["noise_percent"].to_numpy(dtype=np.float64) ** 2))),
         "coverage": covered / n,
         "coverage_interval": [interval.low, interval.high],
+        "share_read": float(np.mean(found) / np.mean(expected)) if np.mean(expected) > 0.0 else None,
+        "share_predicted": float(np.mean(found) / np.mean(flights["separate_percent"])) if "separate_percent" in flights else 1.0,
     }
 
 
