@@ -80,8 +80,10 @@ def trajectory_chart(run: RunData, rows: pd.DataFrame) -> Chart | None:
     if not {"guidance.bank_deg", "keepout.radius_m"} & set(map(str, run.draws)):
         return None
     minutes = (column(rows, "duration_s") - column(rows, "settling_time_s")) / 60.0
-    rows = rows.assign(**{of: column(rows, f"{of}_noise_percent") * np.sqrt(minutes) for of in _METHODS})
     interval, distance = "crossing_interval_mean_s", "crossing_distance_mean_m"
+    kept = ["sensor", interval, distance, "fsc_expected_percent", *(f"{of}_percent" for of in _METHODS)]
+    noise = {of: column(rows, f"{of}_noise_percent") * np.sqrt(minutes) for of in _METHODS}
+    rows = pd.concat([rows[kept], pd.DataFrame(noise, index=rows.index)], axis=1)
     minute = "1σ in a minute [% m/m]"
     panels = [
         *(_scattered(rows, interval, of, minute, f"Noise, {method}") for of, method in _METHODS.items()),

@@ -20,7 +20,7 @@ from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[3] / "docs"
 EXAMPLE = ("docs/example_flight.csv", "docs/example_instrument.toml")
 
 

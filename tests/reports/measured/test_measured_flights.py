@@ -1,0 +1,73 @@
+"""The report of flights with a sniffer: one as a client reads it, several as a method is judged."""
+
+import re
+
+import pytest
+from report_parts import assert_axes_read_quantity_and_unit, blocks_of, named_charts
+
+from reports.document.blocks import Table, Text
+from reports.registry import content
+from reports.run.run_data import read_run
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+
+QUICK = (
+    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "following={}", "start.place_m=[-250,-120]",
+    "start.course_deg=-90", "wind.speed_mps=2", "wind.from_deg=0", "vessel.speed_mps=10", "flight.after_settling_s=60",
+)  # fmt: skip
+
+
+def flown(directory, *overrides):
+    scenario = load_study("sulphur", (*QUICK, *overrides))
+    run_study(scenario, "sulphur", directory)
+    return content(read_run(directory))
+
+
+@pytest.fixture(scope="module")
+def one(tmp_path_factory):
+    return flown(tmp_path_factory.mktemp("one") / "run", "flight.after_settling_s=130")
+
+
+@pytest.fixture(scope="module")
+def several(tmp_path_factory):
+    sweeps = ('sweep.payload.sensor=["fast","laser"]', "sweep.emission.sulphur_percent=[0.05,0.1,0.5]", "flights=2")
+    more = ("sweep.guidance.bank_deg=[30,45]",)
+    return flown(tmp_path_factory.mktemp("several") / "run", *sweeps, *more)
+
+
+def test_one_flight_is_told_with_result_probability_and_limit(one):
+    (section,) = [section for section in one.sections if section.anchor == "measurement"]
+    assert {"sulphur-track", "fsc-over-time", "budget", "channels", "regression"} <= set(named_charts(one))
+    assert_axes_read_quantity_and_unit(named_charts(one).values())
+    told = next(block.text for block in section.blocks if isinstance(block, Text))
+    assert re.search(r"the limit of 0\.1 %.*: it holds 0\.\d{3} ± 0\.\d{3} % sulphur \(95 %\), and with a probability of", told)
+    assert "The fuel's own content is 0.100 %, of which a perfect instrument reads 0.097 %." in told
+    name, value, _ = one.verdict.figures[0]
+    assert name.startswith("Sulphur in the fuel")
+    assert re.fullmatch(r"0\.\d{3} ± 0\.\d{3} %", value)
+    assert "sulphur" not in {section.anchor for section in one.sections}
+
+
+def test_several_flights_are_judged_as_a_method(several):
+    charts = named_charts(several)
+    assert {"sulphur-errors", "operating-curve", "sulphur-trajectory"} <= set(charts)
+    assert_axes_read_quantity_and_unit(charts.values())
+    (section,) = [section for section in several.sections if section.anchor == "sulphur"]
+    accuracy, calls, hits = [block for block in section.blocks if isinstance(block, Table)]
+    assert [row[:3] for row in accuracy.rows] == [
+        ["fast", "equalise and regress", "12"], ["fast", "areas of passes", "12"],
+        ["laser", "equalise and regress", "12"], ["laser", "areas of passes", "12"],
+    ]  # fmt: skip
+    fuels = [(row[0], row[1], row[4]) for row in calls.rows]
+    # 0.05 % is never above 0.1 %, and 0.5 % always is, with the noise of these sensors.
+    assert ("laser", "0.05", "0\N{NO-BREAK SPACE}%") in fuels
+    assert ("laser", "0.5", "100\N{NO-BREAK SPACE}%") in fuels
+    assert any(row[0].startswith("Passes that hit the plume") for row in hits.rows)
+    assert any("Bias of the sulphur content" in name for name, _, _ in several.verdict.figures)
+
+
+def test_flights_without_a_sniffer_have_none_of_it(tmp_path):
+    bare = flown(tmp_path / "run", "payload=[]")
+    assert not {"sulphur", "measurement"} & {section.anchor for section in bare.sections}
+    assert not any("ulphur" in name for name, _, _ in bare.verdict.figures)
+    assert blocks_of(bare, Table)
