@@ -20,7 +20,7 @@ _POINTS_MAX = 4000
 _AXES = {"crossing_interval_mean_s": "Crossing interval [s]", "crossing_distance_mean_m": "Crossing distance [m]"}
 
 
-def error_chart(rows: pd.DataFrame) -> Chart | None:
+def error_chart(rows: pd.DataFrame) -> Chart:
     """Return the result of each flight against what a perfect instrument reads, by method."""
     panels = []
     for prefix, title in _METHODS.items():

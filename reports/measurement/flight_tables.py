@@ -9,6 +9,9 @@ from reports.measurement.data import Record
 
 _FSC = "% m/m"
 
+_BEST = 3
+"""Trajectories that are listed for each sensor."""
+
 _METHODS = {"regression": "equalise and regress", "areas": "areas of passes"}
 
 
@@ -105,4 +108,28 @@ def hit_table(rows: pd.DataFrame) -> Table:
             if name in rows
         ],
         widths=[3.0, 1.0, 1.0, 1.0, 0.8],
+    )
+
+
+def best_table(rows: pd.DataFrame) -> Table:
+    """Return the trajectories that leave the least noise after a minute, for each sensor, and what each method reads on them."""
+    minutes = (rows["duration_s"] - rows["settling_time_s"]) / 60.0
+    noise = (rows["fsc_noise_percent"] * minutes**0.5).rename("minute")
+    ranked = pd.concat([rows, noise], axis=1).sort_values("minute")
+    best = pd.concat([group.head(_BEST) for _, group in ranked.groupby("sensor")])
+    return Table(
+        head=["Sensor", "ν", "Interval [s]", "Distance [m]", f"1σ in a minute [{_FSC}]", "Regression reads", "Areas read"],
+        rows=[
+            [
+                str(row["sensor"]),
+                number(row["nu"], "{:.2f}"),
+                number(row["crossing_interval_mean_s"], "{:.1f}"),
+                number(row["crossing_distance_mean_m"], "{:.0f}"),
+                number(row["minute"], "{:.4f}"),
+                number(row["fsc_percent"] / row["fsc_expected_percent"], "{:.2f}"),
+                number(row["areas_fsc_percent"] / row["fsc_expected_percent"], "{:.2f}"),
+            ]
+            for _, row in best.iterrows()
+        ],
+        widths=[1.6, 0.6, 0.9, 0.9, 1.3, 1.1, 0.9],
     )

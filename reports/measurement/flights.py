@@ -10,7 +10,7 @@ from reports.document.blocks import Block, Heading, Section, Text
 from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
 from reports.measurement.data import Record
 from reports.measurement.flight_charts import error_chart, operating_curve, track_chart, trajectory_chart
-from reports.measurement.flight_tables import accuracy_table, calls_table, flight_table, hit_table
+from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table
 from reports.measurement.tables import over_time_table, result_table
 from reports.run.columns import column
 from reports.run.run_data import RunData
@@ -62,11 +62,9 @@ def _blocks(run: RunData, measured: pd.DataFrame) -> list[Block]:
     statistics = run.sulphur
     if len(measured) < _FEW or statistics is None:
         return [flight_table(measured)]
-    charts = [
-        chart
-        for chart in (error_chart(measured), operating_curve(statistics), trajectory_chart(run, measured))
-        if chart is not None
-    ]
+    trajectories = trajectory_chart(run, measured)
+    designed: list[Block] = [] if trajectories is None else [Heading("Trajectories"), trajectories, best_table(measured)]
+    curve = operating_curve(statistics)
     return [
         Text(
             "Each result is compared with what a perfect instrument would read, which is less than the fuel's own content by the"
@@ -74,8 +72,10 @@ def _blocks(run: RunData, measured: pd.DataFrame) -> list[Block]:
             " passes that overlap in the slow channel. Covered: the stated 95 % interval holds it."
         ),
         accuracy_table(statistics),
-        *charts,
+        error_chart(measured),
+        *designed,
         Heading("Ships called above the limit"),
+        *([curve] if curve is not None else []),
         calls_table(statistics),
         Heading("How well the plume was hit"),
         hit_table(measured),
