@@ -46,6 +46,7 @@ class FlightWork:
     setup : of the aircraft, if there is one
     spreads : predicted for flights in turbulence
     refusal : why flights in six degrees of freedom cannot be flown, or nothing
+    viewer : host and port of a FlightGear that shows flights in real time, or none
     """
 
     experiments: tuple[Experiment, ...]
@@ -53,6 +54,7 @@ class FlightWork:
     setup: VehicleSetup | None
     spreads: PredictedSpreads
     refusal: str = ""
+    viewer: tuple[str, int] | None = None
 
     @property
     def model(self) -> Path | None:
@@ -100,7 +102,9 @@ class FlightWork:
             plan = self.plan(request)
             row |= plan_row(plan)
             tables[DRAWS][0]["nu"] = row.get("nu")
-            record = fly(plan, release(plan, self._setup(request)), _payload(request, plan), every_step=task.every_step)
+            record = fly(
+                plan, release(plan, self._setup(request), self.viewer), _payload(request, plan), every_step=task.every_step
+            )
             history = flight_history(plan, record)
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)

@@ -12,6 +12,7 @@ _SAMPLED = (
     ("velocities/vt-fps", METRES_PER_FOOT),
     ("attitude/phi-rad", 1.0),
     ("velocities/h-dot-fps", METRES_PER_FOOT),
+    ("attitude/psi-rad", 1.0),
     ("attitude/theta-rad", 1.0),
     ("aero/alpha-rad", 1.0),
     ("aero/beta-rad", 1.0),
