@@ -29,15 +29,16 @@ class LocalFrame:
     Parameters
     ----------
     latitude, longitude : geodetic, of the origin [rad]
+    altitude : above the ellipsoid at which metres are counted: higher up an angle is longer [m]
     """
 
-    def __init__(self, latitude: float, longitude: float) -> None:
-        self.latitude, self.longitude = latitude, longitude
+    def __init__(self, latitude: float, longitude: float, altitude: float = 0.0) -> None:
         self._up, self._north, self._east = (np.array([float(x) for x in axis]) for axis in _axes(latitude, longitude))
         self._origin = cartesian(np.float64(latitude), np.float64(longitude))
         w = 1.0 - ECCENTRICITY_SQUARED * math.sin(latitude) ** 2
         self._meridian_radius = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / w**1.5
         self._transverse_radius = EQUATORIAL_RADIUS / math.sqrt(w)
+        self._north_longer, self._east_longer = 1.0 + altitude / self._meridian_radius, 1.0 + altitude / self._transverse_radius
 
     def to_local(self, latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> tuple[Array, Array]:
         """Return north and east [m] of places [rad]; the shape is that of the places."""
@@ -46,17 +47,18 @@ class LocalFrame:
         level = np.hypot(north, east)
         radius = self._radius(north, level)
         longer = np.where(level > 0.0, radius * np.arcsin(np.minimum(1.0, level / radius)) / np.where(level > 0.0, level, 1.0), 1.0)
-        return north * longer, east * longer
+        return north * longer * self._north_longer, east * longer * self._east_longer
 
     def to_geodetic(self, north: npt.ArrayLike, east: npt.ArrayLike) -> tuple[Array, Array]:
         """Return latitude, and longitude from -pi to pi, [rad] of local places [m]."""
-        north, east = np.asarray(north, dtype=np.float64), np.asarray(east, dtype=np.float64)
-        distance = np.hypot(north, east)
-        radius = self._radius(north, distance)
+        to_north = np.asarray(north, dtype=np.float64) / self._north_longer
+        to_east = np.asarray(east, dtype=np.float64) / self._east_longer
+        distance = np.hypot(to_north, to_east)
+        radius = self._radius(to_north, distance)
         angle = distance / radius
         shorter = np.sinc(angle / math.pi)
         down = 2.0 * radius * np.sin(0.5 * angle) ** 2
-        level = (north * shorter)[..., None] * self._north + (east * shorter)[..., None] * self._east
+        level = (to_north * shorter)[..., None] * self._north + (to_east * shorter)[..., None] * self._east
         return _geodetic(self._origin + level - down[..., None] * self._up)
 
     def true_north(self, latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> Array:

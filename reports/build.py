@@ -5,15 +5,21 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from common.command_line import refuse, run_command
 from common.run_layout import EXPORT, REPORT_HTML, REPORT_PDF, is_file_name
 
+if TYPE_CHECKING:
+    from reports.run.run_data import RunData
+
 MISSING = 1
 """Exit status of reports that lack pieces of their run."""
+
+_NAMED = 5
+"""Flights that a message names at most."""
 
 
 def build_reports(directory: Path, *, tell_missing: Callable[[str], None] = lambda _: None) -> list[Path]:
@@ -44,34 +50,65 @@ def build_reports(directory: Path, *, tell_missing: Callable[[str], None] = lamb
     ]
 
 
-def export_run(directory: Path, name: str) -> Path:
-    """Write a run by an exporter into its subdirectory ``export`` and return the path.
+def export_run(directory: Path, name: str, flight_id: str | None = None) -> list[Path]:
+    """Write a run by an exporter into its subdirectory ``export`` and return the paths.
 
     Parameters
     ----------
     directory : of the run
     name : of the exporter, or ``FILE.py:NAME``
+    flight_id : of the only flight to be written; all of them if not given, each into a file of its own where the format holds one
 
     Raises
     ------
-    ReportError : the run cannot be read or written, or does not have what the format is about
+    ReportError : the run cannot be read or written, has no such flight, or does not have what the format is about
     PluginError : there is no such exporter, or it does not load
     """
     from reports.errors import ReportError
     from reports.export import EXPORTERS
-    from reports.run.run_data import read_run
 
     exporter = EXPORTERS.get(name)()
-    run = read_run(directory)
-    run_name, folder = run.manifest.get("name"), directory / EXPORT
+    run, folder = _run_of(directory, flight_id), directory / EXPORT
+    run_name = run.manifest.get("name")
     if not is_file_name(run_name):
         raise ReportError(f"'{directory}' is that of a run called {run_name!r}, which is no name of a file; do not use this run")
     if folder.is_symlink():
         raise ReportError(f"'{folder}' is a link; exports are written into '{directory}' alone: remove it")
-    path = folder / f"{run_name}{exporter.suffix}"
+    parts = {f"{run_name}.{flight_id}" if flight_id else str(run_name): run}
+    if getattr(exporter, "one_flight", False) and (recorded := run.recorded()):
+        parts = {f"{run_name}.{flight}": run.of_flight(flight) for flight in recorded}
     with _damage_named(directory):
         folder.mkdir(exist_ok=True)
-        return _written(path, partial(exporter.write, run))
+        return [_written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
+
+
+def stream_run(directory: Path, address: str, flight_id: str | None = None) -> tuple[str, int, float]:
+    """Send a flight of a run to ``udp://HOST:PORT`` in real time; return its name, the number of messages, its duration [s].
+
+    Raises
+    ------
+    ReportError : the run cannot be read, or has no such flight, or the address is not of that form
+    """
+    from reports.export.stream import stream_address, stream_flight
+
+    host = stream_address(address)
+    run = _run_of(directory, flight_id)
+    with _damage_named(directory):
+        return stream_flight(run, host)
+
+
+def _run_of(directory: Path, flight_id: str | None) -> "RunData":
+    """Return a run, or one flight of it."""
+    from reports.errors import ReportError
+    from reports.run.run_data import read_run
+
+    run = read_run(directory)
+    if flight_id is None:
+        return run
+    if flight_id not in (recorded := run.recorded()):
+        known = ", ".join(recorded[:_NAMED]) + (", ..." if len(recorded) > _NAMED else "")
+        raise ReportError(f"'{directory}' has no time history of a flight {flight_id[:80]!r}; it has those of {known or 'none'}")
+    return run.of_flight(flight_id)
 
 
 @contextmanager
@@ -111,7 +148,13 @@ def command(
     directory: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="A directory that scenarios.run or innerloop.design wrote.")],
     export: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Write RUN_DIR/export/... by this exporter, or by FILE.py:NAME, instead of the reports."),
+        typer.Option(
+            metavar="NAME,...", help="Write RUN_DIR/export/... by these exporters, or by FILE.py:NAME, instead of the reports."
+        ),
+    ] = None,
+    flight: Annotated[str | None, typer.Option(metavar="ID", help="Export or stream this flight alone.")] = None,
+    stream: Annotated[
+        str | None, typer.Option(metavar="udp://HOST:PORT", help="Send a flight to a ground station in real time, as MAVLink.")
     ] = None,
 ) -> None:
     """Rebuild report.html and report.pdf of a run or of a design, without flying anything; or export a run.
@@ -122,9 +165,15 @@ def command(
     from reports.errors import ReportError
 
     try:
-        if export:
-            for name in export:
-                print(f"export: {export_run(directory, name)}")
+        if flight is not None and not (export or stream):
+            raise ReportError("--flight is of use beside --export or --stream; reports are of the whole run: leave it out")
+        if export or stream:
+            for name in (name for names in export or () for name in names.split(",")):
+                for path in export_run(directory, name, flight):
+                    print(f"export: {path}")
+            if stream:
+                sent, messages, seconds = stream_run(directory, stream, flight)
+                print(f"stream: {messages} messages of {sent}, {seconds:.0f} s of flight, to {stream}")
         else:
             missing: list[str] = []
             for path in build_reports(directory, tell_missing=missing.append):

@@ -45,6 +45,7 @@ class FlightWork:
     setup : of the aircraft, if there is one
     spreads : predicted for flights in turbulence
     refusal : why flights in six degrees of freedom cannot be flown, or nothing
+    viewer : host and port of a FlightGear that shows flights in real time, or none
     """
 
     experiments: tuple[Experiment, ...]
@@ -52,6 +53,7 @@ class FlightWork:
     setup: VehicleSetup | None
     spreads: PredictedSpreads
     refusal: str = ""
+    viewer: tuple[str, int] | None = None
 
     @property
     def model(self) -> Path | None:
@@ -102,7 +104,7 @@ class FlightWork:
             tables[DRAWS][0]["nu"] = row.get("nu")
             instruments = _payload(request, plan)
             read = [instrument for instrument in instruments if isinstance(instrument, Instrument)]
-            record = fly(plan, release(plan, self._setup(request)), read, every_step=task.every_step)
+            record = fly(plan, release(plan, self._setup(request), self.viewer), read, every_step=task.every_step)
             history = flight_history(plan, record)
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)

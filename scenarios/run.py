@@ -1,6 +1,7 @@
 """Command line: ``python -m scenarios.run NAME|FILE.toml``. Slow imports wait until they are needed."""
 
 import os
+import re
 import shlex
 import sys
 from datetime import datetime
@@ -16,6 +17,11 @@ if TYPE_CHECKING:
     from scenarios.engine.executors import ExecutorFactory
 
 MET, NOT_MET = 0, 1
+
+_WATCHED_TIME_LIMIT = 1e6
+"""Longest computing time of a flight that is shown in real time [s]."""
+
+_PORT_MAX = 65535
 
 
 def command(
@@ -43,6 +49,9 @@ def command(
     memory_limit: Annotated[float | None, typer.Option(help="Memory limit of a process [GiB]; default none.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue the unfinished run in --out.")] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
+    flightgear: Annotated[
+        str | None, typer.Option(metavar="HOST:PORT", help="Replay a flight in real time, shown by FlightGear at this address.")
+    ] = None,
     list_scenarios: Annotated[bool, typer.Option("--list", help="List the scenarios of the catalog and exit.")] = False,
 ) -> None:
     """Fly a scenario and write a report.
@@ -58,11 +67,12 @@ def command(
         if list_scenarios:
             status = _list()
         else:
-            limits = Limits.given(time_limit, memory_limit)
+            # A replay that is watched takes as long as the flight.
+            limits = Limits.given(time_limit if flightgear is None else _WATCHED_TIME_LIMIT, memory_limit)
             executor_factory = ExecutorFactory(
                 jobs=jobs or os.cpu_count() or 1, executor=executor, scheduler=scheduler, limits=limits
             )
-            status = _run(name, out, executor_factory, seed, overrides or [], resume, no_report)
+            status = _run(name, out, executor_factory, seed, overrides or [], resume, no_report, flightgear)
     except InputError as error:
         status = refuse(error)
     except KeyboardInterrupt:
@@ -89,6 +99,7 @@ def _run(
     overrides: list[str],
     resume: bool,
     no_report: bool,
+    flightgear: str | None,
 ) -> int:
     from scenarios.errors import InputError
     from scenarios.schema.load import catalog, is_flight, load_study
@@ -107,6 +118,7 @@ def _run(
         raise InputError(
             f"'{name}' is a flight, which is replayed unchanged; leave out --set and --seed, or fly its scenario instead"
         )
+    viewer = _viewer(flightgear, replayed=replayed)
     # Before any slow import: most mistakes in the input are found here.
     scenario = None if replayed else load_study(name, overrides)
 
@@ -117,7 +129,7 @@ def _run(
             from scenarios.engine.runner import fly_study
             from scenarios.studies.replay import Replay
 
-            result = fly_study(Replay(name), directory, executor_factory=executor_factory, resume=resume, progress=progress)
+            result = fly_study(Replay(name, viewer), directory, executor_factory=executor_factory, resume=resume, progress=progress)
         else:
             from scenarios.studies.registry import run_study
 
@@ -136,6 +148,20 @@ def _run(
     reported = all((directory / name).is_file() for name in (REPORT_HTML, REPORT_PDF))
     status = MET if no_report or (reported and not result.changed) else _report(directory)
     return status or (MET if result.all_met else NOT_MET)
+
+
+def _viewer(address: str | None, *, replayed: bool) -> tuple[str, int] | None:
+    """Return host and port of FlightGear, if a flight is to be shown there."""
+    from scenarios.errors import InputError
+
+    if address is None:
+        return None
+    if not replayed:
+        raise InputError("--flightgear shows the replay of a flight; give RUN_DIR/flights/ID")
+    host, _, port = address.rpartition(":")
+    if not (re.fullmatch(r"[A-Za-z0-9.\-]+", host) and port.isdecimal() and 0 < int(port) <= _PORT_MAX):
+        raise InputError(f"--flightgear is '{address}'; give HOST:PORT, as in localhost:5550")
+    return host, int(port)
 
 
 def _report(directory: Path) -> int:

@@ -4,13 +4,14 @@ import contextlib
 import os
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import jsbsim
 
 from aircraft.errors import AircraftError, ReadOnlyPropertyError, UnknownPropertyError
 from aircraft.simulation.model_copy import copy_model
+from aircraft.simulation.pace import paced
 from aircraft.simulation.properties import (
     ACCELERATION,
     ANGULAR_ACCELERATION,
@@ -37,6 +38,9 @@ TIME_STEP = 1.0 / 120.0
 _PROPERTY_NAME = re.compile(r"[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*")
 
 _SETTLE_STRIDE = 4
+
+_FLIGHTGEAR = '<output name="{host}" type="FLIGHTGEAR" port="{port}" protocol="UDP" rate="30"/>'
+"""JSBSim's output of FlightGear's own packets."""
 
 
 class Fdm:
@@ -73,7 +77,7 @@ class Fdm:
         self._engines_run = False
         self.cranked = False
         """Whether an engine had to be started with its starter."""
-        self.run = self._exec.run
+        self.run: Callable[[], object] = self._exec.run
         """Advance one time step. Bound directly to JSBSim: the innermost call of every flight."""
 
     def _load(self, root: Path) -> jsbsim.FGFDMExec:
@@ -93,6 +97,20 @@ class Fdm:
         if not loaded:
             raise AircraftError(f"aircraft '{name}': JSBSim refused its model '{model}'; run JSBSim on it to see why")
         return executive
+
+    def show(self, host: str, port: int) -> None:
+        """Send the aircraft to FlightGear by JSBSim's own output from now on, and run no faster than the clock.
+
+        The flight itself is the same to the last bit. Place the aircraft next: JSBSim's outputs begin with its initial conditions.
+        """
+        with tempfile.TemporaryDirectory() as folder, _silence():
+            path = Path(folder) / "flightgear.xml"
+            path.write_text(_FLIGHTGEAR.format(host=host, port=port), encoding="utf-8")
+            accepted = self._exec.set_output_directive(str(path))
+            self._exec.enable_output()
+        if not accepted:
+            raise AircraftError(f"JSBSim does not send to FlightGear at {host}:{port}; check the address")
+        self.run = paced(self._exec.run, self.time_step)
 
     def has(self, name: str) -> bool:
         """Return whether there is a property of this name."""

@@ -16,6 +16,7 @@ class Exporter(Protocol):
     Attributes
     ----------
     suffix : how the names of its files end, with the leading dot
+    one_flight : whether a file holds one flight alone; false if there is no such attribute. Each flight then has a file
     """
 
     suffix: str

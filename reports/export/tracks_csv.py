@@ -12,7 +12,7 @@ from reports.run.run_data import RunData
 COLUMNS = (
     "time_s", "north_m", "east_m", "altitude_m", "velocity_north_mps", "velocity_east_mps", "vessel_north_m", "vessel_east_m",
 )  # fmt: skip
-"""Columns beside the flight's name. Positions are from the run's local origin: a run has no latitude."""
+"""Columns beside the flight's name. Positions are from the flight's local origin."""
 
 
 @EXPORTERS.register("tracks_csv")
@@ -23,8 +23,7 @@ class TracksCsv:
 
     def write(self, run: RunData, path: Path) -> None:
         """Write one flight after the other, with a single head."""
-        flight_ids = [str(flight_id) for rows in (run.summary, run.comparison) for flight_id in rows["flight_id"]]
-        recorded = [flight_id for flight_id in flight_ids if run.has_history(flight_id)]
+        recorded = run.recorded()
         if not recorded:
             raise ReportError(f"'{run.path}' has no time histories of flights, which tracks are made of")
         with path.open("w", encoding="utf-8", newline="") as file:

@@ -1,7 +1,7 @@
 """A run directory as read from disk."""
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -74,6 +74,20 @@ class RunData:
     def has_history(self, flight_id: str) -> bool:
         """Return whether a flight has a time history."""
         return is_file_name(flight_id) and is_file(self.path / time_history_path(flight_id))
+
+    def recorded(self) -> list[str]:
+        """Return the names of the flights that have a time history, those of the study before those of its comparisons."""
+        names = [str(flight_id) for rows in (self.summary, self.comparison) for flight_id in rows["flight_id"]]
+        return [name for name in names if self.has_history(name)]
+
+    def of_flight(self, flight_id: str) -> "RunData":
+        """Return the same run with one flight alone."""
+        tables = {
+            name: rows[rows["flight_id"] == flight_id] if "flight_id" in rows else rows
+            for name in ("summary", "comparison", "crossings", "draws")
+            for rows in [getattr(self, name)]
+        }
+        return replace(self, **tables)
 
     def trajectory(self, law: str, number: int) -> pd.DataFrame | None:
         """Return the time history of a trajectory of a convergence study, or None if none was kept that can be read."""

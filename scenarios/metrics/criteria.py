@@ -96,7 +96,8 @@ def _crossing_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
 
 def _mission_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
     checks = []
-    if criteria.resumes_within_periods is not None:
+    # A track from a file may have no manoeuvre in the time of the flight.
+    if criteria.resumes_within_periods is not None and not math.isnan(row.get("manoeuvre_end_s", 0.0)):
         periods = row.get("resume_periods", math.nan)
         message = f"crossings resumed {periods:.2f} periods after the last manoeuvre"
         checks.append((periods <= criteria.resumes_within_periods, message))

@@ -1,19 +1,22 @@
 """A flight's time history: its record, and the relative state of the delta formulation that follows from it."""
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from common.geodesy import LocalFrame
 from gnc.laws.delta import LookAhead
 from gnc.numeric import wrapped
 from scenarios.planning.flight_plan import FlightPlan
-from scenarios.simulation.record import RELATIVE_COLUMNS, FlightRecord
+from scenarios.simulation.record import PLACE_COLUMNS, RELATIVE_COLUMNS, FlightRecord
 
 Array = npt.NDArray[np.float64]
 
 
 def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
-    """Return a row per sample; columns are those of the record and ``RELATIVE_COLUMNS``."""
+    """Return a row per sample; columns are those of the record, ``RELATIVE_COLUMNS``, and what is known of ``PLACE_COLUMNS``."""
     history = pd.DataFrame(record.every_step, columns=list(record.columns))
 
     def column(name: str) -> Array:
@@ -23,7 +26,16 @@ def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
     through_air = [column(f"velocity_{axis}_mps") - column(f"wind_{axis}_mps") for axis in ("north", "east")]
     course = np.arctan2(through_air[1], through_air[0])
     states = relative_states(plan.steering.look_ahead, to_north, to_east, column("reference_course_rad"), course)
-    return history.assign(**dict(zip(RELATIVE_COLUMNS, states, strict=True)))
+    history = history.assign(**dict(zip(RELATIVE_COLUMNS, states, strict=True)))
+    place = plan.world.place if plan.world else None
+    if place is not None and math.isfinite(place.latitude):
+        # Metres are counted at the altitude that the flight is flown at.
+        frame = LocalFrame(place.latitude, place.longitude, plan.altitude)
+        found = (np.degrees(angle) for angle in frame.to_geodetic(column("north_m"), column("east_m")))
+        history = history.assign(**dict(zip(PLACE_COLUMNS, found, strict=False)))
+    if place is not None and math.isfinite(place.utc):
+        history["time_utc"] = pd.to_datetime(np.round(1e3 * (place.utc + column("time_s"))), unit="ms", utc=True)
+    return history
 
 
 def relative_states(

@@ -46,6 +46,7 @@ MEANINGS = {
     "airspeed_mps": "true airspeed, with gusts",
     "roll_rad": "roll",
     "climb_rate_mps": "climb rate",
+    "heading_rad": "heading, from 0 to 2 pi",
     "pitch_rad": "pitch",
     "alpha_rad": "angle of attack",
     "sideslip_rad": "sideslip",
@@ -57,13 +58,19 @@ MEANINGS = {
     "rho_m": "length of z, equation (16)",
     "phi_r_rad": "course of the reference against that of z, equation (19)",
     "phi_rad": "course through the air against that of z, equation (19)",
+    "latitude_deg": "latitude of the UAV, true",
+    "longitude_deg": "longitude of the UAV, true",
+    "time_utc": "time in UTC",
 }
 """Columns of a time history, in order, and what each is. A vehicle's own, from ``altitude_m`` on, may be not a number."""
 
 RELATIVE_COLUMNS = ("delta_m", "rho_m", "phi_r_rad", "phi_rad")
 """The states of equation (19), in its order: they follow from the others."""
 
-COLUMNS = tuple(column for column in MEANINGS if column not in RELATIVE_COLUMNS)
+PLACE_COLUMNS = ("latitude_deg", "longitude_deg", "time_utc")
+"""Where and when on earth, of flights of which that is known: they follow from the others, too."""
+
+COLUMNS = tuple(column for column in MEANINGS if column not in (*RELATIVE_COLUMNS, *PLACE_COLUMNS))
 """Columns of a flight's record."""
 
 
@@ -104,18 +111,16 @@ class FlightRecord:
         return self.history[:, self.columns.index(name)]
 
 
+_UNITS = (
+    ("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"), ("_deg", "deg"), ("_utc", "UTC"),
+    ("_ppb", "ppb"), ("_ppm", "ppm"),
+)  # fmt: skip
+"""Ends of columns' names, and the units that they stand for."""
+
+
 def unit_of(column: str) -> str:
     """Return the unit that a column's name ends in, or 1."""
-    for suffix, unit in (
-        ("_rad_s", "rad/s"),
-        ("_mps", "m/s"),
-        ("_rad", "rad"),
-        ("_m", "m"),
-        ("_s", "s"),
-        ("_deg", "deg"),
-        ("_ppb", "ppb"),
-        ("_ppm", "ppm"),
-    ):
+    for suffix, unit in _UNITS:
         if column.endswith(suffix):
             return unit
     return "1"

@@ -9,13 +9,14 @@ from scenarios.vehicles.vehicle import Vehicle
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 
-def release(plan: FlightPlan, setup: VehicleSetup) -> Vehicle:
+def release(plan: FlightPlan, setup: VehicleSetup, viewer: tuple[str, int] | None = None) -> Vehicle:
     """Return the vehicle at the start of a flight.
 
     Parameters
     ----------
     plan : the flight
     setup : of the aircraft, or of the kinematic vehicle
+    viewer : host and port of a FlightGear that is to show the aircraft, in real time; none if not given
     """
     start, world = plan.start, plan.world
     where = {"north": start.north, "east": start.east, "altitude": plan.altitude, "course": start.course}
@@ -25,6 +26,8 @@ def release(plan: FlightPlan, setup: VehicleSetup) -> Vehicle:
         return KinematicVehicle(**where, speed=plan.guidance.speed, time_step=plan.time_step, lag=setup.lag, wind=wind)
     failable = world is not None and world.fault.of_aircraft()
     flown = AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable)
+    if viewer is not None:
+        flown.fdm.show(*viewer)
     # Still air needs no weather of its own.
     weather = world.weather if world and plan.sensing else None
     return JsbsimVehicle(flown, aircraft.start, aircraft.envelope, **where, time_step=plan.time_step, weather=weather)

@@ -14,6 +14,7 @@ from scenarios.engine.runner import Fly, Progress, Study, StudySummary
 from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
+from scenarios.flight import FlightWork
 from scenarios.schema.load import checked
 from scenarios.schema.scenario import Scenario
 from scenarios.studies.registry import study_of
@@ -31,6 +32,7 @@ class Replay:
     Parameters
     ----------
     name : ``RUN_DIR/flights/ID``, with or without the suffix of its time history
+    viewer : host and port of a FlightGear that is to show it, in real time; none if not given
 
     Raises
     ------
@@ -40,13 +42,16 @@ class Replay:
     what = "flights"
     planned = 1
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, viewer: tuple[str, int] | None = None) -> None:
+        self._viewer = viewer
         self._flight_id = Path(name).name.removesuffix(HISTORY_SUFFIX)
         self._from = Path(name).parents[1]
         manifest = self._manifest()
         if "replayed" in manifest:
             raise InputError(f"'{self._from}' is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run")
         self._task, self._table, self._row = self._found()
+        if viewer and self._row.get("fidelity") != "six_dof":
+            raise InputError(f"--flightgear shows aircraft in six degrees of freedom; '{self._flight_id}' is a kinematic flight")
         try:
             self._study = self._restored(manifest)
         except (LookupError, TypeError, AttributeError, ValueError) as error:
@@ -114,7 +119,8 @@ class Replay:
 
     def work(self, run: RunDirectory) -> Work:
         """Return the work of the original study."""
-        return self._study.work(run)
+        work = self._study.work(run)
+        return replace(work, viewer=self._viewer) if self._viewer and isinstance(work, FlightWork) else work
 
     def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
         """Fly the flight."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from aircraft.atmosphere.weather import Weather
 from aircraft.dynamics.equilibrium import Trim
-from aircraft.simulation.local_frame import LocalFrame
+from aircraft.simulation.local_frame import EquatorFrame
 from aircraft.spec import Envelope
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.servo_monitor import ServoMonitor
@@ -50,7 +50,7 @@ class JsbsimVehicle:
         time_step: float,
         weather: Weather | None = None,
     ) -> None:
-        frame = LocalFrame(altitude=altitude)
+        frame = EquatorFrame(altitude)
         latitude, longitude = frame.to_geodetic(north, east)
         state = replace(start.state(latitude, longitude, course - start.course_offset()), altitude=altitude)
         aircraft.release(state, airspeed=start.airspeed, altitude=altitude, weather=weather)

@@ -8,7 +8,7 @@ from gnc.unicycle import lagged_move, unicycle_move
 from scenarios.errors import InputError
 from scenarios.vehicles.vehicle import SAMPLE_COLUMNS
 
-_NONE = (math.nan,) * (len(SAMPLE_COLUMNS) - 4)
+_NONE = (math.nan,) * (len(SAMPLE_COLUMNS) - 5)
 
 
 class KinematicVehicle:
@@ -63,8 +63,8 @@ class KinematicVehicle:
 
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``."""
-        airspeed, _, bank = self.air_data()
-        return self._altitude, airspeed, bank, 0.0, *_NONE
+        airspeed, heading, bank = self.air_data()
+        return self._altitude, airspeed, bank, 0.0, heading % math.tau, *_NONE
 
     def advance(self, heading_rate: float, airspeed: float) -> None:
         """Fly one guidance step with these commands [rad/s, m/s]."""

@@ -3,7 +3,7 @@
 import math
 
 from aircraft.simulation.fdm import Fdm
-from aircraft.simulation.local_frame import LocalFrame
+from aircraft.simulation.local_frame import EquatorFrame
 from common.units import METRES_PER_FOOT
 from innerloop.jsbsim.properties import CONTROL_COMMAND, HEADING_RATE
 
@@ -12,6 +12,7 @@ _SAMPLED = (
     ("velocities/vt-fps", METRES_PER_FOOT),
     ("attitude/phi-rad", 1.0),
     ("velocities/h-dot-fps", METRES_PER_FOOT),
+    ("attitude/psi-rad", 1.0),
     ("attitude/theta-rad", 1.0),
     ("aero/alpha-rad", 1.0),
     ("aero/beta-rad", 1.0),
@@ -28,15 +29,14 @@ class Telemetry:
     Parameters
     ----------
     fdm : the simulation
-    frame : local frame, with its origin at zero latitude and longitude
+    frame : local frame
     """
 
     __slots__ = (
-        "_airspeed", "_east", "_east_scale", "_heading", "_heading_rate", "_latitude", "_longitude", "_north", "_north_scale",
-        "_roll", "_sampled",
+        "_airspeed", "_east", "_heading", "_heading_rate", "_latitude", "_longitude", "_north", "_roll", "_sampled", "_to_local",
     )  # fmt: skip
 
-    def __init__(self, fdm: Fdm, frame: LocalFrame) -> None:
+    def __init__(self, fdm: Fdm, frame: EquatorFrame) -> None:
         self._latitude = fdm.node("position/lat-geod-rad").get_double_value
         self._longitude = fdm.node("position/long-gc-rad").get_double_value
         self._north = fdm.node("velocities/v-north-fps").get_double_value
@@ -45,7 +45,7 @@ class Telemetry:
         self._airspeed = fdm.node("velocities/vt-fps").get_double_value
         self._heading = fdm.node("attitude/psi-rad").get_double_value
         self._roll = fdm.node("attitude/phi-rad").get_double_value
-        self._north_scale, self._east_scale = frame.north_scale, frame.east_scale
+        self._to_local = frame.to_local
         controls = {i.name for i in fdm.spec.inputs}
         self._sampled = [(fdm.node(name).get_double_value, scale) for name, scale in _SAMPLED]
         for name in ("elevator", "aileron", "throttle", "rudder"):
@@ -55,8 +55,7 @@ class Telemetry:
     def motion(self) -> tuple[float, float, float, float, float]:
         """Return north, east [m], north and east velocity over the ground [m/s] and heading rate against the air [rad/s]."""
         return (
-            self._latitude() * self._north_scale,
-            self._longitude() * self._east_scale,
+            *self._to_local(self._latitude(), self._longitude()),
             self._north() * METRES_PER_FOOT,
             self._east() * METRES_PER_FOOT,
             self._heading_rate(),

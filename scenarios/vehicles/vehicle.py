@@ -7,6 +7,7 @@ SAMPLE_COLUMNS = (
     "airspeed_mps",
     "roll_rad",
     "climb_rate_mps",
+    "heading_rad",
     "pitch_rad",
     "alpha_rad",
     "sideslip_rad",

@@ -56,7 +56,8 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
     """
     config, duration = scenario.vessel, scenario.flight.duration_max_s
     if config.from_file:
-        return ais_vessel(config, utc=scenario.place.utc, duration=duration, margin=TRACK_MARGIN)
+        altitude = scenario.plume.source_height_m
+        return ais_vessel(config, altitude=altitude, utc=scenario.place.utc, duration=duration, margin=TRACK_MARGIN)
     if config.track == "manoeuvres" and not config.manoeuvres:
         return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
     track: VesselTruth = VESSEL_TRACKS.get(config.track)(config, scenario.vessel_speed, duration + TRACK_MARGIN)
@@ -67,7 +68,7 @@ def place_of(scenario: Scenario, vessel: VesselTruth) -> Place:
     """Return where and when a flight begins, as far as that is known; without a time of its own when its wind does."""
     if isinstance(vessel, AisVessel):
         return vessel.place
-    place, table = given_place(scenario.place), scenario.wind.table
+    place, table = given_place(scenario.place, scenario.plume.source_height_m), scenario.wind.table
     if table is None or math.isfinite(place.utc):
         return place
     return replace(place, utc=first_time(table, place))

@@ -45,7 +45,7 @@ def run_path(tmp_path):
 
 
 def test_tracks_are_exported_with_the_vessel_that_was_flown_about(run_path):
-    path = export_run(run_path, "tracks_csv")
+    (path,) = export_run(run_path, "tracks_csv")
     assert path == run_path / "export" / "small.tracks.csv"
     tracks = pd.read_csv(path)
     assert list(tracks["flight_id"]) == ["nu_0.50"] * 3
@@ -57,7 +57,7 @@ def test_tracks_are_exported_with_the_vessel_that_was_flown_about(run_path):
 
 def test_a_user_adds_an_exporter_in_a_file_of_one_class(run_path, tmp_path):
     (tmp_path / "mine.py").write_text(OWN, encoding="utf-8")
-    path = export_run(run_path, f"{tmp_path / 'mine.py'}:FlightList")
+    (path,) = export_run(run_path, f"{tmp_path / 'mine.py'}:FlightList")
     assert path.name == "small.flights.txt"
     assert path.read_text(encoding="utf-8").split() == ["nu_0.50", "nu_1.00"]
     with pytest.raises(PluginError, match=r"has no method write\(\)"):

@@ -33,7 +33,7 @@ NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
 """Why rows are of no use."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AisReports:
     """Reports of one vessel, in the order of their times.
 

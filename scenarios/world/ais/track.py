@@ -41,6 +41,7 @@ class AisVessel(TabledVessel):
     Parameters
     ----------
     reports : of the vessel
+    altitude : at which metres are counted [m]
     start : time of the start, since 1970 [s]
     duration : of the longest flight [s]
     margin : for how long the track goes straight on after it [s]
@@ -52,16 +53,16 @@ class AisVessel(TabledVessel):
     source : the file's
     """
 
-    def __init__(self, reports: AisReports, start: float, duration: float, margin: float) -> None:
+    def __init__(self, reports: AisReports, *, altitude: float, start: float, duration: float, margin: float) -> None:
         self.source = reports
         near = (reports.time >= start - _AROUND) & (reports.time <= start + duration + _AROUND)
         since = reports.time[near] - start
         latitude, longitude = reports.latitude[near], reports.longitude[near]
         speed, course = reports.speed[near], reports.course[near]
-        first = LocalFrame(float(latitude[0]), float(longitude[0]))
+        first = LocalFrame(float(latitude[0]), float(longitude[0]), altitude)
         origin = smooth_motion(since, *_in_frame(first, latitude, longitude, speed, course))(0.0)
         latitude_there, longitude_there = first.to_geodetic(origin[0], origin[1])
-        self.place = Place(latitude=float(latitude_there), longitude=float(longitude_there), utc=start)
+        self.place = Place(latitude=float(latitude_there), longitude=float(longitude_there), altitude=altitude, utc=start)
         place, velocity = _in_frame(self.place.frame, latitude, longitude, speed, course)
         self.reports = [
             VesselReport(float(t), float(p[0]), float(p[1]), float(v[0]), float(v[1]))
@@ -72,12 +73,13 @@ class AisVessel(TabledVessel):
         super().__init__(smooth, _course_of(smooth), _manoeuvres_end(smooth))
 
 
-def ais_vessel(config: VesselConfig, *, utc: datetime | None, duration: float, margin: float) -> AisVessel:
+def ais_vessel(config: VesselConfig, *, altitude: float, utc: datetime | None, duration: float, margin: float) -> AisVessel:
     """Return the vessel of a scenario whose track is a file.
 
     Parameters
     ----------
     config : the ``[vessel]`` section
+    altitude : at which metres are counted [m]
     utc : of the start; the first report's if not given
     duration, margin : of the longest flight, and for how long the track goes on after it [s]
 
@@ -90,32 +92,33 @@ def ais_vessel(config: VesselConfig, *, utc: datetime | None, duration: float, m
         stamp = path.stat()
     except OSError as error:
         raise InputError(f"vessel.track: {path}: cannot be read: {error.strerror}; check the path") from None
-    start = None if utc is None else utc.timestamp()
-    return _vessel(path, (stamp.st_mtime_ns, stamp.st_size), config.mmsi, start, config.gap_max_s, duration, margin)
+    reports = _read(path, (stamp.st_mtime_ns, stamp.st_size), config.mmsi)
+    begin = float(reports.time[0]) if utc is None else utc.timestamp()
+    _check_covered(reports, begin, begin + duration, config.gap_max_s)
+    return _vessel(reports, altitude, begin, duration, margin)
 
 
-@lru_cache(maxsize=_KEPT)
-def _vessel(
-    path: Path, stamp: tuple[int, int], mmsi: int | None, start: float | None, gap_max: float, duration: float, margin: float
-) -> AisVessel:
-    reports = _read(path, stamp, mmsi)
-    begin = float(reports.time[0]) if start is None else start
-    end = begin + duration
+def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float) -> None:
+    """Raise an InputError where reports do not cover a flight between two times [s], or have too long a gap in it [s]."""
     if not reports.time[0] <= begin < end <= reports.time[-1]:
         raise InputError(
-            f"{path}: reports of MMSI {reports.mmsi} go from {utc_text(reports.time[0])} to {utc_text(reports.time[-1])}; the"
-            f" longest flight goes from {utc_text(begin)} to {utc_text(end)}: set place.utc or flight.duration_max_s"
+            f"{reports.path}: reports of MMSI {reports.mmsi} go from {utc_text(reports.time[0])} to {utc_text(reports.time[-1])};"
+            f" the longest flight goes from {utc_text(begin)} to {utc_text(end)}: set place.utc or flight.duration_max_s"
         )
     gaps = np.diff(reports.time)
     used = (reports.time[1:] > begin) & (reports.time[:-1] < end)
     worst = int(np.argmax(np.where(used, gaps, 0.0)))
     if gaps[worst] > gap_max:
         raise InputError(
-            f"{path}: after {utc_text(reports.time[worst])} there is no report of MMSI {reports.mmsi} for {gaps[worst]:.0f} s; the"
-            f" track is bridged over vessel.gap_max_s = {gap_max:g} s at most: set it, or fly another time (place.utc,"
+            f"{reports.path}: after {utc_text(reports.time[worst])} there is no report of MMSI {reports.mmsi} for {gaps[worst]:.0f}"
+            f" s; the track is bridged over vessel.gap_max_s = {gap_max:g} s at most: set it, or fly another time (place.utc,"
             " flight.duration_max_s)"
         )
-    return AisVessel(reports, begin, duration, margin)
+
+
+@lru_cache(maxsize=_KEPT)
+def _vessel(reports: AisReports, altitude: float, start: float, duration: float, margin: float) -> AisVessel:
+    return AisVessel(reports, altitude=altitude, start=start, duration=duration, margin=margin)
 
 
 @lru_cache(maxsize=_KEPT)

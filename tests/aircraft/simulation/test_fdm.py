@@ -7,14 +7,13 @@ import sys
 from dataclasses import replace
 
 import pytest
-from local_places import to_local
 
 from aircraft.errors import AircraftError, ReadOnlyPropertyError, UnknownPropertyError
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.simulation.local_frame import LocalFrame
 from aircraft.simulation.state import RigidBodyState, body_velocity
 from aircraft.spec import MODELS
+from common.geodesy import LocalFrame
 
 SOMEWHERE = RigidBodyState(
     latitude=0.2,
@@ -132,7 +131,7 @@ def test_hold_releases_at_the_asked_place_with_the_asked_yaw_and_motion(x8_fdm, 
     state = replace(SOMEWHERE, latitude=latitude, yaw=yaw)
     x8_fdm.hold(state, 240)
     frame = LocalFrame(latitude, state.longitude, state.altitude)
-    north, east = to_local(frame, x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad"))
+    north, east = frame.to_local(x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad"))
     # In two seconds the equator turns away by 930 m; 0.1 m is a thousandth of a percent of a plume crossing of kilometres.
     assert math.hypot(north, east) < 0.1
     assert x8_fdm.read("position/h-sl-meters") == pytest.approx(120.0, abs=0.1)
@@ -176,7 +175,7 @@ def test_frozen_restores_motion_also_after_an_error(x8_fdm):
     # A tenth of a second of unbalanced flight: several hundredths of a radian and two metres.
     assert abs(x8_fdm.read("attitude/phi-rad") - SOMEWHERE.roll) > 0.01
     frame = LocalFrame(SOMEWHERE.latitude, SOMEWHERE.longitude, SOMEWHERE.altitude)
-    north, east = to_local(frame, x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad"))
+    north, east = frame.to_local(x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad"))
     assert math.hypot(north, east) == pytest.approx(2.0, abs=0.2)  # 20 m/s for 0.1 s, slightly climbing and accelerating
 
 

@@ -6,14 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from innerloop_flights import CHANNELS, after, fly
-from local_places import to_local
 
 from aircraft.dynamics.trim import trim
 from aircraft.errors import AircraftError
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
-from aircraft.simulation.local_frame import LocalFrame
 from aircraft.spec import MODELS
+from common.geodesy import LocalFrame
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 MIDDLE = 2
@@ -35,7 +34,7 @@ def test_a_released_aircraft_starts_where_it_was_put(x8_schedule, x8_aircraft, y
     state = x8_schedule.level(MIDDLE).state(latitude=0.01, longitude=0.02, yaw=yaw)
     x8_aircraft.release(state, airspeed=20.0, altitude=100.0)
     fdm = x8_aircraft.fdm
-    north, east = to_local(LocalFrame(0.01, 0.02, 100.0), fdm.read("position/lat-geod-rad"), fdm.read("position/long-gc-rad"))
+    north, east = LocalFrame(0.01, 0.02, 100.0).to_local(fdm.read("position/lat-geod-rad"), fdm.read("position/long-gc-rad"))
     assert math.hypot(north, east) < 0.1  # of plumes and tracks of hundreds of metres
     assert math.remainder(fdm.read("attitude/psi-rad") - yaw, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-6)
 

@@ -10,7 +10,7 @@ from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
 from aircraft.atmosphere.wind import constant_wind
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.local_frame import LocalFrame
+from aircraft.simulation.local_frame import EquatorFrame
 from aircraft.simulation.properties import EARTH_RATE
 from common.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -20,7 +20,7 @@ FOOT = 0.3048
 MIDDLE = 2
 YAW = 0.6
 TURN = 0.2
-FRAME = LocalFrame(altitude=100.0)
+FRAME = EquatorFrame(100.0)
 READ = (
     ("velocities/vt-fps", FOOT), ("position/h-sl-ft", FOOT), ("attitude/phi-rad", 1.0),
     ("velocities/v-north-fps", FOOT), ("velocities/v-east-fps", FOOT),

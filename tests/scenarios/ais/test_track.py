@@ -19,7 +19,7 @@ HOUR = 3600.0
 
 def vessel(name="made_danish.csv", *, utc=None, duration=HOUR, **changes):
     config = VesselConfig(track=str(CATALOG / "ais" / name), mmsi=MADE[name], **changes)
-    return ais_vessel(config, utc=utc, duration=duration, margin=5.0)
+    return ais_vessel(config, altitude=60.0, utc=utc, duration=duration, margin=5.0)
 
 
 def residuals(of):

@@ -16,6 +16,7 @@ from scenarios.errors import InputError
 from scenarios.schema.load import is_flight, load_study
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
+from tests.in_process import assert_refused, run_command
 from tests.scenarios.short_trial import short_trial
 
 TRIAL = short_trial(flights=3, duration=10.0, histories=3, spread=180.0)
@@ -165,3 +166,19 @@ def test_a_manifest_that_is_not_that_of_a_run_is_refused_in_a_line(runs, tmp_pat
     with pytest.raises(InputError) as refused:
         Replay(str(copy / "flights" / "one_00000"))
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["sweep_nu", "--flightgear", "localhost:5550"], "--flightgear shows the replay of a flight; give RUN_DIR/flights/ID"),
+        (["{flight}", "--flightgear", "localhost"], "--flightgear is 'localhost'; give HOST:PORT"),
+        (["{flight}", "--flightgear", "local host:5550"], "give HOST:PORT"),
+        (["{flight}", "--flightgear", "localhost:99999"], "give HOST:PORT"),
+        (["{flight}", "--flightgear", "localhost:5550"], "--flightgear shows aircraft in six degrees of freedom"),
+    ],
+)
+def test_what_flightgear_cannot_show_is_refused(runs, tmp_path, arguments, words):
+    flight = sorted((runs / "sweep" / "flights").glob("*.parquet"))[0].with_suffix("")
+    arguments = [argument.replace("{flight}", str(flight)) for argument in arguments]
+    assert_refused(run_command("scenarios.run", *arguments, "--out", str(tmp_path / "again")), words)

@@ -10,7 +10,7 @@ from scenarios.world.weather import sampled_weather, wind_ned, wind_of
 
 
 def sampled(given, seed=9):
-    return sampled_weather(given, wind_of(given, given_place(given.place)), np.random.default_rng(seed))
+    return sampled_weather(given, wind_of(given, given_place(given.place, 60.0)), np.random.default_rng(seed))
 
 
 @pytest.mark.parametrize(

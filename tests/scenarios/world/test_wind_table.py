@@ -23,7 +23,7 @@ HOURLY = """time_utc,speed_mps,from_deg
 START = 1780308000.0
 """2026-06-01T10:00:00Z (date -u -d ... +%s)."""
 
-KATTEGAT = Place(latitude=math.radians(57.2), longitude=math.radians(11.3), utc=START)
+KATTEGAT = Place(latitude=math.radians(57.2), longitude=math.radians(11.3), altitude=60.0, utc=START)
 
 
 @pytest.fixture

@@ -1,0 +1,216 @@
+"""What exporters for maps and globes take from a flight: where UAV, vessel and plume were on earth, and when."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+
+import numpy as np
+import pandas as pd
+
+from common.geodesy import LocalFrame
+from reports.errors import ReportError
+from reports.run.columns import Array, column
+from reports.run.run_data import RunData
+
+PLUME_LENGTH = 1000.0
+"""How much of the plume's axis is shown [m]."""
+
+NO_PLACE = (0.0, 0.0)
+"""Latitude and longitude of flights that no place is given for [deg]: on the equator, where JSBSim flies them."""
+
+NO_TIME = datetime(2000, 1, 1, tzinfo=UTC).timestamp()
+"""Start of flights that no time is given for, since 1970 [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Body:
+    """Where something that moves was at each sample.
+
+    Attributes
+    ----------
+    latitude, longitude : [deg]
+    altitude : above the ellipsoid [m]
+    north, east : velocity over the ground by true north [m/s]
+    """
+
+    latitude: Array
+    longitude: Array
+    altitude: Array
+    north: Array
+    east: Array
+
+    @property
+    def speed(self) -> Array:
+        """Return the speed over the ground [m/s]."""
+        speed: Array = np.hypot(self.north, self.east)
+        return speed
+
+    @property
+    def course(self) -> Array:
+        """Return the course over the ground from true north, from 0 to 360 [deg]."""
+        course: Array = np.degrees(np.arctan2(self.east, self.north)) % 360.0
+        return course
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GeographicFlight:
+    """One flight on earth.
+
+    Attributes
+    ----------
+    flight_id : its name
+    placed : whether its place on earth is known; otherwise it is that of ``NO_PLACE``
+    start : since 1970 in UTC [s]
+    time : of each sample since the start [s]
+    uav : the aircraft
+    heading, pitch, roll : of the aircraft, heading from true north [deg]
+    airspeed, climb_rate : [m/s]
+    throttle : [-]
+    vessel : the ship, or none
+    plume_end : a point of the plume's axis, ``PLUME_LENGTH`` from the funnel, or none
+    source_height : of the funnel above the sea [m]
+    keepout_radius : r_min, not a number without a vessel [m]
+    crossings : its rows of the run's table of crossings
+    """
+
+    flight_id: str
+    placed: bool
+    start: float
+    time: Array
+    uav: Body
+    heading: Array
+    pitch: Array
+    roll: Array
+    airspeed: Array
+    climb_rate: Array
+    throttle: Array
+    vessel: Body | None
+    plume_end: Body | None
+    source_height: float
+    keepout_radius: float
+    crossings: pd.DataFrame
+
+    def utc(self, i: int) -> str:
+        """Return the time of a sample in ISO 8601, to a millisecond."""
+        return utc_text(self.start + float(self.time[i]))
+
+    def every(self, seconds: float) -> list[int]:
+        """Return the numbers of samples that are some time [s] apart, the first and the last among them."""
+        step = max(1, round(seconds / max(1e-9, float(np.median(np.diff(self.time))) if len(self.time) > 1 else seconds)))
+        return sorted({*range(0, len(self.time), step), len(self.time) - 1})
+
+    def keepout_ring(self, i: int, points: int = 48) -> list[tuple[float, float]]:
+        """Return longitude and latitude [deg] of a circle about the vessel at a sample, closed and counter-clockwise."""
+        if self.vessel is None:
+            return []
+        frame = LocalFrame(math.radians(self.vessel.latitude[i]), math.radians(self.vessel.longitude[i]))
+        angle = np.linspace(0.0, -2.0 * math.pi, points + 1)
+        latitude, longitude = frame.to_geodetic(self.keepout_radius * np.cos(angle), self.keepout_radius * np.sin(angle))
+        # In one piece, also where it lies over the date line.
+        centre = float(self.vessel.longitude[i])
+        around = centre + (np.degrees(longitude) - centre + 180.0) % 360.0 - 180.0
+        return list(zip(around.tolist(), np.degrees(latitude).tolist(), strict=True))
+
+
+def utc_text(seconds: float) -> str:
+    """Return a time since 1970 [s] in ISO 8601, to a millisecond."""
+    return datetime.fromtimestamp(round(seconds, 3), UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+
+
+def recorded_flights(run: RunData) -> Iterator[GeographicFlight]:
+    """Yield each flight of a run that has a time history.
+
+    Raises
+    ------
+    ReportError : none has
+    """
+    found = False
+    for rows in (run.summary, run.comparison):
+        for row in rows.to_dict("records"):
+            history = run.history(str(row["flight_id"])) if run.has_history(str(row["flight_id"])) else None
+            if history is not None and len(history):
+                found = True
+                yield _flight(run, {str(key): value for key, value in row.items()}, history)
+    if not found:
+        raise ReportError(f"'{run.path}' has no time histories of flights, which tracks are made of")
+
+
+def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> GeographicFlight:
+    def of(name: str, default: float = 0.0) -> Array:
+        return np.nan_to_num(column(history, name), nan=default) if name in history else np.full(len(history), default)
+
+    def known(name: str, default: float) -> float:
+        value = row.get(name)
+        return float(value) if isinstance(value, int | float) and math.isfinite(value) else default
+
+    flight_id = str(row["flight_id"])
+    latitude, longitude = known("place_latitude_deg", math.nan), known("place_longitude_deg", math.nan)
+    placed = math.isfinite(latitude) and math.isfinite(longitude)
+    commanded, altitude = of("altitude_command_m"), of("altitude_m")
+    if not placed:
+        latitude, longitude = NO_PLACE
+    frame = LocalFrame(math.radians(latitude), math.radians(longitude), float(commanded[0] or altitude[0]))
+    north, east = of("north_m"), of("east_m")
+    uav = _body(frame, north, east, altitude, of("velocity_north_mps"), of("velocity_east_mps"))
+    turned = np.degrees(frame.true_north(np.radians(uav.latitude), np.radians(uav.longitude)))
+    heading = column(history, "heading_rad") if "heading_rad" in history else of("course_rad")
+    source_height = _source_height(run, row, float(commanded[0]))
+    radius, axis = known("keepout_radius_m", math.nan), of("plume_axis_rad", math.nan)
+    vessel = plume_end = None
+    if math.isfinite(radius):
+        v_north, v_east = of("vessel_north_m"), of("vessel_east_m")
+        moving = of("vessel_velocity_north_mps"), of("vessel_velocity_east_mps")
+        vessel = _body(frame, v_north, v_east, np.zeros(len(history)), *moving)
+        if np.isfinite(axis).all():
+            up = math.radians(known("plume_elevation_deg", 0.0))
+            level = PLUME_LENGTH * math.cos(up)
+            end_altitude = np.full(len(history), source_height + PLUME_LENGTH * math.sin(up))
+            plume_end = _body(frame, v_north + level * np.cos(axis), v_east + level * np.sin(axis), end_altitude, *moving)
+    return GeographicFlight(
+        flight_id=flight_id,
+        placed=placed,
+        start=_start(row.get("start_utc")),
+        time=of("time_s"),
+        uav=uav,
+        heading=(np.degrees(heading) - turned) % 360.0,
+        pitch=np.degrees(of("pitch_rad")),
+        roll=np.degrees(of("roll_rad")),
+        airspeed=of("airspeed_mps"),
+        climb_rate=of("climb_rate_mps"),
+        throttle=of("throttle"),
+        vessel=vessel,
+        plume_end=plume_end,
+        source_height=source_height,
+        keepout_radius=radius,
+        crossings=run.crossings_of(flight_id),
+    )
+
+
+def _body(frame: LocalFrame, north: Array, east: Array, altitude: Array, v_north: Array, v_east: Array) -> Body:
+    """Return a body from what it is in a local frame [m, m/s]."""
+    latitude, longitude = frame.to_geodetic(north, east)
+    turned = frame.true_north(latitude, longitude)
+    return Body(
+        latitude=np.degrees(latitude),
+        longitude=np.degrees(longitude),
+        altitude=altitude,
+        north=np.cos(turned) * v_north + np.sin(turned) * v_east,
+        east=np.cos(turned) * v_east - np.sin(turned) * v_north,
+    )
+
+
+def _start(text: object) -> float:
+    try:
+        return datetime.fromisoformat(str(text)).timestamp()
+    except ValueError:
+        return NO_TIME
+
+
+def _source_height(run: RunData, row: dict[str, object], default: float) -> float:
+    """Return the height of the funnel that the flight's trial was configured with [m]."""
+    trials = run.manifest.get("trials")
+    config = trials.get(row.get("trial")) if isinstance(trials, dict) else None
+    plume = config.get("plume") if isinstance(config, dict) else None
+    height = plume.get("source_height_m") if isinstance(plume, dict) else None
+    return float(height) if isinstance(height, int | float) else default

@@ -1,0 +1,120 @@
+"""MAVLink 2 messages of a flight, packed as the protocol has them (https://mavlink.io/en/guide/serialization.html)."""
+
+import math
+import struct
+from collections.abc import Iterator
+
+from reports.export.geographic import Body, GeographicFlight
+
+_MAGIC, _SYSTEM, _COMPONENT = 0xFD, 1, 1
+
+_FIXED_WING, _NO_AUTOPILOT, _ACTIVE, _ARMED, _VERSION = 1, 8, 4, 128, 3
+"""Of a heartbeat: MAV_TYPE, MAV_AUTOPILOT_INVALID, MAV_STATE, MAV_MODE_FLAG_SAFETY_ARMED, and the protocol's version."""
+
+_GEOMETRIC, _SURFACE_VEHICLE, _ADSB_VALID = 1, 18, 1 | 2 | 4 | 8
+"""Of an ADSB_VEHICLE: altitude by satellites, MAV's emitter type of a service vehicle on the surface, and which fields are valid:
+place, altitude, heading, velocity."""
+
+_CARGO, _AIS_VALID = 70, 1 | 4 | 16
+"""Of an AIS_VESSEL: its type, and which fields are valid: place, course, velocity."""
+
+_MMSI = 999_999_999
+"""Of a vessel whose MMSI is not recorded."""
+
+_SLOW = 1.0
+"""Time between heartbeats, and between reports of the vessel [s]."""
+
+_MESSAGES: dict[str, tuple[int, int, str]] = {
+    "HEARTBEAT": (0, 50, "<IBBBBB"),
+    "SYSTEM_TIME": (2, 137, "<QI"),
+    "ATTITUDE": (30, 39, "<Iffffff"),
+    "GLOBAL_POSITION_INT": (33, 104, "<IiiiihhhH"),
+    "VFR_HUD": (74, 20, "<ffffhH"),
+    "ADSB_VEHICLE": (246, 184, "<IiiiHHhHHB9sBB"),
+    "AIS_VESSEL": (301, 243, "<IiiHHHHHHHbBBBB7s20s"),
+}
+"""Number, seed of the checksum, and fields in the order in which they are sent, of the common message set."""
+
+
+class Packer:
+    """Packs messages one after the other, and numbers them."""
+
+    def __init__(self) -> None:
+        self._sequence = 0
+
+    def pack(self, name: str, *values: float | bytes) -> bytes:
+        """Return a message with its values in the order of ``_MESSAGES``."""
+        number, seed, fields = _MESSAGES[name]
+        # Zeros at the end are not sent, but for the first byte.
+        payload = struct.pack(fields, *values)
+        payload = payload[:1] + payload[1:].rstrip(b"\0")
+        head = struct.pack("<BBBBBB", len(payload), 0, 0, self._sequence, _SYSTEM, _COMPONENT) + number.to_bytes(3, "little")
+        self._sequence = (self._sequence + 1) % 256
+        body = head + payload
+        return bytes([_MAGIC]) + body + struct.pack("<H", _checksum(body + bytes([seed])))
+
+
+def messages(flight: GeographicFlight) -> Iterator[tuple[float, bytes]]:
+    """Yield each message with its time since the start [s]: attitude and place of each sample, heartbeat and vessel each second."""
+    packer, due = Packer(), -math.inf
+    for i, time in enumerate(flight.time.tolist()):
+        if time >= due - 1e-6:
+            due = time + _SLOW
+            yield time, packer.pack("HEARTBEAT", 0, _FIXED_WING, _NO_AUTOPILOT, _ARMED, _ACTIVE, _VERSION)
+            yield time, packer.pack("SYSTEM_TIME", round(1e6 * (flight.start + time)), _milliseconds(time))
+            if flight.vessel is not None:
+                yield time, _ais(packer, flight.vessel, i)
+                yield time, _adsb(packer, flight.vessel, i)
+        yield from ((time, message) for message in _of_sample(packer, flight, i, time))
+
+
+def _of_sample(packer: Packer, flight: GeographicFlight, i: int, time: float) -> Iterator[bytes]:
+    uav = flight.uav
+    roll, pitch, yaw = (math.radians(float(angle[i])) for angle in (flight.roll, flight.pitch, flight.heading))
+    yield packer.pack("ATTITUDE", _milliseconds(time), roll, pitch, math.remainder(yaw, math.tau), 0.0, 0.0, 0.0)
+    height, heading = round(1e3 * float(uav.altitude[i])), round(100.0 * float(flight.heading[i])) % 36000
+    yield packer.pack(
+        "GLOBAL_POSITION_INT", _milliseconds(time), *_place(uav, i), height, height,
+        _centi(uav.north[i]), _centi(uav.east[i]), _centi(-flight.climb_rate[i]), heading,
+    )  # fmt: skip
+    yield packer.pack(
+        "VFR_HUD", float(flight.airspeed[i]), float(uav.speed[i]), float(uav.altitude[i]), float(flight.climb_rate[i]),
+        round(float(flight.heading[i])) % 360, max(0, min(100, round(100.0 * float(flight.throttle[i])))),
+    )  # fmt: skip
+
+
+def _ais(packer: Packer, vessel: Body, i: int) -> bytes:
+    course, speed = round(100.0 * float(vessel.course[i])) % 36000, _centi(vessel.speed[i])
+    return packer.pack(
+        "AIS_VESSEL", _MMSI, *_place(vessel, i), course, course, speed, 0, 0, 0, _AIS_VALID, 0, 0, _CARGO, 0, 0, b"", b"VESSEL"
+    )
+
+
+def _adsb(packer: Packer, vessel: Body, i: int) -> bytes:
+    """Return the vessel once more, for ground stations that show no AIS."""
+    course, speed = round(100.0 * float(vessel.course[i])) % 36000, _centi(vessel.speed[i])
+    return packer.pack(
+        "ADSB_VEHICLE", 1, *_place(vessel, i), 0, course, speed, 0, _ADSB_VALID, 0, _GEOMETRIC, b"VESSEL", _SURFACE_VEHICLE, 0
+    )
+
+
+def _place(body: Body, i: int) -> tuple[int, int]:
+    return round(1e7 * float(body.latitude[i])), round(1e7 * float(body.longitude[i]))
+
+
+def _centi(speed: float) -> int:
+    return max(-32768, min(32767, round(100.0 * float(speed))))
+
+
+def _milliseconds(time: float) -> int:
+    return round(1e3 * time)
+
+
+def _checksum(data: bytes) -> int:
+    """Return the CRC-16/MCRF4XX of a message."""
+    crc = 0xFFFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = (crc >> 1) ^ 0x8408 if crc & 1 else crc >> 1
+    return crc

@@ -1,0 +1,59 @@
+"""A recorded flight sent to a ground station in real time, as MAVLink over UDP."""
+
+import re
+import socket
+import time
+
+from reports.errors import ReportError
+from reports.export.geographic import recorded_flights
+from reports.export.mavlink import messages
+from reports.run.run_data import RunData
+
+_ADDRESS = re.compile(r"udp://([A-Za-z0-9.\-]+):(\d{1,5})")
+
+_PORT_MAX = 65535
+
+
+def stream_address(text: str) -> tuple[str, int]:
+    """Return host and port of ``udp://HOST:PORT``.
+
+    Raises
+    ------
+    ReportError : it is not of that form
+    """
+    found = _ADDRESS.fullmatch(text)
+    if found is None or not 0 < int(found[2]) <= _PORT_MAX:
+        raise ReportError(f"--stream is '{text}'; give udp://HOST:PORT, as in udp://127.0.0.1:14550")
+    return found[1], int(found[2])
+
+
+def stream_flight(run: RunData, address: tuple[str, int], *, speed: float = 1.0) -> tuple[str, int, float]:
+    """Send the first recorded flight of a run, and return its name, the number of messages and its duration [s].
+
+    Parameters
+    ----------
+    run : with the flight
+    address : host and port
+    speed : seconds of the flight in a second of the clock [-]
+
+    Raises
+    ------
+    ReportError : the run has no time history of a flight, or nothing can be sent to the address
+    """
+    flight, sent, at = next(recorded_flights(run)), 0, 0.0
+    began = time.monotonic()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+        for at, message in messages(flight):
+            if (ahead := (at - float(flight.time[0])) / speed - (time.monotonic() - began)) > 0.0:
+                time.sleep(ahead)
+            try:
+                link.sendto(message, address)
+            except ConnectionRefusedError:
+                # Nobody listens yet: a ground station may come later.
+                continue
+            except OSError as error:
+                raise ReportError(
+                    f"--stream: cannot send to {address[0]}:{address[1]}: {error.strerror}; check the address"
+                ) from None
+            sent += 1
+    return flight.flight_id, sent, at
