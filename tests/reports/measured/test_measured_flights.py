@@ -53,11 +53,12 @@ def test_several_flights_are_judged_as_a_method(several):
     assert {"sulphur-errors", "operating-curve", "sulphur-trajectory"} <= set(charts)
     assert_axes_read_quantity_and_unit(charts.values())
     (section,) = [section for section in several.sections if section.anchor == "sulphur"]
-    accuracy, calls, hits = [block for block in section.blocks if isinstance(block, Table)]
+    accuracy, best, calls, hits = [block for block in section.blocks if isinstance(block, Table)]
     assert [row[:3] for row in accuracy.rows] == [
         ["fast", "equalise and regress", "12"], ["fast", "areas of passes", "12"],
         ["laser", "equalise and regress", "12"], ["laser", "areas of passes", "12"],
     ]  # fmt: skip
+    assert [row[0] for row in best.rows] == ["fast"] * 3 + ["laser"] * 3
     fuels = [(row[0], row[1], row[4]) for row in calls.rows]
     # 0.05 % is never above 0.1 %, and 0.5 % always is, with the noise of these sensors.
     assert ("laser", "0.05", "0\N{NO-BREAK SPACE}%") in fuels
