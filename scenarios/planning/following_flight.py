@@ -8,9 +8,12 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.reachable_set import VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
+from gnc.mission.plume_following import FollowingParameters
+from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuardParameters, GuidanceParameters, ReportedVessel
+from gnc.reference.reference import Orbit
 from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
-from scenarios.margin.orbit_room import orbit_distance
+from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
 from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.flight_plan import FlightPlan, Sensing
@@ -25,6 +28,7 @@ from scenarios.planning.guidance import (
 )
 from scenarios.planning.limits import PLAN_PERIOD, omega_max
 from scenarios.planning.reference import orbits, oscillation_at
+from scenarios.planning.standoff import standoff_parameters, vessel_circle
 from scenarios.planning.start import check_start, sampled_start
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.sensors import SensorErrors
@@ -57,16 +61,28 @@ def following_flight(
     _check_plume(scenario, wind)
     _check_declared(scenario, vessel)
     nu = wind.at_start / g.airspeed_mps
-    periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
     limits = vessel_limits(scenario, turn_time(scenario, setup.reversal))
-    orbit = oscillation_at(g, scenario.reference, nu)
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
     guarded = guard_parameters(scenario, setup, radius + level)
     widest = widest_tube(limits, scenario.reports, plan_period=PLAN_PERIOD)
-    farthest = max(radius + f.margin_min_m, orbit_distance(guarded, widest, orbit)) + level
+    oscillation = oscillation_at(g, scenario.reference, nu)
+    if scenario.stands_off:
+        nearest = circle_distance(guarded, widest, g.airspeed_mps, nu * g.airspeed_mps)
+    else:
+        nearest = orbit_distance(guarded, widest, oscillation)
+    farthest = max(radius + f.margin_min_m, nearest) + level
     reach = widest.reach(turn_time(scenario, setup.reversal))
     margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
+    mission: FollowingParameters | StandoffParameters
+    orbit: Orbit
+    periods: tuple[float, ...] = ()
+    if scenario.stands_off:
+        orbit = circle = vessel_circle(scenario, nu, farthest)
+        mission = standoff_parameters(scenario, setup, circle.radius)
+    else:
+        periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
+        orbit, mission = oscillation, following_parameters(scenario, setup, margin, widths)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, generators.world)
@@ -86,7 +102,7 @@ def following_flight(
         scenario,
         flight_id,
         nu=nu,
-        guidance=_guidance(scenario, setup, margin, widths, guard, limits),
+        guidance=_guidance(scenario, setup, mission, guard, limits),
         steering=given_steering(g),
         start=start,
         period=orbit.period,
@@ -112,8 +128,7 @@ def following_flight(
 def _guidance(
     scenario: Scenario,
     setup: VehicleSetup,
-    margin: KeepoutMargin,
-    widths: tuple[tuple[float, float], ...],
+    mission: FollowingParameters | StandoffParameters,
     guard: GuardParameters | None,
     limits: VesselLimits,
 ) -> GuidanceParameters:
@@ -127,7 +142,7 @@ def _guidance(
         navigation=navigation_parameters(scenario, setup),
         vessel=ReportedVessel(filter=filter_parameters(scenario.reports), limits=limits),
         guard=guard,
-        mission=following_parameters(scenario, setup, margin, widths),
+        mission=mission,
         health=HealthParameters(
             airspeed_error=THRUST_LOST_FRACTION * (g.airspeed_mps - hold.airspeed_min),
             speed=g.airspeed_mps,

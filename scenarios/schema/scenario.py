@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
 from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, SensorsConfig, VesselReportsConfig
 from scenarios.schema.experiment import (
     FLIGHTS_MAX,
@@ -18,7 +19,7 @@ from scenarios.schema.experiment import (
     SweepConfig,
 )
 from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
-from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig
+from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
 from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
 from scenarios.schema.world import KeepoutConfig, PlumeConfig, TurbulenceConfig, VesselConfig, WindConfig
 
@@ -88,9 +89,9 @@ class Scenario(Section):
 
     @property
     def follows(self) -> bool:
-        """Return whether the reference is steered: where mission says so, or air or vessel are not steady and known exactly."""
+        """Return whether the mission follows what it estimates: where that says so, or air or vessel are not steady and known."""
         if self.guidance.mission is not None:
-            return self.guidance.mission == "follow"
+            return self.guidance.mission != "track"
         return not (
             self.wind.speed_mps == 0.0
             and self.turbulence.calm
@@ -102,6 +103,11 @@ class Scenario(Section):
             and self.fault.kind == "none"
             and self.plume.direction != "apparent_wind"
         )
+
+    @property
+    def stands_off(self) -> bool:
+        """Return whether the vessel is circled, without an oscillation."""
+        return self.guidance.mission == "standoff"
 
     @property
     def declared_faults(self) -> frozenset[str]:
@@ -151,6 +157,13 @@ class Scenario(Section):
                 "turbulence.level or turbulence.gusts is set with fidelity 'kinematic', which feels the steady wind alone:"
                 " set fidelity to 'six_dof', or turbulence.level to 'none' and turbulence.gusts to 0"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _law_has_the_task(self) -> "Scenario":
+        law = self.guidance.law
+        if not self.circles and (reason := law_refusal(law, ON_CIRCLE if self.stands_off else ON_OSCILLATION)):
+            raise ValueError(f"guidance.law is '{law}': {reason}")
         return self
 
     @model_validator(mode="after")

@@ -65,7 +65,7 @@ def test_a_state_turned_as_a_whole_has_the_same_command(name):
 @pytest.mark.parametrize("wind", [(0.0, 0.0), (4.0, -3.0)])
 @pytest.mark.parametrize("name", FEED_FORWARD)
 def test_on_the_reference_a_law_with_feed_forward_commands_its_heading_rate(name, wind):
-    if name == "lyapunov" or name == "cascade":
+    if name in {"lyapunov", "cascade"}:
         wind = (0.0, 0.0)
     # NPFG's bearing is feasible by all of 1.5 m/s here; the others do not know the wind. Rounding.
     assert commanded(name, reference(), (0.0, 0.0), 0.3, wind) == pytest.approx(0.15, abs=1e-9)

@@ -80,9 +80,10 @@ def test_a_loiter_is_captured_and_circled():
 
 
 def test_the_radius_grows_with_thin_air_and_within_a_bank_limit():
-    # Section 2.2: R k without a limit; R_s = 20^2/(g tan 20 deg) = 112.07 m is above 60 m, so 60 k; of 100 m at 45 deg, R_s = 40.79 m.
-    assert loiter_radius(60.0, true_over_equivalent_airspeed=1.1) == pytest.approx(72.6)
-    assert loiter_radius(60.0, true_over_equivalent_airspeed=1.1, bank_limit=math.radians(20.0), airspeed=20.0) == pytest.approx(
-        72.6
-    )
-    assert loiter_radius(100.0, true_over_equivalent_airspeed=1.1, bank_limit=math.radians(45.0), airspeed=20.0) == 100.0
+    # Section 2.2: R k without a limit; R_s = 20^2/(g tan 20 deg) = 112.07 m is above 60 m, so 60 k; at 45 deg it is 40.79 m.
+    def flown(radius, **limit):
+        return loiter_radius(radius, true_over_equivalent_airspeed=1.1, **limit)
+
+    assert flown(60.0) == pytest.approx(72.6)
+    assert flown(60.0, bank_limit=math.radians(20.0), airspeed=20.0) == pytest.approx(72.6)
+    assert flown(100.0, bank_limit=math.radians(45.0), airspeed=20.0) == 100.0
