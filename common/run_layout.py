@@ -36,6 +36,9 @@ BOUNDS = "bounds.json"
 STATISTICS = "statistics.json"
 """Estimates of a Monte Carlo study."""
 
+ARENA = "arena.json"
+"""What an arena of steering laws has shown, and what each law was given."""
+
 MODEL = "model"
 """Directory of the aircraft's model with the autopilot."""
 

@@ -34,6 +34,7 @@ class LineOfSightLaw:
     ValueError : the gain is not finite and above 0
     """
 
+    given: ClassVar[str] = "the reference's place (M3); elsewhere called proportional pursuit"
     cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
     gain_per_s: float = 1.5
 

@@ -26,7 +26,8 @@ class SteeringLaw(Protocol):
 
     A law is a frozen dataclass that is registered by a name in a file of its own. Its fields are the keys of a scenario's
     ``[guidance]`` by the same names, in SI units, each with a default. A law that remembers something, or that needs wind, has a
-    method ``begin`` beside: see ``begun``. One that cannot do a task says so in ``cannot``, by the task, with the reason.
+    method ``begin`` beside: see ``begun``. One that cannot do a task says so in ``cannot``, by the task, with the reason;
+    ``given`` says in words what of the reference and of the air a law makes use of.
     """
 
     def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:

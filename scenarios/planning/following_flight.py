@@ -76,9 +76,9 @@ def following_flight(
     margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
     mission: FollowingParameters | StandoffParameters
     orbit: Orbit
-    periods: tuple[float, ...] = ()
     if scenario.stands_off:
         orbit = circle = vessel_circle(scenario, nu, farthest)
+        periods = circle.periods(f.speed_ratio_max)
         mission = standoff_parameters(scenario, setup, circle.radius)
     else:
         periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)

@@ -1,7 +1,7 @@
 """The circle about the vessel that a standoff mission flies."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +11,7 @@ from gnc.errors import InfeasibleError
 from gnc.mission.standoff import StandoffParameters
 from scenarios.planning.guidance import plan_interval, speed_hold
 from scenarios.planning.limits import omega_max
+from scenarios.planning.reference import RATIO_STEPS
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
@@ -44,6 +45,10 @@ class VesselCircle:
         mean of its inverse over a turn is the complete elliptic integral E(nu^2) over pi/2 V (1 - nu^2).
         """
         return float(4.0 * self.radius * ellipe(self.nu**2) / (self.speed * (1.0 - self.nu**2)))
+
+    def periods(self, speed_ratio_max: float) -> tuple[float, ...]:
+        """Return the periods at equal steps of nu from 0 to ``speed_ratio_max`` [s]."""
+        return tuple(replace(self, nu=nu).period for nu in np.linspace(0.0, speed_ratio_max, RATIO_STEPS + 1).tolist())
 
     @property
     def crossing_interval(self) -> float:

@@ -9,6 +9,7 @@ from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
 from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, SensorsConfig, VesselReportsConfig
 from scenarios.schema.experiment import (
     FLIGHTS_MAX,
+    ArenaConfig,
     CaseConfig,
     ComparisonConfig,
     DrawConfig,
@@ -39,7 +40,8 @@ class Scenario(Section):
     """A whole scenario file of flights."""
 
     study: str = "flights"
-    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search; or FILE.py:NAME."""
+    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search; arena, laws side by side; or
+    FILE.py:NAME."""
     title: str
     description: str = ""
     aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = DEFAULT_AIRCRAFT
@@ -64,6 +66,9 @@ class Scenario(Section):
     statistics: StatisticsConfig = StatisticsConfig()
     subset: SubsetConfig = SubsetConfig()
     search: SearchConfig = SearchConfig()
+    laws: tuple[str, ...] = ()
+    """Laws that take part in an arena beside its own, each by its name or FILE.py:NAME."""
+    arena: ArenaConfig = ArenaConfig()
     vessel: VesselConfig = VesselConfig()
     plume: PlumeConfig = PlumeConfig()
     keepout: KeepoutConfig = KeepoutConfig()

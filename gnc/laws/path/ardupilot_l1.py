@@ -218,6 +218,8 @@ class _Flight:
 class ArduPilotL1TangentLaw(ArduPilotL1Law):
     """ArduPilot's L1 along the reference's tangent (M1); attributes as of ``ArduPilotL1Law``."""
 
+    given: ClassVar[str] = "tangent of the path over the ground (M1); velocity over the ground"
+
     def line(self, motion: PathMotion) -> tuple[Vector, Vector]:
         """Return the ends of the line to follow, from the path's point [m]."""
         return scaled(motion.tangent, _BEHIND), scaled(motion.tangent, _AHEAD)
@@ -228,6 +230,7 @@ class ArduPilotL1TangentLaw(ArduPilotL1Law):
 class ArduPilotL1PointLaw(ArduPilotL1Law):
     """ArduPilot's L1 with the reference itself as waypoint (M3); attributes as of ``ArduPilotL1Law``."""
 
+    given: ClassVar[str] = "the reference's place as waypoint (M3); velocity over the ground"
     cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
 
     def line(self, motion: PathMotion) -> tuple[Vector, Vector]:  # noqa: ARG002

@@ -127,6 +127,7 @@ class ArduPilotLoiterLaw(PathLaw):
     loiter_damping : NAVL1_DAMPING [-]
     """
 
+    given: ClassVar[str] = "the circle, with the velocity over the ground, as ArduPilot flies about a moving point"
     cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
     loiter_period_s: float = 17.0
     loiter_damping: float = 0.75
@@ -149,6 +150,8 @@ class ArduPilotRelativeLoiterLaw(ArduPilotLoiterLaw):
 
     Attributes are those of ``ArduPilotLoiterLaw``.
     """
+
+    given: ClassVar[str] = "the circle in the frame of its centre (M2), which ArduPilot does not do"
 
     def velocity(self, motion: PathMotion) -> Vector:
         """Return the velocity that the law is given [m/s]."""

@@ -55,6 +55,7 @@ class CarrotLaw(PathLaw):
     carrot_gain_per_s : [1/s]
     """
 
+    given: ClassVar[str] = "tangent of the path over the ground (M1)"
     carrot_ahead_m: float = 40.0
     carrot_gain_per_s: float = 1.0
 
@@ -75,6 +76,7 @@ class CarrotOrbitLaw(PathLaw):
     carrot_gain_per_s : [1/s]
     """
 
+    given: ClassVar[str] = "the circle in the frame of its centre (M2)"
     cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
     carrot_angle_rad: float = 0.2
     carrot_gain_per_s: float = 1.0
@@ -97,6 +99,7 @@ class PlosLaw(PathLaw):
     plos_sight_per_m_s : k_2 [1/(m s)]
     """
 
+    given: ClassVar[str] = "tangent of the path over the ground (M1)"
     plos_ahead_m: float = 60.0
     plos_pursuit_per_s: float = 1.0
     plos_sight_per_m_s: float = 0.01

@@ -33,6 +33,7 @@ class ConstantBearingLaw:
     bearing_gain_per_s : [1/s]
     """
 
+    given: ClassVar[str] = "the reference's place and velocity (M3)"
     bearing_gain_per_s: float = 1.0
     cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
 

@@ -115,6 +115,7 @@ class LgvfLaw(PathLaw):
     lgvf_gain_per_s : k, feedback on the heading [1/s]
     """
 
+    given: ClassVar[str] = "the circle in the frame of its centre (M2); wind"
     cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
     lgvf_gain_per_s: float = 1.0
 

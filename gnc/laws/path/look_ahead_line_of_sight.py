@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 from gnc.laws.steering_law import check_parameters, steering_law
 from gnc.numeric import wrap
@@ -41,6 +42,7 @@ class LookAheadLineOfSightLaw:
     sight_gain_per_s : k [1/s]
     """
 
+    given: ClassVar[str] = "tangent of the path through the air (M1), and its turn rate"
     sight_distance_m: float = 30.0
     sight_gain_per_s: float = 1.0
 

@@ -6,6 +6,7 @@ IROS 2019, and the law as PX4 flies it, release 1.15 (BSD-3-Clause). Written fro
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
 from gnc.laws.steering_law import steering_law
@@ -245,6 +246,7 @@ class NpfgLaw(PathLaw):
     npfg_roll_time_constant_s : T_phi [s]
     """
 
+    given: ClassVar[str] = "tangent and curvature of the path over the ground (M1), a circle in the frame of its centre (M2); wind"
     npfg_period_s: float = 10.0
     npfg_damping: float = 0.7
     npfg_roll_time_constant_s: float = 0.5

@@ -95,6 +95,8 @@ class ParkL1Law(PathLaw):
 class ParkL1TangentLaw(ParkL1Law):
     """Park's law along the reference's tangent (M1); attributes as of ``ParkL1Law``."""
 
+    given: ClassVar[str] = "tangent of the path over the ground (M1); velocity over the ground"
+
     def target(self, motion: PathMotion) -> Vector:
         """Return the point of the tangent at L1 from the vehicle, from the path's point [m]."""
         return point_on_line(motion.position, (0.0, 0.0), course_of(motion.tangent), self.l1_distance_m)
@@ -105,6 +107,7 @@ class ParkL1TangentLaw(ParkL1Law):
 class ParkL1AheadLaw(ParkL1Law):
     """Park's law towards a point L1 ahead of the reference, on its tangent (M3); attributes as of ``ParkL1Law``."""
 
+    given: ClassVar[str] = "a point ahead of the reference (M3); velocity over the ground"
     cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
 
     def target(self, motion: PathMotion) -> Vector:
@@ -117,6 +120,7 @@ class ParkL1AheadLaw(ParkL1Law):
 class ParkL1PointLaw(ParkL1Law):
     """Park's law towards the reference itself (M3), with L1 as the floor of the range; attributes as of ``ParkL1Law``."""
 
+    given: ClassVar[str] = "the reference's place (M3); velocity over the ground"
     cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
     l1_distance_m: float = 30.0
 
@@ -134,6 +138,7 @@ class ParkL1PointLaw(ParkL1Law):
 class ParkL1OrbitLaw(ParkL1Law):
     """Park's law on a circle in the frame of its centre (M2); attributes as of ``ParkL1Law``."""
 
+    given: ClassVar[str] = "the circle in the frame of its centre (M2)"
     cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
 
     def target(self, motion: PathMotion) -> Vector:

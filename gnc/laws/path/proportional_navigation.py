@@ -30,6 +30,7 @@ class ProportionalNavigationLaw:
     navigation_constant : N [-]
     """
 
+    given: ClassVar[str] = "the reference's place and velocity (M3)"
     navigation_constant: float = 3.0
     cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
 

@@ -33,6 +33,7 @@ class PurePursuitLaw:
     range_min_m : floor of the distance: the law is singular on the reference [m]
     """
 
+    given: ClassVar[str] = "the reference's place (M3)"
     range_min_m: float = 30.0
     cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
 

@@ -65,6 +65,7 @@ class RosplaneFieldLaw(PathLaw):
     course_gain_per_s : k_chi [1/s]
     """
 
+    given: ClassVar[str] = "tangent of the path over the ground (M1)"
     path_gain_per_m: float = 0.05
     path_approach_rad: float = 0.5
     course_gain_per_s: float = 1.0
@@ -94,6 +95,7 @@ class RosplaneOrbitLaw(PathLaw):
     course_gain_per_s : k_chi [1/s]
     """
 
+    given: ClassVar[str] = "the circle in the frame of its centre (M2)"
     cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
     orbit_gain: float = 4.0
     course_gain_per_s: float = 1.0

@@ -109,6 +109,7 @@ class VectorFieldLaw:
     field_width_rad : eps, course error from which on it adds that [rad]
     """
 
+    given: ClassVar[str] = "tangent of the path through the air (M1), and its turn rate"
     field_gain_per_m: float = 0.05
     field_approach_rad: float = _HALF_PI
     field_rate_rad_s: float = _HALF_PI
@@ -142,6 +143,7 @@ class OrbitFieldLaw(PathLaw):
     field_rate_rad_s, field_width_rad : kappa and eps, as of ``VectorFieldLaw``
     """
 
+    given: ClassVar[str] = "the circle in the frame of its centre (M2); wind"
     cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
     field_gain_per_m: float = 0.05
     field_rate_rad_s: float = _HALF_PI
