@@ -235,9 +235,9 @@ class ArenaConfig(Section):
     """Laws that circle the vessel."""
     conditions: tuple[ConditionConfig, ...] = ()
     """Conditions, each a trial: the same starts, winds and turbulence for every law."""
-    evaluations: Annotated[int, Field(ge=0, le=10_000)] = 16
+    evaluations: Annotated[int, Field(ge=0, le=10_000)] = 12
     """Settings that the tuner tries for each law, its default the first; 0 to fly the defaults [-]."""
-    tuning_flights: Annotated[int, Field(ge=1, le=1000)] = 2
+    tuning_flights: Annotated[int, Field(ge=1, le=1000)] = 4
     """Flights of each setting, of the kinematic vehicle, with seeds that the comparison does not use [-]."""
     tuning_duration_s: Positive = 200.0
     """Duration of these [s]."""

@@ -81,8 +81,8 @@ class ArenaStudy(FlightStudy):
             fly(Task(number=self._numbers + i) for i in range(len(self.entrants)))
             self._take_tuned(journal)
         fly(self.task(number) for number in range(self._numbers))
-        # The first flight of each law in each condition is drawn in the report.
-        first = range(0, self._numbers, self._scenario.flights)
+        # The report draws the first flight of each law in the first condition.
+        first = range(0, len(self.entrants) * self._scenario.flights, self._scenario.flights)
         shown = {task.number: task for task in (*self.unrecorded(first, run, journal), *self.representative_flights(run, journal))}
         fly(shown.values())
 
