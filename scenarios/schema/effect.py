@@ -138,9 +138,13 @@ RULES = (
     ),
     Rule(keys=("reference.standoff_radius_m",), acts=lambda s: s.stands_off, user="a circle about the vessel: set guidance.mission"
          " to 'standoff'", by_mission=True),
-    Rule(keys=("reference.shape", "following.standoff_m", "following.join_distance_m"),
-         acts=lambda s: not s.stands_off, user="an oscillation in the plume; here the vessel is circled: set guidance.mission to"
-         " 'follow'", by_mission=True),
+    Rule(
+        keys=("reference.shape", "guidance.reserve", "guidance.roll_rate_max_deg_s", "following.standoff_m",
+              "following.join_distance_m"),
+        acts=lambda s: not s.stands_off,
+        user="an oscillation in the plume; here the vessel is circled: set guidance.mission to 'follow'",
+        by_mission=True,
+    ),
     Rule(keys=("following.margin_law",), acts=lambda s: s.follows and not s.turbulence.calm, user="a margin for turbulence: set"
          " turbulence.level", by_mission=True, depends=("turbulence.level",)),
     Rule(keys=("guidance.bank_deg",), acts=lambda s: s.guidance.heading_rate_max_rad_s is None, user="omega_max, which"

@@ -96,6 +96,10 @@ class FlightStudy:
         """
         return dict(trials)
 
+    def name_by_trial(self) -> None:
+        """Have the names of flights begin with that of their trial, as those of a run of several trials do."""
+        self.experiments = {trial: Experiment(trial, of, alone=False) for trial, of in self.trials.items()}
+
     def _sampled_at_random(self) -> dict[str, bool]:
         """Return of which trials flights are a random sample, from which a bound on a probability follows."""
         return {trial: scenario.sampled_at_random for trial, scenario in self.trials.items()}

@@ -1,5 +1,6 @@
 """What an arena has shown: means with intervals by condition and over all of them, and what each law was given."""
 
+import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
@@ -44,7 +45,7 @@ def tuned_record(entrants: Sequence[Entrant], rows: Iterable[Row]) -> list[dict[
         if tried:
             least = min(tried, key=lambda row: row["cost_m"])
             entry |= {
-                "tuned": least["parameters"],
+                "tuned": json.loads(least["parameters"]),
                 "cost_default_m": tried[0]["cost_m"],
                 "cost_tuned_m": least["cost_m"],
                 "message": least["message"],

@@ -4,6 +4,7 @@ It flies the kinematic vehicle with the aircraft's lag: a thousand settings in t
 Half of the budget is spread evenly over the ranges, the default first; the other half is Nelder and Mead's simplex about the best.
 """
 
+import json
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -57,7 +58,8 @@ class Tuner:
 
         def cost(point: Point) -> float:
             parameters = self._parameters(entrant, keys, point)
-            row = {"entrant": entrant.name, "evaluation": len(tried), "parameters": parameters, **self._flown(entrant, parameters)}
+            row: Row = {"entrant": entrant.name, "evaluation": len(tried), "parameters": json.dumps(parameters)}
+            row |= self._flown(entrant, parameters)
             tried.append(row)
             return float(row["cost_m"])
 
