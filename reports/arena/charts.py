@@ -20,24 +20,31 @@ _FAMILIES = (
 _SHOWN_S = 120.0
 """End of a flight that is drawn [s]."""
 
-_BEYOND = 1.15
-"""Room around marks, as a ratio."""
+_BEYOND = 1.08
+"""Largest abscissa that is drawn, over the largest mark."""
 
 
-def effort_chart(arena: Arena) -> Chart:
-    """Return tracking error against control effort, a panel for each condition and one for all, with one mark a law."""
+def effort_charts(arena: Arena) -> list[Chart]:
+    """Return tracking error against control effort with one mark a law: over all conditions, and a panel for each."""
     entrants = arena.in_task(tracking=True)
-    conditions = [arena.together, *(name for name in arena.conditions if name != arena.together)]
-    panels = [_effort_panel(arena, entrants, condition) for condition in conditions]
-    return Chart(
+    together = Chart(
         name="effort",
         caption="Distance to the oscillating reference against the heading rate commanded, each as its root mean square over the"
-        " end of the flights, settled or not; a mark a law, numbered as in the tables. The reference's own heading rate is what a"
-        " law needs that tracks it exactly. Down and to the left is better.",
-        panels=panels,
-        columns=2,
-        panel_height=0.42,
+        " end of the flights, settled or not; a mark a law, numbered as in the tables. Down and to the left is better. What tracks"
+        " the reference exactly needs the reference's own heading rate.",
+        panels=[_effort_panel(arena, entrants, arena.together)],
+        panel_height=0.5,
     )
+    if len(arena.conditions) == 1:
+        return [together]
+    each = Chart(
+        name="efforts",
+        caption="The same for each condition.",
+        panels=[_effort_panel(arena, entrants, condition) for condition in arena.conditions],
+        columns=3,
+        panel_height=0.34,
+    )
+    return [together, each]
 
 
 def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str) -> Panel:
@@ -50,7 +57,7 @@ def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str) -> 
         if members:
             lines.append(Line(x=x, y=y, label=label, colour=colour, style="points"))
     known = [value for value in errors.values() if math.isfinite(value)] or [0.0]
-    low, high = math.floor(min(known)), math.ceil(max(known) + 0.05)
+    low, high = math.floor(min(known) - 0.1), math.ceil(max(known) + 0.1)
     reach = [value for value in efforts.values() if math.isfinite(value)] or [0.0]
     span = max(reach) - min(reach) or 0.1
     for entrant in entrants:
@@ -58,15 +65,20 @@ def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str) -> 
         if math.isfinite(x_mark) and math.isfinite(y_mark):
             notes.append(Note(x=x_mark + 0.012 * span, y=y_mark + 0.02 * (high - low), text=str(entrant.number), align="left"))
     return Panel(
-        x_label="Heading rate commanded, rms [rad/s]",
+        x_label="Heading rate, rms [rad/s]",
         y_label="Tracking error, rms [m]",
-        title="All conditions" if condition == ALL else arena.conditions[condition],
+        title="All conditions" if condition == ALL else _title(condition),
         lines=lines,
         notes=notes,
         x_range=(min(reach) - 0.06 * span, max(reach) + 0.1 * span),
         y_range=(float(low), float(high)),
         y_names=[(float(decade), f"{10.0**decade:g}") for decade in range(low, high + 1)],
     )
+
+
+def _title(condition: str) -> str:
+    """Return the name of a condition in words."""
+    return condition[:1].upper() + condition[1:].replace("_", " ")
 
 
 def _family(entrant: Entrant) -> str:
@@ -79,14 +91,14 @@ def _family(entrant: Entrant) -> str:
 def crossing_chart(arena: Arena) -> Chart:
     """Return the crossings per minute of every law, a panel for each condition, with the limit where it is known."""
     entrants = arena.ranked("crossings_per_minute", arena.entrants, greater_first=True)
-    panels = [_crossing_panel(arena, entrants, condition, named=i % 2 == 0) for i, condition in enumerate(arena.conditions)]
+    panels = [_crossing_panel(arena, entrants, condition, named=i == 0) for i, condition in enumerate(arena.conditions)]
     limit = " The dashed line is the most that any path allows at these speed ratios." if arena.limits else ""
     return Chart(
         name="crossings",
         caption=f"Plume crossings per minute over the end of the flights; a mark is a law's mean, with its 95 % interval.{limit}",
         panels=panels,
-        columns=2,
-        panel_height=0.12 + 0.021 * len(entrants),
+        columns=len(panels),
+        panel_height=0.1 + 0.025 * len(entrants),
     )
 
 
@@ -110,12 +122,19 @@ def _crossing_panel(arena: Arena, entrants: Sequence[Entrant], condition: str, *
     names = [(rows[entrant.name], f"{entrant.title} {entrant.number}" if named else "") for entrant in entrants]
     return Panel(
         x_label="Crossings [1/min]",
-        y_label="",
-        title=arena.conditions[condition],
+        y_label="Law [-]" if named else "",
+        title=_title(condition),
         lines=lines,
+        x_range=(0.0, _BEYOND * _most(arena)),
         y_names=names,
         y_range=(float(reach[0]), float(reach[1])),
     )
+
+
+def _most(arena: Arena) -> float:
+    """Return the largest number of crossings per minute that is drawn."""
+    found = [arena.of("crossings_per_minute", entrant, name).high for entrant in arena.entrants for name in arena.conditions]
+    return max([value for value in found if math.isfinite(value)] + list(arena.limits.values()), default=0.0) or 1.0
 
 
 def track_chart(arena: Arena, *, tracking: bool) -> Chart:
@@ -129,8 +148,8 @@ def track_chart(arena: Arena, *, tracking: bool) -> Chart:
         caption=f"{what}: the last {_SHOWN_S:g} s of one flight a law, the same start for all; condition: {first}. Seen from the"
         " vessel, with its plume up the page. The best on the tracking error come first.",
         panels=panels,
-        columns=4,
-        panel_height=0.27,
+        columns=4 if tracking else 5,
+        panel_height=0.27 if tracking else 0.22,
     )
 
 
@@ -148,9 +167,9 @@ def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | N
     middle = 1.3 * radius if tracking else 0.0
     half = 0.8 * radius if tracking else 1.6 * radius
     return Panel(
-        x_label="",
-        y_label="",
-        title=f"{entrant.number} {entrant.title}",
+        x_label="Right [m]",
+        y_label="Along [m]",
+        title=f"{entrant.number} {entrant.title}" if tracking else str(entrant.number),
         equal=True,
         lines=[
             Line(x=right, y=along, label="keep-out area", colour="vermillion", fill=True),

@@ -1,7 +1,7 @@
 """The report of an arena: a reader ranks the laws at a glance, and sees what each was given."""
 
-from reports.arena.charts import crossing_chart, effort_chart, track_chart
-from reports.arena.data import Arena, read_arena
+from reports.arena.charts import crossing_chart, effort_charts, track_chart
+from reports.arena.data import Arena, Entrant, read_arena
 from reports.arena.tables import condition_table, given_table, plume_table, refused_table, tracking_table
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Heading, Section, Text, Verdict
@@ -17,8 +17,9 @@ _BOLD = (
 
 _TRACKING = (
     "Errors are distances to the oscillating reference, as the guidance has it, and the effort is the heading rate commanded, both"
-    " over the end of each flight, whether it had settled or not. Laws without feedback along the track, those on a tangent (M1),"
-    " depend on where they start. The airspeed law, which is the same for all, keeps pace with the reference besides."
+    " over the end of each flight, settled or not; excess effort is what of it differs from the reference's own heading rate. Laws"
+    " without feedback along the track, those on a tangent (M1), depend on where they start. The airspeed law, which is the same"
+    " for all, keeps pace with the reference besides."
 )
 
 _STANDOFF = (
@@ -67,7 +68,7 @@ def _tracking(arena: Arena) -> list[Block]:
     tracks = track_chart(arena, tracking=True)
     return [
         Text(_TRACKING),
-        effort_chart(arena),
+        *effort_charts(arena),
         Heading("Over all conditions"),
         Text(_BOLD),
         tracking_table(arena, tracking=True),
@@ -112,7 +113,8 @@ def _verdict(arena: Arena) -> Verdict:
     violations, gone = count(violated(flown)), count(lost(rows))
     best = [(task, ranked[0]) for task in (True, False) if (ranked := arena.ranked("error_rms_m", arena.in_task(tracking=task)))]
     headline = "; ".join(
-        f"{entrant.title} {'tracks' if task else 'circles'} best, {_mean(arena, entrant.name)} m rms" for task, entrant in best
+        f"{'tracking' if task else 'circling'}: {entrant.title} is best, {_mean(arena, entrant.name)} m rms"
+        for task, entrant in best
     )
     failures = []
     if violations:
@@ -133,10 +135,24 @@ def _verdict(arena: Arena) -> Verdict:
         holds=not violations and not gone,
         complete=len(rows) == planned,
         headline=headline[:1].upper() + headline[1:],
-        detail=f" {vehicles_flown(arena.run)} Means over all conditions, over the end of each flight.",
+        detail=f"{vehicles_flown(arena.run)} Means over all conditions, over the end of each flight. {_alike(arena, best)}",
         failures=failures,
         figures=figures,
     )
+
+
+def _alike(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
+    """Return which laws the flights do not tell from the best of their task."""
+    words = []
+    for task, first in best:
+        others = [
+            entrant.title
+            for entrant in arena.ranked("error_rms_m", arena.in_task(tracking=task))
+            if entrant is not first and arena.of("error_rms_m", entrant, arena.together).as_good
+        ]
+        if others:
+            words.append(f"The flights do not tell {', '.join(others)} from {first.title}.")
+    return " ".join(words)
 
 
 def _mean(arena: Arena, name: str, figure: str = "error_rms_m") -> str:

@@ -64,7 +64,7 @@ class Entrant:
     def title(self) -> str:
         """Return the name of the law in words."""
         name = self.law.rpartition(":")[2].replace("_", " ")
-        return name if self.task == TRACKING or "orbit" in name or "loiter" in name or name == "lgvf" else f"{name} on a circle"
+        return name if self.task == TRACKING or "orbit" in name or "loiter" in name or name == "lgvf" else f"{name} (circle)"
 
     @property
     def tracks(self) -> bool:

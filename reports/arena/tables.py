@@ -27,7 +27,7 @@ class _Figure:
 _TRACKING = (
     _Figure("error_rms_m", "Error rms [m]", "{:.2f}"),
     _Figure("effort_rms_rad_s", "Effort rms [rad/s]", "{:.3f}"),
-    _Figure("excess_rms_rad_s", "Beyond the reference's [rad/s]", "{:.3f}"),
+    _Figure("excess_rms_rad_s", "Excess effort [rad/s]", "{:.3f}"),
     _Figure("saturated_share", "Cut commands [%]", "{:.1f}", 100.0),
 )
 _PLUME = (
@@ -40,9 +40,9 @@ _PLUME = (
 def tracking_table(arena: Arena, *, tracking: bool) -> Table:
     """Return the figures of tracking of the laws of a task, over all conditions."""
     entrants = arena.ranked("error_rms_m", arena.in_task(tracking=tracking))
-    head = ["No.", "Law", *(figure.title for figure in _TRACKING), "Settled", "after, median [s]", "Keep-out violations"]
+    head = ["No.", "Law", *(figure.title for figure in _TRACKING), "Settled", "at, median [s]", "Violations"]
     extra = [_ending(entrant) for entrant in entrants]
-    return _table(arena, entrants, _TRACKING, head, extra, widths=[0.4, 2.3, 1.8, 1.6, 1.6, 1.4, 0.8, 0.8, 0.8])
+    return _table(arena, entrants, _TRACKING, head, extra, widths=[0.4, 2.1, 1.8, 1.9, 1.9, 1.4, 0.8, 0.8, 0.8])
 
 
 def _ending(entrant: Entrant) -> list[str]:
