@@ -48,6 +48,9 @@ SULPHUR_TABLE = "sulphur.csv"
 SULPHUR = "sulphur.json"
 """Statistics of the flights with a sniffer."""
 
+ARENA = "arena.json"
+"""What an arena of steering laws has shown, and what each law was given."""
+
 MODEL = "model"
 """Directory of the aircraft's model with the autopilot."""
 

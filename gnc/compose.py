@@ -11,6 +11,7 @@ from gnc.guidance import Guidance
 from gnc.mission.direct_tracking import DirectTracking
 from gnc.mission.mission import Mission
 from gnc.mission.plume_following import FollowingParameters, PlumeFollowing
+from gnc.mission.standoff import StandoffOrbit, StandoffParameters
 from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters, ReportedVessel
 from gnc.safety.keepout_guard import KeepoutGuard
 
@@ -38,6 +39,8 @@ def compose(parameters: GuidanceParameters) -> Guidance:
     mission: Mission
     if isinstance(p.mission, FollowingParameters):
         mission = PlumeFollowing(p.mission, p.tracking, own=own, target=target, guard=guard)
+    elif isinstance(p.mission, StandoffParameters):
+        mission = StandoffOrbit(p.mission, p.tracking, own=own, target=target)
     else:
         mission = DirectTracking(p.mission, p.tracking, own=own, target=target, guard=guard, altitude=p.altitude)
     return Guidance(

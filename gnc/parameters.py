@@ -8,6 +8,7 @@ from gnc.estimation.navigation import NavigationParameters
 from gnc.estimation.reachable_set import VesselLimits
 from gnc.mission.direct_tracking import DirectParameters
 from gnc.mission.plume_following import FollowingParameters
+from gnc.mission.standoff import StandoffParameters
 from gnc.tracker import TrackingParameters
 
 
@@ -61,7 +62,7 @@ class GuidanceParameters:
     navigation : of the estimated own motion; None where it is known exactly, in still air
     vessel : how it is known from reports, or its velocity north and east where that is known exactly and steady [m/s]
     guard : of the keep-out area
-    mission : following a plume, or tracking a reference that is known in advance
+    mission : following a plume, circling the vessel, or tracking a reference that is known in advance
     health : of the vehicle
     """
 
@@ -72,5 +73,5 @@ class GuidanceParameters:
     navigation: NavigationParameters | None
     vessel: ReportedVessel | tuple[float, float]
     guard: GuardParameters | None
-    mission: FollowingParameters | DirectParameters
+    mission: FollowingParameters | StandoffParameters | DirectParameters
     health: HealthParameters | None

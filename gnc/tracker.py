@@ -6,7 +6,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from gnc.laws.steering_law import SteeringLaw
+from gnc.laws.steering_law import STILL_AIR, SteeringLaw, Surroundings, begun
 from gnc.numeric import limited
 from gnc.reference.reference import Reference
 
@@ -44,6 +44,26 @@ class PlacedReference:
         self.course, self.heading_rate, self.speed = reference.course, reference.heading_rate, reference.speed
 
 
+def lag_ahead(
+    north: float, east: float, course: float, speed: float, heading_rate: float, command: float, lag: float
+) -> tuple[float, float, float]:
+    """Return position [m] and course [rad] after the lag, with a heading rate that goes from the measured value to the command.
+
+    Parameters
+    ----------
+    north, east, course, speed : now [m, m, rad, m/s]
+    heading_rate, command : measured, and last commanded [rad/s]
+    lag : [s]
+    """
+    # Integrals over the lag of a heading rate that is linear in time.
+    middle = course + lag * (heading_rate / 3.0 + command / 6.0)
+    return (
+        north + speed * lag * math.cos(middle),
+        east + speed * lag * math.sin(middle),
+        course + 0.5 * lag * (heading_rate + command),
+    )
+
+
 AnyReference = TypeVar("AnyReference", bound=Reference)
 
 
@@ -57,6 +77,7 @@ class Tracker(Generic[AnyReference]):
     ----------
     parameters : of the tracking
     reference : at time 0; it is copied
+    surroundings : that the law may look at
 
     Attributes
     ----------
@@ -72,8 +93,9 @@ class Tracker(Generic[AnyReference]):
         "reference", "saturated",
     )  # fmt: skip
 
-    def __init__(self, parameters: TrackingParameters, reference: AnyReference) -> None:
-        self._steer, self._limit = parameters.law.heading_rate, parameters.heading_rate_max
+    def __init__(self, parameters: TrackingParameters, reference: AnyReference, surroundings: Surroundings = STILL_AIR) -> None:
+        law = begun(parameters.law, surroundings, parameters.time_step)
+        self._steer, self._limit = law.heading_rate, parameters.heading_rate_max
         self.reference = PlacedReference(reference)
         self.ahead = copy.copy(reference)
         # The reference moves once, ahead of time; until then its places wait in line.
@@ -98,12 +120,7 @@ class Tracker(Generic[AnyReference]):
         reference, ahead, lag = self.reference, self.ahead, self._lag
         then_north, then_east, then_course = north, east, course
         if lag > 0.0:
-            # Heading rate linear in time from the measured value to the last command; its integrals over the lag.
-            last = self.heading_rate_command
-            middle = course + lag * (heading_rate / 3.0 + last / 6.0)
-            then_north += speed * lag * math.cos(middle)
-            then_east += speed * lag * math.sin(middle)
-            then_course += 0.5 * lag * (heading_rate + last)
+            then_north, then_east, then_course = lag_ahead(north, east, course, speed, heading_rate, self.heading_rate_command, lag)
         demand = self._steer(ahead, ahead.north - then_north, ahead.east - then_east, then_course, speed)
         limit = self._limit
         command = demand if -limit <= demand <= limit else limited(demand, limit)

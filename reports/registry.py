@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from common.registry import announced, is_file_part
 from common.run_layout import MANIFEST
+from reports.arena.content import arena_content
 from reports.convergence.content import convergence_content
 from reports.design.content import design_content
 from reports.document.blocks import Content, Section, Verdict
@@ -18,6 +19,7 @@ from reports.run.run_data import RunData
 STUDIES: dict[str, Callable[[RunData], tuple[Verdict, list[Section]]]] = {
     **dict.fromkeys(("flights", "trials", "monte_carlo", "falsify"), flights_content),
     "paper": paper_content,
+    "arena": arena_content,
     "convergence": convergence_content,
     "design": design_content,
     "measurement": measurement_content,
@@ -40,7 +42,7 @@ def content(run: RunData) -> Content:
         raise ReportError(f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(STUDIES)}")
     # Studies of flights that others add have the report of any flights.
     made = STUDIES.get(study, flights_content)
-    needed = FLIGHT_ENTRIES if made in (flights_content, paper_content) else ()
+    needed = FLIGHT_ENTRIES if made in (flights_content, paper_content, arena_content) else ()
     if missing := [entry for entry in needed if entry not in run.manifest]:
         raise ReportError(
             f"'{run.path}' was flown by another version: its {MANIFEST} has no '{missing[0]}'; report on it with that version, or"

@@ -28,6 +28,7 @@ from scenarios.schema.extension_points import PAYLOADS
 from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.failure import failure, unflown
 from scenarios.simulation.outcome import Outcome
+from scenarios.simulation.record import FlightRecord
 from scenarios.simulation.release import release
 from scenarios.simulation.time_history import history_files
 from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
@@ -109,6 +110,7 @@ class FlightWork:
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)
             tables[CROSSINGS] = [named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)]
+            tables |= self.more_tables(request, plan, record)
             tables[INTERVENTIONS] = [named | stretch._asdict() for stretch in record.interventions]
             for instrument in instruments:
                 if isinstance(instrument, EvaluatedInstrument):
@@ -138,6 +140,10 @@ class FlightWork:
         return plan_flight(
             request.scenario, flight_id=request.flight_id, seed=request.noise, setup=self._setup(request), spreads=self.spreads
         )
+
+    def more_tables(self, request: FlightRequest, plan: FlightPlan, record: FlightRecord) -> dict[str, list[Row]]:  # noqa: ARG002
+        """Return rows of tables that a study of its own adds, by the file name of the table."""
+        return {}
 
     def _setup(self, request: FlightRequest) -> VehicleSetup:
         kinematic = self.setup is None or request.scenario.fidelity == "kinematic"

@@ -1,6 +1,7 @@
 """The cascade law, equation (30)."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from gnc.laws.delta import bare_state, relative_velocity
 from gnc.laws.delta_law import DeltaLaw
@@ -50,6 +51,7 @@ class CascadeLaw(DeltaLaw):
     ValueError : as of ``DeltaLaw``
     """
 
+    given: ClassVar[str] = "the reference itself, and its turn rate"
     gain_per_s: float = 1.5
     steering_max_rad_s: float = 0.4
 

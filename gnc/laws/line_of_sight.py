@@ -1,9 +1,10 @@
-"""The line-of-sight law, the baseline of the paper's Sim. 2."""
+"""The line-of-sight law, the baseline of the paper's Sim. 2; elsewhere it is called proportional pursuit."""
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
-from gnc.laws.steering_law import check_parameters, steering_law
+from gnc.laws.steering_law import NO_CIRCLE, ON_CIRCLE, check_parameters, steering_law
 from gnc.numeric import wrap
 from gnc.reference.reference import Reference
 
@@ -33,6 +34,8 @@ class LineOfSightLaw:
     ValueError : the gain is not finite and above 0
     """
 
+    given: ClassVar[str] = "the reference's place (M3); elsewhere called proportional pursuit"
+    cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
     gain_per_s: float = 1.5
 
     def __post_init__(self) -> None:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 from gnc.laws.delta import RelativeState, bare_state, relative_velocity
 from gnc.laws.delta_law import DeltaLaw
@@ -37,6 +38,7 @@ class LyapunovLaw(DeltaLaw):
     ValueError : as of ``DeltaLaw``
     """
 
+    given: ClassVar[str] = "the reference itself, and its turn rate"
     lyapunov_gain_per_m2: float = 0.001
 
     def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:

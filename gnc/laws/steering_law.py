@@ -2,18 +2,32 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
 from common.registry import Registry
 from gnc.reference.reference import Reference
+
+ON_OSCILLATION = "oscillation"
+"""The task of tracking a point that oscillates."""
+
+ON_CIRCLE = "standoff"
+"""The task of flying a circle about the vessel."""
+
+CIRCLES_ALONE = "it flies a circle about a centre, and the oscillating reference is on none; set guidance.mission to 'standoff'"
+"""Why a law for circles cannot track the oscillating reference."""
+
+NO_CIRCLE = "it steers at a point that moves on, and the nearest point of a circle does not; set guidance.mission to 'follow'"
+"""Why a law of pursuit cannot fly a circle."""
 
 
 class SteeringLaw(Protocol):
     """What heading rate to command, from where the reference is and how the vehicle moves.
 
     A law is a frozen dataclass that is registered by a name in a file of its own. Its fields are the keys of a scenario's
-    ``[guidance]`` by the same names, in SI units, each with a default.
+    ``[guidance]`` by the same names, in SI units, each with a default. A law that remembers something, or that needs wind, has a
+    method ``begin`` beside: see ``begun``. One that cannot do a task says so in ``cannot``, by the task, with the reason;
+    ``given`` says in words what of the reference and of the air a law makes use of.
     """
 
     def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
@@ -27,6 +41,61 @@ class SteeringLaw(Protocol):
         course : chi of the vehicle, clockwise from north [rad]
         speed : horizontal speed of the vehicle [m/s]
         """
+
+
+class Air(Protocol):
+    """The air mass.
+
+    Attributes
+    ----------
+    wind_north, wind_east : its velocity over the ground [m/s]
+    """
+
+    @property
+    def wind_north(self) -> float:
+        """Velocity to the north."""
+
+    @property
+    def wind_east(self) -> float:
+        """Velocity to the east."""
+
+
+@dataclass(slots=True)
+class Surroundings:
+    """What a law may know beside its reference; kept up to date by whoever calls the law.
+
+    Attributes
+    ----------
+    air : as it is known on board
+    path_north, path_east : velocity over the ground of the frame in which the reference's path is at rest [m/s]
+    """
+
+    air: Air
+    path_north: float = 0.0
+    path_east: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class _StillAir:
+    wind_north: float = 0.0
+    wind_east: float = 0.0
+
+
+STILL_AIR = Surroundings(_StillAir())
+"""Surroundings without wind, of a path over the ground."""
+
+
+def begun(law: SteeringLaw, surroundings: Surroundings, time_step: float) -> SteeringLaw:
+    """Return the law of one flight: a law that has a state, or looks at its surroundings, has a method ``begin`` for it.
+
+    Parameters
+    ----------
+    law : as chosen
+    surroundings : of the flight
+    time_step : with which it will be called [s]
+    """
+    begin: Callable[[Surroundings, float], SteeringLaw] | None = getattr(law, "begin", None)
+    return law if begin is None else begin(surroundings, time_step)
 
 
 STEERING_LAWS: Registry[Callable[..., SteeringLaw]] = Registry("steering_law", folder="gnc.laws", methods=("heading_rate",))

@@ -15,10 +15,10 @@ from gnc.reference.reference import Reference
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.tracker import Tracker, TrackingParameters
 
-_STANDOFF = 2.0
+STANDOFF = 2.0
 """How far outside its place the orbit is joined, over the distance from the reference that counts as tracked [-]."""
 
-_CLOSING_RATE = 0.2
+CLOSING_RATE = 0.2
 """How fast it then closes in, over V_r [-]."""
 
 
@@ -118,7 +118,7 @@ class DirectTracking:
             speed, limit = parameters.reference.speed, tracking.heading_rate_max
             approach = self._joining.approach
             self._approach = Approach(approach, own=own, target=target, speed=speed, heading_rate_max=limit, lag=tracking.lag)
-            self._standoff, self.airspeed = _STANDOFF * approach.tracked, approach.airspeed
+            self._standoff, self.airspeed = STANDOFF * approach.tracked, approach.airspeed
         self.overriding, self.leaving = self._approach is not None, False
         self.started, self.centre_error, self.in_place = True, self._standoff, not self.overriding
         self.mode = Mode.APPROACH if self.overriding else Mode.TRACKING
@@ -176,7 +176,7 @@ class DirectTracking:
             course=own.course,
             turn_radius=own.speed / self._tracking.heading_rate_max,
         )
-        time_step, rate = self._tracking.time_step, _CLOSING_RATE * reference.speed
+        time_step, rate = self._tracking.time_step, CLOSING_RATE * reference.speed
         joined = ClosingReference(reference, axis=self._axis, standoff=self._standoff, rate=rate, time_step=time_step)
         self.tracker = Tracker(self._tracking, joined)
         self.tracker.heading_rate_command = last

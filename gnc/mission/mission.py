@@ -1,10 +1,18 @@
 """What a mission is: which way the guidance goes, and when it leaves the reference alone."""
 
-from typing import Any, Protocol
+from typing import Protocol
 
 from gnc.estimation.health import Fault
 from gnc.mission.mode import Mode
-from gnc.tracker import Tracker
+
+
+class Placed(Protocol):
+    """Where a reference is; attributes as of ``gnc.reference.reference.Reference``."""
+
+    north: float
+    east: float
+    course: float
+    heading_rate: float
 
 
 class Centre(Protocol):
@@ -27,6 +35,27 @@ class Centre(Protocol):
     @property
     def speed_ratio(self) -> float:
         """Speed ratio."""
+
+
+class Tracking(Protocol):
+    """What tracks the reference.
+
+    Attributes
+    ----------
+    reference : the reference point now
+    heading_rate_demand, heading_rate_command, saturated : as of ``gnc.tracker.Tracker``
+    """
+
+    heading_rate_demand: float
+    heading_rate_command: float
+    saturated: bool
+
+    @property
+    def reference(self) -> Placed:
+        """Reference point."""
+
+    def step(self, north: float, east: float, course: float, speed: float, heading_rate: float) -> float:
+        """Return the heading rate to command [rad/s]; parameters are those of ``gnc.tracker.Tracker``."""
 
 
 class Mission(Protocol):
@@ -53,7 +82,7 @@ class Mission(Protocol):
     altitude: float
 
     @property
-    def tracker(self) -> Tracker[Any]:
+    def tracker(self) -> Tracking:
         """Tracker of the reference."""
 
     @property

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
+from gnc.laws.steering_law import Surroundings
 from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.egress import Egress
@@ -212,7 +213,7 @@ class PlumeFollowing:
             roll_rate_max=p.roll_rate_max,
             time_step=self._tracking_parameters.time_step,
         )
-        tracker = Tracker(self._tracking_parameters, reference)
+        tracker = Tracker(self._tracking_parameters, reference, Surroundings(own))
         self.tracker, self._reference = tracker, tracker.ahead
 
     def _steer(self) -> None:

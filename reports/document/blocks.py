@@ -19,6 +19,7 @@ class Table:
     prose : cells hold sentences rather than figures: on the screen all are left-aligned
     breakable : may go on over the next page, in print
     print_size_pt : size of its letters in print
+    bold : cells that stand out, each by its row and its column
     """
 
     head: list[str]
@@ -28,6 +29,7 @@ class Table:
     prose: bool = False
     breakable: bool = False
     print_size_pt: float = 7.0
+    bold: Sequence[tuple[int, int]] = ()
 
 
 @dataclass(frozen=True, slots=True)

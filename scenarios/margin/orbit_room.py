@@ -1,6 +1,7 @@
 """How far from the vessel an orbit has to lie for the keep-out guard not to act on it."""
 
 import itertools
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from gnc.compose import keepout_guard
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
+from gnc.mission.standoff import CirclePoint
 from gnc.parameters import GuardParameters
 from gnc.reference.reference import Orbit
 
@@ -54,18 +56,49 @@ def orbit_distance(guard: GuardParameters, vessel: Tube, orbit: Orbit) -> float:
     courses = [np.arctan2((y1 - y0) / piece, (x1 - x0) / piece + mean) for (x0, y0), (x1, y1) in itertools.pairwise(places)]
     rates = (courses[1] - courses[0]) / piece
     along, _ = orbit.half_widths()
-    keeping = keepout_guard(guard)
-    keeping.tubes = (vessel._replace(time=0.0, north=0.0, east=0.0, velocity_north=mean, velocity_east=0.0),)
     points = np.column_stack([*places[0], courses[0], rates]).tolist()
+
+    def motions(distance: float) -> list[KnownMotion]:
+        return [
+            KnownMotion(ground_north=x - distance - along, ground_east=y, course=course, heading_rate=rate)
+            for x, y, course, rate in points
+        ]
+
+    return _distance(guard, vessel, motions, orbit.speed, mean)
+
+
+def circle_distance(guard: GuardParameters, vessel: Tube, speed: float, drift: float) -> float:
+    """Return the smallest radius of a circle about the vessel on which a turn away is always left to the guard [m].
+
+    Parameters
+    ----------
+    guard : its parameters
+    vessel : where it may be, as large as that becomes
+    speed, drift : of the vehicle and of the vessel through the air [m/s]
+    """
+    point = CirclePoint(speed)
+
+    def motions(radius: float) -> list[KnownMotion]:
+        found = []
+        for bearing in 2.0 * np.pi * (np.arange(2 * _PHASES) + 0.5) / (2 * _PHASES):
+            place = radius * float(np.cos(bearing)), radius * float(np.sin(bearing))
+            point.place((0.0, 0.0), (drift, 0.0), place, radius)
+            found.append(
+                KnownMotion(ground_north=place[0], ground_east=place[1], course=point.course, heading_rate=point.heading_rate)
+            )
+        return found
+
+    return _distance(guard, vessel, motions, speed, drift)
+
+
+def _distance(
+    guard: GuardParameters, vessel: Tube, motions: Callable[[float], list[KnownMotion]], speed: float, drift: float
+) -> float:
+    """Return the distance at which the nearest of the motions that belong to it leaves the guard nothing to do [m]."""
+    keeping = keepout_guard(guard)
+    keeping.tubes = (vessel._replace(time=0.0, north=0.0, east=0.0, velocity_north=drift, velocity_east=0.0),)
     distance = _FAR * (guard.radius + vessel.radius)
     for _ in range(2):
         # Clearances change as the distance does, but for the curvature of a disc.
-        distance -= min(
-            keeping.clearance(
-                0.0,
-                KnownMotion(ground_north=x - distance - along, ground_east=y, course=course, heading_rate=rate),
-                orbit.speed,
-            )
-            for x, y, course, rate in points
-        )
+        distance -= min(keeping.clearance(0.0, motion, speed) for motion in motions(distance))
     return distance

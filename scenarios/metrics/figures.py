@@ -115,16 +115,16 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     row["settling_time_s"] = record.settled_at
     if plan.world is None:
         return row, []
-    position, velocity = _in_vessel_frame(record, plan.source_height)
+    position, velocity = in_vessel_frame(record, plan.source_height)
     row |= _keepout_figures(plan, record, position, velocity)
     if not settled.any():
         return row, []
     row |= _estimation_figures(plan, record, settled, position)
-    crossings = _crossings(plan, record, settled, position, velocity)
+    crossings = crossings_of(plan, record, settled, position, velocity)
     return row | _crossing_figures(plan, record, crossings), crossings
 
 
-def _in_vessel_frame(record: FlightRecord, source_height: float) -> tuple[Array, Array]:
+def in_vessel_frame(record: FlightRecord, source_height: float) -> tuple[Array, Array]:
     """Return position and velocity from the plume's origin, each shape (n, 3): north, east, up [m, m/s]."""
     column = record.column
     position = [column(f"{axis}_m") - column(f"vessel_{axis}_m") for axis in ("north", "east")]
@@ -213,7 +213,7 @@ def _estimation_figures(plan: FlightPlan, record: FlightRecord, settled: npt.NDA
     return row
 
 
-def _crossings(
+def crossings_of(
     plan: FlightPlan, record: FlightRecord, settled: npt.NDArray[np.bool_], position: Array, velocity: Array
 ) -> list[Crossing]:
     """Find crossings of an axis that may turn, in the frame that turns with it."""
@@ -261,9 +261,10 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
 
 
 def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, last: float) -> float:
-    """Return the mean of pi/omega_0 over a vessel's changes of course and speed, from its first crossing to its last [s].
+    """Return the mean crossing interval over a vessel's changes of course and speed, from its first crossing to its last [s].
 
-    Where omega_0 changes with time, crossings come at the rate omega_0/pi: their number between two times is its integral.
+    Where the period changes with time, crossings come at a rate that is their number per period over it, omega_0/pi of an
+    oscillation: their number between two times is its integral.
     """
     time = np.linspace(first, last, max(2, math.ceil(last - first)))
     wind = (plan.world.weather.wind if plan.world else CALM).at(time, plan.source_height)
@@ -273,5 +274,6 @@ def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, la
     ]
     ratio = np.hypot(*through_air) / plan.guidance.speed
     steps = np.linspace(0.0, plan.speed_ratio_max, len(plan.periods))
-    crossing_rate = 2.0 / np.interp(ratio, steps, plan.periods)
+    per_period = plan.oscillation.period / plan.oscillation.crossing_interval if plan.oscillation else math.nan
+    crossing_rate = per_period / np.interp(ratio, steps, plan.periods)
     return float((last - first) / np.trapezoid(crossing_rate, time))

@@ -5,10 +5,11 @@ import math
 from gnc.mission.axis_height import AxisHeight
 from scenarios.schema.scenario import Scenario
 from scenarios.world.exhaust import emission
+from scenarios.world.vessel import VesselTruth
 
 
-def axis_height(scenario: Scenario, vessel_speed: float) -> AxisHeight:
-    """Return the height that the guidance expects: of exhaust at the load that the vessel's speed [m/s] takes.
+def axis_height(scenario: Scenario, vessel: VesselTruth) -> AxisHeight:
+    """Return the height that the guidance expects: of exhaust at the load that the vessel's speed takes.
 
     Raises
     ------
@@ -17,7 +18,8 @@ def axis_height(scenario: Scenario, vessel_speed: float) -> AxisHeight:
     source, climb = scenario.plume.source_height_m, math.tan(math.radians(scenario.plume.elevation_deg))
     if scenario.emission.ship is None:
         return AxisHeight(source=source, climb=climb)
-    expected = emission(scenario, speed=vessel_speed)
+    _, _, v_north, v_east = vessel.motion(0.0)
+    expected = emission(scenario, speed=math.hypot(v_north, v_east))
     return AxisHeight(
         source=source,
         climb=climb,

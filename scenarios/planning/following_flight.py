@@ -8,10 +8,12 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.reachable_set import VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
-from gnc.mission.axis_height import AxisHeight
+from gnc.mission.plume_following import FollowingParameters
+from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuardParameters, GuidanceParameters, ReportedVessel
+from gnc.reference.reference import Orbit
 from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
-from scenarios.margin.orbit_room import orbit_distance
+from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
 from scenarios.planning.axis_height import axis_height
 from scenarios.planning.bounded_steering import given_steering
@@ -27,6 +29,7 @@ from scenarios.planning.guidance import (
 )
 from scenarios.planning.limits import PLAN_PERIOD, omega_max
 from scenarios.planning.reference import orbits, oscillation_at
+from scenarios.planning.standoff import standoff_parameters, vessel_circle
 from scenarios.planning.start import check_start, sampled_start
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.sensors import SensorErrors
@@ -71,23 +74,34 @@ def following_flight(
     wind = apparent_wind(scenario, vessel)
     _check_plume(scenario, wind)
     nu = wind.at_start / g.airspeed_mps
-    periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
     limits = vessel_limits(scenario, turn_time(scenario, setup.reversal))
     _check_declared(scenario, vessel, limits)
-    orbit = oscillation_at(g, scenario.reference, nu)
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
     guarded = guard_parameters(scenario, setup, radius + level)
     widest = widest_tube(limits, scenario.reports, plan_period=PLAN_PERIOD)
-    farthest = max(radius + f.margin_min_m, orbit_distance(guarded, widest, orbit)) + level
+    oscillation = oscillation_at(g, scenario.reference, nu)
+    if scenario.stands_off:
+        nearest = circle_distance(guarded, widest, g.airspeed_mps, nu * g.airspeed_mps)
+    else:
+        nearest = orbit_distance(guarded, widest, oscillation)
+    farthest = max(radius + f.margin_min_m, nearest) + level
     reach = widest.reach(turn_time(scenario, setup.reversal))
     margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
+    mission: FollowingParameters | StandoffParameters
+    orbit: Orbit
+    if scenario.stands_off:
+        orbit = circle = vessel_circle(scenario, nu, farthest)
+        periods = circle.periods(f.speed_ratio_max)
+        mission = standoff_parameters(scenario, setup, circle.radius)
+    else:
+        periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
+        orbit, mission = oscillation, following_parameters(scenario, setup, margin, widths, axis_height(scenario, vessel))
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, mean_wind(scenario, vessel), generators.world)
-    generator = own_generator(noise, EXHAUST)
     covered = flight.duration_max_s + TRACK_MARGIN
-    exhaust = exhaust_of(scenario, vessel, plume, weather.wind, duration=covered, generator=generator)
+    exhaust = exhaust_of(scenario, vessel, plume, weather.wind, duration=covered, generator=own_generator(noise, EXHAUST))
     outage = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else no_outage()
     guard = None
     if g.keepout_guard:
@@ -100,12 +114,11 @@ def following_flight(
         duration = flight.duration_max_s
         received = received_reports(scenario.reports, vessel, duration=duration, outage=outage, generator=generators.reports)
     steps = round(flight.duration_max_s * g.rate_hz) + 2
-    height = axis_height(scenario, math.hypot(*vessel.motion(0.0)[2:]))
     return FlightPlan.of(
         scenario,
         flight_id,
         nu=nu,
-        guidance=_guidance(scenario, setup, margin, widths, guard, limits, height),
+        guidance=_guidance(scenario, setup, mission, guard, limits),
         steering=given_steering(g),
         start=start,
         period=orbit.period,
@@ -133,11 +146,9 @@ def following_flight(
 def _guidance(
     scenario: Scenario,
     setup: VehicleSetup,
-    margin: KeepoutMargin,
-    widths: tuple[tuple[float, float], ...],
+    mission: FollowingParameters | StandoffParameters,
     guard: GuardParameters | None,
     limits: VesselLimits,
-    height: AxisHeight,
 ) -> GuidanceParameters:
     g = scenario.guidance
     tracking, hold = tracking_parameters(scenario, setup), speed_hold(scenario, setup)
@@ -149,7 +160,7 @@ def _guidance(
         navigation=navigation_parameters(scenario, setup),
         vessel=ReportedVessel(filter=filter_parameters(scenario.reports), limits=limits),
         guard=guard,
-        mission=following_parameters(scenario, setup, margin, widths, height),
+        mission=mission,
         health=HealthParameters(
             airspeed_error=THRUST_LOST_FRACTION * (g.airspeed_mps - hold.airspeed_min),
             speed=g.airspeed_mps,

@@ -13,6 +13,9 @@ from scenarios.errors import InputError
 from scenarios.margin.tracking_spread import SpreadTable, tracking_spread
 from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.reference import oscillation_at
+from scenarios.schema.effect import LAW_KEYS
+from scenarios.schema.guidance import GuidanceConfig
+from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
@@ -64,10 +67,21 @@ def predicted_spreads(scenarios: Iterable[Scenario], found: Designed | None, set
 
 
 def _key(scenario: Scenario) -> Key:
-    return scenario.turbulence.level, scenario.guidance.model_dump_json()
+    return scenario.turbulence.level, _planned_for(scenario).guidance.model_dump_json()
+
+
+def _planned_for(scenario: Scenario) -> Scenario:
+    """Return the scenario with the steering law that its margin is planned for: its own, or another with default parameters."""
+    law = scenario.following.margin_law
+    if law is None:
+        return scenario
+    # The mission has no part in the prediction, and not every law has every mission.
+    defaults = {f"guidance.{key}": GuidanceConfig.model_fields[key].default for key, _, _ in LAW_KEYS}
+    return with_values(scenario, {"guidance.law": law, **defaults, "guidance.mission": "follow", "following.margin_law": None})
 
 
 def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> SpreadTable:
+    scenario = _planned_for(scenario)
     schedule = found.design.schedule
     air = low_altitude_turbulence(scenario.plume.source_height_m, TURBULENCE[scenario.turbulence.level].wind_at_20ft)
     tracking, hold, span = tracking_parameters(scenario, setup), speed_hold(scenario, setup), _wing_span(schedule.spec)

@@ -142,6 +142,17 @@ RULES = (
         user="the mission that tracks a reference known in advance; the steered reference is a sinusoid",
         by_mission=True,
     ),
+    Rule(keys=("reference.standoff_radius_m",), acts=lambda s: s.stands_off, user="a circle about the vessel: set guidance.mission"
+         " to 'standoff'", by_mission=True),
+    Rule(
+        keys=("reference.shape", "guidance.reserve", "guidance.roll_rate_max_deg_s", "following.standoff_m",
+              "following.join_distance_m"),
+        acts=lambda s: not s.stands_off,
+        user="an oscillation in the plume; here the vessel is circled: set guidance.mission to 'follow'",
+        by_mission=True,
+    ),
+    Rule(keys=("following.margin_law",), acts=lambda s: s.follows and not s.turbulence.calm, user="a margin for turbulence: set"
+         " turbulence.level", by_mission=True, depends=("turbulence.level",)),
     Rule(keys=("guidance.bank_deg",), acts=lambda s: s.guidance.heading_rate_max_rad_s is None, user="omega_max, which"
          " guidance.heading_rate_max_rad_s gives directly: leave one of them out"),
     Rule(keys=("reference.radius_m",), acts=lambda s: s.circles, user="a circle: set reference.path to 'circle'",
@@ -242,6 +253,7 @@ RULES = (
          user="methods that may become stuck: put 'local' or 'cma' into search.methods"),
     Rule(keys=("flights",), acts=lambda s: s.study != "falsify", user="other studies; a search flies search.population"
          " times search.generations"),
+    Rule(keys=("laws", "arena."), acts=lambda s: s.study == "arena", user="laws side by side: set study to 'arena'"),
     Rule(keys=("speed_ratio",), acts=lambda s: bool(s.draws), user="random variables: give draws"),
     Rule(keys=("comparison.nu",), acts=lambda s: not s.comparison.nu or (bool(s.comparison.variants) and "nu" in s.sweep.root),
          user="variants that are flown at swept speed ratios: give comparison.variants and sweep.nu, or use comparison.flights"),

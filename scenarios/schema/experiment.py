@@ -218,6 +218,47 @@ class SearchConfig(Section):
         return FLIGHTS_MAX // (1 + self.confirmations)
 
 
+class ConditionConfig(Section):
+    """A condition in which every law of an arena flies."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
+    title: str
+    set: dict[str, object] = Field(default_factory=dict)
+
+
+class ArenaConfig(Section):
+    """Steering laws side by side: who takes part, in which conditions, and how each is tuned."""
+
+    tracking: tuple[str, ...] = ()
+    """Laws that track the oscillating reference."""
+    standoff: tuple[str, ...] = ()
+    """Laws that circle the vessel."""
+    conditions: tuple[ConditionConfig, ...] = ()
+    """Conditions, each a trial: the same starts, winds and turbulence for every law."""
+    evaluations: Annotated[int, Field(ge=0, le=10_000)] = 12
+    """Settings that the tuner tries for each law, its default the first; 0 to fly the defaults [-]."""
+    tuning_flights: Annotated[int, Field(ge=1, le=1000)] = 4
+    """Flights of each setting, of the kinematic vehicle, with seeds that the comparison does not use [-]."""
+    tuning_duration_s: Positive = 200.0
+    """Duration of these [s]."""
+    tuning_set: dict[str, object] = Field(default_factory=dict)
+    """Keys to set in them."""
+    tuning_range: Annotated[float, Field(gt=1.0, le=1000.0)] = 4.0
+    """Every parameter is tried from its default over this to its default times this [-]."""
+    effort_weight_m_s: NonNegative = 20.0
+    """Error that a heading rate commanded in excess of the reference's counts as, in the tuner's cost [m per rad/s]."""
+    error_max_m: Positive = 100.0
+    """Error beyond which a setting is no worse to the tuner [m]."""
+    window_s: Positive = 150.0
+    """End of each flight on which it is measured, settled or not [s]."""
+    plume_half_width_m: Positive = 10.0
+    """Distance from the plume's axis that counts as in the plume [m]."""
+    resamples: Annotated[int, Field(ge=100, le=1_000_000)] = 2000
+    """Resamples of the paired bootstrap [-]."""
+    limits: tuple[tuple[float, float], ...] = ()
+    """Most crossings per minute that any path allows, by the speed ratio: pairs of nu [-] and crossings [1/min]."""
+
+
 class TrialList(Section):
     """A list of trials, flown and reported together."""
 

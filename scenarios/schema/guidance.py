@@ -12,6 +12,15 @@ from gnc.laws.steering_law import STEERING_LAWS
 from scenarios.schema.section import Angle, NonNegative, Positive, Section, check_divides
 
 
+def known_law(law: str) -> str:
+    """Return the name of a steering law, or raise a ValueError where there is none."""
+    try:
+        STEERING_LAWS.get(law)
+    except PluginError as error:
+        raise ValueError(str(error)) from None
+    return law
+
+
 class ReferenceConfig(Section):
     """The path of the reference point."""
 
@@ -21,6 +30,8 @@ class ReferenceConfig(Section):
     """Shape of the oscillation: sinusoid, that of the paper, or FILE.py:NAME."""
     radius_m: Positive = 130.0
     """Radius of the circle, flown to the right [m]."""
+    standoff_radius_m: Positive | None = None
+    """Radius of a standoff circle about the vessel [m]; if not given, the smallest on which the keep-out guard need not act."""
 
 
 class GuidanceConfig(Section):
@@ -28,13 +39,13 @@ class GuidanceConfig(Section):
 
     model_config = ConfigDict(extra="allow")
 
-    mission: Literal["track", "follow"] | None = None
-    """Track the paper's reference, known in advance, or follow the vessel with a reference that is steered.
+    mission: Literal["track", "follow", "standoff"] | None = None
+    """Track the paper's reference, known in advance, follow the vessel with a reference that is steered, or circle the vessel.
 
     If not given: track in still air where the vessel is steady and known exactly, else follow.
     """
     law: str = "cascade"
-    """Steering law: cascade, eq. (30), lyapunov, eq. (24), line_of_sight, the baseline, or FILE.py:NAME."""
+    """Steering law: cascade, eq. (30), lyapunov, eq. (24), line_of_sight, the baseline, those of docs/arena.md, or FILE.py:NAME."""
     airspeed_mps: Annotated[float, Field(ge=5.0, le=300.0)] = 19.42
     """V_r, speed of the reference and of the UAV [m/s]; the aircraft's own unless it is given."""
     bank_deg: Annotated[float, Field(gt=0.0, le=60.0)] = 45.0
@@ -85,11 +96,7 @@ class GuidanceConfig(Section):
     @field_validator("law")
     @classmethod
     def _known(cls, law: str) -> str:
-        try:
-            STEERING_LAWS.get(law)
-        except PluginError as error:
-            raise ValueError(str(error)) from None
-        return law
+        return known_law(law)
 
     @model_validator(mode="after")
     def _law(self) -> "GuidanceConfig":
@@ -130,6 +137,12 @@ class GuidanceConfig(Section):
             return []
 
 
+def law_refusal(law: str, task: str) -> str:
+    """Return why a steering law cannot do a task, ``gnc.laws.steering_law.ON_OSCILLATION`` or ``ON_CIRCLE``; nothing if it can."""
+    reasons: dict[str, str] = getattr(STEERING_LAWS.get(law), "cannot", {})
+    return reasons.get(task, "")
+
+
 def _law_keys(law: str) -> dict[str, Any]:
     dataclass: Any = STEERING_LAWS.get(law)
     try:
@@ -140,6 +153,11 @@ def _law_keys(law: str) -> dict[str, Any]:
 
 class FollowingConfig(Section):
     """How the reference follows a vessel that manoeuvres, in wind that is estimated, from sensors and reports."""
+
+    @field_validator("margin_law")
+    @classmethod
+    def _known(cls, law: str | None) -> str | None:
+        return law and known_law(law)
 
     touches_per_hour: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-4
     """Chance of touching r_min per flight hour that the keep-out margin is planned for [1/h]."""
@@ -161,5 +179,8 @@ class FollowingConfig(Section):
     """Largest speed of the vessel over the ground; without limit if not given [m/s]."""
     speed_error_mps: NonNegative = 0.0
     """Largest error of the UAV's own velocity through the air and of the wind, together [m/s]."""
+    margin_law: str | None = None
+    """Steering law, with its default parameters, whose tracking in turbulence the margin is planned for; if not given, the flight's
+    own."""
     drift_rate_mps: NonNegative = 1.0
     """How fast dead reckoning may go wrong without satellite navigation [m/s]."""

@@ -33,6 +33,7 @@ KINDS: dict[str, type[Any]] = {
     "trials": TrialList,
     "monte_carlo": Scenario,
     "falsify": Scenario,
+    "arena": Scenario,
 }
 """What a file may say of ``study``, and the scenario that it then holds."""
 

@@ -5,10 +5,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
 from scenarios.schema.emission import EmissionConfig
 from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, PayloadConfig, SensorsConfig, VesselReportsConfig
 from scenarios.schema.experiment import (
     FLIGHTS_MAX,
+    ArenaConfig,
     CaseConfig,
     ComparisonConfig,
     DrawConfig,
@@ -19,7 +21,7 @@ from scenarios.schema.experiment import (
     SweepConfig,
 )
 from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
-from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig
+from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
 from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
 from scenarios.schema.world import KeepoutConfig, PlaceConfig, PlumeConfig, TurbulenceConfig, VesselConfig, WindConfig
 
@@ -39,7 +41,8 @@ class Scenario(Section):
     """A whole scenario file of flights."""
 
     study: str = "flights"
-    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search; or FILE.py:NAME."""
+    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search; arena, laws side by side; or
+    FILE.py:NAME."""
     title: str
     description: str = ""
     aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = DEFAULT_AIRCRAFT
@@ -64,6 +67,9 @@ class Scenario(Section):
     statistics: StatisticsConfig = StatisticsConfig()
     subset: SubsetConfig = SubsetConfig()
     search: SearchConfig = SearchConfig()
+    laws: tuple[str, ...] = ()
+    """Laws that take part in an arena beside its own, each by its name or FILE.py:NAME."""
+    arena: ArenaConfig = ArenaConfig()
     place: PlaceConfig = PlaceConfig()
     vessel: VesselConfig = VesselConfig()
     plume: PlumeConfig = PlumeConfig()
@@ -90,9 +96,9 @@ class Scenario(Section):
 
     @property
     def follows(self) -> bool:
-        """Return whether the reference is steered: where mission says so, or air or vessel are not steady and known exactly."""
+        """Return whether the mission follows what it estimates: where that says so, or air or vessel are not steady and known."""
         if self.guidance.mission is not None:
-            return self.guidance.mission == "follow"
+            return self.guidance.mission != "track"
         return not (
             not self.wind.blows
             and self.turbulence.calm
@@ -110,6 +116,11 @@ class Scenario(Section):
     def vessel_known(self) -> bool:
         """Return whether the vessel's motion is known at all times, and not from reports."""
         return self.reports.exact and not self.vessel.from_file
+
+    @property
+    def stands_off(self) -> bool:
+        """Return whether the vessel is circled, without an oscillation."""
+        return self.guidance.mission == "standoff"
 
     @property
     def declared_faults(self) -> frozenset[str]:
@@ -159,6 +170,13 @@ class Scenario(Section):
                 "turbulence.level or turbulence.gusts is set with fidelity 'kinematic', which feels the steady wind alone:"
                 " set fidelity to 'six_dof', or turbulence.level to 'none' and turbulence.gusts to 0"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _law_has_the_task(self) -> "Scenario":
+        law = self.guidance.law
+        if not self.circles and (reason := law_refusal(law, ON_CIRCLE if self.stands_off else ON_OSCILLATION)):
+            raise ValueError(f"guidance.law is '{law}': {reason}")
         return self
 
     @model_validator(mode="after")

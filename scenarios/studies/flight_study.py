@@ -77,11 +77,11 @@ class FlightStudy:
         envelope = self._design.design.schedule.envelope if self._design else spec.envelope if spec else None
         if envelope is not None:
             trials = {trial: scaled(of, envelope) for trial, of in trials.items()}
-        self.trials = dict(trials)
         if isinstance(scenario, Scenario):
             # What the manifest says of it is what is flown.
-            scenario = self.trials[name]
-        self.experiments = {trial: Experiment(trial, of, alone=len(trials) == 1) for trial, of in self.trials.items()}
+            scenario = trials[name]
+        self.trials = self.expanded(trials)
+        self.experiments = {trial: Experiment(trial, of, alone=len(self.trials) == 1) for trial, of in self.trials.items()}
         check_flights(self.experiments.values(), self._design.design.schedule.envelope if self._design else None)
         self.histories = scenario.histories
         self.flights = {trial: experiment.counted for trial, experiment in self.experiments.items()}
@@ -115,6 +115,19 @@ class FlightStudy:
                 for name, reports in self.vessel_files.items()
             },
         }
+
+    def expanded(self, trials: Mapping[str, Scenario]) -> dict[str, Scenario]:
+        """Return the trials to fly, from those given, scaled to the aircraft.
+
+        Raises
+        ------
+        InputError : a study that makes trials of its own cannot
+        """
+        return dict(trials)
+
+    def name_by_trial(self) -> None:
+        """Have the names of flights begin with that of their trial, as those of a run of several trials do."""
+        self.experiments = {trial: Experiment(trial, of, alone=False) for trial, of in self.trials.items()}
 
     def _sampled_at_random(self) -> dict[str, bool]:
         """Return of which trials flights are a random sample, from which a bound on a probability follows."""

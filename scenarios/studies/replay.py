@@ -17,6 +17,7 @@ from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
 from scenarios.schema.load import checked
 from scenarios.schema.scenario import Scenario
+from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.registry import study_of
 
 _TABLES = (SUMMARY, COMPARISON)
@@ -99,6 +100,8 @@ class Replay:
                 raise InputError(f"'{self._from}' names a trial {name!r}, which is no name of a trial; do not use this run")
         scenarios = {name: checked({**config, "study": "flights"}, Scenario) for name, config in trials.items()}
         study = study_of(scenarios[trial], trial)
+        if len(scenarios) > 1 and isinstance(study, FlightStudy):
+            study.name_by_trial()
         _check_plugins(manifest.get("plugins", {}), study.initial_manifest()["plugins"])
         flights = {name: Experiment(name, scenario).flights for name, scenario in scenarios.items()}
         before = sum(flights[name] for name in list(trials)[: list(trials).index(trial)])

@@ -47,6 +47,19 @@ flight.crossings = 0
 flight.after_settling_s = 20.0
 start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
 """,
+    "standoff": """
+guidance.mission = "standoff"
+guidance.law = "npfg"
+keepout.radius_m = 90.0
+vessel.speed_mps = 6.0
+vessel.manoeuvres = [{ at_s = 60.0, turn_deg = 20.0, speed_mps = 7.0 }]
+wind = { speed_mps = 4.0, from_deg = 60.0 }
+reports.interval_s = [2.0, 5.0]
+following.vessel_acceleration_mps2 = 0.15
+fault = { kind = "satellite_navigation", at_s = [70.0, 80.0] }
+flight.crossings = 0
+start.distance_m = [300.0, 400.0]
+""",
     "circle": 'reference.path = "circle"\nstart.place_m = [80.0, -60.0]\n',
 }
 """Flights of the kinematic vehicle with each mission, and without a vessel."""
@@ -58,6 +71,10 @@ VALUES = {
     "statistics.confidence": 0.9, "statistics.violation_upper": 0.1, "statistics.distance_quantile_width_m": 1.0,
     "statistics.distance_quantile": 0.05,
     "search.population": 8, "search.generations": 1, "search.mutation": [0.4, 0.6], "search.recombination": 0.5, "search.kept": 1,
+    "laws": ["npfg"], "arena.tracking": ["npfg"], "arena.standoff": ["npfg"], "arena.conditions": [{"name": "a", "title": "b"}],
+    "arena.evaluations": 1, "arena.tuning_flights": 1, "arena.tuning_duration_s": 100.0, "arena.tuning_set": {"seed": 2},
+    "arena.tuning_range": 2.0, "arena.effort_weight_m_s": 1.0, "arena.error_max_m": 50.0, "arena.window_s": 10.0,
+    "arena.plume_half_width_m": 5.0, "arena.resamples": 100, "arena.limits": [[0.5, 9.0]],
     "search.methods": ["local"], "search.time_s": 5.0, "search.restarts": 3, "search.confirmations": 1,
     "place.latitude_deg": 57.0, "place.longitude_deg": 11.0, "place.utc": "2026-06-01T10:00:00Z",
     "vessel.mmsi": 219999001, "vessel.gap_max_s": 100.0,
@@ -78,6 +95,7 @@ VALUES = {
     "sensors.airspeed_bias_mps": 0.5, "sensors.heading_sigma_deg": 1.0, "sensors.heading_bias_deg": 2.0,
     "fault.kind": "vessel_data", "fault.at_s": [20.0, 40.0], "fault.vessel_data_s": 20.0, "fault.satellite_navigation_s": 30.0,
     "kinematic.heading_rate_lag_s": 0.5, "reference.path": "circle", "reference.radius_m": 150.0,
+    "reference.standoff_radius_m": 300.0, "following.margin_law": "line_of_sight",
     "guidance.mission": "follow", "guidance.law": "line_of_sight", "guidance.airspeed_mps": 18.0, "guidance.bank_deg": 40.0,
     "guidance.heading_rate_max_rad_s": 0.45, "guidance.reserve": 0.1, "guidance.roll_rate_max_deg_s": 5.0,
     "guidance.phase_deg": 90.0, "guidance.placement": "exact", "guidance.tracking_allowance_m": 5.0, "guidance.tuning": "bounded",
@@ -107,6 +125,7 @@ OWN_VALUES = {
     "measuring": {
         "plume.direction": "given", "plume.meander": False, "payload.exact": True,
     },
+    "standoff": {"plume.direction": "given", "guidance.mission": "track", "criteria.crossing_interval_error": False},
     "circle": {"reference.path": "oscillation"},
 }  # fmt: skip
 """Where that is what a mission has anyway, or its flight fails one limit as it does the other."""
@@ -149,11 +168,8 @@ def written(value):
 
 def test_every_key_has_another_value_here():
     sections = {key.rpartition(".")[0] for key in known_keys(Scenario)}
-    keys = {
-        key
-        for key in known_keys(Scenario)
-        if key not in sections | {"vessel.manoeuvres"} and not key.startswith(("cases.", "draws.", "comparison.v"))
-    }
+    entries = ("cases.", "draws.", "comparison.v", "arena.conditions.")
+    keys = {key for key in known_keys(Scenario) if key not in sections | {"vessel.manoeuvres"} and not key.startswith(entries)}
     assert keys - ELSEWHERE == VALUES.keys() - {"vessel.manoeuvres"}
 
 

@@ -1,0 +1,127 @@
+"""The Lyapunov guidance vector field: a standoff circle about a centre that moves, in wind.
+
+Sources: D. A. Lawrence, E. W. Frew, W. J. Pisano, "Lyapunov Vector Fields for Autonomous Unmanned Aircraft Flight Control",
+JGCD 31(5), 2008; E. W. Frew, D. A. Lawrence, S. Morris, "Coordinated Standoff Tracking of Moving Targets Using Lyapunov Guidance
+Vector Fields", JGCD 31(2), 2008. The wind and the feedback on the heading are additions of this project.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+from gnc.errors import InfeasibleError
+from gnc.laws.path.adapter import PathLaw, PathMotion
+from gnc.laws.steering_law import CIRCLES_ALONE, ON_OSCILLATION, steering_law
+from gnc.numeric import wrap
+from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
+
+
+class HeadingField(NamedTuple):
+    """A field of headings where the vehicle is.
+
+    Attributes
+    ----------
+    heading : psi_d, through the air [rad]
+    rate : how fast it turns as the vehicle moves [rad/s]
+    """
+
+    heading: float
+    rate: float
+
+
+def circle_course(from_centre: Vector, radius: float, side: int) -> float:
+    """Return the course of the field relative to the centre: bearing + 2 side atan(r/R) [rad].
+
+    Parameters
+    ----------
+    from_centre : from the centre to the vehicle [m]
+    radius : R [m]
+    side : +1 clockwise, -1 anticlockwise
+    """
+    return course_of(from_centre) + 2.0 * side * math.atan(norm(from_centre) / radius)
+
+
+def lgvf(
+    position: Vector,
+    heading: float,
+    airspeed: float,
+    centre: Vector,
+    radius: float,
+    side: int,
+    centre_velocity: Vector,
+    wind: Vector,
+) -> HeadingField:
+    """Return the heading of the field, and its rate. A pure function.
+
+    Parameters
+    ----------
+    position, heading : of the vehicle [m, rad]
+    airspeed : V_a [m/s]
+    centre, radius : of the circle [m]
+    side : +1 clockwise, -1 anticlockwise
+    centre_velocity, wind : over the ground [m/s]
+
+    Raises
+    ------
+    InfeasibleError : the centre is as fast through the air as the vehicle
+    """
+    from_centre, drift = minus(position, centre), minus(centre_velocity, wind)
+    course = circle_course(from_centre, radius, side)
+    relative = minus(scaled(along(heading), airspeed), drift)
+    r = norm(from_centre)
+    outward = along(course_of(from_centre))
+    turn = cross(outward, relative) / r if r > 0.0 else 0.0
+    course_rate = turn + 2.0 * side * radius * dot(outward, relative) / (radius * radius + r * r)
+    return heading_for(course, course_rate, airspeed, drift)
+
+
+def heading_for(course: float, course_rate: float, airspeed: float, drift: Vector) -> HeadingField:
+    """Return the heading that gives a course relative to a centre, by the triangle of velocities, and its rate.
+
+    Parameters
+    ----------
+    course, course_rate : of the velocity relative to the centre [rad, rad/s]
+    airspeed : V_a [m/s]
+    drift : velocity of the centre through the air [m/s]
+
+    Raises
+    ------
+    InfeasibleError : the centre is as fast through the air as the vehicle
+    """
+    if norm(drift) >= airspeed:
+        raise InfeasibleError(
+            f"the centre moves through the air at {norm(drift):.2f} m/s, the vehicle at {airspeed:.2f} m/s; no circle about it"
+            " can be flown: follow a slower vessel, or fly faster"
+        )
+    direction = along(course)
+    back = dot(direction, drift)
+    speed = -back + math.sqrt(back * back + airspeed * airspeed - dot(drift, drift))
+    heading = course_of(plus(scaled(direction, speed), drift))
+    return HeadingField(heading, course_rate * speed / (airspeed * math.cos(heading - course)))
+
+
+def heading_rate(field: HeadingField, heading: float, gain: float) -> float:
+    """Return the heading rate that turns the vehicle into the field [rad/s], from its heading [rad] and a gain [1/s]."""
+    return field.rate + gain * wrap(field.heading - heading)
+
+
+@steering_law("lgvf")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LgvfLaw(PathLaw):
+    """The Lyapunov guidance vector field on a circle in the frame of its centre (M2).
+
+    Attributes
+    ----------
+    lgvf_gain_per_s : k, feedback on the heading [1/s]
+    """
+
+    given: ClassVar[str] = "the circle in the frame of its centre (M2); wind"
+    cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
+    lgvf_gain_per_s: float = 1.0
+
+    def rate(self, motion: PathMotion) -> float:
+        """Return the demanded heading rate [rad/s]; a centre that is as fast as the vehicle is followed, not circled."""
+        if norm(motion.wind) >= motion.airspeed:
+            return heading_rate(HeadingField(course_of(motion.wind) + math.pi, 0.0), motion.heading, self.lgvf_gain_per_s)
+        field = lgvf(motion.position, motion.heading, motion.airspeed, *motion.circle, (0.0, 0.0), motion.wind)
+        return heading_rate(field, motion.heading, self.lgvf_gain_per_s)

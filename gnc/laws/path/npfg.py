@@ -1,0 +1,266 @@
+"""NPFG, the fixed-wing path following of PX4: look-ahead by the track error, bearing feasibility in wind, adapted period.
+
+Source: T. Stastny, R. Siegwart, "On Flying Backwards: Preventing Run-away of Small, Low-speed, Fixed-wing UAVs in Strong Winds",
+IROS 2019, and the law as PX4 flies it, release 1.15 (BSD-3-Clause). Written from equations, not from code.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
+from gnc.laws.steering_law import steering_law
+from gnc.vectors import Vector, clip, course_of, cross, dot, minus, norm, plus, right_of, scaled
+
+G = 9.80665
+"""Standard gravity [m/s2]."""
+
+_EPSILON = 1e-6
+_RADIUS_MIN = 0.5
+"""Smallest turn radius that the feed-forward is formed for [m]."""
+_AIRSPEED_BUFFER = 1.5
+"""Airspeed beyond what a bearing needs, from which the bearing counts as wholly feasible [m/s]."""
+_TRACK_KEEPING_SPEED = 5.0
+"""Ground speed that track keeping asks for far from the path [m/s]."""
+_TRACK_KEEPING_FROM = 0.5
+"""Share of the track error bound from which on it asks for all of it [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NpfgParameters:
+    """Parameters; defaults are those of PX4, without track keeping.
+
+    Attributes
+    ----------
+    period : T_0 [s]
+    damping : zeta [-]
+    lower_bound, upper_bound : whether the period is kept above and below what the roll dynamics and the path need
+    minimum_ground_speed, track_keeping, wind_regulation : whether airspeed is raised to keep a ground speed, to come back to the
+        track, and at all
+    roll_time_constant : T_phi; 0 for no bounds on the period [s]
+    safety_factor : on the lower bound [-]
+    ground_speed_min : [m/s]
+    airspeed, airspeed_max : nominal and largest [m/s]
+    roll_limit : [rad]
+    """
+
+    period: float = 10.0
+    damping: float = 0.7
+    lower_bound: bool = True
+    upper_bound: bool = True
+    minimum_ground_speed: bool = True
+    track_keeping: bool = False
+    wind_regulation: bool = True
+    roll_time_constant: float = 0.5
+    safety_factor: float = 1.5
+    ground_speed_min: float = 5.0
+    airspeed: float = 15.0
+    airspeed_max: float = 20.0
+    roll_limit: float = math.radians(50.0)
+
+
+PX4_DEFAULTS = NpfgParameters()
+"""PX4's defaults, without track keeping."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NpfgCommand:
+    """What NPFG asks for.
+
+    Attributes
+    ----------
+    lateral_acceleration : positive to the right [m/s2]
+    feed_forward : its part for the path's curvature, before it fades with the track error [m/s2]
+    airspeed, heading : references [m/s, rad]
+    roll : reference, within the limit [rad]
+    bearing : ground course that is asked for [rad]
+    period : as adapted [s]
+    error_bound : track error from which on the bearing is straight at the path [m]
+    """
+
+    lateral_acceleration: float
+    feed_forward: float
+    airspeed: float
+    heading: float
+    roll: float
+    bearing: float
+    period: float
+    error_bound: float
+
+
+def npfg(
+    position: Vector,
+    velocity: Vector,
+    wind: Vector,
+    path_point: Vector,
+    tangent: Vector,
+    curvature: float,
+    parameters: NpfgParameters = PX4_DEFAULTS,
+) -> NpfgCommand:
+    """Return NPFG's command. A pure function.
+
+    Parameters
+    ----------
+    position, velocity : of the vehicle over the ground, north and east [m, m/s]
+    wind : velocity of the air [m/s]
+    path_point, tangent : nearest point of the path [m], and the path's unit tangent there
+    curvature : of the path there, positive to the right [1/m]
+    parameters : of the law
+    """
+    p = parameters
+    air_velocity = minus(velocity, wind)
+    airspeed, ground_speed, wind_speed = norm(air_velocity), norm(velocity), norm(wind)
+    error = cross(tangent, minus(position, path_point))
+    track_feasible = bearing_feasibility(tangent, wind, airspeed)
+    period = _adapted_period(p, abs(error), ground_speed, airspeed, wind_speed, curvature, track_feasible)
+    gain = 4.0 * math.pi * p.damping / period
+    bound = track_error_bound(ground_speed, p.damping * period)
+    off = clip(abs(error) / bound, 0.0, 1.0)
+    look_ahead = 0.5 * math.pi * (1.0 - off) ** 2
+    proximity = math.sin(look_ahead) ** 2
+    towards = scaled(right_of(tangent), -math.copysign(1.0, error) if error != 0.0 else -1.0)
+    bearing = plus(scaled(towards, math.cos(look_ahead)), tangent, math.sin(look_ahead))
+    feasible = bearing_feasibility(bearing, wind, airspeed) * track_feasible
+    ground_speed_min = 0.0
+    if p.wind_regulation:
+        keeping = (1.0 - feasible) * _TRACK_KEEPING_SPEED * clip(off / _TRACK_KEEPING_FROM, 0.0, 1.0) if p.track_keeping else 0.0
+        ground_speed_min = max(keeping, p.ground_speed_min if p.minimum_ground_speed else 0.0)
+    reference = _air_velocity_reference(p, bearing, wind, wind_speed, ground_speed_min)
+    feedback = _feedback(gain, air_velocity, airspeed, reference)
+    feed_forward = _feed_forward(tangent, velocity, wind, airspeed, error, curvature)
+    acceleration = feedback + feasible * proximity * feed_forward
+    return NpfgCommand(
+        lateral_acceleration=acceleration,
+        feed_forward=feed_forward,
+        airspeed=norm(reference),
+        heading=course_of(reference),
+        roll=clip(math.atan(acceleration / G), -p.roll_limit, p.roll_limit),
+        bearing=course_of(bearing),
+        period=period,
+        error_bound=bound,
+    )
+
+
+def bearing_feasibility(bearing: Vector, wind: Vector, airspeed: float) -> float:
+    """Return how far a ground course can be flown in this wind, from 0 to 1.
+
+    Parameters
+    ----------
+    bearing : unit vector of the course
+    wind : [m/s]
+    airspeed : [m/s]
+    """
+    across = norm(wind) if dot(wind, bearing) < 0.0 else abs(cross(wind, bearing))
+    return math.sin(0.5 * math.pi * clip((airspeed - across) / _AIRSPEED_BUFFER, 0.0, 1.0)) ** 2
+
+
+def track_error_bound(ground_speed: float, time_constant: float) -> float:
+    """Return the track error from which on the vehicle heads straight for the path [m]."""
+    if ground_speed > 1.0:
+        return ground_speed * time_constant
+    return 0.5 * time_constant * (ground_speed * ground_speed + 1.0)
+
+
+def _adapted_period(
+    p: NpfgParameters, error: float, ground_speed: float, airspeed: float, wind_speed: float, curvature: float, feasible: float
+) -> float:
+    """Return the period, kept to what the roll dynamics allow and the path's curvature in wind needs [s]."""
+    if not p.lower_bound or p.roll_time_constant <= _EPSILON:
+        return p.period
+    turn_rate = abs(curvature * airspeed)
+    if wind_speed > airspeed or airspeed < _EPSILON:
+        wind_factor = 2.0
+    else:
+        wind_factor = 2.0 * (1.0 - math.sqrt(1.0 - min(1.0, wind_speed / airspeed)))
+    straight = math.pi * p.roll_time_constant / p.damping
+    lowest = straight
+    if turn_rate * wind_factor >= _EPSILON and p.damping >= 0.5:
+        lowest = 4.0 * math.pi * p.roll_time_constant * p.damping * feasible + (1.0 - feasible) * straight
+    lowest, straight = lowest * p.safety_factor, straight * p.safety_factor
+    off = clip(error / track_error_bound(ground_speed, straight * p.damping), 0.0, 1.0)
+    proximity = math.sin(0.5 * math.pi * (off - 1.0) ** 2) ** 2
+    lowest = proximity * lowest + (1.0 - proximity) * straight
+    period = max(lowest, p.period)
+    demand = turn_rate * wind_factor * feasible
+    if p.upper_bound and turn_rate * wind_factor > _EPSILON and demand > 0.0:
+        highest = 4.0 * math.pi * p.damping / demand
+        if math.isfinite(highest) and period > highest:
+            period = proximity * max(lowest, highest) + (1.0 - proximity) * period
+    return period
+
+
+def _air_velocity_reference(p: NpfgParameters, bearing: Vector, wind: Vector, wind_speed: float, ground_speed_min: float) -> Vector:
+    """Return the velocity through the air that gives the wanted bearing over the ground, as far as the wind lets it [m/s]."""
+    across, along = cross(wind, bearing), dot(wind, bearing)
+    to_the_right = right_of(bearing)
+
+    def triangle(airspeed: float) -> Vector:
+        return plus(scaled(bearing, math.sqrt(max(airspeed * airspeed - across * across, 0.0))), to_the_right, across)
+
+    def feasible(airspeed: float) -> bool:
+        return abs(across) < airspeed and (along > 0.0 or wind_speed < airspeed)
+
+    def against_wind(airspeed: float) -> Vector:
+        drift = minus(scaled(bearing, math.sqrt(max(wind_speed * wind_speed - airspeed * airspeed, 0.0))), wind)
+        length = norm(drift)
+        return scaled(drift, airspeed / length) if length > 0.0 else scaled(bearing, airspeed)
+
+    if ground_speed_min > along and p.wind_regulation and (p.minimum_ground_speed or p.track_keeping):
+        needed = math.hypot(ground_speed_min - along, across)
+        if needed > p.airspeed_max:
+            return triangle(p.airspeed_max) if feasible(p.airspeed_max) else against_wind(p.airspeed_max)
+        return triangle(max(needed, p.airspeed))
+    if feasible(p.airspeed):
+        return triangle(p.airspeed)
+    if feasible(p.airspeed_max) and p.wind_regulation:
+        return wind if along <= 0.0 else scaled(to_the_right, across)
+    return against_wind(p.airspeed_max if p.wind_regulation else p.airspeed)
+
+
+def _feedback(gain: float, air_velocity: Vector, airspeed: float, reference: Vector) -> float:
+    """Return the lateral acceleration that turns the velocity through the air to its reference [m/s2]."""
+    turn, length = cross(air_velocity, reference), norm(reference)
+    if dot(air_velocity, reference) < 0.0:
+        return gain * airspeed * (-1.0 if turn < 0.0 else 1.0)
+    return gain * turn / length if length > 0.0 else 0.0
+
+
+def _feed_forward(tangent: Vector, velocity: Vector, wind: Vector, airspeed: float, error: float, curvature: float) -> float:
+    """Return the lateral acceleration that the path's curvature needs, at the vehicle's distance from it [m/s2]."""
+    here = curvature / max(1.0 - curvature * error, abs(curvature) * _RADIUS_MIN) if curvature != 0.0 else 0.0
+    path_rate = here * max(dot(velocity, tangent), 0.0)
+    crosswind = cross(wind, tangent)
+    along = math.sqrt(max(airspeed * airspeed - crosswind * crosswind, 0.0))
+    return airspeed * (1.0 + dot(wind, tangent) / max(along, _EPSILON)) * path_rate
+
+
+@steering_law("npfg")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NpfgLaw(PathLaw):
+    """NPFG on the reference's tangent and curvature (M1), or on a circle in the frame of its centre (M2), at constant airspeed.
+
+    Attributes
+    ----------
+    npfg_period_s : T_0 [s]
+    npfg_damping : zeta [-]
+    npfg_roll_time_constant_s : T_phi [s]
+    """
+
+    given: ClassVar[str] = "tangent and curvature of the path over the ground (M1), a circle in the frame of its centre (M2); wind"
+    npfg_period_s: float = 10.0
+    npfg_damping: float = 0.7
+    npfg_roll_time_constant_s: float = 0.5
+
+    def rate(self, motion: PathMotion) -> float:
+        """Return the demanded heading rate [rad/s]."""
+        parameters = NpfgParameters(
+            period=self.npfg_period_s,
+            damping=self.npfg_damping,
+            roll_time_constant=self.npfg_roll_time_constant_s,
+            minimum_ground_speed=False,
+            wind_regulation=False,
+            airspeed=motion.airspeed,
+            airspeed_max=motion.airspeed,
+        )
+        command = npfg(motion.position, motion.velocity, motion.wind, (0.0, 0.0), motion.tangent, motion.curvature, parameters)
+        return turn_rate(command.lateral_acceleration, motion.airspeed)

@@ -1,0 +1,146 @@
+"""The law of Park, Deyst and How: a lateral acceleration towards a point of the path at a distance L1 ahead.
+
+Source: S. Park, J. Deyst, J. P. How, "A New Nonlinear Guidance Logic for Trajectory Tracking", AIAA 2004-4900;
+"Performance and Lyapunov Stability of a Nonlinear Path-Following Guidance Method", JGCD 30(6), 2007.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
+from gnc.laws.steering_law import CIRCLES_ALONE, NO_CIRCLE, ON_CIRCLE, ON_OSCILLATION, steering_law
+from gnc.numeric import wrap
+from gnc.vectors import Vector, along, clip, course_of, cross, dot, minus, norm, plus, scaled
+
+
+def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: float = 0.0, clamp: bool = True) -> float:
+    """Return the lateral acceleration, 2 v^2 sin(eta)/L1, positive to the right [m/s2]. A pure function.
+
+    Parameters
+    ----------
+    position, velocity : of the vehicle, north and east [m, m/s]
+    target : the point to steer at [m]; the range to it is L1
+    range_min : floor of the range [m]
+    clamp : keep eta within a quarter of a turn; as printed the command falls off again behind the vehicle
+    """
+    to_target = minus(target, position)
+    range_ = max(norm(to_target), range_min)
+    if range_ == 0.0:
+        return 0.0
+    eta = wrap(course_of(to_target) - course_of(velocity))
+    if clamp:
+        eta = clip(eta, -0.5 * math.pi, 0.5 * math.pi)
+    return 2.0 * dot(velocity, velocity) * math.sin(eta) / range_
+
+
+def point_on_line(position: Vector, origin: Vector, course: float, distance: float) -> Vector:
+    """Return the point of a line at ``distance`` L1 ahead [m]; its nearest point where the line is farther off.
+
+    Parameters
+    ----------
+    position : of the vehicle [m]
+    origin, course : a point of the line [m], and its course [rad]
+    distance : L1 [m]
+    """
+    tangent, off = along(course), minus(position, origin)
+    error = cross(tangent, off)
+    return plus(origin, tangent, dot(tangent, off) + math.sqrt(max(distance * distance - error * error, 0.0)))
+
+
+def point_on_circle(position: Vector, centre: Vector, radius: float, side: int, distance: float) -> Vector:
+    """Return the point of a circle at ``distance`` L1 ahead [m]; its nearest point where there is none.
+
+    Parameters
+    ----------
+    position : of the vehicle [m]
+    centre, radius : of the circle [m]
+    side : +1 clockwise, -1 anticlockwise
+    distance : L1 [m]
+    """
+    from_centre = minus(position, centre)
+    d, ahead = norm(from_centre), 0.0
+    if d > 0.0 and abs(d - radius) <= distance <= d + radius:
+        ahead = math.acos(clip((d * d + radius * radius - distance * distance) / (2.0 * d * radius), -1.0, 1.0))
+    return plus(centre, along(course_of(from_centre) + side * ahead), radius)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParkL1Law(PathLaw):
+    """Base of the laws of Park, Deyst and How; eta is kept within a quarter of a turn.
+
+    Attributes
+    ----------
+    l1_distance_m : L1 [m]
+    """
+
+    l1_distance_m: float = 60.0
+
+    def target(self, motion: PathMotion) -> Vector:
+        """Return the point to steer at, from the path's point [m]."""
+        raise NotImplementedError
+
+    def range_min(self) -> float:
+        """Return the floor of the range [m]."""
+        return 1.0
+
+    def rate(self, motion: PathMotion) -> float:
+        """Return the demanded heading rate [rad/s]."""
+        acceleration = park_l1(motion.position, motion.velocity, self.target(motion), range_min=self.range_min())
+        return turn_rate(acceleration, motion.airspeed)
+
+
+@steering_law("park_l1")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParkL1TangentLaw(ParkL1Law):
+    """Park's law along the reference's tangent (M1); attributes as of ``ParkL1Law``."""
+
+    given: ClassVar[str] = "tangent of the path over the ground (M1); velocity over the ground"
+
+    def target(self, motion: PathMotion) -> Vector:
+        """Return the point of the tangent at L1 from the vehicle, from the path's point [m]."""
+        return point_on_line(motion.position, (0.0, 0.0), course_of(motion.tangent), self.l1_distance_m)
+
+
+@steering_law("park_l1_ahead")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParkL1AheadLaw(ParkL1Law):
+    """Park's law towards a point L1 ahead of the reference, on its tangent (M3); attributes as of ``ParkL1Law``."""
+
+    given: ClassVar[str] = "a point ahead of the reference (M3); velocity over the ground"
+    cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
+
+    def target(self, motion: PathMotion) -> Vector:
+        """Return the point L1 ahead, from the path's point [m]."""
+        return scaled(motion.tangent, self.l1_distance_m)
+
+
+@steering_law("park_l1_point")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParkL1PointLaw(ParkL1Law):
+    """Park's law towards the reference itself (M3), with L1 as the floor of the range; attributes as of ``ParkL1Law``."""
+
+    given: ClassVar[str] = "the reference's place (M3); velocity over the ground"
+    cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
+    l1_distance_m: float = 30.0
+
+    def target(self, motion: PathMotion) -> Vector:  # noqa: ARG002
+        """Return the path's point."""
+        return 0.0, 0.0
+
+    def range_min(self) -> float:
+        """Return the floor of the range [m]."""
+        return self.l1_distance_m
+
+
+@steering_law("park_l1_orbit")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParkL1OrbitLaw(ParkL1Law):
+    """Park's law on a circle in the frame of its centre (M2); attributes as of ``ParkL1Law``."""
+
+    given: ClassVar[str] = "the circle in the frame of its centre (M2)"
+    cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
+
+    def target(self, motion: PathMotion) -> Vector:
+        """Return the point of the circle at L1 from the vehicle, from the path's point [m]."""
+        return point_on_circle(motion.position, *motion.circle, self.l1_distance_m)

@@ -1,0 +1,182 @@
+"""Figures of an arena: error against effort, crossings per minute against what is possible, and tracks."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from reports.arena.data import ALL, Arena, Entrant
+from reports.document.chart import Chart, Line, Note, Panel, circle
+from reports.run.columns import column
+from reports.run.time_history import about_the_plume
+
+_FAMILIES = (
+    ("with the reference's turn fed forward", "blue"),
+    ("without it, on its tangent or circle (M1, M2)", "green"),
+    ("without it, at its place (M3)", "orange"),
+)
+"""What a law makes use of, and its colour."""
+
+_SHOWN_S = 120.0
+"""End of a flight that is drawn [s]."""
+
+_BEYOND = 1.08
+"""Largest abscissa that is drawn, over the largest mark."""
+
+
+def effort_charts(arena: Arena) -> list[Chart]:
+    """Return tracking error against control effort with one mark a law: over all conditions, and a panel for each."""
+    entrants = arena.in_task(tracking=True)
+    together = Chart(
+        name="effort",
+        caption="Distance to the oscillating reference against the heading rate commanded, each as its root mean square over the"
+        " end of the flights, settled or not; a mark a law, numbered as in the tables. Down and to the left is better. What tracks"
+        " the reference exactly needs the reference's own heading rate.",
+        panels=[_effort_panel(arena, entrants, arena.together)],
+        panel_height=0.5,
+    )
+    if len(arena.conditions) == 1:
+        return [together]
+    each = Chart(
+        name="efforts",
+        caption="The same for each condition.",
+        panels=[_effort_panel(arena, entrants, condition) for condition in arena.conditions],
+        columns=3,
+        panel_height=0.34,
+    )
+    return [together, each]
+
+
+def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str) -> Panel:
+    efforts = {entrant.name: arena.of("effort_rms_rad_s", entrant, condition).mean for entrant in entrants}
+    errors = {entrant.name: math.log10(max(arena.of("error_rms_m", entrant, condition).mean, 1e-3)) for entrant in entrants}
+    lines, notes = [], []
+    for label, colour in _FAMILIES:
+        members = [entrant for entrant in entrants if _family(entrant) == label]
+        x, y = (np.array([values[entrant.name] for entrant in members]) for values in (efforts, errors))
+        if members:
+            lines.append(Line(x=x, y=y, label=label, colour=colour, style="points"))
+    known = [value for value in errors.values() if math.isfinite(value)] or [0.0]
+    low, high = math.floor(min(known) - 0.1), math.ceil(max(known) + 0.1)
+    reach = [value for value in efforts.values() if math.isfinite(value)] or [0.0]
+    span = max(reach) - min(reach) or 0.1
+    for entrant in entrants:
+        x_mark, y_mark = efforts[entrant.name], errors[entrant.name]
+        if math.isfinite(x_mark) and math.isfinite(y_mark):
+            notes.append(Note(x=x_mark + 0.012 * span, y=y_mark + 0.02 * (high - low), text=str(entrant.number), align="left"))
+    return Panel(
+        x_label="Heading rate, rms [rad/s]",
+        y_label="Tracking error, rms [m]",
+        title="All conditions" if condition == ALL else _title(condition),
+        lines=lines,
+        notes=notes,
+        x_range=(min(reach) - 0.06 * span, max(reach) + 0.1 * span),
+        y_range=(float(low), float(high)),
+        y_names=[(float(decade), f"{10.0**decade:g}") for decade in range(low, high + 1)],
+    )
+
+
+def _title(condition: str) -> str:
+    """Return the name of a condition in words."""
+    return condition[:1].upper() + condition[1:].replace("_", " ")
+
+
+def _family(entrant: Entrant) -> str:
+    forward, tangent, place = (label for label, _ in _FAMILIES)
+    if "turn rate" in entrant.given or "curvature" in entrant.given:
+        return forward
+    return place if "M3" in entrant.given else tangent
+
+
+def crossing_chart(arena: Arena) -> Chart:
+    """Return the crossings per minute of every law, a panel for each condition, with the limit where it is known."""
+    entrants = arena.ranked("crossings_per_minute", arena.entrants, greater_first=True)
+    panels = [_crossing_panel(arena, entrants, condition, named=i == 0) for i, condition in enumerate(arena.conditions)]
+    limit = " The dashed line is the most that any path allows at these speed ratios." if arena.limits else ""
+    return Chart(
+        name="crossings",
+        caption=f"Plume crossings per minute over the end of the flights; a mark is a law's mean, with its 95 % interval.{limit}",
+        panels=panels,
+        columns=len(panels),
+        panel_height=0.1 + 0.025 * len(entrants),
+    )
+
+
+def _crossing_panel(arena: Arena, entrants: Sequence[Entrant], condition: str, *, named: bool) -> Panel:
+    rows = {entrant.name: float(len(entrants) - 1 - i) for i, entrant in enumerate(entrants)}
+    lines: list[Line] = []
+    for tracking, label, colour in ((True, "tracks the oscillating reference", "blue"), (False, "circles the vessel", "orange")):
+        members = [entrant for entrant in entrants if entrant.tracks == tracking]
+        found = [arena.of("crossings_per_minute", entrant, condition) for entrant in members]
+        x = np.array([value for of in found for value in (of.low, of.high, math.nan)])
+        y = np.array([rows[entrant.name] for entrant in members for _ in range(3)])
+        if members:
+            places = np.array([rows[entrant.name] for entrant in members])
+            lines += [
+                Line(x=x, y=y, label="", colour=colour),
+                Line(x=np.array([of.mean for of in found]), y=places, label=label, colour=colour, style="points"),
+            ]
+    reach = np.array([-0.7, len(entrants) - 0.3])
+    if (most := arena.limits.get(condition)) is not None:
+        lines.append(Line(x=np.array([most, most]), y=reach, label="limit of any path", colour="vermillion", style="dash"))
+    names = [(rows[entrant.name], f"{entrant.title} {entrant.number}" if named else "") for entrant in entrants]
+    return Panel(
+        x_label="Crossings [1/min]",
+        y_label="Law [-]" if named else "",
+        title=_title(condition),
+        lines=lines,
+        x_range=(0.0, _BEYOND * _most(arena)),
+        y_names=names,
+        y_range=(float(reach[0]), float(reach[1])),
+    )
+
+
+def _most(arena: Arena) -> float:
+    """Return the largest number of crossings per minute that is drawn."""
+    found = [arena.of("crossings_per_minute", entrant, name).high for entrant in arena.entrants for name in arena.conditions]
+    return max([value for value in found if math.isfinite(value)] + list(arena.limits.values()), default=0.0) or 1.0
+
+
+def track_chart(arena: Arena, *, tracking: bool) -> Chart:
+    """Return the end of the first flight of each law in the first condition, seen from the vessel with its plume up the page."""
+    ranked = arena.ranked("error_rms_m", arena.in_task(tracking=tracking))
+    panels = [panel for entrant in ranked if (panel := _track_panel(arena, entrant, tracking=tracking)) is not None]
+    first = next(iter(arena.conditions.values()), "")
+    what = "The oscillating reference tracked" if tracking else "The vessel circled"
+    return Chart(
+        name="tracks" if tracking else "circles",
+        caption=f"{what}: the last {_SHOWN_S:g} s of one flight a law, the same start for all; condition: {first}. Seen from the"
+        " vessel, with its plume up the page. The best on the tracking error come first.",
+        panels=panels,
+        columns=4 if tracking else 5,
+        panel_height=0.27 if tracking else 0.22,
+    )
+
+
+def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | None:
+    first = next(iter(arena.conditions))
+    flights = [str(flight) for flight in entrant.rows.loc[entrant.rows["trial"] == first, "flight_id"]]
+    history = next((found for flight in flights if (found := arena.run.history(flight)) is not None), None)
+    if history is None:
+        return None
+    time = column(history, "time_s")
+    shown = history[time >= time[-1] - _SHOWN_S]
+    radius = float(arena.run.manifest["config"]["keepout"]["radius_m"])
+    right, along = circle(radius)
+    reference, own = about_the_plume(shown, "reference_"), about_the_plume(shown)
+    middle = 1.3 * radius if tracking else 0.0
+    half = 0.8 * radius if tracking else 1.6 * radius
+    return Panel(
+        x_label="Right [m]",
+        y_label="Along [m]",
+        title=f"{entrant.number} {entrant.title}" if tracking else str(entrant.number),
+        equal=True,
+        lines=[
+            Line(x=right, y=along, label="keep-out area", colour="vermillion", fill=True),
+            Line(x=np.zeros(2), y=np.array([0.0, 3.0 * radius]), label="plume", colour="grey", style="dash"),
+            Line(x=reference[0], y=reference[1], label="reference", colour="sky"),
+            Line(x=own[0], y=own[1], label="UAV", colour="blue"),
+        ],
+        x_range=(-half, half),
+        y_range=(middle - half, middle + half),
+    )

@@ -1,0 +1,160 @@
+"""The report of an arena: a reader ranks the laws at a glance, and sees what each was given."""
+
+from reports.arena.charts import crossing_chart, effort_charts, track_chart
+from reports.arena.data import Arena, Entrant, read_arena
+from reports.arena.tables import condition_table, given_table, plume_table, refused_table, tracking_table
+from reports.design.section import innerloop_section
+from reports.document.blocks import Block, Heading, Section, Text, Verdict
+from reports.document.tables import number, parameter_table, vehicles_flown
+from reports.flights.content import flights_content
+from reports.run.columns import count, lost, measured, total, violated
+from reports.run.run_data import RunData
+
+_BOLD = (
+    "In bold: the best mean, and those that the paired bootstrap over starts and air does not tell from it with 95 % confidence. In"
+    " brackets are 95 % intervals of the mean; of few flights they are too narrow rather than too wide."
+)
+
+_TRACKING = (
+    "Errors are distances to the oscillating reference, as the guidance has it, and the effort is the heading rate commanded, both"
+    " over the end of each flight, settled or not; excess effort is what of it differs from the reference's own heading rate. Laws"
+    " without feedback along the track, those on a tangent (M1), depend on where they start. The airspeed law, which is the same"
+    " for all, keeps pace with the reference besides."
+)
+
+_STANDOFF = (
+    "On a circle about the vessel the error is the distance to the circle. It closes in on its radius, on which the keep-out guard"
+    " just need not act, once the law is near it."
+)
+
+_PLUME = (
+    "Both tasks by what the mission is for: crossings of the plume's axis, time within reach of it, and the distance from the"
+    " funnel at which it was crossed. A law that tracks badly may cross as often as one that tracks well, but elsewhere and"
+    " at times that nobody can predict."
+)
+
+_GIVEN = (
+    "Each law had the same number of settings to try, the default first, half of them spread evenly over the ranges and half by"
+    " Nelder and Mead's simplex, on flights of the kinematic vehicle with the aircraft's lag and with seeds that the comparison"
+    " does not use. The cost is the rms error of the end of a flight and what the heading rate in excess of the reference's counts"
+    " as."
+)
+
+
+def arena_content(run: RunData) -> tuple[Verdict, list[Section]]:
+    """Return the verdict and the sections of the report of an arena."""
+    arena = read_arena(run)
+    if arena is None:
+        # It was interrupted: there are flights, and nothing to rank.
+        return flights_content(run)
+    sections = [
+        _section("tracking", "Tracking the oscillating reference", "Tracking", _tracking(arena)),
+        _section("standoff", "Circling the vessel", "Circling", _standoff(arena)),
+        _section("plume", "Measuring the plume", "Plume", _plume(arena)),
+        _section("given", "What each law was given", "Given", [Text(_GIVEN), given_table(arena), *_refused(arena)]),
+        *([innerloop_section(run.innerloop)] if run.innerloop else []),
+        _section("parameters", "Parameters", "Parameters", [parameter_table(run)]),
+    ]
+    return _verdict(arena), sections
+
+
+def _section(anchor: str, title: str, nav_title: str, blocks: list[Block]) -> Section:
+    return Section(anchor=anchor, title=title, nav_title=nav_title, blocks=blocks)
+
+
+def _tracking(arena: Arena) -> list[Block]:
+    if not arena.in_task(tracking=True):
+        return []
+    tracks = track_chart(arena, tracking=True)
+    return [
+        Text(_TRACKING),
+        *effort_charts(arena),
+        Heading("Over all conditions"),
+        Text(_BOLD),
+        tracking_table(arena, tracking=True),
+        Heading("Tracking error by condition, rms [m]"),
+        condition_table(arena, "error_rms_m", "{:.2f}", tracking=True),
+        *([tracks] if tracks.panels else []),
+    ]
+
+
+def _standoff(arena: Arena) -> list[Block]:
+    if not arena.in_task(tracking=False):
+        return []
+    tracks = track_chart(arena, tracking=False)
+    return [
+        Text(_STANDOFF),
+        tracking_table(arena, tracking=False),
+        Heading("Distance to the circle by condition, rms [m]"),
+        condition_table(arena, "error_rms_m", "{:.2f}", tracking=False),
+        *([tracks] if tracks.panels else []),
+    ]
+
+
+def _plume(arena: Arena) -> list[Block]:
+    return [
+        Text(_PLUME),
+        crossing_chart(arena),
+        plume_table(arena),
+        Heading("Crossings per minute by condition"),
+        condition_table(arena, "crossings_per_minute", "{:.2f}", greater_first=True),
+    ]
+
+
+def _refused(arena: Arena) -> list[Block]:
+    if not arena.refused:
+        return []
+    return [Heading("Laws that cannot do a task"), refused_table(arena)]
+
+
+def _verdict(arena: Arena) -> Verdict:
+    rows, flown = arena.run.summary, measured(arena.run.summary)
+    planned = int(arena.run.manifest["flights_planned"])
+    violations, gone = count(violated(flown)), count(lost(rows))
+    best = [(task, ranked[0]) for task in (True, False) if (ranked := arena.ranked("error_rms_m", arena.in_task(tracking=task)))]
+    headline = "; ".join(
+        f"{'tracking' if task else 'circling'}: {entrant.title} is best, {_mean(arena, entrant.name)} m rms"
+        for task, entrant in best
+    )
+    failures = []
+    if violations:
+        laws = [entrant.title for entrant in arena.entrants if total(entrant.rows, "keepout_violations")]
+        failures.append(f"keep-out violations in {violations} of {len(flown)} flights: of {', '.join(laws)}")
+    if gone:
+        laws = [entrant.title for entrant in arena.entrants if lost(entrant.rows).any()]
+        failures.append(f"{gone} flights lost the aircraft: of {', '.join(laws)}")
+    crossed = arena.ranked("crossings_per_minute", arena.entrants, greater_first=True)
+    figures = [
+        ("laws in a task", f"{len(arena.entrants)}", ""),
+        ("flights", f"{len(flown):,} of {planned:,}", ""),
+        ("conditions, and flights of each law in each", f"{len(arena.conditions)} × {arena.flights}", ""),
+        *((f"most crossings per minute: {entrant.title}", _mean(arena, entrant.name, "crossings_per_minute"), "")
+          for entrant in crossed[:1]),
+    ]  # fmt: skip
+    return Verdict(
+        holds=not violations and not gone,
+        complete=len(rows) == planned,
+        headline=headline[:1].upper() + headline[1:],
+        detail=f"{vehicles_flown(arena.run)} Means over all conditions, over the end of each flight. {_alike(arena, best)}",
+        failures=failures,
+        figures=figures,
+    )
+
+
+def _alike(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
+    """Return which laws the flights do not tell from the best of their task."""
+    words = []
+    for task, first in best:
+        others = [
+            entrant.title
+            for entrant in arena.ranked("error_rms_m", arena.in_task(tracking=task))
+            if entrant is not first and arena.of("error_rms_m", entrant, arena.together).as_good
+        ]
+        if others:
+            words.append(f"The flights do not tell {', '.join(others)} from {first.title}.")
+    return " ".join(words)
+
+
+def _mean(arena: Arena, name: str, figure: str = "error_rms_m") -> str:
+    entrant = next(entrant for entrant in arena.entrants if entrant.name == name)
+    return number(arena.of(figure, entrant, arena.together).mean, "{:.2f}")

@@ -1,0 +1,143 @@
+"""Tables of an arena, with the best of each figure in bold."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from reports.arena.data import ALL, Arena, Entrant, Estimate
+from reports.document.blocks import Table
+from reports.document.tables import number
+from reports.run.columns import column, total
+
+_Cells = tuple[list[str], list[bool]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Figure:
+    """A column of estimates."""
+
+    name: str
+    title: str
+    pattern: str
+    factor: float = 1.0
+
+
+_TRACKING = (
+    _Figure("error_rms_m", "Error rms [m]", "{:.2f}"),
+    _Figure("effort_rms_rad_s", "Effort rms [rad/s]", "{:.3f}"),
+    _Figure("excess_rms_rad_s", "Excess effort [rad/s]", "{:.3f}"),
+    _Figure("saturated_share", "Cut commands [%]", "{:.1f}", 100.0),
+)
+_PLUME = (
+    _Figure("crossings_per_minute", "Crossings [1/min]", "{:.2f}"),
+    _Figure("plume_s_per_minute", "In the plume [s/min]", "{:.2f}"),
+    _Figure("crossing_distance_mean_m", "Crossing distance [m]", "{:.0f}"),
+)
+
+
+def tracking_table(arena: Arena, *, tracking: bool) -> Table:
+    """Return the figures of tracking of the laws of a task, over all conditions."""
+    entrants = arena.ranked("error_rms_m", arena.in_task(tracking=tracking))
+    head = ["No.", "Law", *(figure.title for figure in _TRACKING), "Settled", "at, median [s]", "Violations"]
+    extra = [_ending(entrant) for entrant in entrants]
+    return _table(arena, entrants, _TRACKING, head, extra, widths=[0.4, 2.1, 1.8, 1.9, 1.9, 1.4, 0.8, 0.8, 0.8])
+
+
+def _ending(entrant: Entrant) -> list[str]:
+    rows = entrant.rows
+    settling = column(rows, "settling_time_s")
+    known = settling[np.isfinite(settling)]
+    return [
+        f"{len(known)} of {len(rows)}",
+        number(float(np.median(known)) if len(known) else None, "{:.0f}"),
+        str(total(rows, "keepout_violations")),
+    ]
+
+
+def plume_table(arena: Arena) -> Table:
+    """Return the figures of measuring the plume of every law, over all conditions."""
+    entrants = arena.ranked("crossings_per_minute", arena.entrants, greater_first=True)
+    head = ["No.", "Law", "Task", *(figure.title for figure in _PLUME), "Closest approach [m]", "Keep-out violations"]
+    extra = [[_closest(entrant), str(total(entrant.rows, "keepout_violations"))] for entrant in entrants]
+    tasks = [["tracks" if entrant.tracks else "circles"] for entrant in entrants]
+    return _table(arena, entrants, _PLUME, head, extra, widths=[0.4, 2.4, 0.7, 1.7, 1.7, 1.6, 1.0, 0.9], before=tasks)
+
+
+def _closest(entrant: Entrant) -> str:
+    distances = column(entrant.rows, "min_distance_m")
+    return number(float(np.nanmin(distances)) if np.isfinite(distances).any() else None, "{:.1f}")
+
+
+def _table(
+    arena: Arena,
+    entrants: Sequence[Entrant],
+    figures: Sequence[_Figure],
+    head: list[str],
+    extra: Sequence[list[str]],
+    *,
+    widths: list[float],
+    before: Sequence[list[str]] = (),
+) -> Table:
+    rows, bold = [], []
+    for i, entrant in enumerate(entrants):
+        found = [(figure, arena.of(figure.name, entrant, arena.together)) for figure in figures]
+        ahead = [str(entrant.number), entrant.title, *(before[i] if before else [])]
+        rows.append([*ahead, *(_interval(estimate, figure) for figure, estimate in found), *extra[i]])
+        bold += [(i, len(ahead) + j) for j, (_, estimate) in enumerate(found) if estimate.as_good or estimate.best]
+    left = 3 if before else 2
+    return Table(head=head, rows=rows, widths=widths, left_columns=left, bold=bold, print_size_pt=6.4, breakable=True)
+
+
+def _interval(estimate: Estimate, figure: _Figure) -> str:
+    mean, low, high = (figure.factor * value for value in (estimate.mean, estimate.low, estimate.high))
+    if math.isnan(mean):
+        return "–"
+    return f"{figure.pattern.format(mean)} ({figure.pattern.format(low)}\N{EN DASH}{figure.pattern.format(high)})"
+
+
+def condition_table(arena: Arena, figure: str, pattern: str, *, tracking: bool | None = None, greater_first: bool = False) -> Table:
+    """Return a figure by condition, a row for each law: of a task, or of both.
+
+    Parameters
+    ----------
+    figure, pattern : the figure, and how it is written
+    tracking : which task; both if it is None
+    greater_first : whether more is better
+    """
+    members = arena.entrants if tracking is None else arena.in_task(tracking=tracking)
+    entrants = arena.ranked(figure, members, greater_first=greater_first)
+    conditions = [*arena.conditions, *([ALL] if len(arena.conditions) > 1 else [])]
+    rows, bold = [], []
+    for i, entrant in enumerate(entrants):
+        found = [arena.of(figure, entrant, condition) for condition in conditions]
+        rows.append([str(entrant.number), entrant.title, *(number(estimate.mean, pattern) for estimate in found)])
+        bold += [(i, 2 + j) for j, estimate in enumerate(found) if estimate.best or estimate.as_good]
+    if figure == "crossings_per_minute" and arena.limits:
+        rows.append(["", "limit of any path", *(number(arena.limits.get(condition), pattern) for condition in conditions)])
+    head = ["No.", "Law", *(condition.replace("_", " ") for condition in conditions)]
+    widths = [0.4, 2.4, *(1.0 for _ in conditions)]
+    return Table(head=head, rows=rows, widths=widths, left_columns=2, bold=bold, breakable=True)
+
+
+def given_table(arena: Arena) -> Table:
+    """Return what each law was given: its way to the reference, its parameters, and what either set costs the tuner."""
+    rows = []
+    for entrant in arena.entrants:
+        tuned = entrant.tuned
+        parameters = ", ".join(f"{key} {value:.3g} → {tuned.get(key, value):.3g}" for key, value in entrant.defaults.items())
+        costs = f"{number(entrant.cost_default, '{:.2f}')} → {number(entrant.cost_tuned, '{:.2f}')}"
+        rows.append([str(entrant.number), entrant.title, entrant.given, parameters or "none", costs])
+    head = ["No.", "Law", "What it makes use of", "Parameters: default → tuned", "Cost [m]"]
+    return Table(
+        head=head, rows=rows, widths=[0.4, 1.6, 2.7, 3.4, 1.2], left_columns=5, prose=True, breakable=True, print_size_pt=6.4
+    )
+
+
+def refused_table(arena: Arena) -> Table:
+    """Return the laws that do not take part in a task, with the reason."""
+    tasks = {"tracking": "track the oscillation", "standoff": "circle the vessel"}
+    rows = [[entry["law"].replace("_", " "), tasks.get(entry["task"], entry["task"]), entry["reason"]] for entry in arena.refused]
+    head = ["Law", "Cannot", "because"]
+    return Table(head=head, rows=rows, widths=[1.4, 1.2, 4.0], left_columns=3, prose=True, breakable=True)

@@ -1,0 +1,128 @@
+"""What an arena has shown: means with intervals by condition and over all of them, and what each law was given."""
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.engine.task import Row
+from scenarios.schema.experiment import ArenaConfig
+from scenarios.statistics.paired_bootstrap import paired_estimates
+from scenarios.studies.arena.entrants import TRACKING, Entrant, Refused
+
+Array = npt.NDArray[np.float64]
+
+ALL = "all"
+"""Stands for all conditions together."""
+
+LOWER_IS_BETTER = (
+    "error_rms_m", "effort_rms_rad_s", "excess_rms_rad_s", "saturated_share", "crossing_distance_mean_m",
+)  # fmt: skip
+"""Figures of a flight's end of which less is better."""
+
+GREATER_IS_BETTER = ("crossings_per_minute", "plume_s_per_minute")
+"""And of which more is."""
+
+_TRACKING_ONLY = ("error_rms_m", "effort_rms_rad_s", "excess_rms_rad_s", "saturated_share")
+"""Figures that compare laws of one task alone: their references differ between the tasks."""
+
+CONFIDENCE = 0.95
+
+
+def tuned_record(entrants: Sequence[Entrant], rows: Iterable[Row]) -> list[dict[str, Any]]:
+    """Return what each law was given: its parameters by default and as tuned, and what either costs the tuner."""
+    of: dict[str, list[Row]] = {entrant.name: [] for entrant in entrants}
+    for row in rows:
+        of[row["entrant"]].append(row)
+    record = []
+    for entrant in entrants:
+        tried = sorted(of[entrant.name], key=lambda row: row["evaluation"])
+        entry = asdict(entrant) | {"defaults": dict(entrant.defaults), "evaluations": len(tried), "tuned": dict(entrant.defaults)}
+        if tried:
+            least = min(tried, key=lambda row: row["cost_m"])
+            entry |= {
+                "tuned": json.loads(least["parameters"]),
+                "cost_default_m": tried[0]["cost_m"],
+                "cost_tuned_m": least["cost_m"],
+                "message": least["message"],
+            }
+        record.append(entry)
+    return record
+
+
+def estimates(
+    entrants: Sequence[Entrant], rows: Mapping[str, Sequence[Row]], arena: ArenaConfig, seed: int
+) -> list[dict[str, Any]]:
+    """Return an estimate for each figure, condition and entrant.
+
+    Parameters
+    ----------
+    entrants : of the arena
+    rows : for each condition figures of flights, those of an entrant after those of the one before, the same number for each
+    arena : number of resamples
+    seed : of the resampling
+    """
+    found: list[dict[str, Any]] = []
+    conditions = [(name, [name]) for name in rows] + ([(ALL, list(rows))] if len(rows) > 1 else [])
+    for figure in (*LOWER_IS_BETTER, *GREATER_IS_BETTER):
+        for group in _groups(entrants, figure):
+            for condition, members in conditions:
+                tables = [_table(rows[name], figure, len(entrants))[group] for name in members]
+                strata = np.repeat(np.arange(len(tables)), [table.shape[1] for table in tables])
+                for i, estimate in zip(
+                    group,
+                    paired_estimates(
+                        np.concatenate(tables, axis=1),
+                        strata,
+                        greater_is_better=figure in GREATER_IS_BETTER,
+                        resamples=arena.resamples,
+                        confidence=CONFIDENCE,
+                        seed=seed,
+                    ),
+                    strict=True,
+                ):
+                    entry = {"figure": figure, "condition": condition, "entrant": entrants[i].name}
+                    found.append(entry | _plain(asdict(estimate)) | {"as_good": estimate.as_good})
+    return found
+
+
+def limits(rows: Mapping[str, Sequence[Row]], arena: ArenaConfig) -> dict[str, float]:
+    """Return the most crossings per minute that any path allows, in the mean over a condition's flights, where they are given."""
+    if not arena.limits:
+        return {}
+    ratios, most = (np.array(values) for values in zip(*sorted(arena.limits), strict=True))
+    found = {}
+    for condition, of in rows.items():
+        flown = [row["speed_ratio_mean"] for row in of if "speed_ratio_mean" in row]
+        if flown:
+            found[condition] = float(np.mean(np.interp(flown, ratios, most)))
+    return found
+
+
+def refused_record(refused: Iterable[Refused]) -> list[dict[str, Any]]:
+    """Return the laws that do not take part in a task, with the reason."""
+    return [asdict(law) for law in refused]
+
+
+def _groups(entrants: Sequence[Entrant], figure: str) -> list[list[int]]:
+    """Return which entrants are compared with each other in a figure, by their indices."""
+    if figure not in _TRACKING_ONLY:
+        return [list(range(len(entrants)))]
+    tracking = [i for i, entrant in enumerate(entrants) if entrant.task == TRACKING]
+    others = [i for i, entrant in enumerate(entrants) if entrant.task != TRACKING]
+    return [group for group in (tracking, others) if group]
+
+
+def _table(rows: Sequence[Row], figure: str, entrants: int) -> Array:
+    """Return a figure of a condition's flights, shape (entrants, flights)."""
+    values = [float(value) if (value := row.get(figure)) is not None else math.nan for row in rows]
+    return np.array(values, dtype=np.float64).reshape(entrants, -1)
+
+
+def _plain(values: dict[str, Any]) -> dict[str, Any]:
+    """Return values as they go into JSON: what is not a number is none."""
+    return {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in values.items()}

@@ -1,0 +1,130 @@
+"""Steering laws side by side: each is tuned with the same budget, then all fly from the same starts in the same air."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
+from typing import Any
+
+from common.run_layout import ARENA, DRAWS
+from scenarios.engine.journal import Journal
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.runner import Fly, Progress, StudySummary
+from scenarios.engine.task import Row, Task
+from scenarios.errors import InputError
+from scenarios.flight import FlightWork
+from scenarios.metrics.window import WINDOW_COLUMNS
+from scenarios.schema.experiment import CaseConfig
+from scenarios.schema.scenario import Scenario
+from scenarios.studies.arena.entrants import cases_of, conditions_of, entrants_of
+from scenarios.studies.arena.results import estimates, limits, refused_record, tuned_record
+from scenarios.studies.arena.tuning import Tuner
+from scenarios.studies.arena.work import TUNING_TABLE, WINDOW_TABLE, ArenaWork
+from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.study import study
+
+_TUNING_COLUMNS = ("entrant", "evaluation", "cost_m", "error_m", "excess_rad_s", "parameters", "message", "wall_time_s")
+
+
+@study("arena")
+class ArenaStudy(FlightStudy):
+    """Laws in the tasks that they can do, each condition a trial and each law in a task a case of it.
+
+    Parameters
+    ----------
+    scenario, name : the arena, and its name
+    trials : the same by its name
+    overrides : overrides that were applied, recorded in the manifest
+
+    Raises
+    ------
+    InputError : as of ``FlightStudy``; a law or a condition that does not exist, or an arena of several points
+    """
+
+    def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
+        if scenario.sweep.root or scenario.cases or scenario.comparison.variants or scenario.fidelity == "both":
+            raise InputError(
+                "study is 'arena' beside a sweep, cases, a comparison or two vehicles; what differs are the laws (laws) and the"
+                " conditions (arena.conditions): remove them"
+            )
+        self._arena, self._seed = scenario.arena, scenario.seed
+        super().__init__(scenario, name, trials, overrides=overrides)
+        keys = dict.fromkeys(f"guidance.{key}" for entrant in self.entrants for key in entrant.defaults)
+        self.tables |= {WINDOW_TABLE: ("flight_id", "trial", *WINDOW_COLUMNS), TUNING_TABLE: _TUNING_COLUMNS}
+        self.tables[DRAWS] = (*self.tables[DRAWS], *keys)
+        self._chosen: dict[str, Mapping[str, float]] = {}
+
+    def expanded(self, trials: Mapping[str, Scenario]) -> dict[str, Scenario]:
+        """Return a trial for each condition, with a case for each law."""
+        ((name, self._scenario),) = trials.items()
+        for key, duration in (
+            ("flight.duration_max_s", self._scenario.flight.duration_max_s),
+            ("arena.tuning_duration_s", self._arena.tuning_duration_s),
+        ):
+            if self._arena.window_s > duration:
+                raise InputError(
+                    f"arena.window_s is {self._arena.window_s:g} s, and {key} {duration:g} s; a flight is measured on its end: make"
+                    " the window shorter, or fly longer"
+                )
+        self.entrants, self._refused = entrants_of(self._scenario)
+        return conditions_of(self._scenario, name, self.entrants)
+
+    def work(self, run: RunDirectory) -> FlightWork:
+        """Return the work on its flights and on the tuning, after writing the aircraft's autopilot into the run directory."""
+        work = super().work(run)
+        lag = work.setup.lag if work.setup else self._scenario.kinematic.heading_rate_lag_s
+        tuner = Tuner(scenario=self._scenario, arena=self._arena, lag=lag)
+        shared = {field.name: getattr(work, field.name) for field in fields(work)}
+        return ArenaWork(**shared, entrants=tuple(self.entrants), tuner=tuner)
+
+    def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
+        """Tune every law; then fly all of them, and some of each again for their tracks."""
+        if self._arena.evaluations:
+            fly(Task(number=self._numbers + i) for i in range(len(self.entrants)))
+            self._take_tuned(journal)
+        fly(self.task(number) for number in range(self._numbers))
+        # The report draws the first flight of each law in the first condition.
+        first = range(0, len(self.entrants) * self._scenario.flights, self._scenario.flights)
+        shown = {task.number: task for task in (*self.unrecorded(first, run, journal), *self.representative_flights(run, journal))}
+        fly(shown.values())
+
+    def task(self, number: int) -> Task:
+        """Return the task of a flight, with the parameters that were chosen for its law."""
+        entrant = self.entrants[number // self._scenario.flights % len(self.entrants)]
+        chosen = self._chosen.get(entrant.name, {})
+        return Task(number=number, labels=tuple((f"guidance.{key}", repr(value)) for key, value in chosen.items()))
+
+    def _take_tuned(self, journal: Journal) -> None:
+        """Take the parameters that the tuner chose: cases of the trials have them, so that a replay of a flight has them too."""
+        record = tuned_record(self.entrants, journal.rows(TUNING_TABLE))
+        self._chosen = {entry["name"]: entry["tuned"] for entry in record}
+        cases = tuple(CaseConfig(**case) for case in cases_of(self.entrants, self._chosen))
+        self.trials = {name: trial.model_copy(update={"cases": cases}) for name, trial in self.trials.items()}
+
+    def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
+        """Write ``arena.json``."""
+        progress("comparing", self.planned, self.planned)
+        run.write_json(run.path / ARENA, self._record(journal))
+
+    def _record(self, journal: Journal) -> dict[str, Any]:
+        windows: dict[int, Row] = dict(journal.numbered(WINDOW_TABLE))
+        flights, first = self.flights, 0
+        rows: dict[str, list[Row]] = {}
+        for trial in self.trials:
+            # A flight that could not be flown has no figures.
+            rows[trial] = [windows.get(number, {}) for number in range(first, first + flights[trial])]
+            first += flights[trial]
+        return {
+            "conditions": [{"name": name, "title": trial.title} for name, trial in self.trials.items()],
+            "flights": self._scenario.flights,
+            "entrants": tuned_record(self.entrants, journal.rows(TUNING_TABLE)),
+            "refused": refused_record(self._refused),
+            "estimates": estimates(self.entrants, rows, self._arena, self._seed),
+            "limits": limits(rows, self._arena),
+        }
+
+    def summary(self, journal: Journal) -> StudySummary:
+        """Return the result so far, with the parameters that were chosen."""
+        if self._arena.evaluations and len(journal.done()) > 0 and not self._chosen:
+            self._take_tuned(journal)
+        found = super().summary(journal)
+        record = tuned_record(self.entrants, journal.rows(TUNING_TABLE))
+        return replace(found, manifest=found.manifest | {"tuned": {entry["name"]: entry["tuned"] for entry in record}})

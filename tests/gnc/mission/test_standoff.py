@@ -1,0 +1,80 @@
+import math
+
+import pytest
+from gnc_cases import SPEED, TIME_STEP
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gnc.estimation.own_motion import TrueNavigation
+from gnc.estimation.target_motion import SteadyTarget
+from gnc.laws.cascade import CascadeLaw
+from gnc.laws.path.lgvf import LgvfLaw
+from gnc.laws.path.npfg import NpfgLaw
+from gnc.mission.mode import Mode
+from gnc.mission.standoff import CirclePoint, StandoffOrbit, StandoffParameters
+from gnc.tracker import TrackingParameters
+from gnc.unicycle import unicycle_move
+
+RADIUS, LIMIT = 120.0, 0.503
+
+
+def mission(law, vessel=(6.0, 3.0)):
+    own, target = TrueNavigation(), SteadyTarget(*vessel)
+    parameters = StandoffParameters(
+        radius=RADIUS, tracked=12.0, speed=SPEED, speed_ratio_max=0.97, glide_airspeed=15.0, plan_interval=10, altitude=60.0
+    )
+    tracking = TrackingParameters(law=law, heading_rate_max=LIMIT, time_step=TIME_STEP, lag=0.0)
+    return own, target, StandoffOrbit(parameters, tracking, own=own, target=target)
+
+
+def flown(law, seconds, vessel=(6.0, 3.0), start=(-400.0, 50.0, 1.0)):
+    """Return the distances from the vessel of a kinematic vehicle under a law, a number each step, and the mission."""
+    own, target, circling = mission(law, vessel)
+    north, east, course = start
+    distances, rate = [], 0.0
+    for step in range(round(seconds / TIME_STEP)):
+        time = step * TIME_STEP
+        own.update((north, east, SPEED * math.cos(course), SPEED * math.sin(course), rate))
+        target.update(time, step % 10 == 0)
+        if step % 10 == 0:
+            circling.plan(time)
+        distances.append(math.hypot(north - target.north, east - target.east))
+        rate = circling.tracker.step(north, east, course, SPEED, rate)
+        north, east, course = unicycle_move(north, east, course, SPEED, rate, TIME_STEP)
+    return distances, circling
+
+
+@given(bearing=st.floats(-3.1, 3.1), drift=st.floats(0.0, 0.9), towards=st.floats(-3.1, 3.1))
+def test_a_vehicle_on_the_circle_with_the_references_course_and_heading_rate_stays_on_it(bearing, drift, towards):
+    velocity = drift * SPEED * math.cos(towards), drift * SPEED * math.sin(towards)
+    point, time = CirclePoint(SPEED), 1e-3
+    point.place((0.0, 0.0), velocity, (RADIUS * math.cos(bearing), RADIUS * math.sin(bearing)), RADIUS)
+    north, east, course = unicycle_move(point.north, point.east, point.course, SPEED, point.heading_rate, time)
+    off = math.hypot(north - time * velocity[0], east - time * velocity[1]) - RADIUS
+    # What is left is of third order: V (V/R)^2 t^3 and a constant, at up to twice the speed.
+    assert off == pytest.approx(0.0, abs=1e-8)
+    point.place((time * velocity[0], time * velocity[1]), velocity, (north, east), RADIUS)
+    # The reference a moment later goes on the same course: second order, (V/R)^2 t^2 with the speeds that add up.
+    assert math.remainder(point.course - course, math.tau) == pytest.approx(0.0, abs=2e-6)
+
+
+@pytest.mark.parametrize("law", [NpfgLaw(), LgvfLaw(), CascadeLaw()], ids=lambda law: type(law).__name__)
+def test_laws_circle_a_moving_vessel_at_the_radius(law):
+    distances, circling = flown(law, 200.0)
+    # Closed in, and within the centimetres of a law that is called twenty times a second; LGVF converges within V/R.
+    assert circling.in_place
+    assert max(abs(distance - RADIUS) for distance in distances[-1000:]) < (2.0 if isinstance(law, LgvfLaw) else 0.2)
+
+
+def test_the_circle_is_joined_outside_of_its_place():
+    _, circling = flown(NpfgLaw(), 1.0)
+    # Twice what counts as tracked, until the vehicle is near it.
+    assert circling.tracker.radius == RADIUS + 24.0
+    assert not circling.in_place
+
+
+def test_a_vessel_that_outruns_the_vehicle_is_followed():
+    _, circling = flown(NpfgLaw(), 60.0, vessel=(1.1 * SPEED, 0.0))
+    assert circling.mode is Mode.OUTRUN
+    # On her course, north.
+    assert circling.tracker.heading_rate_demand == pytest.approx(0.0, abs=1e-6)

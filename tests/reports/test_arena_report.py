@@ -1,0 +1,103 @@
+"""What the report of an arena shows, of a quick one on the kinematic vehicle."""
+
+import math
+import re
+
+import pytest
+
+from reports.arena.charts import crossing_chart, effort_charts, track_chart
+from reports.arena.content import arena_content
+from reports.arena.data import read_arena
+from reports.arena.tables import condition_table, tracking_table
+from reports.document.blocks import Table
+from reports.registry import content
+from reports.run.run_data import read_run
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+from tests.reports.report_parts import blocks_of, built
+
+QUICK = (
+    "fidelity=kinematic", "flights=2", "flight.duration_max_s=100", "arena.window_s=40", "arena.tuning_duration_s=60",
+    "arena.evaluations=2", "arena.tuning_flights=1", "arena.resamples=100", "start.distance_m=[300,350]", "start.spread_deg=20",
+    'arena.tracking=["npfg","pure_pursuit"]', 'arena.standoff=["npfg"]', "arena.limits=[[0.0,5.0],[1.0,9.0]]",
+    'arena.conditions=[{name="calm",title="Calm air"},{name="wind",title="Wind",set={"wind.speed_mps"=4.0}}]',
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    out = tmp_path_factory.mktemp("arena") / "run"
+    run_study(load_study("arena", QUICK), "arena", out, overrides=QUICK)
+    return out
+
+
+@pytest.fixture(scope="module")
+def run(path):
+    return read_run(path)
+
+
+@pytest.fixture(scope="module")
+def arena(run):
+    return read_arena(run)
+
+
+def test_both_reports_are_built_with_a_place_for_each_part(path):
+    text = built(path)
+    for anchor in ("tracking", "standoff", "plume", "given"):
+        assert f'id="{anchor}"' in text
+    assert "<b>" in text.partition('id="tracking"')[2]
+
+
+def test_the_best_mean_of_each_figure_is_bold_and_first_where_it_ranks(arena):
+    table = tracking_table(arena, tracking=True)
+    # NPFG feeds the curvature forward; pure pursuit knows nothing of it (guidance-laws.md, section 8: 37 m and more).
+    assert [row[1] for row in table.rows] == ["npfg", "pure pursuit"]
+    assert (0, 2) in table.bold
+    assert (1, 2) not in table.bold
+    assert re.fullmatch(r"\d+\.\d\d \(\d+\.\d\d–\d+\.\d\d\)", table.rows[0][2])
+
+
+def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
+    together, each = effort_charts(arena)
+    (panel,) = together.panels
+    assert sum(len(line.x) for line in panel.lines) == 2
+    assert {note.text for note in panel.notes} == {"1", "2"}
+    assert len(each.panels) == 2
+    # The ordinate is logarithmic: its marks are powers of ten.
+    error = arena.of("error_rms_m", arena.entrants[0], "all").mean
+    assert any(math.isclose(float(y), math.log10(error)) for line in panel.lines for y in line.y)
+
+
+def test_the_limit_of_any_path_is_drawn_and_listed_where_it_is_known(arena):
+    chart = crossing_chart(arena)
+    limits = [line for panel in chart.panels for line in panel.lines if line.label == "limit of any path"]
+    # 5 + 4 nu at nu = 0.5 in calm air.
+    assert limits[0].x == pytest.approx([7.0, 7.0], abs=1e-3)
+    table = condition_table(arena, "crossings_per_minute", "{:.2f}", greater_first=True)
+    assert table.rows[-1][1:3] == ["limit of any path", "7.00"]
+
+
+def test_tracks_are_shown_of_each_law_from_the_same_start(arena):
+    assert [len(track_chart(arena, tracking=tracking).panels) for tracking in (True, False)] == [2, 1]
+
+
+def test_what_each_law_was_given_and_what_it_cannot_do_is_said(run):
+    report = content(run)
+    given, refused = blocks_of(report, Table, "given")
+    assert "tangent and curvature" in given.rows[0][2]
+    assert "npfg_period_s 10 → " in given.rows[0][3]
+    assert refused.rows[0][:2] == ["pure pursuit", "circle the vessel"]
+
+
+def test_the_headline_names_the_best_of_each_task(run):
+    verdict, _ = arena_content(run)
+    assert re.match(r"Tracking: npfg is best, \d+\.\d\d m rms; circling: npfg \(circle\) is best", verdict.headline)
+
+
+def test_an_arena_that_was_not_evaluated_is_reported_as_flights(path, run):
+    (path / "arena.json").rename(path / "gone")
+    try:
+        _, sections = arena_content(run)
+        assert "plume" not in {section.anchor for section in sections}
+    finally:
+        (path / "gone").rename(path / "arena.json")

@@ -1,0 +1,49 @@
+import numpy as np
+import pytest
+
+from scenarios.statistics.paired_bootstrap import paired_estimates
+
+OPTIONS = {"greater_is_better": False, "resamples": 500, "confidence": 0.95, "seed": 1}
+
+
+def test_what_is_common_to_all_entrants_does_not_count_as_a_difference():
+    common = np.random.default_rng(2).normal(10.0, 5.0, 12)
+    best, other = paired_estimates(np.array([common, common + 1.0]), np.zeros(12), **OPTIONS)
+    # The difference is 1 in every flight, and so in every resample; the means scatter by 5/sqrt(12).
+    assert best.best
+    assert not other.as_good
+    assert (other.behind_low, other.behind_high) == pytest.approx((1.0, 1.0), abs=1e-12)
+    assert best.high - best.low > 2.0
+
+
+def test_entrants_that_flights_do_not_tell_apart_are_as_good():
+    generator = np.random.default_rng(3)
+    values = generator.normal(10.0, 1.0, (2, 8))
+    values[1] += values[0].mean() - values[1].mean() + 1e-3
+    _, other = paired_estimates(values, np.zeros(8), **OPTIONS)
+    assert other.as_good
+    assert not other.best
+
+
+def test_strata_are_resampled_among_themselves():
+    values = np.array([[1.0, 1.0, 5.0, 5.0]])
+    (estimate,) = paired_estimates(values, [0, 0, 1, 1], **OPTIONS)
+    # Either stratum is constant: so is every resample.
+    assert (estimate.mean, estimate.low, estimate.high) == (3.0, 3.0, 3.0)
+
+
+def test_more_is_better_where_that_is_asked_for_and_missing_figures_do_not_count():
+    values = np.array([[1.0, 2.0, np.nan], [2.0, 3.0, 4.0], [np.nan] * 3])
+    first, second, none = paired_estimates(values, np.zeros(3), **{**OPTIONS, "greater_is_better": True})
+    assert second.best
+    assert (first.mean, first.flights, second.mean) == (1.5, 2, 3.0)
+    assert none.flights == 0
+    assert np.isnan([none.mean, none.low, none.high]).all()
+    assert not none.as_good
+
+
+def test_an_interval_of_normal_figures_is_as_wide_as_it_should_be():
+    values = np.random.default_rng(4).normal(0.0, 1.0, (1, 400))
+    (estimate,) = paired_estimates(values, np.zeros(400), **{**OPTIONS, "resamples": 4000})
+    # 1.96/sqrt(400) either side; scatter of the sample's deviation, 1/sqrt(800), and of 4,000 resamples' quantiles.
+    assert 0.5 * (estimate.high - estimate.low) == pytest.approx(0.098, rel=0.12)
