@@ -113,7 +113,15 @@ class FlightRecord:
 
 def unit_of(column: str) -> str:
     """Return the unit that a column's name ends in, or 1."""
-    for suffix, unit in (("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"), ("_deg", "deg"), ("_utc", "UTC")):
+    for suffix, unit in (
+        ("_rad_s", "rad/s"),
+        ("_mps", "m/s"),
+        ("_rad", "rad"),
+        ("_m", "m"),
+        ("_s", "s"),
+        ("_deg", "deg"),
+        ("_utc", "UTC"),
+    ):
         if column.endswith(suffix):
             return unit
     return "1"
