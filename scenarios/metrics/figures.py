@@ -56,7 +56,10 @@ def plan_row(plan: FlightPlan) -> Row:
         row["vessel_speed_mps"] = math.hypot(*world.vessel.motion(0.0)[2:])
     if not world.weather.wind.constant:
         north, east = world.weather.wind.now(0.0, world.source_height)
-        row |= {"wind_speed_mps": math.hypot(north, east), "wind_from_deg": math.degrees(math.atan2(-east, -north))}
+        row |= {
+            "wind_speed_mps": math.hypot(north, east),
+            "wind_from_deg": round(math.degrees(math.atan2(-east, -north)), 6) % 360.0,
+        }
     row |= _place_row(world.place)
     if plan.margin is not None:
         row |= {"keepout_margin_m": plan.margin.total, "spread_predicted_m": plan.margin.tracking_sigma}
