@@ -31,7 +31,8 @@ NOT_SCALED = {
     "vessel.speed_mps", "vessel.gap_max_s", "plume.source_height_m", "keepout.radius_m", "reference.radius_m", "wind.speed_mps",
     "wind.roughness_m", "wind.height_m",
     "turbulence.gust_speed_mps", "turbulence.gust_length_s", "reports.interval_s", "reports.position_sigma_m",
-    "wind.stability_per_s", "reports.velocity_sigma_mps", "reports.latency_max_s", "sensors.position_sigma_m", "sensors.velocity_sigma_mps",
+    "wind.stability_per_s", "reports.velocity_sigma_mps",
+    "reports.latency_max_s", "sensors.position_sigma_m", "sensors.velocity_sigma_mps",
     "sensors.airspeed_sigma_mps", "sensors.airspeed_bias_mps", "fault.at_s", "fault.vessel_data_s", "fault.satellite_navigation_s",
     # What a ship does, how well it is known, and how often the keep-out area may be touched.
     "following.apparent_wind_min_mps", "following.vessel_acceleration_mps2", "following.vessel_speed_max_mps",
