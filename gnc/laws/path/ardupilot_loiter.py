@@ -127,7 +127,7 @@ class ArduPilotLoiterLaw(PathLaw):
     loiter_damping : NAVL1_DAMPING [-]
     """
 
-    given: ClassVar[str] = "the circle, with the velocity over the ground, as ArduPilot flies about a moving point"
+    given: ClassVar[str] = "the circle, with the velocity over the ground, as ArduPilot has it"
     cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
     loiter_period_s: float = 17.0
     loiter_damping: float = 0.75

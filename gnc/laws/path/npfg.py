@@ -246,7 +246,7 @@ class NpfgLaw(PathLaw):
     npfg_roll_time_constant_s : T_phi [s]
     """
 
-    given: ClassVar[str] = "tangent and curvature of the path over the ground (M1), a circle in the frame of its centre (M2); wind"
+    given: ClassVar[str] = "tangent and curvature over the ground (M1), a circle in its centre's frame (M2); wind"
     npfg_period_s: float = 10.0
     npfg_damping: float = 0.7
     npfg_roll_time_constant_s: float = 0.5

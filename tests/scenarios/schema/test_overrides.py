@@ -33,7 +33,7 @@ def refusal(name, *overrides):
         ("wind.direction=3", "unknown key 'wind.direction'; known in wind are speed_mps, from_deg"),
         ("vessel.manoeuvres=[{at_s=1, turn_dg=3}]", "did you mean 'vessel.manoeuvres.0.turn_deg'?"),
         ("turbulence.level=sever", "turbulence.level: value is 'sever'; did you mean 'severe'? it must be 'none', 'light'"),
-        ("guidance.law=lyapunow", "guidance.law: unknown steering law 'lyapunow'; did you mean 'lyapunov'? known are cascade"),
+        ("guidance.law=lyapunow", "guidance.law: unknown steering law 'lyapunow'; did you mean 'lyapunov'? known are ardupilot_l1"),
         ("study=monte_karlo", "study is 'monte_karlo'; did you mean 'monte_carlo'? it must be one of"),
         ("extends=sim3", "extends stands in a scenario file"),
     ],
@@ -45,9 +45,9 @@ def test_an_unknown_word_gets_the_nearest_known_one(override, words):
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("sweep_mu", "unknown scenario 'sweep_mu'; did you mean 'sweep_nu'? give the path of a TOML file or one of: convergence"),
+        ("sweep_mu", "unknown scenario 'sweep_mu'; did you mean 'sweep_nu'? give the path of a TOML file or one of: arena"),
         ("swep_nu.toml", "no scenario file 'swep_nu.toml'; did you mean 'sweep_nu'?"),
-        ("xyz", "unknown scenario 'xyz'; give the path of a TOML file or one of: convergence"),
+        ("xyz", "unknown scenario 'xyz'; give the path of a TOML file or one of: arena"),
     ],
 )
 def test_an_unknown_scenario_gets_the_nearest_known_one(name, words):
