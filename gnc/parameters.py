@@ -1,5 +1,6 @@
 """What the guidance of a flight knows beforehand: frozen, and chosen in one place (``gnc.compose``)."""
 
+import math
 from dataclasses import dataclass
 
 from gnc.airspeed.airspeed_law import AirspeedLaw
@@ -24,6 +25,7 @@ class GuardParameters:
     speed_error: float = 0.0
     deviation: float = 0.0
     drift_rate: float = 0.0
+    turn_speed: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

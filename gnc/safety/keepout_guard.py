@@ -38,6 +38,7 @@ class KeepoutGuard:
     time_step : for which a command is held [s]
     speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together [m/s]
     drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
+    turn_speed : up to which it can turn at ``heading_rate_max``; faster it turns at the same acceleration across [m/s]
 
     Attributes
     ----------
@@ -60,6 +61,7 @@ class KeepoutGuard:
         "_side",
         "_speed_error",
         "_time_step",
+        "_turn_speed",
         "_turn_time",
         "_under_way",
         "_until_acting",
@@ -80,8 +82,9 @@ class KeepoutGuard:
         delay: float = 0.0,
         speed_error: float = 0.0,
         drift_rate: float = 0.0,
+        turn_speed: float = math.inf,
     ) -> None:
-        self._radius, self._deviation = radius, deviation
+        self._radius, self._deviation, self._turn_speed = radius, deviation, turn_speed
         self._rate, self._time_step = heading_rate_max, time_step
         self._lag, self._until_acting = lag, delay
         self._under_way: deque[float] = deque(maxlen=commands_under_way(delay, time_step))
@@ -93,6 +96,7 @@ class KeepoutGuard:
             delay=self._until_acting,
             time_step=time_step,
             deviation=deviation,
+            turn_speed=turn_speed,
         )
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
         self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * self._lag + self._until_acting + time_step
@@ -189,7 +193,7 @@ class KeepoutGuard:
     def _free_when_far(self, motion: Motion) -> float:
         """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
         x, y, velocity_north, velocity_east, _, speed, _, radius, growth, acceleration = motion
-        duration = self._turn_time
+        duration = self._turn_time * max(1.0, speed / self._turn_speed)
         closing = speed + math.hypot(velocity_north, velocity_east) + growth
         gap = math.hypot(x, y) - radius - (closing + 0.5 * acceleration * duration) * duration
         return min(gap / (closing + 1.5 * acceleration * duration), duration)

@@ -26,11 +26,11 @@ class TurnPrediction:
 
     Parameters
     ----------
-    heading_rate_max, lag, delay, time_step, deviation : as of ``KeepoutGuard``
+    heading_rate_max, lag, delay, time_step, deviation, turn_speed : as of ``KeepoutGuard``
     """
 
     __slots__ = (
-        "_chord", "_delay", "_deviation", "_first", "_hold", "_interval", "_lag", "_points_max", "_rate",
+        "_chord", "_delay", "_deviation", "_first", "_hold", "_interval", "_lag", "_points_max", "_rate", "_turn_speed",
     )  # fmt: skip
 
     def __init__(
@@ -41,8 +41,9 @@ class TurnPrediction:
         delay: float,
         time_step: float,
         deviation: float = 0.0,
+        turn_speed: float = math.inf,
     ) -> None:
-        self._rate, self._deviation = heading_rate_max, deviation
+        self._rate, self._deviation, self._turn_speed = heading_rate_max, deviation, turn_speed
         self._lag, self._delay = lag, delay
         self._hold = _held(time_step, lag)
         # Of the commands under way the first acts only for what of it lies within the delay.
@@ -109,7 +110,9 @@ class TurnPrediction:
         x, y, course, heading_rate = start
         _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration = motion
         duration, turned, mean, decay = self._interval
-        turn = side * self._rate
+        # At the largest bank a turn is the slower the faster the vehicle flies.
+        stretch = max(1.0, speed / self._turn_speed)
+        turn = side * self._rate / stretch
         ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - decay) * turn
         chord = speed * duration * self._chord
         north, east = velocity_north * duration, velocity_east * duration
@@ -123,7 +126,7 @@ class TurnPrediction:
         acting = time - self._delay
         gain = -1.0
         least_rate, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
-        for point in range(self._points_max):
+        for point in range(math.ceil(self._points_max * stretch)):
             if least < floor:
                 break
             middle = course + mean * heading_rate + ahead
@@ -158,7 +161,7 @@ class TurnPrediction:
                 best, gain = gain, max(gain, min(least_rate, rise / duration))
                 if gain == best or outward < 0.0:
                     break
-        return least, gain / (2.0 * speed * self._rate)
+        return least, gain * stretch / (2.0 * speed * self._rate)
 
 
 def commands_under_way(delay: float, time_step: float) -> int:
