@@ -126,15 +126,9 @@ RULES = (
         user=_VESSEL,
     ),
     Rule(
-        keys=("plume.model", "plume.direction", "plume.heading_deg", "plume.elevation_deg", "flight.crossings"),
+        keys=("plume.model", "plume.direction", "plume.heading_deg", "plume.elevation_deg", "flight.crossings", "reference.shape"),
         acts=lambda s: not s.circles,
         user=_VESSEL,
-    ),
-    Rule(
-        keys=("reference.shape",),
-        acts=lambda s: not s.circles and (not s.follows or s.reference.shape == "sinusoid"),
-        user="the mission that tracks a reference known in advance; the steered reference is a sinusoid",
-        by_mission=True,
     ),
     Rule(keys=("guidance.bank_deg",), acts=lambda s: s.guidance.heading_rate_max_rad_s is None, user="omega_max, which"
          " guidance.heading_rate_max_rad_s gives directly: leave one of them out"),
