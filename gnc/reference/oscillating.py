@@ -12,9 +12,10 @@ def start_reference(
 
     The course is that of phi_0 from the vessel's: of the paper's orbit eta cos(phi_0), equation (7). Differs from equation (3),
     which says A/omega_0 and so holds for phi_0 = 0 only, and from starting on the CO: with another phase that orbit would not be
-    centred on it. An orbit on which ``share`` of the heading rate is taken is as much larger.
+    centred on it. An orbit on which ``share`` of the heading rate is taken is as much larger, and meets the whole one at phase 0.
     """
-    along, right = (float(x) / share for x in oscillation.offset(phase / oscillation.omega_0))
+    there, passage = oscillation.offset(phase / oscillation.omega_0), oscillation.offset(0.0)
+    along, right = (float(at) + (float(x) - float(at)) / share for x, at in zip(there, passage, strict=True))
     sin_v, cos_v = math.sin(vessel_course), math.cos(vessel_course)
     return ReferenceStart(
         north=centre_north + along * cos_v - right * sin_v,
@@ -88,12 +89,12 @@ class OscillatingReference:
         self.heading_rate = vessel_heading_rate + self.share * self._turn(angle)
 
     def spend(self, share: float) -> None:
-        """Set the part of its heading rate that it takes from its next passage through the centre on [-]."""
+        """Set the part of its heading rate that it takes from its next passage of phase 0 on [-]."""
         self._share_demand = share
 
     def _changed(self, angle: float) -> float:
-        """Return the phase at the end of a step, and go on from there as fast as is demanded, once the centre has been passed."""
-        passage = math.pi * math.floor(angle / math.pi)
+        """Return the phase at the end of a step, and go on from there as fast as is demanded, once phase 0 has been passed."""
+        passage = 2.0 * math.pi * math.floor(angle / (2.0 * math.pi))
         if angle - self._omega_0 * self._time_step >= passage:
             return angle
         self._phase = passage + (angle - passage) * self._share_demand / self.share

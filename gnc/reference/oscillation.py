@@ -39,6 +39,11 @@ class Oscillation:
         return self.eta * self.omega_0
 
     @property
+    def symmetric(self) -> bool:
+        """Return that the second half of the orbit is the mirror image of the first."""
+        return True
+
+    @property
     def period(self) -> float:
         """T = 2 pi/omega_0 [s]."""
         return 2.0 * math.pi / self.omega_0

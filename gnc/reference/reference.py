@@ -47,9 +47,9 @@ class OscillatingPoint(Reference, Protocol):
     share: float
 
     def spend(self, share: float) -> None:
-        """Set the part of its heading rate that it takes from its next passage through the centre on [-].
+        """Set the part of its heading rate that it takes from a passage of phase 0 on [-].
 
-        There its heading rate is 0, and a slower orbit, which is a larger one, has the same centre.
+        There it turns least, and a slower orbit, which is a larger one, meets the other one.
         """
 
 
@@ -90,6 +90,10 @@ class Orbit(Protocol):
     @property
     def limit(self) -> str:
         """What set the frequency, such as ``heading rate`` or ``roll rate``."""
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the second half of the orbit is the mirror image of the first one across the course of the centre."""
 
     @property
     def amplitude(self) -> float:
@@ -196,7 +200,7 @@ class ReferenceShape(Protocol):
         centre_north, centre_east : centre of oscillation at the start [m]
         vessel_course : course of the centre [rad]
         time_step : [s]
-        share : part of its heading rate that it takes at first, on a larger orbit about the same centre [-]
+        share : part of its heading rate that it takes at first, on a larger orbit that meets the other one at phase 0 [-]
         """
 
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:

@@ -60,3 +60,16 @@ def test_a_shape_of_ones_own_is_steered_as_well(tmp_path):
     (row,) = fly_study(tmp_path / "run", "x8", *words).rows.values()
     assert row["outcome"] == "completed", row["message"]
     assert row["crossing_interval_mean_s"] == pytest.approx(row["crossing_interval_predicted_s"], rel=0.01)
+
+
+def test_beside_a_slow_vessel_the_loiter_crosses_more_often_than_any_oscillation(tmp_path):
+    row = fly_study(tmp_path / "run", "x8", "reference.shape=loiter", nus=(0.1,)).rows[0.1]
+    assert_flown_as_the_issue_asks(row)
+    # pi/(omega_max (1 - nu)) = 6.913 s, and 1.5 % of reserve; the fastest oscillation takes 11.58 s.
+    assert row["crossing_interval_mean_s"] == pytest.approx(7.02, abs=0.03)
+
+
+def test_a_loiter_that_would_have_to_be_steered_is_a_row_with_its_reason(tmp_path):
+    (row,) = fly_study(tmp_path / "run", "x8", "reference.shape=loiter", "guidance.mission=follow").rows.values()
+    assert row["outcome"] == "infeasible"
+    assert "reference.shape is 'loiter', which cannot be steered in wind" in row["message"]

@@ -47,6 +47,11 @@ class FastestOscillation:
     courses: BankSwing
 
     @property
+    def symmetric(self) -> bool:
+        """Return that the second half of the orbit is the mirror image of the first."""
+        return True
+
+    @property
     def period(self) -> float:
         """Time of one oscillation [s]."""
         return 2.0 * self.crossing_interval
