@@ -34,6 +34,13 @@ def test_in_wind_a_slow_orbit_that_spends_all_of_the_heading_rate_is_joined_and_
     assert rate[~before].max() == pytest.approx(0.985 * row["heading_rate_limit_rad_s"], rel=1e-3)
 
 
+def test_a_start_abeam_of_a_slow_ship_joins_an_orbit_that_spends_all_of_the_heading_rate(tmp_path):
+    # One of 7 of 48 flights that never settled where the reference takes all of it from the first (docs/fastest_oscillation.md).
+    words = ["start.place_m=[260.07,495.12]", "start.course_deg=-59.87", "flight.crossings=12"]
+    (row,) = fly_study(tmp_path / "run", "x8", FASTEST, *words, nus=(0.1016,)).rows.values()
+    assert_flown_as_the_issue_asks(row)
+
+
 def test_a_speed_ratio_too_near_1_for_the_roll_rate_is_a_row_with_its_reason(tmp_path):
     (row,) = fly_study(tmp_path / "run", "x8", FASTEST, nus=(0.9999999,)).rows.values()
     assert row["outcome"] == "infeasible"
