@@ -82,7 +82,8 @@ class DirectTracking:
 
     Differs from the paper because its law knows nothing of the keep-out area: on the way to a far reference it leads through it,
     and law and guard would undo each other's work for as long as the flight lasts. Here the vehicle goes round the vessel, and
-    joins the orbit somewhat outside of its place, at the phase that is nearest; once tracked, the orbit closes in.
+    joins the orbit somewhat outside of its place, at the phase that is nearest; once tracked, the orbit closes in. An orbit that
+    takes all of the heading rate is joined slowed down (``ReferenceShape.joining_share``), and joined anew where it is lost.
 
     Parameters
     ----------
@@ -94,8 +95,8 @@ class DirectTracking:
     """
 
     __slots__ = (
-        "_approach", "_axis", "_closing", "_guard", "_joining", "_own", "_standoff", "_target", "_tracking", "airspeed", "altitude",
-        "centre", "centre_error", "in_place", "leaving", "mode", "overriding", "started", "tracker",
+        "_approach", "_axis", "_closing", "_guard", "_joining", "_losable", "_own", "_standoff", "_target", "_tracking", "airspeed",
+        "altitude", "centre", "centre_error", "in_place", "leaving", "mode", "overriding", "started", "tracker",
     )  # fmt: skip
 
     def __init__(
@@ -112,6 +113,7 @@ class DirectTracking:
         self.centre, self._axis = parameters.centre, math.atan2(parameters.centre.y, parameters.centre.x)
         self._own, self._target, self._guard, self._tracking = own, target, guard, tracking
         self._joining, self._closing = parameters.joining, False
+        self._losable = parameters.joining is not None and parameters.joining.orbit.shape.joining_share < 1.0
         self._approach: Approach | None = None
         self._standoff, self.airspeed, self.altitude = 0.0, parameters.reference.speed, altitude
         if self._joining is not None:
@@ -126,7 +128,8 @@ class DirectTracking:
     def plan(self, time: float) -> None:  # noqa: ARG002 - of the Protocol
         """Decide whether to go on round the vessel, to track the reference, and whether its orbit may close in."""
         guarding = self._guard is not None and self._guard.intervening
-        if self._approach is None or self._joining is None or not (self.overriding or self._closing or guarding):
+        watching = self.overriding or self._closing or guarding or self._losable
+        if self._approach is None or self._joining is None or not watching:
             return
         reference, own = self.tracker.reference, self._own
         error = math.hypot(reference.north - own.north, reference.east - own.east)
@@ -135,11 +138,15 @@ class DirectTracking:
             x, y = self._joined_at()
             if self._approach.joins(x, y, self._axis, error=error, tracking=False, guarding=guarding):
                 self._join(self._joining.orbit)
-        elif guarding and error > LOST_TRACK * tracked:
+        elif (guarding or (self._losable and not self._closing)) and error > LOST_TRACK * tracked:
             self.overriding, self._closing = True, False
         elif self._closing:
             ahead = self.tracker.ahead
-            ahead.closing = error < (LOST_TRACK if ahead.closing else 1.0) * tracked
+            near = error < (LOST_TRACK if ahead.closing else 1.0) * tracked
+            if near:
+                ahead.reference.spend(1.0)
+            # A slower orbit is larger: it would reach farther towards the vessel.
+            ahead.closing = near and ahead.reference.share == 1.0
             if ahead.standoff == 0.0:
                 # In its place it no longer has to be moved.
                 self.tracker.ahead, self._closing = ahead.reference, False

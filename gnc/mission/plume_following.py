@@ -14,6 +14,7 @@ from gnc.mission.mode import Mode
 from gnc.numeric import limited
 from gnc.reference.mean_motion import mean_motion
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
+from gnc.reference.reference import Swing
 from gnc.reference.steered import SteeredReference
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.tracker import Tracker, TrackingParameters
@@ -37,7 +38,8 @@ class FollowingParameters:
     ----------
     centre : of the centre of oscillation
     reference_heading_rate : largest of the reference [rad/s]
-    roll_rate_max : that the reference may ask for [rad/s]
+    swing : courses of the reference, by its shape
+    joining_share : part of the heading rate that the reference takes as long as it is not tracked [-]
     speed_ratio_max : above it the vessel outruns the vehicle [-]
     approach : the way to the centre
     standoff : how much farther off the centre stays until the reference is tracked [m]
@@ -51,7 +53,8 @@ class FollowingParameters:
 
     centre: CentreParameters
     reference_heading_rate: float
-    roll_rate_max: float
+    swing: Swing
+    joining_share: float
     speed_ratio_max: float
     approach: ApproachParameters
     standoff: float
@@ -210,7 +213,7 @@ class PlumeFollowing:
             phase=0.0,
             speed=self._speed,
             heading_rate=p.reference_heading_rate,
-            roll_rate_max=p.roll_rate_max,
+            swing=p.swing,
             time_step=self._tracking_parameters.time_step,
         )
         tracker = Tracker(self._tracking_parameters, reference, Surroundings(own))
@@ -239,3 +242,4 @@ class PlumeFollowing:
             centre.x, centre.y, centre.axis, error=error, tracking=self._tracking, guarding=guarding
         )
         self._closing_in = self._tracking and error < (LOST_TRACK if self._closing_in else 1.0) * tracked
+        self._reference.spend(1.0 if self._closing_in else self._parameters.joining_share)

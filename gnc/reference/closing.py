@@ -2,7 +2,7 @@
 
 import math
 
-from gnc.reference.reference import Reference
+from gnc.reference.reference import OscillatingPoint
 
 
 class ClosingReference:
@@ -24,7 +24,7 @@ class ClosingReference:
 
     __slots__ = ("_cos", "_sin", "_step", "closing", "course", "east", "heading_rate", "north", "reference", "speed", "standoff")
 
-    def __init__(self, reference: Reference, *, axis: float, standoff: float, rate: float, time_step: float) -> None:
+    def __init__(self, reference: OscillatingPoint, *, axis: float, standoff: float, rate: float, time_step: float) -> None:
         self.reference, self.standoff, self.closing = reference, standoff, False
         self._cos, self._sin, self._step = math.cos(axis), math.sin(axis), rate * time_step
         self.speed = reference.speed

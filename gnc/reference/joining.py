@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from gnc.reference.reference import Orbit, Reference, ReferenceShape
+from gnc.reference.reference import Orbit, OscillatingPoint, ReferenceShape
 
 _PHASES = 72
 """Phases that are compared: 5 degrees apart."""
@@ -28,8 +28,8 @@ class JoinedOrbit:
     vessel_course: float
     time_step: float
 
-    def reference(self, phase: float, centre_north: float, centre_east: float) -> Reference:
-        """Return the reference at a phase [rad] of the orbit about a centre [m]."""
+    def reference(self, phase: float, centre_north: float, centre_east: float, *, share: float = 1.0) -> OscillatingPoint:
+        """Return the reference at a phase [rad] of the orbit about a centre [m], and the part of its heading rate that it takes."""
         return self.shape.reference(
             self.orbit,
             phase=phase,
@@ -37,12 +37,13 @@ class JoinedOrbit:
             centre_east=centre_east,
             vessel_course=self.vessel_course,
             time_step=self.time_step,
+            share=share,
         )
 
     def nearest(
         self, centre_north: float, centre_east: float, *, north: float, east: float, course: float, turn_radius: float
-    ) -> Reference:
-        """Return the reference of the orbit about a centre [m] that a vehicle reaches with the least effort.
+    ) -> OscillatingPoint:
+        """Return the reference of the orbit about a centre [m] that a vehicle reaches with the least effort, slowed down for it.
 
         Parameters
         ----------
@@ -51,9 +52,10 @@ class JoinedOrbit:
         turn_radius : of the vehicle [m]
         """
 
-        def cost(reference: Reference) -> float:
+        def cost(reference: OscillatingPoint) -> float:
             turn = math.remainder(reference.course - course, 2.0 * math.pi)
             return math.hypot(reference.north - north, reference.east - east, _COURSE_COST * turn_radius * turn)
 
         phases = (2.0 * math.pi * i / _PHASES for i in range(_PHASES))
-        return min((self.reference(phase, centre_north, centre_east) for phase in phases), key=cost)
+        share = self.shape.joining_share
+        return min((self.reference(phase, centre_north, centre_east, share=share) for phase in phases), key=cost)

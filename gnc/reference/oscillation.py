@@ -3,7 +3,9 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
 import numpy.typing as npt
+from scipy.special import jv
 
 from common.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
@@ -37,6 +39,11 @@ class Oscillation:
         return self.eta * self.omega_0
 
     @property
+    def symmetric(self) -> bool:
+        """Return that the second half of the orbit is the mirror image of the first."""
+        return True
+
+    @property
     def period(self) -> float:
         """T = 2 pi/omega_0 [s]."""
         return 2.0 * math.pi / self.omega_0
@@ -54,6 +61,18 @@ class Oscillation:
         """Return the orbit's half-widths along and across the vessel's course, by ``gnc.reference.orbit.half_widths`` [m]."""
         return half_widths(self)
 
+    def course(self, phase: float) -> float:
+        """Return the course offset from the vessel's, eta cos(theta) [rad]: equation (3)."""
+        return self.eta * math.cos(phase)
+
+    def heading_rate(self, phase: float) -> float:
+        """Return omega_r = -A sin(theta) [rad/s]: equation (2)."""
+        return -self.amplitude * math.sin(phase)
+
+    def sidebands(self, orders: npt.NDArray[np.int64]) -> Array:
+        """Return J_n(eta)^2, by the Jacobi-Anger expansion [-]."""
+        return np.asarray(jv(orders, self.eta) ** 2)
+
 
 def design_oscillation(
     *,
@@ -70,6 +89,28 @@ def design_oscillation(
     approaches 0 and that bound grows without limit, so omega_0 also respects the roll rate: near level flight g/V times the roll
     rate is the heading acceleration, whose amplitude is eta omega_0^2.
 
+    Parameters and errors are those of ``available_heading_rate``.
+    """
+    available = available_heading_rate(
+        nu=nu,
+        speed=speed,
+        heading_rate_max=heading_rate_max,
+        reserve=reserve,
+        vessel_heading_rate=vessel_heading_rate,
+        roll_rate_max=roll_rate_max,
+    )
+    eta = eta_for_speed_ratio(nu)
+    by_heading_rate = available / eta
+    by_roll_rate = math.sqrt(STANDARD_GRAVITY * roll_rate_max / (speed * eta))
+    limit = "heading rate" if by_heading_rate <= by_roll_rate else "roll rate"
+    return Oscillation(nu=nu, speed=speed, eta=eta, omega_0=min(by_heading_rate, by_roll_rate), limit=limit)
+
+
+def available_heading_rate(
+    *, nu: float, speed: float, heading_rate_max: float, reserve: float, vessel_heading_rate: float, roll_rate_max: float
+) -> float:
+    """Return what an oscillation may take of the heading rate, (1 - reserve) omega_max - |omega_V| [rad/s]: equation (8).
+
     Parameters
     ----------
     nu : speed ratio [-]
@@ -81,7 +122,7 @@ def design_oscillation(
 
     Raises
     ------
-    InfeasibleError : nu of 1 or more, or nothing left of omega_max
+    InfeasibleError : nu below 0, or of 1 or more, a limit that is not above 0, or nothing left of omega_max
     """
     for name, value, unit in (
         ("speed", speed, "m/s"),
@@ -97,17 +138,17 @@ def design_oscillation(
             f"speed ratio nu is {nu:g}; it must be below 1: at 1 the reference flies straight and never crosses the plume,"
             " above 1 the vessel outruns the UAV; fly faster"
         )
-    eta = eta_for_speed_ratio(nu)
+    if not nu >= 0.0:
+        raise InfeasibleError(
+            f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed up to that of the UAV"
+        )
     available = (1.0 - reserve) * heading_rate_max - abs(vessel_heading_rate)
     if not available > 0.0:
         raise InfeasibleError(
             f"vessel heading rate is {vessel_heading_rate:g} rad/s; with a reserve of {reserve:g} it must stay below"
             f" {(1.0 - reserve) * heading_rate_max:g} rad/s: raise omega_max or lower the reserve"
         )
-    by_heading_rate = available / eta
-    by_roll_rate = math.sqrt(STANDARD_GRAVITY * roll_rate_max / (speed * eta))
-    limit = "heading rate" if by_heading_rate <= by_roll_rate else "roll rate"
-    return Oscillation(nu=nu, speed=speed, eta=eta, omega_0=min(by_heading_rate, by_roll_rate), limit=limit)
+    return available
 
 
 def heading_rate_for_bank(bank: float, speed: float) -> float:

@@ -12,6 +12,15 @@ from reports.run.trials import Trial
 
 CLEARANCE = "Distance kept beyond r_min [m]"
 
+_OSCILLATIONS: tuple[tuple[str, str, str, Style], ...] = (
+    ("sinusoid", "sinusoid", "grey", "dash"),
+    ("fastest", "fastest oscillation", "green", "dash"),
+)
+"""Shapes whose crossing interval is shown where another one is flown: name, label, colour and style."""
+
+_LIMIT: tuple[str, str, Style] = ("limit, two crossings a period", "vermillion", "dot")
+"""Label, colour and style of the shortest interval of any path."""
+
 _RATIOS = (-0.02, 1.02)
 """Speed ratios that a panel shows, however many are flown [-]."""
 
@@ -53,9 +62,25 @@ class PanelsOver:
         )
 
     def interval(self) -> Panel | None:
-        """Return the crossing interval, with bars of one standard deviation, and its prediction."""
+        """Return the crossing interval, with bars of one standard deviation, its prediction, and what else could be flown."""
         flown = self._points("crossing_interval_mean_s", "flight", "blue", error="crossing_interval_std_s")
-        return self._panel("Crossing interval [s]", [self._theory("crossing_interval_predicted_s", "theory, π/ω₀", "black"), flown])
+        theory = self._theory("crossing_interval_predicted_s", "theory, π/ω₀", "black")
+        return self._panel("Crossing interval [s]", [*self._other_intervals(), theory, flown])
+
+    def _other_intervals(self) -> list[Line]:
+        """Return the intervals of the oscillations that were not flown, and the shortest of any path; none over other keys."""
+        shape = str(self._trial.setting("reference.shape", ""))
+        curves = [
+            (self._trial.theory(f"crossing_interval_{other}_s"), label, colour, style)
+            for other, label, colour, style in _OSCILLATIONS
+            if other != shape
+        ]
+        curves.append((self._trial.theory("crossing_interval_limit_s", "limit_nu"), *_LIMIT))
+        if self._key != "nu":
+            return []
+        return [
+            Line(x=curve[0], y=curve[1], label=label, colour=colour, style=style) for curve, label, colour, style in curves if curve
+        ]
 
     def distances(self) -> Panel | None:
         """Return the distances of the crossings and the closest approach."""

@@ -63,7 +63,9 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
     return [
         _chart(
             trial, f"{name}-interval",
-            "Time between plume crossings against half the reference's period, π/ω₀. Bars are one standard deviation.",
+            "Time between plume crossings against half the reference's period, π/ω₀. Bars are one standard deviation. The limit is"
+            " the shortest that bank and roll rate allow any path with two crossings a period, by optimal control, with nothing"
+            " reserved for feedback.",
             [over.interval(), over.interval_error()], 0.4,
         ),
         _chart(

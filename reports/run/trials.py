@@ -89,14 +89,14 @@ class Trial:
         """Whether its flights are a random sample, from which a bound on a probability follows."""
         return bool(self.run.manifest.get("sampled_at_random", {}).get(self.key, False))
 
-    def theory(self, key: str) -> tuple[Array, Array] | None:
-        """Return speed ratios and what theory says of a figure over them; None where flights differ in more than nu."""
+    def theory(self, key: str, over: str = "nu") -> tuple[Array, Array] | None:
+        """Return speed ratios, by their name, and what theory says of a figure; None where flights differ in more than nu."""
         curves = self.run.manifest.get("theory", {}).get(self.key, {})
         # In wind the speed ratio through the air is not the one that is swept.
         over_ground = column(self.flown, "vessel_speed_mps") / float(self.setting("guidance.airspeed_mps"))
         if key not in curves or not np.allclose(column(self.flown, "nu"), over_ground):
             return None
-        return np.array(curves["nu"]), np.array(curves[key])
+        return np.array(curves[over]), np.array(curves[key])
 
     def setting(self, key: str, default: Any = None) -> Any:
         """Return the configured value of a dotted key, or a default where its section or itself is not set."""

@@ -14,7 +14,7 @@ from gnc.parameters import GuardParameters
 from gnc.reference.reference import Orbit
 
 _PHASES = 24
-"""Points of half an orbit from which a turn away is predicted: the other half is its mirror image [-]."""
+"""Points of half an orbit from which a turn away is predicted; the other half is its mirror image, or has as many [-]."""
 
 _HALVINGS = 6
 """Of the deviation that is too much for an orbit [-]: to 1/64 of it."""
@@ -49,7 +49,8 @@ def orbit_distance(guard: GuardParameters, vessel: Tube, orbit: Orbit) -> float:
     vessel : where it may be, as large as that becomes
     orbit : about a centre of oscillation astern of the vessel
     """
-    time = orbit.period * (np.arange(_PHASES) + 0.5) / (2.0 * _PHASES)
+    phases = _PHASES if orbit.symmetric else 2 * _PHASES
+    time = orbit.period * (np.arange(phases) + 0.5) / (2.0 * _PHASES)
     piece = 1e-3 * orbit.period
     places = [orbit.offset(time + i * piece) for i in range(3)]
     mean = orbit.nu * orbit.speed

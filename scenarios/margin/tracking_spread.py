@@ -110,7 +110,7 @@ def tracking_spread(
     rates = [_integral(density * FREQUENCIES[:, None, None] ** 2) for density in densities]
 
     phases = 2.0 * math.pi * (np.arange(_ORBIT_POINTS) + 0.5) / _ORBIT_POINTS
-    turns = oscillation.amplitude * np.sin(phases)
+    turns = np.array([-oscillation.heading_rate(phase) for phase in phases.tolist()])
     steps = [schedule.gain_trim(index, j).yaw_rate for j in range(len(schedule.gain_banks))]
     mean, mean_rate = (_over_turns(turns, steps, matrices).mean(axis=0) for matrices in (now, rates))
     steep = np.array([-oscillation.amplitude, oscillation.amplitude])

@@ -6,7 +6,7 @@ from typing import Any
 
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.parameters import GuidanceParameters
-from gnc.reference.reference import Orbit
+from gnc.reference.reference import PeriodicPath
 from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.planning.bounded_steering import Steering
 from scenarios.planning.limits import omega_max
@@ -91,7 +91,7 @@ class FlightPlan:
     nu: float = math.nan
     world: World | None = None
     sensing: Sensing | None = None
-    oscillation: Orbit | None = None
+    oscillation: PeriodicPath | None = None
     periods: tuple[float, ...] = ()
     centre_distance: float = math.nan
     margin: KeepoutMargin | None = None

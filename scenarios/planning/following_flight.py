@@ -11,7 +11,7 @@ from gnc.estimation.vessel_filter import VesselReport
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuardParameters, GuidanceParameters, ReportedVessel
-from gnc.reference.reference import Orbit
+from gnc.reference.reference import PeriodicPath
 from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
 from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
@@ -89,7 +89,7 @@ def following_flight(
     reach = widest.reach(turn_time(scenario, setup.reversal))
     margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
     mission: FollowingParameters | StandoffParameters
-    orbit: Orbit
+    orbit: PeriodicPath
     if scenario.stands_off:
         orbit = circle = vessel_circle(scenario, nu, farthest)
         periods = circle.periods(f.speed_ratio_max)

@@ -16,6 +16,7 @@ from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
 from scenarios.planning.limits import PLAN_PERIOD, omega_max
+from scenarios.planning.reference import shape_of, swing_of
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.faults import SATELLITES
@@ -157,7 +158,8 @@ def following_parameters(
     return FollowingParameters(
         centre=centre,
         reference_heading_rate=(1.0 - g.reserve) * fastest,
-        roll_rate_max=math.radians(g.roll_rate_max_deg_s),
+        swing=swing_of(g, scenario.reference),
+        joining_share=shape_of(scenario.reference).joining_share,
         speed_ratio_max=f.speed_ratio_max,
         approach=approach_parameters(scenario, setup, radius + margin.total),
         standoff=f.standoff_m,

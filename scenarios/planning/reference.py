@@ -9,10 +9,13 @@ from gnc.errors import InfeasibleError
 from gnc.reference.circling import CirclingReference
 from gnc.reference.joining import JoinedOrbit
 from gnc.reference.placement import PlumeAxis, distance_by_paper, distance_exact
-from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, ReferenceStart
+from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, ReferenceStart, Swing
 from scenarios.planning.limits import omega_max
 from scenarios.schema.guidance import GuidanceConfig, ReferenceConfig
 from scenarios.schema.scenario import Scenario
+
+STEPS_MIN = 6
+"""Least steps of the guidance between two crossings [-]: fewer do not show the oscillation."""
 
 RATIO_STEPS = 48
 """Steps of nu at which orbits are tabled."""
@@ -30,12 +33,29 @@ def shape_of(reference: ReferenceConfig) -> ReferenceShape:
 
 def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: float) -> Orbit:
     """Return the reference's oscillation at a speed ratio, or raise an InfeasibleError."""
-    return shape_of(reference).design(
+    orbit = shape_of(reference).design(
         nu=nu,
         speed=guidance.airspeed_mps,
         vessel_heading_rate=0.0,
         heading_rate_max=omega_max(guidance),
         reserve=guidance.reserve,
+        roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
+    )
+    steps = orbit.crossing_interval * guidance.rate_hz
+    if steps < STEPS_MIN:
+        raise InfeasibleError(
+            f"speed ratio nu is {nu:.9g}, so near 1 that at {guidance.roll_rate_max_deg_s:g} deg/s of roll rate the reference"
+            f" crosses every {orbit.crossing_interval:.2g} s, {steps:.1f} steps of the guidance; at least {STEPS_MIN} show an"
+            " oscillation: fly faster, lower guidance.roll_rate_max_deg_s, or raise guidance.rate_hz"
+        )
+    return orbit
+
+
+def swing_of(guidance: GuidanceConfig, reference: ReferenceConfig) -> Swing:
+    """Return the courses of a reference that is steered, or raise an InfeasibleError."""
+    return shape_of(reference).swing(
+        speed=guidance.airspeed_mps,
+        heading_rate=(1.0 - guidance.reserve) * omega_max(guidance),
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
 

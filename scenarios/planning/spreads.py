@@ -22,8 +22,8 @@ from scenarios.vehicles.vehicle_setup import VehicleSetup
 SPREAD_RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Speed ratios at which the spread is predicted [-]; it hardly depends on them."""
 
-Key = tuple[str, str]
-"""Level of turbulence, and the guidance in it."""
+Key = tuple[str, str, str]
+"""Level of turbulence, and the guidance and the reference in it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +32,7 @@ class PredictedSpreads:
 
     Attributes
     ----------
-    tables : by level of turbulence and guidance
+    tables : by level of turbulence, guidance and reference
     """
 
     tables: Mapping[Key, SpreadTable] = field(default_factory=dict)
@@ -67,7 +67,8 @@ def predicted_spreads(scenarios: Iterable[Scenario], found: Designed | None, set
 
 
 def _key(scenario: Scenario) -> Key:
-    return scenario.turbulence.level, _planned_for(scenario).guidance.model_dump_json()
+    planned = _planned_for(scenario)
+    return scenario.turbulence.level, planned.guidance.model_dump_json(), planned.reference.model_dump_json()
 
 
 def _planned_for(scenario: Scenario) -> Scenario:

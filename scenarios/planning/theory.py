@@ -1,13 +1,21 @@
 """What theory says over the speed ratio: curves for the reports, whichever speed ratios are flown."""
 
+import json
 import math
+from pathlib import Path
 
 import numpy as np
 
 from gnc.errors import InfeasibleError
+from gnc.reference.oscillation import bank_for_heading_rate
 from gnc.reference.placement import PlumeAxis
+from scenarios.planning.limits import omega_max
 from scenarios.planning.reference import oscillation_at, placed_distance
+from scenarios.schema.guidance import GuidanceConfig, ReferenceConfig
 from scenarios.schema.scenario import Scenario
+
+CROSSING_LIMITS = Path(__file__).parent / "crossing_limits.json"
+"""Shortest crossing intervals by optimal control, written by ``python -m benchmarks.crossing_limit --write``."""
 
 _RATIO_MAX, _POINTS = 0.99, 100
 """Largest speed ratio of a curve, and the number of its points."""
@@ -15,24 +23,54 @@ _RATIO_MAX, _POINTS = 0.99, 100
 _OTHERS = ("guidance.", "reference.", "keepout.", "plume.", "vessel.")
 """Keys on which the curves depend as well: where one of them is swept, there is more than one curve."""
 
+_OSCILLATIONS = ("sinusoid", "fastest")
+"""Shapes whose crossing intervals are shown beside each other, whichever is flown."""
+
+_SAME = 0.01
+"""Largest relative difference of the limits of an aircraft from those that were solved for [-]."""
+
 
 def theory_over_speed_ratio(scenario: Scenario) -> dict[str, list[float]]:
-    """Return pi/omega_0 and r_CO over nu in still air, by names of columns; nothing of a scenario that does not sweep nu alone.
+    """Return the crossing interval and r_CO over nu in still air, by names of columns; nothing unless nu alone is swept.
 
-    The paper's reference alone has a fixed r_CO; that of a steered one depends on the margin of each flight.
+    A reference that is known in advance alone has a fixed r_CO; that of a steered one depends on the margin of each flight. Beside
+    the flown shape's crossing interval there are those of the project's oscillations, and the shortest of any path.
     """
     if "nu" not in scenario.sweep.root or any(key.startswith(_OTHERS) for key in scenario.sweep.root):
         return {}
     axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
-    curves: dict[str, list[float]] = {"nu": [], "crossing_interval_predicted_s": [], "r_co_m": []}
+    shapes = {shape: ReferenceConfig(shape=shape) for shape in _OSCILLATIONS}
+    names = ("nu", "crossing_interval_predicted_s", "r_co_m", *(f"crossing_interval_{shape}_s" for shape in shapes))
+    curves: dict[str, list[float]] = {name: [] for name in names}
     for nu in np.linspace(0.0, _RATIO_MAX, _POINTS).tolist():
         try:
             orbit = oscillation_at(scenario.guidance, scenario.reference, nu)
             distance = placed_distance(scenario, orbit, axis)
+            others = [oscillation_at(scenario.guidance, shape, nu).crossing_interval for shape in shapes.values()]
         except InfeasibleError:
             break
-        for name, value in zip(curves, (nu, orbit.crossing_interval, distance), strict=True):
+        for name, value in zip(curves, (nu, orbit.crossing_interval, distance, *others), strict=True):
             curves[name].append(value)
     if scenario.follows:
         del curves["r_co_m"]
-    return curves
+    return curves | crossing_limit(scenario.guidance)
+
+
+def crossing_limit(guidance: GuidanceConfig) -> dict[str, list[float]]:
+    """Return the shortest crossing interval of any path with two crossings a period, over the speed ratio.
+
+    Returns
+    -------
+    curves : ``limit_nu`` [-] and ``crossing_interval_limit_s`` [s]; nothing where bank or roll rate are not those of the solution
+    """
+    solved = json.loads(CROSSING_LIMITS.read_text(encoding="utf-8"))
+    fastest = omega_max(guidance)
+    bank = bank_for_heading_rate(fastest, guidance.airspeed_mps)
+    ratio = math.radians(guidance.roll_rate_max_deg_s) / fastest
+    if not (
+        math.isclose(bank, math.radians(solved["bank_deg"]), rel_tol=_SAME)
+        and math.isclose(ratio, solved["roll_rate_over_omega_max"], rel_tol=_SAME)
+    ):
+        return {}
+    best = [min(x for x in pair if x is not None) for pair in zip(solved["oscillating"], solved["going_round"], strict=True)]
+    return {"limit_nu": solved["nu"], "crossing_interval_limit_s": [value / fastest for value in best]}

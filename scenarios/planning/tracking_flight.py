@@ -7,7 +7,7 @@ from gnc.estimation.reachable_set import Tube
 from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
 from gnc.parameters import GuardParameters, GuidanceParameters
 from gnc.reference.placement import PlumeAxis, centre_of_oscillation
-from scenarios.margin.orbit_room import tolerable
+from scenarios.margin.orbit_room import orbit_distance, tolerable
 from scenarios.planning.bounded_steering import Steering, plan_steering
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.guidance import approach_parameters, guard_parameters, plan_interval, tracking_parameters
@@ -66,9 +66,15 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
     if g.keepout_guard and disc > 0.0:
         guard = guard_parameters(scenario, setup, disc)
         known = Tube(0.0, 0.0, 0.0, v_north, v_east)
-        # The paper's rule places the orbit; the guard must leave it alone, and what the UAV may stray from it.
-        nearest = math.hypot(ahead, right) - oscillation.half_widths()[0]
-        guard = tolerable(guard, known, oscillation, nearest - g.tracking_allowance_m)
+        # The guard must leave the orbit alone, and what the UAV may stray from it.
+        nearest = math.hypot(ahead, right) - oscillation.half_widths()[0] - g.tracking_allowance_m
+        if oscillation.symmetric:
+            # The paper's rule places it.
+            guard = tolerable(guard, known, oscillation, nearest)
+        else:
+            # One that goes round at the largest bank leaves the guard little: it moves off by what the guard needs.
+            distance += max(0.0, orbit_distance(guard, known, oscillation) - nearest) / math.cos(axis.elevation)
+            ahead, right, above = centre_of_oscillation(distance, axis)
         check_start(start, guard, known, wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius)
     orbit = joined_orbit(scenario, oscillation, course)
     joining = None

@@ -131,16 +131,10 @@ RULES = (
     Rule(
         keys=(
             "plume.model", "plume.direction", "plume.heading_deg", "plume.elevation_deg", "flight.crossings",
-            "flight.after_settling_s",
+            "flight.after_settling_s", "reference.shape",
         ),
         acts=lambda s: not s.circles,
         user=_VESSEL,
-    ),
-    Rule(
-        keys=("reference.shape",),
-        acts=lambda s: not s.circles and (not s.follows or s.reference.shape == "sinusoid"),
-        user="the mission that tracks a reference known in advance; the steered reference is a sinusoid",
-        by_mission=True,
     ),
     Rule(keys=("reference.standoff_radius_m",), acts=lambda s: s.stands_off, user="a circle about the vessel: set guidance.mission"
          " to 'standoff'", by_mission=True),

@@ -27,7 +27,7 @@ class ReferenceConfig(Section):
     path: Literal["oscillation", "circle"] = "oscillation"
     """Oscillate about a centre in the plume, eq. (2), or circle without a vessel, as in the paper's Sims. 1 and 2."""
     shape: str = "sinusoid"
-    """Shape of the oscillation: sinusoid, that of the paper, or FILE.py:NAME."""
+    """Shape of the oscillation: sinusoid, that of the paper, fastest, loiter, or FILE.py:NAME."""
     radius_m: Positive = 130.0
     """Radius of the circle, flown to the right [m]."""
     standoff_radius_m: Positive | None = None

@@ -32,6 +32,7 @@ from gnc.mission.plume_following import GLIDE_ALTITUDE, FollowingParameters, Plu
 from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters, ReportedVessel
 from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.orbit import half_widths
+from gnc.reference.shapes.sinusoid import Sinusoid
 
 GUARD = GuardParameters(radius=200.0, heading_rate_max=HEADING_RATE_MAX, lag=0.4, delay=0.0, time_step=TIME_STEP)
 APPROACH = ApproachParameters(blocked_radius=203.0, round_radius=230.0, join_distance=150.0, tracked=12.0, airspeed=SPEED + 2.0)
@@ -60,7 +61,8 @@ def following(*, guard=GUARD, climb=0.0):
     mission = FollowingParameters(
         centre=centre,
         reference_heading_rate=0.985 * HEADING_RATE_MAX,
-        roll_rate_max=math.radians(40.0),
+        swing=Sinusoid().swing(speed=SPEED, heading_rate=0.985 * HEADING_RATE_MAX, roll_rate_max=math.radians(40.0)),
+        joining_share=1.0,
         speed_ratio_max=0.97,
         approach=APPROACH,
         standoff=100.0,

@@ -264,7 +264,10 @@ def test_theory_is_a_curve_over_the_speed_ratio_however_few_flights_there_are(ru
     report = content(replace(run, summary=run.summary.iloc[:flights]))
     charts = {chart.name: chart for chart in blocks_of(report, Chart, "trial1")}
     interval = charts["trial1-nu1-interval"].panels[0]
-    theory, flown = interval.lines
+    fastest, limit, theory, flown = interval.lines
+    assert (fastest.label, limit.label) == ("fastest oscillation", "limit, two crossings a period")
+    # At every nu the limit is below what is flown: docs/fastest_oscillation.md.
+    assert (np.interp(limit.x, theory.x, theory.y) > limit.y).all()
     assert (theory.label, theory.style) == ("theory, π/ω₀", "solid")
     assert len(theory.x) > 50
     assert (theory.x[0], theory.x[-1]) == (0.0, pytest.approx(0.99))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gnc.reference.closing import ClosingReference
 from gnc.reference.joining import JoinedOrbit
-from gnc.reference.oscillating import Sinusoid
+from gnc.reference.shapes.sinusoid import Sinusoid
 
 ORBIT = JoinedOrbit(shape=Sinusoid(), orbit=paper_oscillation(0.5), vessel_course=0.3, time_step=TIME_STEP)
 CENTRE = (-214.0, 20.0)

@@ -37,6 +37,9 @@ NOT_SCALED = {
     # What a ship does, how well it is known, and how often the keep-out area may be touched.
     "following.apparent_wind_min_mps", "following.vessel_acceleration_mps2", "following.vessel_speed_max_mps",
     "following.speed_error_mps", "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
+    # What an arena of laws tunes and measures, for the aircraft that its file names.
+    "arena.tuning_duration_s", "arena.error_max_m", "arena.window_s", "arena.plume_half_width_m", "arena.effort_weight_m_s",
+    "reference.standoff_radius_m",
     # The paper's vehicle has no lag, however fast it turns.
     "kinematic.heading_rate_lag_s",
     # The budget of a search on this machine.

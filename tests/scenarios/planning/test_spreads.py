@@ -52,7 +52,7 @@ def test_an_experiment_that_samples_its_turbulence_plans_each_levels_own_margin(
     experiment = Experiment("trial", sampling("turbulence.level", LEVELS))
     spreads = predicted_spreads(experiment.settings(), found, setup)
     # Still air has no spread.
-    assert {level for level, _ in spreads.tables} == {"light", "moderate"}
+    assert {level for level, *_ in spreads.tables} == {"light", "moderate"}
     assert {table.speed_ratios for table in spreads.tables.values()} == {SPREAD_RATIOS[1:3]}
     margins = {}
     for number, level in enumerate(LEVELS):
@@ -62,7 +62,7 @@ def test_an_experiment_that_samples_its_turbulence_plans_each_levels_own_margin(
         # The same as of a scenario that has this turbulence in every flight.
         alone = gusty(level=level)
         own = predicted_spreads([alone], found, setup)
-        assert {level for level, _ in own.tables} == {level} - {"none"}
+        assert {level for level, *_ in own.tables} == {level} - {"none"}
         assert plan(alone, setup=setup, spreads=own).margin == margins[level]
     # MIL-F-8785C: twice the wind at 20 feet has twice the intensity, and the loop is linear; in still air the least is kept.
     assert margins["none"].tracking_sigma == 0.0
@@ -73,7 +73,10 @@ def test_an_experiment_that_samples_its_turbulence_plans_each_levels_own_margin(
 
 def test_a_flight_whose_spread_was_not_predicted_is_refused():
     # Neither that of another level nor none: it would fly with too small a margin.
-    spreads = PredictedSpreads(tables={("moderate", gusty(level="moderate").guidance.model_dump_json()): TABLED})
+    predicted = gusty(level="moderate")
+    spreads = PredictedSpreads(
+        tables={("moderate", predicted.guidance.model_dump_json(), predicted.reference.model_dump_json()): TABLED}
+    )
     assert spreads(gusty(level="moderate")) is TABLED
     with pytest.raises(InputError, match="sampled from a continuous distribution in turbulence"):
         spreads(gusty(level="light"))

@@ -1,0 +1,156 @@
+"""Courses of an aircraft that rolls from one bank to the other and back, as hard as it may, and holds the bank in between.
+
+From the passage through the centre, phase 0, bank falls from 0 at the roll rate p to -phi_max, is held, and is back at 0 half a
+period later; then the same to the other side. Turns are coordinated: omega = g/V tan(phi). While it rolls the course has changed by
+g/(V p) ln cos(p t), and while bank is held it changes evenly. A course that turns through less than rolling to phi_max and back
+takes is rolled through alone, with less bank.
+"""
+
+import functools
+import math
+
+import numpy as np
+
+from common.units import STANDARD_GRAVITY
+from gnc.reference.orbit_tables import ETA_STEP, SPEED_RATIO_MIN, OrbitTables
+from gnc.reference.reference import ETA_FREQUENCY
+from gnc.reference.shapes.course_path import fourier_coefficients
+
+_ETA_MIN = 1e-9
+"""Least amplitude of which a shape is computed [rad]: a smaller one is as straight."""
+
+_ORDERS = 8
+"""Pairs of terms in the series of the orbit; what is left out is below 1e-4 of its width."""
+
+_TURN = 2.0 * math.pi
+
+_NODES, _WEIGHTS = (values.tolist() for values in np.polynomial.legendre.leggauss(10))
+"""Of Gauss's rule, good to 1e-12 of the mean speed while the aircraft rolls."""
+
+
+class BankSwing:
+    """Courses of every amplitude, as of ``gnc.reference.reference.Swing``.
+
+    Parameters
+    ----------
+    speed : V_r [m/s]
+    heading_rate : largest, that of phi_max [rad/s]
+    roll_rate_max : p; may be infinite [rad/s]
+    """
+
+    __slots__ = (
+        "_heading_rate", "_per_tangent", "_ramp", "_roll_rate", "_rolled", "_rolling", "_tables", "_tangent_max",
+    )  # fmt: skip
+
+    def __init__(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> None:
+        self._per_tangent = STANDARD_GRAVITY / speed
+        self._heading_rate, self._roll_rate = heading_rate, roll_rate_max
+        self._tangent_max = heading_rate / self._per_tangent
+        bank_max = math.atan(self._tangent_max)
+        # Time in which bank comes to its largest value, and the course that is turned through meanwhile.
+        self._ramp = bank_max / roll_rate_max
+        self._rolling = self._per_tangent / roll_rate_max
+        self._rolled = -self._rolling * math.log(math.cos(bank_max))
+        self._tables: OrbitTables | None = None
+
+    def half_period(self, eta: float) -> float:
+        """Return the time from one largest course offset to the other at full rates, the crossing interval [s]."""
+        return self._shape(eta)[0]
+
+    def largest_heading_rate(self, eta: float) -> float:
+        """Return the heading rate at the largest bank of an amplitude [rad/s]."""
+        return self._per_tangent * self._shape(eta)[2]
+
+    def holds_bank(self, eta: float) -> bool:
+        """Return whether an amplitude takes the largest bank, or less."""
+        return eta > self._rolled
+
+    def eta(self, speed_ratio: float) -> float:
+        """Return eta [rad] for a mean speed over speed, by a table, within 1e-5."""
+        return self._series().eta(speed_ratio)
+
+    def speed_ratio(self, eta: float) -> float:
+        """Return the mean speed over speed [-]: the mean of cos(course) over a quarter of the period."""
+        if eta < _ETA_MIN:
+            return 1.0
+        half, ramp, tangent = self._shape(eta)
+        total = 0.0
+        for node, weight in zip(_NODES, _WEIGHTS, strict=True):
+            banked = self._roll_rate * 0.5 * (1.0 + node) * ramp if ramp else 0.0
+            total += weight * math.cos(eta + self._rolling * math.log(math.cos(banked)))
+        turning = self._per_tangent * tangent
+        return (ramp * total + 2.0 * math.sin(turning * (0.5 * half - ramp)) / turning) / half
+
+    def frequency(self, eta: float, heading_rate: float) -> float:
+        """Return the largest omega_0 within a heading rate and the roll rate, no more than that at ``ETA_FREQUENCY`` [rad/s]."""
+        half, _, tangent = self._shape(eta if eta > ETA_FREQUENCY else ETA_FREQUENCY)
+        largest = self._per_tangent * tangent
+        return math.pi / half if heading_rate >= largest else math.pi / half * heading_rate / largest
+
+    def course(self, eta: float, phase: float) -> float:
+        """Return the course offset from the mean course [rad]."""
+        if eta < _ETA_MIN:
+            return eta * math.cos(phase)
+        half, ramp, tangent = self._shape(eta)
+        time = abs(math.remainder(phase, _TURN)) / math.pi * half
+        # Of the second half of the way across it is the first one's mirror image.
+        other = time + time > half
+        if other:
+            time = half - time
+        if time < ramp:
+            course = eta + self._rolling * math.log(math.cos(self._roll_rate * time))
+        else:
+            course = self._per_tangent * tangent * (0.5 * half - time)
+        return -course if other else course
+
+    def slopes(self, eta: float, phase: float) -> tuple[float, float]:
+        """Return the slope of the course offset over eta, from -1 to 1, and that over the phase divided by eta [-]."""
+        if eta < _ETA_MIN:
+            return math.cos(phase), -math.sin(phase)
+        half, ramp, tangent = self._shape(eta)
+        angle = math.remainder(phase, _TURN)
+        time = abs(angle) / math.pi * half
+        other = time + time > half
+        if other:
+            time = half - time
+        banked = math.tan(self._roll_rate * time) if time < ramp else tangent
+        # Half a period grows by 2 over the largest heading rate per unit of eta, whether bank is held or not.
+        by_eta = 1.0 - 2.0 * time * banked / (half * tangent)
+        by_phase = self._per_tangent * banked * half / (math.pi * eta)
+        return -by_eta if other else by_eta, -by_phase if angle > 0.0 else by_phase
+
+    def offset(self, eta: float, phase: float) -> tuple[float, float]:
+        """Return where the reference is from the orbit's centre, along the mean course and to its right [V_r/omega_0]."""
+        return self._series().offset(eta, phase)
+
+    def _shape(self, eta: float) -> tuple[float, float, float]:
+        """Return half a period, the time in which bank comes to its largest value [s], and the tangent of that [-]."""
+        if eta > self._rolled:
+            return 2.0 * (self._ramp + (eta - self._rolled) / self._heading_rate), self._ramp, self._tangent_max
+        # cos(bank) = exp(-eta/rolling): tan(bank)^2 = exp(2 eta/rolling) - 1.
+        tangent = math.sqrt(math.expm1(2.0 * eta / self._rolling))
+        ramp = math.atan(tangent) / self._roll_rate
+        return 2.0 * ramp, ramp, tangent
+
+    def _series(self) -> OrbitTables:
+        if self._tables is None:
+            self._tables = self._tabled()
+        return self._tables
+
+    def _tabled(self) -> OrbitTables:
+        """Return the tables of orbits, up to two steps beyond the amplitude whose mean speed is the least of them."""
+        ratios = [1.0]
+        while len(ratios) < 3 or ratios[-3] > SPEED_RATIO_MIN:
+            ratios.append(self.speed_ratio(ETA_STEP * len(ratios)))
+        order = np.arange(1, 2 * _ORDERS + 1)
+        # The course is even in the phase, and its negative half a period later: of exp(i course) the cosine has even orders alone,
+        # and the sine odd ones.
+        series = [fourier_coefficients(functools.partial(self.course, ETA_STEP * i))[order] for i in range(len(ratios))]
+        both = np.where(order % 2, np.imag(series), np.real(series))
+        return OrbitTables(np.array(ratios), 2.0 * both / order)
+
+
+@functools.lru_cache(maxsize=8)
+def bank_swing(speed: float, heading_rate: float, roll_rate_max: float) -> BankSwing:
+    """Return the courses within some limits, remembered with their tables; parameters are those of ``BankSwing``."""
+    return BankSwing(speed=speed, heading_rate=heading_rate, roll_rate_max=roll_rate_max)

@@ -1,0 +1,192 @@
+import math
+
+import numpy as np
+import pytest
+from gnc_cases import SPEED, TIME_STEP, examples
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from common.units import STANDARD_GRAVITY
+from gnc.errors import InfeasibleError
+from gnc.reference.joining import JoinedOrbit
+from gnc.reference.placement import PlumeAxis, distance_exact
+from gnc.reference.reference import REFERENCE_SHAPES
+from gnc.reference.shapes.fastest import JOINING_SHARE, Fastest
+from gnc.reference.shapes.sinusoid import Sinusoid
+
+LIMITS = {
+    "speed": SPEED,
+    "heading_rate_max": STANDARD_GRAVITY / SPEED,
+    "reserve": 0.015,
+    "vessel_heading_rate": 0.0,
+    "roll_rate_max": math.radians(40.0),
+}
+"""Those of the issue's table: 45 degrees of bank, of which 1.5 % of the heading rate is kept, and 40 deg/s."""
+
+
+def design(nu=0.5, **changes):
+    return Fastest().design(**({"nu": nu} | LIMITS | changes))
+
+
+def reference_on(orbit, *, phase=0.0, share=1.0, vessel_course=0.3):
+    return Fastest().reference(
+        orbit, phase=phase, centre_north=-214.0, centre_east=5.0, vessel_course=vessel_course, time_step=TIME_STEP, share=share
+    )
+
+
+def interval_by_integration(nu):
+    """Return the shortest interval, from the bank's trapezoid and the heading rates that follow from it [s]."""
+    heading_rate = (1.0 - LIMITS["reserve"]) * LIMITS["heading_rate_max"]
+    bank_max = math.atan(heading_rate * SPEED / STANDARD_GRAVITY)
+
+    def excess(half):
+        time = np.linspace(0.0, half, 20001)
+        bank = np.minimum(np.minimum(LIMITS["roll_rate_max"] * time, LIMITS["roll_rate_max"] * (half - time)), bank_max)
+        rate = STANDARD_GRAVITY / SPEED * np.tan(bank)
+        course = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * time[1])])
+        return float(np.trapezoid(np.cos(course - 0.5 * course[-1]), time)) / half - nu
+
+    return brentq(excess, 0.5, 13.0)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95])
+def test_the_interval_is_that_of_the_trapezoid_integrated_step_by_step(nu):
+    # The trapezoidal rule over 20,000 steps: 1e-8.
+    assert design(nu).crossing_interval == pytest.approx(interval_by_integration(nu), rel=1e-6)
+
+
+@pytest.mark.parametrize(("nu", "flown"), [(0.1, 11.57), (0.5, 7.90), (0.8, 5.03)])
+def test_the_interval_is_the_one_that_was_flown_before_it_was_derived(nu, flown):
+    # The issue's table, trapezoid at 40 deg/s: rounded to 0.01 s, and measured to 0.1 % of it.
+    assert design(nu).crossing_interval == pytest.approx(flown, abs=0.015)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.2, 0.4, 0.5, 0.6, 0.8])
+def test_it_is_shorter_than_the_sinusoids_by_at_least_an_eighth(nu):
+    # The issue: by 12 % at every nu up to 0.8, and by 17 % at 0.5.
+    share = design(nu).crossing_interval / Sinusoid().design(nu=nu, **LIMITS).crossing_interval
+    assert share <= (0.83 if nu == 0.5 else 0.88)
+
+
+@given(nu=st.floats(0.0, 0.999), bank=st.floats(10.0, 60.0), roll_rate=st.floats(10.0, 200.0), reserve=st.floats(0.0, 0.3))
+@examples(60)
+def test_its_mean_velocity_is_that_of_the_vessel(nu, bank, roll_rate, reserve):
+    heading_rate = STANDARD_GRAVITY * math.tan(math.radians(bank)) / SPEED
+    orbit = design(nu, heading_rate_max=heading_rate, reserve=reserve, roll_rate_max=math.radians(roll_rate))
+    courses = np.array([orbit.course(phase) for phase in (2.0 * math.pi * (np.arange(400) + 0.5) / 400).tolist()])
+    # The midpoint rule over a whole period of a course whose third derivative jumps: (2 pi/400)^3 times a few.
+    assert np.mean(np.cos(courses)) == pytest.approx(nu, abs=1e-5)
+    assert np.mean(np.sin(courses)) == pytest.approx(0.0, abs=1e-12)
+    assert orbit.amplitude <= (1.0 - reserve) * heading_rate * (1.0 + 1e-12)
+    assert orbit.period == pytest.approx(2.0 * orbit.crossing_interval, rel=1e-15)
+    assert orbit.omega_0 * orbit.period == pytest.approx(2.0 * math.pi, rel=1e-14)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.5, 0.9, 0.995])
+def test_a_point_that_turns_so_flies_the_orbit(nu):
+    orbit = design(nu)
+
+    def motion(time, state):
+        return SPEED * math.cos(state[2]), SPEED * math.sin(state[2]), orbit.heading_rate(orbit.omega_0 * time)
+
+    times = np.linspace(0.0, orbit.period, 40)
+    flown = solve_ivp(motion, (0.0, orbit.period), (0.0, 0.0, orbit.eta), t_eval=times, max_step=0.02, rtol=1e-9, atol=1e-9).y
+    along, right = orbit.offset(times)
+    # Steps of 0.02 s over corners of the roll rate of 0.7 rad/s^2: 1e-5 m each, and that of the path's spline.
+    assert along + nu * SPEED * times == pytest.approx(flown[0], rel=0.0, abs=1e-3)
+    assert right == pytest.approx(flown[1], rel=0.0, abs=1e-3)
+    widths = [float(np.abs(part).max()) for part in orbit.offset(np.linspace(0.0, orbit.period, 40001))]
+    # 40,000 points miss a peak by less than V omega (T/80,000)^2/2 = 2e-7 m.
+    assert orbit.half_widths() == pytest.approx(widths, rel=0.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("heading", [math.pi, 2.6, 0.5 * math.pi])
+@pytest.mark.parametrize("nu", [0.0, 0.5, 0.9])
+def test_the_exact_rule_keeps_the_whole_orbit_outside_and_no_farther_than_that(nu, heading):
+    orbit = design(nu)
+    distance = distance_exact(orbit, PlumeAxis(heading=heading), 200.0)
+    along, right = orbit.offset(np.linspace(0.0, orbit.period, 20001))
+    closest = np.hypot(distance * math.cos(heading) + along, distance * math.sin(heading) + right).min()
+    # 20,000 points of an orbit of 250 m: 0.006 m apart, which at 200 m of distance is missed by its square.
+    assert closest == pytest.approx(200.0, abs=1e-4)
+
+
+def test_the_mirrored_reference_flies_the_mirrored_path():
+    # Mirrored in the north-south line courses change sign, which is half a period of phase.
+    orbit = design()
+    one, other = (reference_on(orbit, phase=phase, vessel_course=course) for phase, course in ((0.4, 0.3), (0.4 + math.pi, -0.3)))
+    for _ in range(1000):
+        one.step()
+        other.step()
+        # Rounding over 1,000 steps.
+        assert (other.north, 10.0 - other.east) == pytest.approx((one.north, one.east), rel=0.0, abs=1e-8)
+        assert other.heading_rate == pytest.approx(-one.heading_rate, rel=0.0, abs=1e-10)
+
+
+def test_the_reference_stays_on_its_orbit():
+    orbit = design()
+    reference = reference_on(orbit, phase=0.7, vessel_course=0.0)
+    steps = 6000
+    for _ in range(steps):
+        reference.step()
+        assert abs(reference.heading_rate) <= orbit.amplitude * (1.0 + 1e-12)
+    along, right = orbit.offset(0.7 / orbit.omega_0 + steps * TIME_STEP)
+    way = orbit.nu * SPEED * steps * TIME_STEP
+    # Simpson's rule over 150 corners of the roll rate: 1e-5 m each by its docstring, which partly cancel.
+    assert (reference.north, reference.east) == pytest.approx((-214.0 + way + float(along), 5.0 + float(right)), rel=0.0, abs=2e-3)
+
+
+@pytest.mark.parametrize("share", [JOINING_SHARE, 0.5])
+def test_a_reference_that_is_slowed_down_has_a_larger_orbit_about_the_same_centre(share):
+    orbit = design()
+    slow = reference_on(orbit, phase=1.0, share=share, vessel_course=0.0)
+    full = reference_on(orbit, phase=1.0, vessel_course=0.0)
+    # About the same centre, 1/share as far off, on the same course.
+    assert slow.north + 214.0 == pytest.approx((full.north + 214.0) / share, rel=1e-12)
+    assert slow.east - 5.0 == pytest.approx((full.east - 5.0) / share, rel=1e-12)
+    assert (slow.course, slow.heading_rate) == (full.course, pytest.approx(share * full.heading_rate, rel=1e-15))
+    for _ in range(round(1.3 * orbit.period / TIME_STEP)):
+        slow.step()
+        assert abs(slow.heading_rate) <= share * orbit.amplitude * (1.0 + 1e-12)
+    # Asked to spend all, it does so from the next passage through the centre on, where it does not turn.
+    slow.spend(1.0)
+    while slow.share != 1.0:
+        before = slow.heading_rate
+        slow.step()
+    # A step of 0.05 s of rolling at 40 deg/s changes it by 0.5 rad/s^2 times that, 0.018 rad/s.
+    assert abs(slow.heading_rate - before) < 0.02
+    # Its orbit's centre has moved with the vessel, and not otherwise: the mean over a whole period from here on.
+    places = []
+    while len(places) < round(orbit.period / TIME_STEP):
+        places.append((slow.north, slow.east))
+        slow.step()
+    east = np.mean(places, axis=0)[1]
+    # A period of 316 steps and a bit: half a step of 55 m over a period.
+    assert east == pytest.approx(5.0, abs=0.2)
+
+
+def test_a_vehicle_on_its_way_joins_a_reference_that_leaves_it_some_of_the_heading_rate():
+    orbit = design(0.1)
+    for shape, share in ((Fastest(), JOINING_SHARE), (Sinusoid(), 1.0)):
+        joined = JoinedOrbit(shape=shape, orbit=orbit, vessel_course=0.0, time_step=TIME_STEP)
+        nearest = joined.nearest(-214.0, 5.0, north=-300.0, east=80.0, course=0.5, turn_radius=40.0)
+        assert nearest.share == share
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"nu": 1.0}, "speed ratio nu is 1; it must be below 1"),
+        ({"nu": -0.1}, "speed ratio nu is -0.1; it must lie within 0 and 1"),
+        ({"nu": math.nan}, "speed ratio nu is nan; it must lie within 0 and 1"),
+        ({"vessel_heading_rate": 0.6}, "vessel heading rate is 0.6 rad/s; with a reserve of 0.015 it must stay below"),
+        ({"roll_rate_max": 0.0}, "roll_rate_max is 0 rad/s; it must be above 0"),
+        ({"reserve": 1.0}, "reserve is 1 of omega_max"),
+    ],
+)
+def test_what_cannot_be_flown_is_refused_as_of_the_sinusoid(changes, words):
+    for shape in ("sinusoid", "fastest"):
+        with pytest.raises(InfeasibleError, match=words):
+            REFERENCE_SHAPES.get(shape)().design(**({"nu": 0.5} | LIMITS | changes))

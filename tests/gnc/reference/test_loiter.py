@@ -1,0 +1,110 @@
+import math
+
+import numpy as np
+import pytest
+from gnc_cases import SPEED, TIME_STEP, examples
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from common.units import STANDARD_GRAVITY
+from gnc.errors import InfeasibleError
+from gnc.reference.placement import PlumeAxis, distance_exact
+from gnc.reference.shapes.loiter import LoiterShape
+
+HEADING_RATE = STANDARD_GRAVITY / SPEED
+ROLL_RATE = math.radians(40.0)
+
+
+def design(nu, *, heading_rate=HEADING_RATE, roll_rate=ROLL_RATE):
+    return LoiterShape().design(
+        nu=nu, speed=SPEED, heading_rate_max=heading_rate, reserve=0.0, vessel_heading_rate=0.0, roll_rate_max=roll_rate
+    )
+
+
+ratios = st.floats(0.0, 0.9)
+
+
+@given(nu=ratios, heading_rate=st.floats(0.1, 0.9), roll_rate=st.floats(0.2, 5.0))
+@examples(60)
+def test_its_course_goes_round_once_at_the_mean_velocity_of_the_vessel_within_the_limits(nu, heading_rate, roll_rate):
+    orbit = design(nu, heading_rate=heading_rate, roll_rate=roll_rate)
+    phases = 2.0 * math.pi * (np.arange(2000) + 0.5) / 2000
+    courses = np.array([orbit.course(phase) for phase in phases.tolist()])
+    # The midpoint rule over a period of a course whose slope jumps at most: (2 pi/2000)^2 times a few.
+    assert np.mean(np.cos(courses)) == pytest.approx(nu, abs=1e-4)
+    assert np.mean(np.sin(courses)) == pytest.approx(0.0, abs=1e-10)
+    assert orbit.course(phases[3] + 2.0 * math.pi) == pytest.approx(courses[3] + 2.0 * math.pi, rel=1e-13)
+    rates = np.array([orbit.heading_rate(phase) for phase in phases.tolist()])
+    assert rates.max() <= heading_rate * (1.0 + 1e-12)
+    assert rates.min() >= 0.0
+    banks = np.arctan(rates * SPEED / STANDARD_GRAVITY)
+    # Rounding.
+    assert np.abs(np.diff(banks)).max() <= roll_rate * orbit.period / 2000 * (1.0 + 1e-6)
+
+
+@given(nu=ratios)
+@examples(30)
+def test_no_roll_rate_makes_it_faster_than_the_bound_for_paths_that_go_round(nu):
+    # docs/fastest_oscillation.md: 2 pi/omega_max of turning with a mean velocity of 0, and the rest on the vessel's course.
+    bound = math.pi / (HEADING_RATE * (1.0 - nu))
+    intervals = [design(nu, roll_rate=rate).crossing_interval for rate in (math.inf, 4.0, ROLL_RATE)]
+    assert intervals[0] == pytest.approx(bound, rel=1e-12)
+    assert bound * (1.0 - 1e-12) <= intervals[1] <= intervals[2] * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.05, 0.25, 0.6])
+def test_a_point_that_turns_so_flies_the_orbit_and_meets_the_plume_every_half_turn(nu):
+    orbit = design(nu)
+
+    def motion(time, state):
+        return SPEED * math.cos(state[2]), SPEED * math.sin(state[2]), orbit.heading_rate(orbit.omega_0 * time)
+
+    times = np.linspace(0.0, orbit.period, 41)
+    along, right = orbit.offset(times)
+    flown = solve_ivp(
+        motion, (0.0, orbit.period), (float(along[0]), float(right[0]), 0.0), t_eval=times, max_step=0.02, rtol=1e-9, atol=1e-9
+    ).y
+    # Steps of 0.02 s over corners of the roll rate, and the path's spline.
+    assert along + nu * SPEED * times == pytest.approx(flown[0], rel=0.0, abs=1e-3)
+    assert right == pytest.approx(flown[1], rel=0.0, abs=1e-3)
+    # On the plume's axis a quarter of a period before and after phase 0.
+    crossings = orbit.offset(np.array([0.25, 0.75]) * orbit.period)[1]
+    assert crossings == pytest.approx([0.0, 0.0], abs=1e-4)
+    widths = [float(np.abs(part).max()) for part in orbit.offset(np.linspace(0.0, orbit.period, 20001))]
+    assert orbit.half_widths() == pytest.approx(widths, rel=0.0, abs=1e-4)
+    distance = distance_exact(orbit, PlumeAxis(heading=math.pi), 200.0)
+    many = orbit.offset(np.linspace(0.0, orbit.period, 20001))
+    assert np.hypot(many[0] - distance, many[1]).min() == pytest.approx(200.0, abs=1e-4)
+
+
+def test_beside_a_vessel_at_rest_it_is_a_circle():
+    orbit = design(0.0)
+    along, right = orbit.offset(np.linspace(0.0, orbit.period, 50))
+    # R = V/omega; the path's spline is good to 1e-7 of that.
+    assert np.hypot(along, right) == pytest.approx(np.full(50, SPEED / HEADING_RATE), rel=1e-6)
+
+
+@pytest.mark.parametrize("share", [0.8, 0.5])
+def test_the_slower_one_meets_it_at_phase_0_and_becomes_it_there(share):
+    orbit = design(0.2)
+    place = {"centre_north": 0.0, "centre_east": 0.0, "vessel_course": 0.0, "time_step": TIME_STEP}
+    slow = LoiterShape().reference(orbit, phase=-1.0, share=share, **place)
+    slow.spend(1.0)
+    steps = 0
+    while slow.share != 1.0:
+        slow.step()
+        steps += 1
+    for _ in range(200):
+        slow.step()
+    # It took 1 rad of phase at `share` of the frequency; from there on it is on the orbit about a centre that moved meanwhile.
+    time = 1.0 / (share * orbit.omega_0)
+    along, right = orbit.offset((steps + 200) * TIME_STEP - time)
+    way = orbit.nu * SPEED * (steps + 200) * TIME_STEP
+    # Within the step in which it changes, it goes on at one of two heading rates: 0.1 rad/s for 0.05 s at 19 m/s.
+    assert (slow.north, slow.east) == pytest.approx((way + float(along), float(right)), abs=0.02)
+
+
+def test_it_cannot_be_steered():
+    with pytest.raises(InfeasibleError, match=r"'loiter', which cannot be steered.*set reference\.shape to 'fastest'"):
+        LoiterShape().swing(speed=SPEED, heading_rate=HEADING_RATE, roll_rate_max=ROLL_RATE)
