@@ -99,6 +99,9 @@ class Guidance:
             # taken from the airspeed comes back in it.
             if overriding and mission.airspeed > least:
                 least = mission.airspeed
+            # Faster than it can turn at omega_max the vehicle turns the wider the faster it becomes: as fast as commanded.
+            if self.airspeed_command > guard.turn_speed and self.airspeed_command > least:
+                least = self.airspeed_command
             command = keep_out(command, time, own, speed if speed > least else least)
             self.guarding = guarding = guard.intervening
         tracker.heading_rate_command = command

@@ -4,6 +4,7 @@ An autopilot that holds airspeed follows every gust along its path. Here it is a
 speed over the mean air lacks; gusts drop out of the sum, and the airspeed varies with them instead.
 """
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -81,20 +82,24 @@ class PaceHold:
     ----------
     speed : V_r [m/s]
     hold : parameters of the law
+    turn_speed : up to which the vehicle can turn at omega_max; not exceeded while the keep-out guard turns it away [m/s]
     """
 
     speed: float
     hold: SpeedHold
+    turn_speed: float = math.inf
 
-    def command(self, along: float, own: OwnMotion, guarding: bool, /) -> float:  # noqa: ARG002 - of the Protocol
-        """Return the airspeed to command [m/s], also while the keep-out guard turns the vehicle away.
+    def command(self, along: float, own: OwnMotion, guarding: bool, /) -> float:
+        """Return the airspeed to command [m/s].
 
         Parameters
         ----------
         along : how far the reference is ahead, along its course [m]
         own : the vehicle's motion
+        guarding : whether the keep-out guard turns the vehicle away
         """
-        return airspeed_to_hold(self.hold, along=along, reference_speed=self.speed, speed=own.speed, airspeed=own.airspeed)
+        command = airspeed_to_hold(self.hold, along=along, reference_speed=self.speed, speed=own.speed, airspeed=own.airspeed)
+        return self.turn_speed if guarding and command > self.turn_speed else command
 
 
 def air_turn(heading_rate: float, *, speed: float, airspeed: float) -> float:

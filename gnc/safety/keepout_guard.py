@@ -42,6 +42,7 @@ class KeepoutGuard:
 
     Attributes
     ----------
+    turn_speed : as above
     tubes : discs that contain the vessel; whoever knows of it sets them, the one known best first
     intervening : whether the last command was changed
     interventions : how often interventions began
@@ -61,7 +62,6 @@ class KeepoutGuard:
         "_side",
         "_speed_error",
         "_time_step",
-        "_turn_speed",
         "_turn_time",
         "_under_way",
         "_until_acting",
@@ -69,6 +69,7 @@ class KeepoutGuard:
         "interventions",
         "lost",
         "tubes",
+        "turn_speed",
     )
 
     def __init__(
@@ -84,7 +85,7 @@ class KeepoutGuard:
         drift_rate: float = 0.0,
         turn_speed: float = math.inf,
     ) -> None:
-        self._radius, self._deviation, self._turn_speed = radius, deviation, turn_speed
+        self._radius, self._deviation, self.turn_speed = radius, deviation, turn_speed
         self._rate, self._time_step = heading_rate_max, time_step
         self._lag, self._until_acting = lag, delay
         self._under_way: deque[float] = deque(maxlen=commands_under_way(delay, time_step))
@@ -193,7 +194,7 @@ class KeepoutGuard:
     def _free_when_far(self, motion: Motion) -> float:
         """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
         x, y, velocity_north, velocity_east, _, speed, _, radius, growth, acceleration = motion
-        duration = self._turn_time * max(1.0, speed / self._turn_speed)
+        duration = self._turn_time * max(1.0, speed / self.turn_speed)
         closing = speed + math.hypot(velocity_north, velocity_east) + growth
         gap = math.hypot(x, y) - radius - (closing + 0.5 * acceleration * duration) * duration
         return min(gap / (closing + 1.5 * acceleration * duration), duration)

@@ -156,7 +156,7 @@ def _guidance(
         speed=g.airspeed_mps,
         altitude=scenario.plume.source_height_m,
         tracking=tracking,
-        airspeed_law=PaceHold(speed=g.airspeed_mps, hold=hold),
+        airspeed_law=PaceHold(speed=g.airspeed_mps, hold=hold, turn_speed=setup.turning_airspeed(omega_max(g))),
         navigation=navigation_parameters(scenario, setup),
         vessel=ReportedVessel(filter=filter_parameters(scenario.reports), limits=limits),
         guard=guard,
