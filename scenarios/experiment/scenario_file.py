@@ -14,7 +14,19 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
     for section, values in document.items():
         if isinstance(values, dict):
             document[section] = {key: value for key, value in values.items() if not unused(alone, f"{section}.{key}")}
-    for experiment in ("method", "sampling", "statistics", "subset", "search", "comparison", "sweep", "cases", "draws"):
+    for experiment in (
+        "method",
+        "sampling",
+        "statistics",
+        "subset",
+        "search",
+        "comparison",
+        "sweep",
+        "cases",
+        "draws",
+        "laws",
+        "arena",
+    ):
         document.pop(experiment)
     # The random variables have their values, and nothing is sampled again.
     document.pop("speed_ratio")

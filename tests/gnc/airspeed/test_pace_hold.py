@@ -58,3 +58,11 @@ def test_the_pace_is_held_over_the_mean_air_also_while_the_guard_turns_away(guar
     own = SimpleNamespace(speed=18.5, airspeed=20.0)
     held = airspeed_to_hold(HOLD, along=2.0, reference_speed=19.0, speed=18.5, airspeed=20.0)
     assert PaceHold(speed=19.0, hold=HOLD).command(2.0, own, guarding) == held
+
+
+def test_while_the_guard_turns_away_the_vehicle_does_not_become_too_fast_for_its_turn():
+    own = SimpleNamespace(speed=18.5, airspeed=20.0)
+    law = PaceHold(speed=19.0, hold=HOLD, turn_speed=21.0)
+    assert law.command(20.0, own, False) > 21.0
+    assert law.command(20.0, own, True) == 21.0
+    assert law.command(0.0, own, True) == law.command(0.0, own, False) < 21.0

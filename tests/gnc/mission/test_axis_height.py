@@ -3,32 +3,18 @@
 import pytest
 
 from gnc.mission.axis_height import AxisHeight
-from measurement.emission.emission import emission_of
-from measurement.emission.fuel import fuel_preset
-from measurement.emission.ship import ship_preset
-from measurement.plume.rise import rise
 
-CONTAINER = emission_of(ship_preset("container"), fuel_preset("mgo"), speed=12.0)
-RISING = AxisHeight(source=35.0, momentum_flux=CONTAINER.momentum_flux, buoyancy_flux=CONTAINER.buoyancy_flux)
+RISING = AxisHeight(source=35.0, momentum_flux=124.0, buoyancy_flux=49.6)
+"""The worked example of the specification of the measurement (measurement.md, section 2)."""
 
 
 @pytest.mark.parametrize(
     ("speed", "distance", "height"),
-    # measurement.md, section 2, the worked example's column "axis m".
     [(5.0, 200.0, 77.0), (5.0, 500.0, 111.0), (10.0, 200.0, 57.0), (10.0, 500.0, 73.0), (20.0, 200.0, 47.0), (20.0, 500.0, 55.0)],
 )
 def test_it_is_that_of_the_worked_example(speed, distance, height):
-    # The table is printed to a metre, and the container's fluxes are those of the example to a percent.
-    assert RISING.at(distance, speed) == pytest.approx(height, abs=0.7)
-
-
-@pytest.mark.parametrize("speed", [3.0, 8.0, 19.0])
-def test_it_is_the_rise_of_the_measurement_in_neutral_air(speed):
-    assert RISING.at(300.0, speed) - 35.0 == pytest.approx(float(rise_of(speed)), rel=1e-9)
-
-
-def rise_of(speed):
-    return rise(CONTAINER, speed, 300.0 / speed)
+    # The table is printed to a metre.
+    assert RISING.at(distance, speed) == pytest.approx(height, abs=0.5)
 
 
 def test_without_heat_it_is_a_straight_line():

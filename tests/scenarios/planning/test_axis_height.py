@@ -1,0 +1,28 @@
+"""The guidance expects the exhaust where the measurement lets it rise to, at the load that it expects."""
+
+import pytest
+
+from measurement.plume.rise import rise
+from scenarios.planning.axis_height import axis_height
+from scenarios.schema.load import load_study
+from scenarios.world.exhaust import emission
+from scenarios.world.vessel import SteadyVessel
+
+
+@pytest.mark.parametrize("speed", [3.0, 8.0, 19.0])
+def test_it_is_the_rise_of_the_measurement_in_neutral_air(speed):
+    scenario = load_study("sulphur", ["emission.load=0.2", "flight.altitude_max_m=400"])
+    expected = axis_height(scenario, SteadyVessel(12.0, 0.7))
+    # The true load is another one, of which the guidance knows nothing.
+    emitted = emission(scenario, speed=12.0)
+    assert expected.at(300.0, speed) - 35.0 == pytest.approx(float(rise(emitted, speed, 300.0 / speed)), rel=1e-9)
+
+
+def test_it_stays_within_the_altitudes_of_the_flight():
+    expected = axis_height(load_study("sulphur"), SteadyVessel(12.0, 0.0))
+    assert expected.at(2000.0, 2.0) == 120.0
+
+
+def test_without_exhaust_it_is_the_elevation_that_is_given():
+    expected = axis_height(load_study("sea_wind", ["plume.elevation_deg=10"]), SteadyVessel(8.0, 0.0))
+    assert expected.at(200.0, 9.0) == pytest.approx(60.0 + 35.265, abs=1e-3)
