@@ -256,7 +256,7 @@ class ArenaConfig(Section):
     resamples: Annotated[int, Field(ge=100, le=1_000_000)] = 2000
     """Resamples of the paired bootstrap [-]."""
     limits: tuple[tuple[float, float], ...] = ()
-    """Most crossings per minute that any path allows, by the speed ratio: pairs of nu [-] and crossings [1/min]."""
+    """Most crossings per minute that any path allows: pairs of nu [-] and crossings [1/min]; those solved for if empty."""
 
 
 class TrialList(Section):

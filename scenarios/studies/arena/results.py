@@ -10,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.engine.task import Row
+from scenarios.planning.theory import crossing_limit
 from scenarios.schema.experiment import ArenaConfig
+from scenarios.schema.scenario import Scenario
 from scenarios.statistics.paired_bootstrap import paired_estimates
 from scenarios.studies.arena.entrants import TRACKING, Entrant, Refused
 
@@ -90,11 +92,17 @@ def estimates(
     return found
 
 
-def limits(rows: Mapping[str, Sequence[Row]], arena: ArenaConfig) -> dict[str, float]:
-    """Return the most crossings per minute that any path allows, in the mean over a condition's flights, where they are given."""
-    if not arena.limits:
+def limits(rows: Mapping[str, Sequence[Row]], scenario: Scenario) -> dict[str, float]:
+    """Return the most crossings per minute that any path allows, in the mean over a condition's flights.
+
+    They are those that the scenario gives, or those of the optimum, where it was solved for the aircraft's bank and roll rate.
+    """
+    if scenario.arena.limits:
+        ratios, most = (np.array(values) for values in zip(*sorted(scenario.arena.limits), strict=True))
+    elif solved := crossing_limit(scenario.guidance):
+        ratios, most = np.array(solved["limit_nu"]), 60.0 / np.array(solved["crossing_interval_limit_s"])
+    else:
         return {}
-    ratios, most = (np.array(values) for values in zip(*sorted(arena.limits), strict=True))
     found = {}
     for condition, of in rows.items():
         flown = [row["speed_ratio_mean"] for row in of if "speed_ratio_mean" in row]
