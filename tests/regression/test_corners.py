@@ -25,10 +25,16 @@ GUSTS = [
 WITHOUT_SATELLITES = ["sea_wind", "flights=3", "fault.kind=satellite_navigation", "flight.duration_max_s=280", "flight.crossings=0"]
 STEEP = ["sweep_nu", "sweep.nu=[0.1,0.6]", "start.spread_deg=180", "guidance.bank_deg=49.9", "flight.crossings=4"]
 
+FAST = [
+    "sea_wind", "guidance.law=constant_bearing", "flights=4", "speed_ratio=[0.3,0.7]", "flight.duration_max_s=130",
+    "flight.crossings=0",
+]  # fmt: skip
+"""A law that does not track: the aircraft falls behind, and is commanded an airspeed at which it cannot turn at omega_max."""
+
 
 @pytest.mark.parametrize(
-    "settings", [SILENT_BRAKING, ORDINARY_REPORTS, GUSTS, WITHOUT_SATELLITES, STEEP],
-    ids=["silent braking", "ordinary reports", "gusts", "no satellites", "steep banks"],
+    "settings", [SILENT_BRAKING, ORDINARY_REPORTS, GUSTS, WITHOUT_SATELLITES, STEEP, FAST],
+    ids=["silent braking", "ordinary reports", "gusts", "no satellites", "steep banks", "fast"],
 )  # fmt: skip
 def test_corners_that_a_search_has_found_are_kept_out_of(settings, tmp_path):
     name, *overrides = settings
