@@ -50,7 +50,8 @@ def _accuracy_groups(rows: pd.DataFrame) -> Iterator[tuple[Json, pd.DataFrame]]:
         for method, prefix in METHODS.items():
             figures = {f"{prefix}_{of}percent": f"{of}percent" for of in _FIGURES}
             known = [name for name in ("fsc_fuel_percent", "fsc_expected_percent", *figures) if name in of_sensor]
-            named = of_sensor[known].rename(columns=figures).dropna(subset="percent")
+            # A flight without a result, or without its uncertainty, says nothing of either.
+            named = of_sensor[known].rename(columns=figures).astype(np.float64).dropna()
             if len(named):
                 yield {"sensor": str(sensor), "method": method, "fsc_fuel_percent": None}, named
             for _, group in named.groupby("fsc_fuel_percent"):

@@ -51,3 +51,10 @@ def test_sensors_are_apart_and_fuels_are_points_of_the_operating_curve():
 def test_without_a_result_there_is_nothing_to_state():
     nothing = rows([0.0]).assign(fsc_percent=None)
     assert sulphur_statistics(nothing, confidence=0.95)["accuracy"] == []
+
+
+def test_a_flight_whose_uncertainty_is_not_known_is_left_out():
+    table = rows([0.01, 0.03])
+    table.loc[1, "fsc_uncertainty_percent"] = float("nan")
+    (entry,) = sulphur_statistics(table, confidence=0.95)["accuracy"]
+    assert (entry["flights"], entry["bias_percent"]) == (1, pytest.approx(0.01))
