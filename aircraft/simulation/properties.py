@@ -5,6 +5,9 @@ from dataclasses import replace
 from aircraft.simulation.state import RigidBodyState
 from common.units import METRES_PER_FOOT
 
+CLOCK = "simulation/sim-time-sec"
+"""Time since the aircraft was placed last [s]."""
+
 EARTH_RATE = 7.292115e-5
 """Rotation rate of the earth, as in JSBSim's default planet [rad/s]."""
 

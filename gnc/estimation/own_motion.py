@@ -138,5 +138,6 @@ class EstimatedNavigation:
         self.ground_north, self.ground_east = north, east = navigation.north, navigation.east
         self.drift_north, self.drift_east = navigation.drift_north, navigation.drift_east
         self.north, self.east = north - self.drift_north, east - self.drift_east
-        self.air_ratio = max(airspeed, _SPEED_MIN) / max(self.speed, _SPEED_MIN)
-        self.heading_rate = heading_rate * self.air_ratio
+        speed = self.speed
+        self.air_ratio = ratio = (airspeed if airspeed > _SPEED_MIN else _SPEED_MIN) / (speed if speed > _SPEED_MIN else _SPEED_MIN)
+        self.heading_rate = heading_rate * ratio

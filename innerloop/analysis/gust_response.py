@@ -40,7 +40,7 @@ def gust_loop(schedule: Schedule, index: int, bank_index: int) -> control.StateS
     models = schedule.models[index]
     trim = schedule.gain_trim(index, bank_index)
     aircraft = aircraft_in_gusts(models[bank_index], trim, models[LEVEL_GAINS])
-    return closed_loop(aircraft, linear_controller(ControlLaw(schedule), trim))
+    return closed_loop(aircraft, linear_controller(ControlLaw(schedule), trim), schedule.delay)
 
 
 def aircraft_in_gusts(model: control.StateSpace, trim: Trim, level_model: control.StateSpace) -> control.StateSpace:

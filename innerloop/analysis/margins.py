@@ -16,7 +16,6 @@ import numpy.typing as npt
 from slycot import ab13md
 
 from innerloop.law.control_law import COMMANDS
-from innerloop.synthesis.weights import DELAY
 
 SENSOR_BREAKS = ("airspeed", "altitude", "heading_rate", "beta")
 """Measurements at which the loop is opened, besides the controls."""
@@ -28,7 +27,8 @@ ALL_CONTROLS = "all controls"
 """Name of the margins for simultaneous changes in every control."""
 
 _MU_STRIDE = 4
-"""Stride over the frequencies of the structured singular value, which takes a hundred times as long as a gain [-]."""
+"""Stride over the frequencies of the structured singular value, which takes a hundred times as long as a gain [-]; all
+frequencies about its peak are looked at."""
 
 FREQUENCIES = np.logspace(-3.0, 2.4, 300)
 """Frequencies at which loops are evaluated [rad/s]: from below any integral action to beyond any servo."""
@@ -77,7 +77,7 @@ class Loops:
         self,
         aircraft: control.StateSpace,
         autopilot: control.StateSpace,
-        delay: float = DELAY,
+        delay: float,
         frequencies: Array = FREQUENCIES,
     ) -> None:
         self._aircraft, self._autopilot, self._delay = aircraft, autopilot, delay
@@ -142,15 +142,17 @@ class Loops:
         """Return disk margins for independent changes in all controls, by the structured singular value."""
         n = len(self.controls)
         one, complex_block = np.ones(n, dtype=int), np.full(n, 2)
-        balanced = self._sensitivity[::_MU_STRIDE] - 0.5 * np.eye(n)
+        balanced = self._sensitivity - 0.5 * np.eye(n)
         # The largest singular value bounds the structured one from above: below the largest found, none need be computed.
         bounds = np.linalg.norm(balanced, 2, axis=(1, 2))
-        mu = 0.0
-        for k in np.argsort(-bounds):
+        mu, peak = 0.0, 0
+        coarse = np.arange(0, len(bounds), _MU_STRIDE)
+        for k in coarse[np.argsort(-bounds[coarse])]:
             if bounds[k] <= mu:
                 break
-            mu = max(mu, float(ab13md(balanced[k], one, complex_block)[0]))
-        return _disk(1.0 / mu)
+            mu, peak = max((mu, peak), (float(ab13md(balanced[k], one, complex_block)[0]), int(k)))
+        beside = range(max(0, peak - _MU_STRIDE + 1), min(len(bounds), peak + _MU_STRIDE))
+        return _disk(1.0 / max(float(ab13md(balanced[k], one, complex_block)[0]) for k in beside))
 
 
 Matrices = tuple[Array, Array, Array, Array]
@@ -223,10 +225,10 @@ def _ordered(x: Array, y: Array) -> tuple[Array, Array]:
     return x[order], y[order]
 
 
-def closed_loop(aircraft: control.StateSpace, autopilot: control.StateSpace, delay: float = DELAY) -> control.StateSpace:
+def closed_loop(aircraft: control.StateSpace, autopilot: control.StateSpace, delay: float) -> control.StateSpace:
     """Return the closed loop from the autopilot's commands to every output of the aircraft and to the controls.
 
-    The aircraft's other inputs, such as gusts, follow the commands.
+    The aircraft's other inputs, such as gusts, follow the commands. The ``delay`` is that between measurement and servo [s].
     """
     controls: Sequence[str] = autopilot.output_labels
     others = [name for name in aircraft.input_labels if name not in controls]

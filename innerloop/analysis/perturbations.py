@@ -9,9 +9,7 @@ import numpy.typing as npt
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.linearise import BODY_STATES
-from aircraft.simulation.fdm import TIME_STEP
 from common.units import STANDARD_GRAVITY
-from innerloop.synthesis.weights import DELAY
 
 NOMINAL = "as modelled"
 
@@ -120,14 +118,14 @@ def with_matrices(
     return control.ss(a, b, c, d, states=model.state_labels, inputs=model.input_labels, outputs=model.output_labels)
 
 
-CASES: dict[str, tuple[Change, float]] = {
-    NOMINAL: (_unchanged, DELAY),
-    "control effectiveness +20 %": (_effectiveness(1.2), DELAY),
-    "control effectiveness -20 %": (_effectiveness(0.8), DELAY),
-    "mass +20 %": (_mass(1.2), DELAY),
-    "mass -20 %": (_mass(0.8), DELAY),
-    "inertia +20 %": (_inertia(1.2), DELAY),
-    "inertia -20 %": (_inertia(0.8), DELAY),
-    "one more step of delay": (_unchanged, DELAY + TIME_STEP),
+CASES: dict[str, tuple[Change, int]] = {
+    NOMINAL: (_unchanged, 0),
+    "control effectiveness +20 %": (_effectiveness(1.2), 0),
+    "control effectiveness -20 %": (_effectiveness(0.8), 0),
+    "mass +20 %": (_mass(1.2), 0),
+    "mass -20 %": (_mass(0.8), 0),
+    "inertia +20 %": (_inertia(1.2), 0),
+    "inertia -20 %": (_inertia(0.8), 0),
+    "one more step of delay": (_unchanged, 1),
 }
-"""Each perturbation by name: the change of the linear aircraft, and the delay between measurement and servo [s]."""
+"""Each perturbation by name: the change of the linear aircraft, and by how many of its steps the autopilot is late."""

@@ -11,6 +11,7 @@ from innerloop.analysis.margins import ALL_CONTROLS, Loops, Margin
 from innerloop.analysis.perturbations import CASES, NOMINAL, Change, matrices, with_matrices
 from innerloop.law.control_law import ControlLaw
 from innerloop.law.linear_controller import linear_controller
+from innerloop.synthesis.rate import loop_delay
 from innerloop.synthesis.schedule import GAIN_BANKS, TRIM_BANKS, Schedule
 
 
@@ -174,9 +175,10 @@ def check_design(schedule: Schedule, *, changed: bool = True) -> list[Check]:
     return [check for point in operating_points(schedule) for check in _checks(law, point, cases)]
 
 
-def _checks(law: ControlLaw, point: OperatingPoint, cases: "dict[str, tuple[Change, float]]") -> Iterator[Check]:
+def _checks(law: ControlLaw, point: OperatingPoint, cases: "dict[str, tuple[Change, int]]") -> Iterator[Check]:
     autopilot = linear_controller(law, point.trim)
-    for case, (change, delay) in cases.items():
+    for case, (change, late) in cases.items():
+        delay = loop_delay(law.schedule.period, late)
         loops = Loops(change(point.model, point.trim), autopilot, delay)
         yield Check(
             case=case,

@@ -1,7 +1,7 @@
 """From an aircraft to its autopilot: trim, linearise, weigh, design, check; slow loops down, or refuse."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import control
 
@@ -14,8 +14,11 @@ from aircraft.dynamics.trim import trim
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec, Envelope
+from innerloop.analysis.margins import ALL_CONTROLS
+from innerloop.analysis.perturbations import NOMINAL
 from innerloop.analysis.robustness import REQUIRED, Check, check_design
 from innerloop.synthesis.gains import design_gains
+from innerloop.synthesis.rate import PERIODS
 from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL, LEVEL_GAINS, TRIM_BANKS, Schedule, table_banks
 from innerloop.synthesis.weights import LoopBandwidths, control_weights, design_weights, reachable_bandwidths
 
@@ -25,6 +28,11 @@ _SLOWER = 0.8
 _ATTEMPTS = 10
 """Number of designs after which an aircraft is refused: the last is at 13 % of the first bandwidths."""
 
+_PHASE_LOSS_MAX = 5.0
+"""Phase margin that any loop may lose because the autopilot does not compute at every time step [deg]."""
+
+_NO_CROSSOVER = 180.0
+"""Phase margin that a loop counts as having if its gain never crosses 1 [deg]."""
 
 _LATERAL_LOOPS = ("aileron", "rudder", "heading_rate", "sideslip")
 _AIRSPEED_LOOPS = ("throttle", "airspeed")
@@ -70,7 +78,8 @@ class Grid:
 def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
     """Design the autopilot of an aircraft at ``altitude`` [m].
 
-    Loops start as fast as the aircraft can follow and are slowed, one axis at a time, until every margin holds.
+    Loops start as fast as the aircraft can follow and are slowed, one axis at a time, until every margin holds. The
+    autopilot then computes as seldom as no margin prevents.
 
     Raises
     ------
@@ -85,6 +94,7 @@ def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
         checks = check_design(schedule)
         short = [check for check in checks if not check.met]
         if not short:
+            schedule, checks = _computed_seldom(schedule, checks)
             return Design(schedule=schedule, bandwidths=bandwidths, checks=tuple(checks))
         bandwidths = _slowed(bandwidths, short)
     worst = min(short, key=lambda check: check.shortfall)
@@ -133,6 +143,36 @@ def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
         trims=grid.trims,
         models=grid.models,
         gains=tuple(gains),
+        period=PERIODS[0],
+    )
+
+
+def _computed_seldom(schedule: Schedule, checks: list[Check]) -> tuple[Schedule, list[Check]]:
+    """Return the design with the longest of ``PERIODS`` that margins allow, and its margins.
+
+    Every margin is as required then too, perturbed or not, and no loop has lost more than ``_PHASE_LOSS_MAX``.
+
+    Parameters
+    ----------
+    schedule, checks : of the shortest period
+    """
+    often = [check for check in checks if check.case == NOMINAL]
+    for period in reversed(PERIODS[1:]):
+        slower = replace(schedule, period=period)
+        if phase_loss(often, check_design(slower, changed=False)) <= _PHASE_LOSS_MAX:
+            found = check_design(slower)
+            if all(check.met for check in found):
+                return slower, found
+    return schedule, checks
+
+
+def phase_loss(before: Sequence[Check], after: Sequence[Check]) -> float:
+    """Return the largest loss of a loop's phase margin from the checks of one design to those of another [deg]."""
+    return max(
+        min(was.phase_deg, _NO_CROSSOVER) - min(now.phase_deg, _NO_CROSSOVER)
+        for first, second in zip(before, after, strict=True)
+        for was, now in zip(first.margins, second.margins, strict=True)
+        if was.loop != ALL_CONTROLS
     )
 
 

@@ -182,7 +182,7 @@ def _poles(schedule: Schedule) -> list[Record]:
             "airspeed_mps": t.airspeed,
             "bank_rad": schedule.gain_banks[j],
             "open_loop": _pairs(model.poles()),
-            "closed_loop": _pairs(Loops(model, linear_controller(law, t)).poles()),
+            "closed_loop": _pairs(Loops(model, linear_controller(law, t), schedule.delay).poles()),
         }
         for i, row in enumerate(schedule.models)
         for j, model in enumerate(row)
@@ -197,7 +197,7 @@ def _pairs(poles: Any) -> list[list[float]]:
 def _loops(schedule: Schedule) -> list[Record]:
     level = schedule.level(schedule.middle)
     model = schedule.models[schedule.middle][LEVEL_GAINS]
-    loops = Loops(model, linear_controller(ControlLaw(schedule), level), frequencies=_FREQUENCIES)
+    loops = Loops(model, linear_controller(ControlLaw(schedule), level), schedule.delay, frequencies=_FREQUENCIES)
     records = []
     for name in loops.breaks:
         response = loops.opened(name)

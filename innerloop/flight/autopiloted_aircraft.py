@@ -10,6 +10,7 @@ from aircraft.atmosphere.wind import windy_run
 from aircraft.errors import AircraftError
 from aircraft.simulation.faults import Faults, failable_root
 from aircraft.simulation.fdm import Fdm
+from aircraft.simulation.properties import CLOCK
 from aircraft.simulation.state import RigidBodyState
 from aircraft.spec import AircraftSpec
 from innerloop.jsbsim.properties import (
@@ -19,7 +20,9 @@ from innerloop.jsbsim.properties import (
     ELEVATOR_HELD,
     HEADING_RATE_COMMAND,
     HELD_ELEVATOR,
+    PERIOD,
     RESET,
+    hold_steps,
 )
 
 
@@ -51,6 +54,7 @@ class AutopilotedAircraft:
         self.command_airspeed: Callable[[float], object] = self.fdm.writable_node(AIRSPEED_COMMAND).set_double_value
         self.command_altitude: Callable[[float], object] = self.fdm.writable_node(ALTITUDE_COMMAND).set_double_value
         self.command_heading_rate: Callable[[float], object] = self.fdm.writable_node(HEADING_RATE_COMMAND).set_double_value
+        self._period = round(self.fdm.read(PERIOD))
 
     def release(self, state: RigidBodyState, *, airspeed: float, altitude: float, weather: Weather | None = None) -> None:
         """Start a new flight from a straight and level equilibrium, commanded to stay in it.
@@ -73,7 +77,10 @@ class AutopilotedAircraft:
         self.fdm.write(ELEVATOR_HELD, 0.0)
         self.fdm.write(RESET, -1.0)
         wind = weather.wind.now(0.0, altitude) if weather else None
-        self.fdm.hold(state, round(self.fdm.spec.settle_time / self.fdm.time_step), wind)
+        # JSBSim counts the autopilot's steps on from one flight to the next. Its clock tells where in a period that ended.
+        if remaining := -round(self.fdm.read(CLOCK) / self.fdm.time_step) % self._period:
+            self.fdm.hold(state, remaining, wind)
+        self.fdm.hold(state, hold_steps(self.fdm.spec, self._period), wind)
         self.fdm.write(RESET, 0.0)
         self.fdm.write(HELD_ELEVATOR, self.fdm.read(CONTROL_COMMAND.format("elevator")))
         if self._faults:

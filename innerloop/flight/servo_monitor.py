@@ -47,7 +47,10 @@ class ServoMonitor:
         """Return the largest distance of a surface from its recent commands, over its travel [-]; call once a step."""
         worst = 0.0
         for command, position, travel, recent in self._surfaces:
-            recent.append(command())
-            at = position() / travel
-            worst = max(worst, at - max(recent), min(recent) - at)
+            now, at = command(), position() / travel
+            recent.append(now)
+            oldest = recent[0]
+            # Between the oldest and the newest of its commands a surface is at no distance from them.
+            if not (oldest <= at <= now or now <= at <= oldest):
+                worst = max(worst, at - max(recent), min(recent) - at)
         return worst

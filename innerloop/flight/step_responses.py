@@ -69,7 +69,7 @@ class Response:
 def predicted_step(schedule: Schedule, index: int, command: str, size: float, duration: float) -> Response:
     """Return the linear design's response to a step of ``size`` [SI] at design airspeed ``index``."""
     autopilot = linear_controller(ControlLaw(schedule), schedule.level(index))
-    loop = closed_loop(schedule.models[index][LEVEL_GAINS], autopilot)
+    loop = closed_loop(schedule.models[index][LEVEL_GAINS], autopilot, schedule.delay)
     time = np.arange(0.0, duration, TIME_STEP)
     answer = control.step_response(loop, time, input=COMMANDS.index(f"{command}_command"), squeeze=False)
     labels = list(loop.output_labels)

@@ -1,5 +1,6 @@
 """JSBSim properties of the autopilot, and its name there."""
 
+from aircraft.simulation.fdm import TIME_STEP
 from aircraft.spec import AircraftSpec, ControlInput
 
 AIRSPEED_COMMAND = "autopilot/airspeed-command-mps"
@@ -13,8 +14,26 @@ CONTROL_COMMAND = "autopilot/{}-command"
 RESET = "autopilot/reset"
 """Negative to hold every integrator at 0, otherwise 0."""
 
+PERIOD = "autopilot/period-steps"
+"""Time steps from one computation of the autopilot to the next."""
+
 ELEVATOR_HELD, HELD_ELEVATOR = "autopilot/elevator-held", "autopilot/held-elevator"
 """1 to hold the elevator instead of flying with it, otherwise 0; and where to hold it [-]."""
+
+
+def hold_steps(spec: AircraftSpec, period: int) -> int:
+    """Return for how many time steps a body is held before its release, while servos and engines settle.
+
+    These are whole periods of the autopilot, so that it computes in the last of them: what guidance and record read a
+    whole number of periods later is of that very moment.
+
+    Parameters
+    ----------
+    spec : the aircraft
+    period : time steps from one computation of the autopilot to the next
+    """
+    settle = round(spec.settle_time / TIME_STEP)
+    return settle + -settle % period
 
 
 def system_name(spec: AircraftSpec) -> str:

@@ -20,7 +20,15 @@ from aircraft.simulation.properties import (
 )
 from aircraft.spec import Envelope
 from common.units import STANDARD_GRAVITY
-from innerloop.jsbsim.properties import AIRSPEED_COMMAND, ALTITUDE_COMMAND, BANK_COMMAND, HEADING_RATE, HEADING_RATE_COMMAND, RESET
+from innerloop.jsbsim.properties import (
+    AIRSPEED_COMMAND,
+    ALTITUDE_COMMAND,
+    BANK_COMMAND,
+    HEADING_RATE,
+    HEADING_RATE_COMMAND,
+    RESET,
+    hold_steps,
+)
 from innerloop.synthesis.schedule import Schedule
 
 OUTPUT_RATE = 20.0
@@ -142,7 +150,7 @@ def write_script(schedule: Schedule, root: Path, *, commands: Sequence[Command] 
     _check(fdm, commands)
     name = f"{spec.model}_autopilot"
     (root / "aircraft" / spec.model / f"{name}_init.xml").write_text(_INITIALISATION.format(name=name), encoding="utf-8")
-    held, preparations = _preparations(fdm)
+    held, preparations = _preparations(fdm, schedule.period)
     release = [*((integrator, fdm.read(integrator)) for integrator in INTEGRATORS), (RESET, 0.0)]
     events = [
         *preparations,
@@ -167,9 +175,9 @@ def write_script(schedule: Schedule, root: Path, *, commands: Sequence[Command] 
     return script
 
 
-def _preparations(fdm: Fdm) -> tuple[int, list[str]]:
+def _preparations(fdm: Fdm, period: int) -> tuple[int, list[str]]:
     """Return for how many steps the body is held before release, and the events in that time."""
-    settle = round(fdm.spec.settle_time / TIME_STEP)
+    settle = hold_steps(fdm.spec, period)
     run_up = 2 * RUN_UP_STEPS if fdm.spec.engine_flags else 0
     held = settle + run_up
     still = [(integrator, 0.0) for integrator in INTEGRATORS]

@@ -21,11 +21,13 @@ from innerloop.jsbsim.properties import (
     HEADING_RATE,
     HEADING_RATE_COMMAND,
     HELD_ELEVATOR,
+    PERIOD,
     RESET,
     commanded_property,
     system_name,
 )
 from innerloop.jsbsim.xml import (
+    channel,
     clipped,
     function,
     integrator,
@@ -56,11 +58,7 @@ _ROLL = "attitude/phi-rad"
 
 def system_xml(schedule: Schedule) -> str:
     """Return the autopilot as a JSBSim ``<system>`` document."""
-    channels = {
-        "Measurements": _measurements(schedule),
-        "Airspeed and altitude": _longitudinal(schedule),
-        "Heading rate": _lateral(schedule),
-    }
+    parts = {"Measurements": _measurements, "Airspeed and altitude": _longitudinal, "Heading rate": _lateral}
     commands = "\n".join(
         f'<property value="{value:.9g}">{name}</property>'
         for name, value in (
@@ -70,9 +68,11 @@ def system_xml(schedule: Schedule) -> str:
             (RESET, 0.0),
             (ELEVATOR_HELD, 0.0),
             (HELD_ELEVATOR, 0.0),
+            (PERIOD, schedule.period),
         )
     )
-    body = "\n".join(f'<channel name="{name}">\n' + "\n".join(components) + "\n</channel>" for name, components in channels.items())
+    # The integrators of a channel that runs every few time steps integrate over as many.
+    body = "\n".join(channel(name, schedule.period, components(schedule)) for name, components in parts.items())
     document = ET.fromstring(f'<system name="{system_name(schedule.spec)}">\n{commands}\n{body}\n</system>')
     ET.indent(document)
     note = "<!-- Written by innerloop.jsbsim.system; design it again rather than editing. -->"

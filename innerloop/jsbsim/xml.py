@@ -70,6 +70,11 @@ def function(name: str, expression: str, outputs: Sequence[str] = ()) -> str:
     return f'<fcs_function name="{name}"><function>{expression}</function>{extra}</fcs_function>'
 
 
+def channel(name: str, period: int, components: Sequence[str]) -> str:
+    """Return a channel whose components run every ``period`` time steps."""
+    return f'<channel name="{name}" execrate="{period}">\n' + "\n".join(components) + "\n</channel>"
+
+
 def integrator(name: str, source: str, reset: str) -> str:
     """Return a component that integrates property ``source`` by the trapezoidal rule, held at 0 while ``reset`` is
     negative.

@@ -13,6 +13,7 @@ from aircraft.dynamics.equilibrium import Trim
 from aircraft.spec import AircraftSpec, Envelope
 from common.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import Gains
+from innerloop.synthesis.rate import loop_delay
 from innerloop.synthesis.weights import DesignWeights
 
 TRIM_BANKS = (-1.0, -0.82, -0.64, -0.4, 0.0, 0.4, 0.64, 0.82, 1.0)
@@ -41,6 +42,7 @@ class Schedule:
     trims : equilibria by airspeed, then by bank in the order of ``TRIM_BANKS``
     models : linear models by airspeed, then by bank in the order of ``GAIN_BANKS``
     gains : as ``models``
+    period : time steps from one computation of the autopilot to the next
     """
 
     spec: AircraftSpec
@@ -51,6 +53,7 @@ class Schedule:
     trims: tuple[tuple[Trim, ...], ...]
     models: tuple[tuple[control.StateSpace, ...], ...]
     gains: tuple[tuple[Gains, ...], ...]
+    period: int
 
     @property
     def banks(self) -> tuple[float, ...]:
@@ -66,6 +69,11 @@ class Schedule:
     def middle(self) -> int:
         """Return the index of the middle design airspeed."""
         return len(self.airspeeds) // 2
+
+    @property
+    def delay(self) -> float:
+        """Return the delay between measurement and servo [s]."""
+        return loop_delay(self.period)
 
     @property
     def controls(self) -> tuple[str, ...]:

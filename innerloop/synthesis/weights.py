@@ -12,15 +12,13 @@ from dataclasses import dataclass
 
 import control
 
-from aircraft.simulation.fdm import TIME_STEP
 from common.units import STANDARD_GRAVITY
 from innerloop.synthesis.quasi_static import quasi_static, state_lag
-
-DELAY = 1.5 * TIME_STEP
-"""One step of computing and half a step of hold between measurement and servo [s]."""
+from innerloop.synthesis.rate import PERIODS, loop_delay
 
 _LAG_PHASE = 0.18
-"""Phase that a loop may lose to its servo and the computing delay at its frequency [rad]: 10 degrees."""
+"""Phase that a loop may lose to its servo and the computing delay at its frequency, if the autopilot computes at every
+time step [rad]: 10 degrees."""
 
 _AUTHORITY_FRACTION = 0.5
 """Fraction of the control authority that a step of a command may take [-]: the rest is for gusts and feedback."""
@@ -172,19 +170,19 @@ def _reachable(model: control.StateSpace, bank: float) -> LoopBandwidths:
     def b(row: str, column: str) -> float:
         return abs(float(plant.B[plant.state_labels.index(row), plant.input_labels.index(column)]))
 
-    roll_step = _BANK_STEP_FRACTION * bank
+    delay, roll_step = loop_delay(PERIODS[0]), _BANK_STEP_FRACTION * bank
     lateral = min(
-        _LAG_PHASE / (state_lag(model, "aileron") + DELAY),
+        _LAG_PHASE / (state_lag(model, "aileron") + delay),
         math.sqrt(_AUTHORITY_FRACTION * b("p", "aileron") / roll_step),
         _AUTHORITY_FRACTION * b("p", "aileron") / (abs(a("p", "p")) * _PEAK_RATE * roll_step),
     )
     longitudinal = min(
-        _LAG_PHASE / (state_lag(model, "elevator") + DELAY),
+        _LAG_PHASE / (state_lag(model, "elevator") + delay),
         math.sqrt(_AUTHORITY_FRACTION * b("q", "elevator") / _PITCH_STEP),
         _LIFT_FRACTION * abs(a("alpha", "alpha")),
     )
     return LoopBandwidths(
-        lateral=lateral, longitudinal=longitudinal, airspeed=_ENGINE_FRACTION / (state_lag(model, "throttle") + DELAY)
+        lateral=lateral, longitudinal=longitudinal, airspeed=_ENGINE_FRACTION / (state_lag(model, "throttle") + delay)
     )
 
 

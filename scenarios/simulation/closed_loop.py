@@ -48,8 +48,9 @@ def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), 
             airspeed_error = sensing.airspeed_error
         tracker = mission.tracker
         demand, command = abs(tracker.heading_rate_demand), guidance.heading_rate_command
-        demand_max = max(demand_max, demand)
-        command_max = max(command_max, abs(command))
+        demand_max = demand if demand > demand_max else demand_max
+        size = abs(command)
+        command_max = size if size > command_max else command_max
         saturated += tracker.saturated
         if guidance.guarding and guard is not None:
             guarding.append((step, math.hypot(motion[0] - target.north, motion[1] - target.east), guard.lost))

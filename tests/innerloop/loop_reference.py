@@ -6,7 +6,7 @@ import numpy as np
 from innerloop.law.control_law import COMMANDS
 
 PADE_ORDER = 4
-"""Of the delay of 12.5 ms: exact to 1e-6 rad below 50 rad/s, where all crossovers lie."""
+"""Of delays up to 21 ms: exact to 1e-6 rad below 50 rad/s, where all crossovers lie."""
 
 
 def delays(names, delay):
@@ -15,7 +15,7 @@ def delays(names, delay):
     return [control.ss(rational, inputs=[f"{n}_asked"], outputs=[n], name=f"{n}_delay") for n in names]
 
 
-def opened(aircraft, autopilot, name, delay):
+def opened(aircraft, autopilot, delay, name):
     """The loop opened at a control or a measurement, closed elsewhere, for negative feedback."""
     controls = list(autopilot.output_labels)
     plant = control.ss(aircraft, inputs=aircraft.input_labels, outputs=aircraft.output_labels, name="aircraft")

@@ -11,7 +11,7 @@ from loop_reference import closed_poles, opened
 from innerloop.analysis.margins import FREQUENCIES, Loops, closed_loop, loop_margin
 from innerloop.law.control_law import COMMANDS, ControlLaw
 from innerloop.law.linear_controller import linear_controller
-from innerloop.synthesis.weights import DELAY
+from innerloop.synthesis.rate import loop_delay
 
 CONDITIONS = {
     "slow": ("x8", 0, 2),
@@ -31,11 +31,12 @@ CASES = [(condition, name) for condition, (aircraft, *_) in CONDITIONS.items() f
 
 @pytest.fixture(scope="module")
 def systems(designs):
-    """Aircraft and autopilot at each condition."""
+    """Aircraft, autopilot and delay at each condition."""
     found = {}
     for condition, (name, i, j) in CONDITIONS.items():
         schedule = designs(name).design.schedule
-        found[condition] = schedule.models[i][j], linear_controller(ControlLaw(schedule), schedule.gain_trim(i, j))
+        autopilot = linear_controller(ControlLaw(schedule), schedule.gain_trim(i, j))
+        found[condition] = schedule.models[i][j], autopilot, schedule.delay
     return found
 
 
@@ -51,7 +52,7 @@ def margins(systems):
 
 @pytest.fixture(scope="module")
 def loops(systems):
-    return {(condition, name): opened(*systems[condition], name, DELAY) for condition, name in CASES}
+    return {(condition, name): opened(*systems[condition], name) for condition, name in CASES}
 
 
 @pytest.mark.parametrize("condition", CONDITIONS)
@@ -94,17 +95,17 @@ def test_disk_margins_are_those_that_python_control_finds(margins, loops, condit
 
 @pytest.mark.parametrize("condition", CONDITIONS)
 def test_the_disk_margin_at_all_controls_is_that_which_python_control_finds_by_mu(systems, margins, condition):
-    aircraft, autopilot = systems[condition]
+    aircraft, autopilot, late = systems[condition]
     frequencies = FREQUENCIES[(FREQUENCIES > 0.05) & (FREQUENCIES < 60.0)]
     controls = list(autopilot.output_labels)
     rows = [aircraft.output_labels.index(n) for n in autopilot.input_labels if n not in COMMANDS]
     reads = [i for i, n in enumerate(autopilot.input_labels) if n not in COMMANDS]
     plant = control.ss(aircraft.A, aircraft.B, aircraft.C[rows], aircraft.D[rows])
     law = -control.ss(autopilot.A, autopilot.B[:, reads], autopilot.C, autopilot.D[:, reads])
-    delay = control.append(*([control.ss(control.tf(*control.pade(DELAY, 4)))] * len(controls)))
+    delay = control.append(*([control.ss(control.tf(*control.pade(late, 4)))] * len(controls)))
     _, gain_db, phase_deg = control.disk_margins(law * plant * delay, frequencies, skew=0.0)
     # The delay stands elsewhere in the loop, which changes nothing as it is the same in each control.
-    # Every fourth frequency is looked at, and the peak of mu is flat: 2 parts in a thousand.
+    # The peak is sought on every fourth frequency, and then about it: 2 parts in a thousand where two peaks are as high.
     assert margins[condition, "all controls"].disk_gain_db == pytest.approx(gain_db, rel=2e-3)
     assert margins[condition, "all controls"].disk_phase_deg == pytest.approx(phase_deg, rel=2e-3)
     # Only the disk margin is defined for all at once, and to change all is worse than to change one.
@@ -129,8 +130,8 @@ def test_the_loop_stays_stable_up_to_its_gain_margin_and_not_beyond(margins, loo
 @pytest.mark.parametrize(("condition", "name"), CASES)
 def test_the_closed_loops_poles_are_those_of_the_opened_loop_closed(systems, condition, name):
     found = Loops(*systems[condition]).poles()
-    # Slow poles, far below the delay's own (240 rad/s and more), whose order of approximation differs: 2 here, 4 there.
-    slow = [p for p in closed_poles(opened(*systems[condition], name, DELAY)) if abs(p) < 15.0]
+    # Slow poles, far below the delay's own (166 rad/s and more), whose order of approximation differs: 2 here, 4 there.
+    slow = [p for p in closed_poles(opened(*systems[condition], name)) if abs(p) < 15.0]
     assert len(slow) >= 8
     for pole in slow:
         assert np.abs(found - pole).min() < 2e-4 * (1.0 + abs(pole))
@@ -205,16 +206,16 @@ def test_a_loop_without_any_crossing_has_no_margin_to_lose():
 
 
 def test_feedback_of_the_wrong_sign_is_unstable(systems):
-    aircraft, autopilot = systems["middle"]
+    aircraft, autopilot, late = systems["middle"]
     wrong = control.ss(
         autopilot.A, -autopilot.B, autopilot.C, -autopilot.D, inputs=autopilot.input_labels, outputs=autopilot.output_labels
     )
-    assert not Loops(aircraft, wrong).stable
+    assert not Loops(aircraft, wrong, late).stable
 
 
 def test_at_the_delay_where_stability_ends_the_pitching_loops_go_through_minus_one(systems):
-    pair = systems["middle"]
-    stable, unstable = DELAY, 40.0 * DELAY
+    *pair, stable = systems["middle"]
+    unstable = 25.0 * stable
     assert Loops(*pair, stable).stable
     assert not Loops(*pair, unstable).stable
     for _ in range(20):
@@ -227,5 +228,7 @@ def test_at_the_delay_where_stability_ends_the_pitching_loops_go_through_minus_o
         assert np.abs(1.0 + loops.opened(name)).min() < 0.02
 
 
-def test_the_loops_delay_is_one_step_of_computing_and_half_a_step_of_hold():
-    assert pytest.approx(0.0125, abs=1e-12) == DELAY  # at 120 Hz
+def test_the_loops_delay_is_one_step_of_computing_and_half_a_period_of_hold():
+    # At 120, 60 and 40 Hz; and a period later, at 40 Hz.
+    assert [loop_delay(period) for period in (1, 2, 3)] == pytest.approx([1.5 / 120.0, 2.0 / 120.0, 2.5 / 120.0], abs=1e-12)
+    assert loop_delay(3, late=1) == pytest.approx(5.5 / 120.0, abs=1e-12)

@@ -31,7 +31,7 @@ def worst_margins(schedule, root):
     for airspeed in schedule.airspeeds:
         for bank in (schedule.gain_banks[0], 0.0, schedule.gain_banks[-1]):
             point = trim(fdm, airspeed=airspeed, altitude=100.0, bank=bank)
-            loops = Loops(linearise(fdm, point), linear_controller(law, point))
+            loops = Loops(linearise(fdm, point), linear_controller(law, point), schedule.delay)
             margins = loops.margins(together=False)
             stable.append(loops.stable)
             gains.append(min(margin.gain_db for margin in margins))
@@ -71,12 +71,12 @@ def test_the_design_keeps_its_margins_with_the_printed_moments_of_inertia(x8_sch
     assert stable
     assert gain >= REQUIRED.perturbed_gain_db
     assert phase >= REQUIRED.perturbed_phase_deg
-    # Measured: 9.6 dB and 37 degrees; 11.9 dB and 53.5 degrees with the model's.
-    assert (gain, phase) == pytest.approx((9.56, 37.4), abs=0.5)
+    # Measured: 9.0 dB and 35 degrees; 11.5 dB and 53.4 degrees with the model's.
+    assert (gain, phase) == pytest.approx((9.01, 35.1), abs=0.5)
 
 
 def test_the_design_is_stable_with_the_printed_product_of_inertia_too(x8_schedule, x8_with):
-    # Less than is required of an aircraft that can exist: 3.1 dB and 26 degrees.
+    # Less than is required of an aircraft that can exist: 2.6 dB and 22 degrees.
     stable, gain, phase = worst_margins(x8_schedule, x8_with(PRINTED))
     assert stable
-    assert (gain, phase) == pytest.approx((3.1, 26.2), abs=0.5)
+    assert (gain, phase) == pytest.approx((2.63, 22.3), abs=0.5)

@@ -28,7 +28,7 @@ def test_the_record_has_every_operating_point_and_every_loop(record, x8_schedule
     # 25 points and 40 between; three controls, three measurements, and at the points all controls at once.
     assert len(record["margins"]) == 65 * 6 + 25
     level = x8_schedule.level(2)
-    expected = Loops(x8_schedule.models[2][2], linear_controller(ControlLaw(x8_schedule), level)).margins()[0]
+    expected = Loops(x8_schedule.models[2][2], linear_controller(ControlLaw(x8_schedule), level), x8_schedule.delay).margins()[0]
     here = [m for m in record["margins"] if m["airspeed_mps"] == 20.0 and m["bank_rad"] == 0.0]
     loops = ["elevator", "aileron", "throttle", "airspeed", "altitude", "heading_rate", "all controls"]
     assert [m["loop"] for m in here] == loops

@@ -88,3 +88,22 @@ def test_the_measured_heading_rate_is_the_rate_of_the_flown_course(x8_schedule, 
     # Where it turns steadily the two agree to a thousandth of the rate.
     steady = slice(round(5.0 / TIME_STEP), round(5.9 / TIME_STEP))
     assert np.abs(differentiated - flight["heading_rate"][1:-1])[steady].max() < 3e-4
+
+
+def test_the_autopilot_computes_once_in_a_period_and_integrates_over_it(x8_schedule, x8_aircraft):
+    start, period = x8_schedule.level(2), x8_schedule.period
+    x8_aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
+    x8_aircraft.command_heading_rate(0.3)
+    names = ("autopilot/model-jerk", "autopilot/model-acceleration", "autopilot/model-rate")
+    nodes = [x8_aircraft.fdm.node(name) for name in names]
+    rows = [[0.0, 0.0, 0.0]]
+    for _ in range(40 * period):
+        x8_aircraft.fdm.step()
+        rows.append([node.get_double_value() for node in nodes])
+    # It computed in the last step before the release, so that the command acts at the end of a whole period.
+    moved = np.nonzero(np.any(np.diff(rows, axis=0), axis=1))[0] + 1
+    np.testing.assert_array_equal(moved, period * np.arange(1, 41))
+    jerk, acceleration, rate = np.array(rows)[::period].T
+    for integral, integrand in ((acceleration, jerk), (rate, acceleration)):
+        # The trapezoidal rule over the period, to rounding of sums of values near 1.
+        np.testing.assert_allclose(np.diff(integral), 0.5 * period * TIME_STEP * (integrand[1:] + integrand[:-1]), atol=1e-12)

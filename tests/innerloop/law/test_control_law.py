@@ -70,10 +70,10 @@ def random_state(rng, schedule):
     }
 
 
-def held(flown, rng, steps):
-    """Hold a random state, with integrals running for ``steps``; return measurements, the autopilot's states and commands."""
+def held(flown, rng, computed):
+    """Hold a random state, with integrals ``computed`` so often; return measurements, the autopilot's states and commands."""
     schedule, _, aircraft = flown
-    fdm = aircraft.fdm
+    fdm, period = aircraft.fdm, schedule.period
     state, commands = random_state(rng, schedule)
     aircraft.command_airspeed(commands["airspeed_command"])
     aircraft.command_altitude(commands["altitude_command"])
@@ -82,19 +82,19 @@ def held(flown, rng, steps):
     fdm.place(state)
     remembered = {name: prop for name, prop in REMEMBERED.items() if name != "rudder_integral" or "rudder" in schedule.controls}
     with fdm.frozen():
-        fdm.step(3)
-        fdm.write(RESET, 0.0 if steps else -1.0)
-        fdm.step(max(0, steps - 1))
+        fdm.step(3 * period)
+        fdm.write(RESET, 0.0 if computed else -1.0)
+        fdm.step(period * max(0, computed - 1))
         before = dict.fromkeys(STATES, 0.0) | {name: fdm.read(prop) for name, prop in remembered.items()}
-        fdm.step()
-    # Integrals act a step after they are gathered; the model's own states at once.
+        fdm.step(period)
+    # Integrals act a period after they are gathered; the model's own states at once.
     states = before | {name: fdm.read(REMEMBERED[name]) for name in ("model_rate", "model_acceleration")}
     measured = {name: fdm.read(MEASURED[name]) for name in measurements(schedule)}
     return commands, measured, states
 
 
 def with_flown_jerk(flown, commands, states):
-    """The heading-rate command at which the law has the jerk of this step, which JSBSim computes before its model moves."""
+    """The heading-rate command at which the law has the jerk of this period, which JSBSim computes before its model moves."""
     schedule, _, aircraft = flown
     frequency, damping = schedule.weights.model_frequency, schedule.weights.model_damping
     jerk = aircraft.fdm.read("autopilot/model-jerk")
@@ -102,13 +102,13 @@ def with_flown_jerk(flown, commands, states):
     return commands | {"heading_rate_command": target}
 
 
-@pytest.mark.parametrize("steps", [0, 1, 20, 90])
-def test_at_random_states_jsbsim_asks_for_the_controls_that_the_law_computes(flown, steps):
+@pytest.mark.parametrize("computed", [0, 1, 20, 90])
+def test_at_random_states_jsbsim_asks_for_the_controls_that_the_law_computes(flown, computed):
     schedule, law, aircraft = flown
-    rng = np.random.default_rng(20 + steps)
+    rng = np.random.default_rng(20 + computed)
     compared = 0
     for _ in range(25):
-        commands, measured, states = held(flown, rng, steps)
+        commands, measured, states = held(flown, rng, computed)
         if abs(aircraft.fdm.read("autopilot/bank-unlimited-rad")) > schedule.envelope.bank_max:
             continue  # the law has no limits
         _, expected = law.evaluate(with_flown_jerk(flown, commands, states), measured, states)
@@ -179,7 +179,7 @@ def test_a_gain_that_is_a_thousandth_off_would_show(flown):
     # the comparison allows, or the growth of an integral.
     largest = np.zeros(28)
     for _ in range(40):
-        commands, measured, states = held(flown, rng, 20)
+        commands, measured, states = held(flown, rng, 10)
         as_it_is = law.evaluate(commands, measured, states)
         for k in range(28):
             with pytest.MonkeyPatch.context() as patch:

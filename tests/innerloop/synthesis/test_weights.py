@@ -177,7 +177,8 @@ def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, 
 
     level = schedule.level(2)
     bandwidths, gains = designed(models, airspeed, level)
-    monkeypatch.setattr(weights, "DELAY", 2.0 * DELAY)  # the autopilot's steps are the only time that is not the aircraft's own
+    # The autopilot's steps are the only time that is not the aircraft's own.
+    monkeypatch.setattr(weights, "loop_delay", lambda _: 2.0 * DELAY)
     larger = dataclasses.replace(level, airspeed=2.0 * level.airspeed)
     slower, scaled = designed([similar(model) for model in models], 2.0 * airspeed, larger)
     assert dataclasses.astuple(slower) == pytest.approx([0.5 * s for s in dataclasses.astuple(bandwidths)])

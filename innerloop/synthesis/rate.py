@@ -1,0 +1,18 @@
+"""How often the autopilot computes, and by how much that delays its loops."""
+
+from aircraft.simulation.fdm import TIME_STEP
+
+PERIODS = (1, 2, 3)
+"""Time steps from one computation of the autopilot to the next, of which a design takes the longest that its margins
+allow. All of them divide the steps that JSBSim runs while engines are started, so that those change nothing."""
+
+
+def loop_delay(period: int, late: int = 0) -> float:
+    """Return the delay between measurement and servo [s]: one time step of computing, and half a period of hold.
+
+    Parameters
+    ----------
+    period : of the autopilot, as in ``PERIODS``
+    late : whole periods by which its commands come later than that
+    """
+    return (1.0 + (0.5 + late) * period) * TIME_STEP
