@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scenarios.engine.task import Row
 from scenarios.planning.theory import crossing_limit
 from scenarios.schema.experiment import ArenaConfig
-from scenarios.schema.scenario import Scenario
+from scenarios.schema.guidance import GuidanceConfig
 from scenarios.statistics.paired_bootstrap import paired_estimates
 from scenarios.studies.arena.entrants import TRACKING, Entrant, Refused
 
@@ -92,14 +92,14 @@ def estimates(
     return found
 
 
-def limits(rows: Mapping[str, Sequence[Row]], scenario: Scenario) -> dict[str, float]:
+def limits(rows: Mapping[str, Sequence[Row]], arena: ArenaConfig, guidance: GuidanceConfig) -> dict[str, float]:
     """Return the most crossings per minute that any path allows, in the mean over a condition's flights.
 
-    They are those that the scenario gives, or those of the optimum, where it was solved for the aircraft's bank and roll rate.
+    They are those that the arena gives, or those of the optimum, where it was solved for the aircraft's bank and roll rate.
     """
-    if scenario.arena.limits:
-        ratios, most = (np.array(values) for values in zip(*sorted(scenario.arena.limits), strict=True))
-    elif solved := crossing_limit(scenario.guidance):
+    if arena.limits:
+        ratios, most = (np.array(values) for values in zip(*sorted(arena.limits), strict=True))
+    elif solved := crossing_limit(guidance):
         ratios, most = np.array(solved["limit_nu"]), 60.0 / np.array(solved["crossing_interval_limit_s"])
     else:
         return {}

@@ -118,7 +118,7 @@ class ArenaStudy(FlightStudy):
             "entrants": tuned_record(self.entrants, journal.rows(TUNING_TABLE)),
             "refused": refused_record(self._refused),
             "estimates": estimates(self.entrants, rows, self._arena, self._seed),
-            "limits": limits(rows, next(iter(self.trials.values()))),
+            "limits": limits(rows, self._arena, next(iter(self.trials.values())).guidance),
         }
 
     def summary(self, journal: Journal) -> StudySummary:
