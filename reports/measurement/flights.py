@@ -24,9 +24,9 @@ _FEW = 8
 
 def sulphur_sections(run: RunData) -> list[Section]:
     """Return the sections of a run whose flights measured the fuel, and none of any other."""
-    if "fsc_percent" not in run.summary or not run.summary["fsc_percent"].notna().any():
+    measured = _measured(run)
+    if not len(measured):
         return []
-    measured = run.summary[run.summary["fsc_percent"].notna()]
     shown = _flight(run, measured)
     if shown is not None and len(measured) == 1:
         return [shown]
@@ -36,9 +36,9 @@ def sulphur_sections(run: RunData) -> list[Section]:
 
 def sulphur_cards(run: RunData) -> list[tuple[str, str, str]]:
     """Return what was measured of the fuel, for the head of the report: name, value and limit; nothing of a run without."""
-    if "fsc_percent" not in run.summary or not run.summary["fsc_percent"].notna().any():
+    measured = _measured(run)
+    if not len(measured):
         return []
-    measured = run.summary[run.summary["fsc_percent"].notna()]
     if len(measured) == 1:
         row = measured.iloc[0]
         result = f"{row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} %"
@@ -56,6 +56,12 @@ def sulphur_cards(run: RunData) -> list[tuple[str, str, str]]:
         ("Bias of the sulphur content, mean of flights", f"{float(np.mean(found - expected)):+.4f} %", ""),
         ("Flights whose 95 % interval holds the truth", percent(float(np.mean(inside))), ""),
     ]
+
+
+def _measured(run: RunData) -> pd.DataFrame:
+    """Return the rows of the flights that have a result."""
+    rows = run.summary
+    return rows[rows["fsc_percent"].notna()] if "fsc_percent" in rows else rows.iloc[:0]
 
 
 def _blocks(run: RunData, measured: pd.DataFrame) -> list[Block]:

@@ -45,29 +45,27 @@ def passes(across: Array) -> Iterator[slice]:
     yield from (slice(int(begin), int(end)) for begin, end in zip(begins, ends, strict=True))
 
 
-def pass_figures(plume: PlumeSample, up: Array, time_step: float, excess_co2: Array) -> dict[str, float]:
+def pass_figures(across: Array, above: Array, fraction: Array, excess_co2: Array, *, time_step: float) -> dict[str, float]:
     """Return figures of the passes of a flight.
 
     Parameters
     ----------
-    plume : along the flight, shape (n,)
-    up : height of the aircraft above the sea [m]
-    time_step : between samples [s]
+    across, above : from the plume's axis, not a number where there is no plume, shape (n,) [m]
+    fraction : as of ``fraction_of_axis``
     excess_co2 : above clean air [ppm]
+    time_step : between samples [s]
     """
-    fraction = fraction_of_axis(plume)
-    found = list(passes(plume.across))
+    found = list(passes(across))
     if not found:
         return {"plume_passes": 0}
     peaks = np.array([np.max(fraction[at]) for at in found])
-    nearest = [at.start + int(np.nanargmin(np.abs(plume.across[at]))) for at in found]
-    above = up[nearest] - plume.axis_height[nearest]
+    error = above[[at.start + int(np.nanargmin(np.abs(across[at]))) for at in found]]
     inside = time_step * np.count_nonzero(fraction > INSIDE)
     return {
         "plume_passes": len(found),
         "hit_rate": float(np.mean(peaks > HIT)),
         "seconds_in_plume_s": float(inside),
         "dose_per_pass_ppm_s": float(time_step * np.sum(excess_co2) / len(found)),
-        "axis_height_error_mean_m": float(np.mean(above)),
-        "axis_height_error_rms_m": float(np.sqrt(np.mean(above**2))),
+        "axis_height_error_mean_m": float(np.mean(error)),
+        "axis_height_error_rms_m": float(np.sqrt(np.mean(error**2))),
     }

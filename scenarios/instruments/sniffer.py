@@ -1,7 +1,7 @@
 """A sniffer on board: what it reads of the exhaust, and what that says of the fuel."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,6 @@ from measurement.emission.emission import GRAVITY
 from measurement.emission.fuel import expected_fsc
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS
-from measurement.plume.fluctuating_plume import PlumeSample
 from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.sniffer import Readings, Sniffer
 from scenarios.instruments.fuel_estimate import FIGURES, TABLES, fuel_estimate
@@ -105,8 +104,8 @@ class SnifferOnBoard:
         pressure = _AIR_DENSITY * (0.5 * self._settings.dynamic_pressure_fraction * airspeed**2 - GRAVITY * up) / 100.0
         readings = self._sniffer.advance(air, pressure)
         held = np.clip(np.searchsorted(readings.time, time, side="right") - 1, 0, len(readings) - 1)
-        fraction = fraction_of_axis(plume)
-        along = [np.interp(time, at, values) for values in (*air.T, plume.across, up - plume.axis_height, fraction)]
+        above, fraction = up - plume.axis_height, fraction_of_axis(plume)
+        along = [np.interp(time, at, values) for values in (*air.T, plume.across, above, fraction)]
         columns = np.column_stack([*along[: len(GASES)], readings.values[held], *along[len(GASES) :]])
         if not settled_at < at[-1]:
             return Evaluation(columns=columns)
@@ -120,12 +119,8 @@ class SnifferOnBoard:
             "fsc_expected_percent": expected,
             "sulphur_limit_percent": limit,
         }
-        passed = pass_figures(
-            PlumeSample(*(getattr(plume, of.name)[flown] for of in fields(plume))),
-            up[flown],
-            TIME_STEP,
-            air[flown, CO2] - self._background[CO2],
-        )
+        excess = air[:, CO2] - self._background[CO2]
+        passed = pass_figures(plume.across[flown], above[flown], fraction[flown], excess[flown], time_step=TIME_STEP)
         return Evaluation(
             columns=columns,
             figures=figures | passed | known.figures,

@@ -15,11 +15,11 @@ from gnc.reference.reference import PeriodicPath
 from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
 from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
-from scenarios.planning.axis_height import axis_height
 from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
     THRUST_LOST_FRACTION,
+    axis_height,
     following_parameters,
     guard_parameters,
     navigation_parameters,

@@ -19,7 +19,9 @@ from scenarios.planning.limits import PLAN_PERIOD, omega_max
 from scenarios.planning.reference import shape_of, swing_of
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.exhaust import emission
 from scenarios.world.faults import SATELLITES
+from scenarios.world.vessel import VesselTruth
 
 STALE_MIN = 2.0
 """Shortest age at which vessel data count as stale [s]."""
@@ -170,4 +172,26 @@ def following_parameters(
         drift_rate=f.drift_rate_mps,
         plan_interval=plan_interval(scenario),
         height=height,
+    )
+
+
+def axis_height(scenario: Scenario, vessel: VesselTruth) -> AxisHeight:
+    """Return the height that the guidance expects: of exhaust at the load that the vessel's speed takes.
+
+    Raises
+    ------
+    MeasurementError : the ship has no such speed
+    """
+    source, climb = scenario.plume.source_height_m, math.tan(math.radians(scenario.plume.elevation_deg))
+    if scenario.emission.ship is None:
+        return AxisHeight(source=source, climb=climb)
+    _, _, v_north, v_east = vessel.motion(0.0)
+    expected = emission(scenario, speed=math.hypot(v_north, v_east))
+    return AxisHeight(
+        source=source,
+        climb=climb,
+        momentum_flux=expected.momentum_flux,
+        buoyancy_flux=expected.buoyancy_flux,
+        lowest=scenario.flight.altitude_min_m,
+        highest=scenario.flight.altitude_max_m,
     )

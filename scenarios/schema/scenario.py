@@ -6,7 +6,6 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
-from scenarios.schema.emission import EmissionConfig
 from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, PayloadConfig, SensorsConfig, VesselReportsConfig
 from scenarios.schema.experiment import (
     FLIGHTS_MAX,
@@ -23,7 +22,15 @@ from scenarios.schema.experiment import (
 from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
 from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
 from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
-from scenarios.schema.world import KeepoutConfig, PlaceConfig, PlumeConfig, TurbulenceConfig, VesselConfig, WindConfig
+from scenarios.schema.world import (
+    EmissionConfig,
+    KeepoutConfig,
+    PlaceConfig,
+    PlumeConfig,
+    TurbulenceConfig,
+    VesselConfig,
+    WindConfig,
+)
 
 DEFAULT_AIRCRAFT = "x8"
 

@@ -6,6 +6,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, field_validator, model_validator
 
 from common.files import is_data_file
+from measurement.emission.fuel import SULPHUR_MAX_PERCENT, fuel_preset
+from measurement.emission.ship import ship_preset
 from scenarios.schema.extension_points import PLUME_MODELS
 from scenarios.schema.part_section import PartSection
 from scenarios.schema.section import Angle, NonNegative, Positive, Section
@@ -104,6 +106,32 @@ class PlumeConfig(PartSection):
     def parts(self) -> dict[str, Any]:
         """Return the plume model by its name."""
         return {self.model: PLUME_MODELS.get(self.model)}
+
+
+class EmissionConfig(Section):
+    """What comes out of the funnel."""
+
+    ship: str | None = None
+    """The ship whose engine and funnel it has, one of measurement/emission/ships.toml; none without exhaust."""
+    fuel: str = "mgo"
+    """Its fuel, one of measurement/emission/fuels.toml."""
+    sulphur_percent: Annotated[float, Field(ge=0.0, le=SULPHUR_MAX_PERCENT)] | None = None
+    """Sulphur in the fuel by mass; the fuel's usual if not given [%]."""
+    load: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    """Load of the engine; what the speed takes if not given, which is what the guidance expects [-]."""
+
+    @field_validator("ship")
+    @classmethod
+    def _known_ship(cls, ship: str | None) -> str | None:
+        if ship is not None:
+            ship_preset(ship)
+        return ship
+
+    @field_validator("fuel")
+    @classmethod
+    def _known_fuel(cls, fuel: str) -> str:
+        fuel_preset(fuel)
+        return fuel
 
 
 class KeepoutConfig(Section):

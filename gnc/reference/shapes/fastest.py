@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from gnc.reference.oscillating import OscillatingReference, start_reference
+from gnc.reference.oscillating import OscillatingShape
 from gnc.reference.oscillation import available_heading_rate
-from gnc.reference.reference import Array, Orbit, OscillatingPoint, Swing, reference_shape
+from gnc.reference.reference import Array, Swing, reference_shape
 from gnc.reference.shapes.bank_swing import BankSwing, bank_swing
 from gnc.reference.shapes.course_path import CoursePath, fourier_coefficients
 
@@ -93,7 +93,7 @@ class FastestOscillation:
 
 @reference_shape("fastest")
 @dataclass(frozen=True, slots=True)
-class Fastest:
+class Fastest(OscillatingShape):
     """The reference whose bank is a trapezoid: the shortest crossing interval within the heading rate and the roll rate.
 
     Differs from equation (2), whose heading rate is a sinusoid, because that reaches its limit for moments alone.
@@ -122,28 +122,6 @@ class Fastest:
         return FastestOscillation(
             nu=nu, speed=speed, eta=eta, crossing_interval=interval, omega_0=math.pi / interval, courses=courses
         )
-
-    def reference(
-        self,
-        orbit: Orbit,
-        *,
-        phase: float,
-        centre_north: float,
-        centre_east: float,
-        vessel_course: float,
-        time_step: float,
-        share: float = 1.0,
-    ) -> OscillatingPoint:
-        """Return a reference on an orbit of this shape; parameters are those of ``ReferenceShape``."""
-        start = start_reference(
-            orbit,
-            phase=phase,
-            centre_north=centre_north,
-            centre_east=centre_east,
-            vessel_course=vessel_course,
-            share=share,
-        )
-        return OscillatingReference(orbit, start, phase=phase, time_step=time_step, share=share)
 
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:
         """Return the courses of every amplitude; parameters are those of ``ReferenceShape``."""

@@ -16,9 +16,9 @@ from scipy.optimize import brentq
 
 from common.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
-from gnc.reference.oscillating import OscillatingReference, start_reference
+from gnc.reference.oscillating import OscillatingShape
 from gnc.reference.oscillation import available_heading_rate
-from gnc.reference.reference import Array, Orbit, OscillatingPoint, Swing, reference_shape
+from gnc.reference.reference import Array, Swing, reference_shape
 from gnc.reference.shapes.course_path import CoursePath, fourier_coefficients
 from gnc.reference.shapes.fastest import JOINING_SHARE
 
@@ -147,7 +147,7 @@ class Loiter:
 
 @reference_shape("loiter")
 @dataclass(frozen=True, slots=True)
-class LoiterShape:
+class LoiterShape(OscillatingShape):
     """The reference that circles with the vessel and meets its plume twice a turn.
 
     Differs from equation (2) in that its course goes all the way round, because a slow vessel's plume is crossed more often so.
@@ -187,28 +187,6 @@ class LoiterShape:
             return rolled.forward() - nu * rolled.crossing_interval
 
         return turn(float(brentq(excess, 0.0, bank, xtol=1e-14)), 0.0)
-
-    def reference(
-        self,
-        orbit: Orbit,
-        *,
-        phase: float,
-        centre_north: float,
-        centre_east: float,
-        vessel_course: float,
-        time_step: float,
-        share: float = 1.0,
-    ) -> OscillatingPoint:
-        """Return a reference on an orbit of this shape; parameters are those of ``ReferenceShape``."""
-        start = start_reference(
-            orbit,
-            phase=phase,
-            centre_north=centre_north,
-            centre_east=centre_east,
-            vessel_course=vessel_course,
-            share=share,
-        )
-        return OscillatingReference(orbit, start, phase=phase, time_step=time_step, share=share)
 
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:  # noqa: ARG002 - of the Protocol
         """Raise an InfeasibleError: beside a faster vessel it would have to become an oscillation."""

@@ -9,9 +9,9 @@ from scipy.special import j0, jv
 
 from common.units import STANDARD_GRAVITY
 from gnc.reference.orbit_tables import ETA_STEP, OrbitTables
-from gnc.reference.oscillating import OscillatingReference, start_reference
+from gnc.reference.oscillating import OscillatingShape
 from gnc.reference.oscillation import Oscillation, design_oscillation
-from gnc.reference.reference import ETA_FREQUENCY, Orbit, OscillatingPoint, Swing, reference_shape
+from gnc.reference.reference import ETA_FREQUENCY, Swing, reference_shape
 
 _ORDERS = 4
 """Pairs of Bessel functions in the series of the orbit; what is left out is below 1e-4 of its width at the largest eta."""
@@ -68,7 +68,7 @@ class SinusoidSwing:
 
 @reference_shape("sinusoid")
 @dataclass(frozen=True, slots=True)
-class Sinusoid:
+class Sinusoid(OscillatingShape):
     """The paper's reference: its course oscillates about the vessel's as a sinusoid."""
 
     @property
@@ -88,28 +88,6 @@ class Sinusoid:
             vessel_heading_rate=vessel_heading_rate,
             roll_rate_max=roll_rate_max,
         )
-
-    def reference(
-        self,
-        orbit: Orbit,
-        *,
-        phase: float,
-        centre_north: float,
-        centre_east: float,
-        vessel_course: float,
-        time_step: float,
-        share: float = 1.0,
-    ) -> OscillatingPoint:
-        """Return a reference on an orbit of this shape; parameters are those of ``ReferenceShape``."""
-        start = start_reference(
-            orbit,
-            phase=phase,
-            centre_north=centre_north,
-            centre_east=centre_east,
-            vessel_course=vessel_course,
-            share=share,
-        )
-        return OscillatingReference(orbit, start, phase=phase, time_step=time_step, share=share)
 
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:
         """Return the sinusoids of every amplitude; parameters are those of ``ReferenceShape``."""
