@@ -8,15 +8,22 @@ import multiprocessing
 import statistics
 import tempfile
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
+from aircraft.simulation.fdm import TIME_STEP
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import fly_study
 from scenarios.engine.task import Task, Work
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import study_of
+
+REFERENCE_STEP = 2.9e-6
+"""Time of a step of JSBSim alone, with the bare aircraft, on the machine for which limits are given [s]."""
+
+SECOND_MAX = 8e-4
+"""Limit of the time of a simulated second over the sea on such a machine [s]."""
 
 FLIGHTS = 40
 LENGTHS = (50.0, 250.0)
@@ -25,8 +32,14 @@ LENGTHS = (50.0, 250.0)
 SETTINGS = ("criteria.settles=false", "histories=0")
 
 
-def report_engine(rounds: int) -> None:
-    """Print the benchmark: medians over rounds, and ratios within a round."""
+def report_engine(rounds: int, jsbsim: Callable[[], float]) -> None:
+    """Print the benchmark: medians over rounds, and ratios within a round.
+
+    Parameters
+    ----------
+    rounds : number of rounds
+    jsbsim : returns the time that JSBSim alone takes for a simulated second [s]
+    """
     with tempfile.TemporaryDirectory() as folder:
         work = _work(300.0, Path(folder) / "bare")
         one, two, bare = zip(*((_whole_study(1), _whole_study(2), _bare(work)) for _ in range(rounds)), strict=True)
@@ -38,10 +51,17 @@ def report_engine(rounds: int) -> None:
     )
     with tempfile.TemporaryDirectory() as folder:
         works = [_work(length, Path(folder) / f"{length:g}") for length in LENGTHS]
-        short, long = zip(*(tuple(_flight(work) for work in works) for _ in range(5 * rounds)), strict=True)
-    per_second = statistics.median((b - a) / (LENGTHS[1] - LENGTHS[0]) for a, b in zip(short, long, strict=True))
+        short, long, alone = zip(*((*(_flight(work) for work in works), jsbsim()) for _ in range(5 * rounds)), strict=True)
+    seconds = [(b - a) / (LENGTHS[1] - LENGTHS[0]) for a, b in zip(short, long, strict=True)]
+    per_second = statistics.median(seconds)
     starting = statistics.median(a - per_second * LENGTHS[0] for a in short)
-    print(f"a flight: {1e3 * starting:.1f} ms to start and to evaluate, {1e3 * per_second:.3f} ms per simulated second")
+    over_jsbsim = statistics.median(a / b for a, b in zip(seconds, alone, strict=True))
+    scaled = REFERENCE_STEP / TIME_STEP * over_jsbsim
+    print(
+        f"a flight over the sea: {1e3 * starting:.1f} ms to start and to evaluate, {1e3 * per_second:.3f} ms per simulated second,"
+        f" {over_jsbsim:.2f} times JSBSim alone; {1e3 * scaled:.3f} ms where a step of JSBSim takes {1e6 * REFERENCE_STEP:g} us"
+        f" (limit {1e3 * SECOND_MAX:g} ms)"
+    )
 
 
 def _whole_study(jobs: int) -> float:
@@ -84,7 +104,7 @@ def _work(length: float, path: Path) -> Work:
 
 
 def _flight(work: Work) -> float:
-    """Return the time of one flight [s]."""
-    began = time.perf_counter()
+    """Return the CPU time of one flight [s]."""
+    began = time.process_time()
     work.fly(Task(number=3))
-    return time.perf_counter() - began
+    return time.process_time() - began

@@ -22,12 +22,15 @@ _NAMED = 5
 """Flights that a message names at most."""
 
 
-def build_reports(directory: Path, *, tell_missing: Callable[[str], None] = lambda _: None) -> list[Path]:
+def build_reports(
+    directory: Path, *, all_flights: bool = False, tell_missing: Callable[[str], None] = lambda _: None
+) -> list[Path]:
     """Write ``report.html`` and ``report.pdf`` into a run directory and return their paths.
 
     Parameters
     ----------
     directory : of the run
+    all_flights : print every flight that can be picked on the screen, not the telling ones alone
     tell_missing : called with the path of each file of the run that is gone or cannot be read; the reports name it
 
     Raises
@@ -45,9 +48,8 @@ def build_reports(directory: Path, *, tell_missing: Callable[[str], None] = lamb
         report = content(run)
     for name in run.missing():
         tell_missing(name)
-    return [
-        _written(directory / name, partial(write, report)) for name, write in ((REPORT_HTML, write_html), (REPORT_PDF, write_pdf))
-    ]
+    html = _written(directory / REPORT_HTML, partial(write_html, report))
+    return [html, _written(directory / REPORT_PDF, partial(write_pdf, report, all_flights=all_flights))]
 
 
 def export_run(directory: Path, name: str, flight_id: str | None = None) -> list[Path]:
@@ -156,6 +158,9 @@ def command(
     stream: Annotated[
         str | None, typer.Option(metavar="udp://HOST:PORT", help="Send a flight to a ground station in real time, as MAVLink.")
     ] = None,
+    all_flights: Annotated[
+        bool, typer.Option("--all-flights", help="Print every flight that report.html shows, not the telling ones alone.")
+    ] = False,
 ) -> None:
     """Rebuild report.html and report.pdf of a run or of a design, without flying anything; or export a run.
 
@@ -176,7 +181,7 @@ def command(
                 print(f"stream: {messages} messages of {sent}, {seconds:.0f} s of flight, to {stream}")
         else:
             missing: list[str] = []
-            for path in build_reports(directory, tell_missing=missing.append):
+            for path in build_reports(directory, all_flights=all_flights, tell_missing=missing.append):
                 print(f"report: {path}")
             for name in missing:
                 print(

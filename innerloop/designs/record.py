@@ -9,7 +9,7 @@ import numpy as np
 
 from aircraft.dynamics.equilibrium import Trim, TrimOutcome
 from aircraft.dynamics.trim import search_trim
-from aircraft.simulation.fdm import Fdm
+from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.spec import Envelope
 from common.units import STANDARD_GRAVITY
 from innerloop.analysis.linear_model_check import verify_model
@@ -63,6 +63,7 @@ def design_record(design: Design, root: Path) -> Record:
         "banks_deg": [math.degrees(bank) for bank in schedule.banks],
         "weights": asdict(schedule.weights),
         "bandwidths_rad_s": asdict(design.bandwidths),
+        "autopilot_rate_hz": 1.0 / (schedule.period * TIME_STEP),
         "model_frequency_rad_s": schedule.weights.model_frequency,
         "model_damping": schedule.weights.model_damping,
         "trims": [_trim_record(t, bank) for row in schedule.trims for t, bank in zip(row, schedule.banks, strict=True)]

@@ -31,7 +31,8 @@ def print_summary(record: Record) -> None:
     for title, table in tables:
         console.print()
         console.print(_console_table(title, table))
-    console.print(f"\nThe heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated flight.")
+    console.print(f"\nThe autopilot computes {design['autopilot_rate_hz']:.3g} times a second.")
+    console.print(f"The heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated flight.")
     reversals = reversal_sentences(design)
     if reversals:
         console.print(reversals, markup=False, highlight=False)

@@ -32,6 +32,8 @@ def complete(record: Record) -> Record:
         "envelope": None,
         "required": _REQUIRED,
         "verification": [],
+        # Older autopilots compute at every time step.
+        "autopilot_rate_hz": 120.0,
         **record,
         "trims": level(record["trims"]),
         "poles": level(record["poles"]),

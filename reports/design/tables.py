@@ -185,13 +185,14 @@ def _words(name: str) -> str:
 
 
 def weight_table(design: Record) -> Table:
-    """Return the acceptable deviations that the gains follow from, in two columns of pairs."""
+    """Return the acceptable deviations that the gains follow from, and the autopilot's rate, in two columns of pairs."""
     pairs = [[_words(name), f"{value:.3g}"] for name, value in design["weights"].items()]
     if "model_frequency_rad_s" in design and "model_frequency" not in design["weights"]:
         pairs += [
             ["heading-rate model: frequency [rad/s]", f"{design['model_frequency_rad_s']:.3g}"],
             ["heading-rate model: damping [-]", f"{design['model_damping']:g}"],
         ]
+    pairs.append(["autopilot: computations a second [Hz]", f"{design['autopilot_rate_hz']:.3g}"])
     half = -(-len(pairs) // 2)
     rows = [[*left, *(pairs[half + i] if half + i < len(pairs) else ["", ""])] for i, left in enumerate(pairs[:half])]
     return Table(head=["Weight", "Value", "Weight", "Value"], rows=rows, widths=[2.0, 0.7, 2.0, 0.7], left_columns=4)

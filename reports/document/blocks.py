@@ -56,17 +56,19 @@ class FlightContent:
     label : in the picker
     title : above its page in print
     charts : its figures, or none if it has no record
+    printed : whether it has a page in print, unless all are asked for
     """
 
     flight_id: str
     label: str
     title: str
     charts: list[Chart]
+    printed: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlightPicker:
-    """Flights, one at a time: picked on the screen, a page each at the end in print. A report has one at most."""
+    """Flights, one at a time: picked on the screen, and a page each at the end of what is printed. A report has one at most."""
 
     flights: list[FlightContent]
 

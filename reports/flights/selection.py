@@ -1,6 +1,7 @@
 """Which flights of a run are shown one by one."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,17 +26,29 @@ _VIOLATION, _FAILED = "deepest keep-out violation", "did not meet every criterio
 def flight_section(trials: list[Trial]) -> Section:
     """Return the section of single flights."""
     swept = len(trials) == 1 and bool(trials[0].swept) and len(trials[0].rows) <= SWEPT_MAX
+    picked = picked_flights(trials)
     if swept:
-        flights = [_content(trials[0], row, outcome(row)) for _, row in trials[0].rows.iterrows()]
-        text = "Every flight of the sweep."
+        telling = {str(row["flight_id"]): why for _, row, why in picked}
+        flights = [_of_sweep(trials[0], row, telling.get(str(row["flight_id"]), "")) for _, row in trials[0].rows.iterrows()]
+        text = (
+            f"Every flight of the sweep. In print {len(telling)} have a page at the end: {', '.join(telling.values())};"
+            " reports.build --all-flights prints all."
+        )
     else:
-        flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked_flights(trials)]
+        flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked]
         text = (
             f"{len(flights)} flights: of each trial those with the deepest keep-out violation and with a criterion that is not met,"
             " if there are such, the closest approach, and the one whose closest approach is the median."
+            " In print each has a page at the end."
         )
-    blocks: list[Block] = [Text(f"{text} In print each has a page at the end."), FlightPicker(flights=flights)]
+    blocks: list[Block] = [Text(text), FlightPicker(flights=flights)]
     return Section(anchor="flights", title="Single flights", nav_title="Flights", blocks=blocks if flights else [])
+
+
+def _of_sweep(trial: Trial, row: "pd.Series[Any]", why: str) -> FlightContent:
+    """Return a flight of a sweep, and ``why`` it is printed; no word where it is not."""
+    state = f"{outcome(row)}, {why}" if why and row["criteria_met"] else outcome(row)
+    return replace(_content(trial, row, state), printed=bool(why))
 
 
 def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:

@@ -1,16 +1,16 @@
 """The report as one self-contained HTML file."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from jinja2.utils import htmlsafe_json_dumps
-from plotly.offline import get_plotlyjs
 
 from reports.document.blocks import Content, FlightPicker
-from reports.document.chart import Chart
 from reports.render.plotly_charts import draw
+
+PLOTLY = Path(__file__).parent / "bundle" / "plotly-cartesian.min.js"
+"""Library that draws the charts of every page; ``bundle/README.md`` says where it comes from."""
 
 
 def write_html(report: Content, path: Path) -> None:
@@ -20,23 +20,16 @@ def write_html(report: Content, path: Path) -> None:
     )
     page = environment.get_template("report.html.j2").render(
         report=report,
-        plotly=get_plotlyjs(),
+        plotly=PLOTLY.read_text(encoding="utf-8"),
         kind=lambda block: type(block).__name__,
-        figure=lambda chart: _for_script(_figure(chart)),
+        figure=lambda chart: _for_script(draw(chart)),
         flights=_flights,
     )
     path.write_text(page, encoding="utf-8")
 
 
 def _flights(picker: FlightPicker) -> str:
-    return _for_script({flight.flight_id: [_figure(chart) for chart in flight.charts] for flight in picker.flights})
-
-
-def _figure(chart: Chart) -> dict[str, Any]:
-    figure: dict[str, Any] = json.loads(draw(chart).to_json())
-    # The template would be repeated with every figure; the page sets it once.
-    figure["layout"].pop("template", None)
-    return figure
+    return _for_script({flight.flight_id: [draw(chart) for chart in flight.charts] for flight in picker.flights})
 
 
 def _for_script(value: Any) -> str:

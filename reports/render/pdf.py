@@ -17,17 +17,17 @@ TEMPLATE = Path(__file__).parent / "templates" / "report.typ"
 Data = dict[str, Any]
 
 
-def write_pdf(report: Content, path: Path) -> None:
-    """Write the report to ``path``."""
+def write_pdf(report: Content, path: Path, *, all_flights: bool = False) -> None:
+    """Write the report to ``path``, with ``all_flights`` or with those that are printed."""
     with tempfile.TemporaryDirectory() as folder:
         directory = Path(folder)
         (directory / "report.typ").write_text(TEMPLATE.read_text(encoding="utf-8"), encoding="utf-8")
-        data = _data(report, directory)
+        data = _data(report, directory, all_flights=all_flights)
         (directory / "data.json").write_text(json.dumps(data), encoding="utf-8")
         path.write_bytes(typst.compile(str(directory / "report.typ")))
 
 
-def _data(report: Content, directory: Path) -> Data:
+def _data(report: Content, directory: Path, *, all_flights: bool) -> Data:
     pickers = [block for section in report.sections for block in section.blocks if isinstance(block, FlightPicker)]
     sections = [_section(section, directory) for section in report.sections]
     return {
@@ -36,7 +36,7 @@ def _data(report: Content, directory: Path) -> Data:
         "changes": report.changes,
         "verdict": asdict(report.verdict),
         "sections": [section for section in sections if section["blocks"]],
-        "flights": [_flight(flight, directory) for picker in pickers for flight in picker.flights],
+        "flights": [_flight(flight, directory) for picker in pickers for flight in picker.flights if all_flights or flight.printed],
     }
 
 

@@ -96,3 +96,12 @@ def pages(path):
 def headings(path):
     """Return the titles of a PDF's outline, in any order."""
     return {title.decode() for title in re.findall(rb"/Title\((.*?)\)/Dest", path.read_bytes())}
+
+
+def test_flights_that_are_not_printed_have_a_page_only_where_all_are_asked_for(tmp_path):
+    flights = [FlightContent(flight_id=i, label=i, title=f"Page {i}", charts=[], printed=i == "b") for i in "abc"]
+    report = a_report([FlightPicker(flights=flights)])
+    write_pdf(report, tmp_path / "some.pdf")
+    write_pdf(report, tmp_path / "all.pdf", all_flights=True)
+    assert headings(tmp_path / "some.pdf") & {"Page a", "Page b", "Page c"} == {"Page b"}
+    assert headings(tmp_path / "all.pdf") >= {"Page a", "Page b", "Page c"}

@@ -72,7 +72,7 @@ def test_axes_have_units_and_every_curve_is_drawn_on_screen_and_in_print(report)
     assert_axes_read_quantity_and_unit(blocks_of(report, Chart))
     for chart in blocks_of(report, Chart):
         lines = [line for panel in chart.panels for line in panel.lines]
-        assert len(plotly_charts.draw(chart).data) == len(lines), chart.name
+        assert len(plotly_charts.draw(chart)["data"]) == len(lines), chart.name
         assert sum(len(ax.lines) for ax in matplotlib_charts.draw(chart).axes) == len(lines), chart.name
         for panel in chart.panels:
             assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)

@@ -138,7 +138,7 @@ def test_every_axis_of_a_study_reads_quantity_and_unit_and_both_drawers_draw_all
     assert_axes_read_quantity_and_unit(charts)
     for chart in charts:
         assert len(matplotlib_charts.draw(chart).axes) >= len(chart.panels)
-        assert len(plotly_charts.draw(chart).data) == sum(len(panel.lines) for panel in chart.panels)
+        assert len(plotly_charts.draw(chart)["data"]) == sum(len(panel.lines) for panel in chart.panels)
 
 
 def test_the_nearest_flight_is_in_the_histogram_and_at_the_foot_of_the_curve(run, sections):

@@ -96,7 +96,7 @@ def test_every_chart_is_drawn_alike_on_screen_and_in_print(report):
         screen = plotly_charts.draw(chart)
         printed = matplotlib_charts.draw(chart)
         lines = [line for panel in chart.panels for line in panel.lines]
-        assert len(screen.data) == len(lines), chart.name
+        assert len(screen["data"]) == len(lines), chart.name
         drawn = sum(len(ax.lines) - 2 * len(ax.containers) for ax in printed.axes)
         assert drawn == len(lines), chart.name
     assert plt.get_fignums() == []
@@ -152,6 +152,20 @@ def test_an_interrupted_run_can_be_reported_on(copy):
     html, pdf = build_reports(copy)
     assert "continue it with --resume" in html.read_text(encoding="utf-8")
     assert pdf.stat().st_size > 10_000
+
+
+def test_of_a_sweep_the_closest_flight_and_a_typical_one_are_printed_and_all_if_asked_for(report, copy):
+    flights = {flight.flight_id: flight for flight in flights_of(report)}
+    # Of the three one cannot be flown, and is printed with its reason; of the two others one is the closest, one the median.
+    assert [flight_id for flight_id, flight in flights.items() if flight.printed] == list(flights)
+    assert "closest approach" in flights["nu_0.90"].label
+    (section,) = (section for section in report.sections if section.anchor == "flights")
+    assert "In print 3 have a page at the end" in section.blocks[0].text
+    summary = pd.read_csv(copy / "summary.csv")
+    more = summary[summary["flight_id"] == "nu_0.50"].assign(flight_id="nu_0.51", min_distance_m=215.0)
+    pd.concat([summary, more]).to_csv(copy / "summary.csv", index=False)
+    longer = flights_of(content(read_run(copy)))
+    assert not {flight.flight_id: flight.printed for flight in longer}["nu_0.51"]
 
 
 def test_the_aircraft_is_named_at_the_head_of_the_report(report):

@@ -83,7 +83,7 @@ def test_every_axis_reads_quantity_and_unit_and_both_drawers_draw_all_charts(rea
         assert [chart.name for chart in charts] == ["rare-curve", "rare-inputs", "rare-distributions"]
         for chart in charts:
             assert len(matplotlib_charts.draw(chart).axes) >= len(chart.panels)
-            assert len(plotly_charts.draw(chart).data) == sum(len(panel.lines) for panel in chart.panels)
+            assert len(plotly_charts.draw(chart)["data"]) == sum(len(panel.lines) for panel in chart.panels)
             for panel in chart.panels:
                 for label in (panel.x_label, panel.y_label):
                     assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)

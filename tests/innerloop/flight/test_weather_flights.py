@@ -81,7 +81,7 @@ def test_a_used_aircraft_flies_a_weather_as_a_fresh_one_does(x8_schedule, x8_roo
         for seed, gust in enumerate(gusts)
     )
     used = AutopilotedAircraft(X8, x8_root)
-    fly(used, start, other, 1.5)  # and ends in the middle of a gust
+    fly(used, start, other, 181 * TIME_STEP)  # and ends in the middle of a gust, and of a period of the autopilot
     for weather in (rough, None):
         fresh = fly(AutopilotedAircraft(X8, x8_root), start, weather, 5.0)
         # Servos and propeller come to rest from elsewhere, to a millionth (tests/innerloop/flight/test_flight.py).

@@ -103,8 +103,8 @@ def test_an_ordinate_of_names_is_marked_alike_on_screen_and_in_print():
     )  # fmt: skip
     printed = matplotlib_charts.draw(chart).axes[0]
     assert [(tick, text.get_text()) for tick, text in zip(printed.get_yticks(), printed.get_yticklabels(), strict=True)] == names
-    screen = plotly_charts.draw(chart).layout.yaxis
-    assert list(zip(screen.tickvals, screen.ticktext, strict=True)) == names
+    screen = plotly_charts.draw(chart)["layout"]["yaxis"]
+    assert list(zip(screen["tickvals"], screen["ticktext"], strict=True)) == names
 
 
 def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):

@@ -1,0 +1,99 @@
+"""Charts as data for the library in the page, and that library itself."""
+
+import base64
+import re
+
+import numpy as np
+import pytest
+
+from reports.document.chart import Chart, Line, Note, Panel
+from reports.render.html import PLOTLY
+from reports.render.plotly_charts import draw
+
+
+def a_panel(**kinds):
+    x = np.array([1.0, 10.0])
+    return Panel(x_label="Time [s]", y_label="Distance [m]", lines=[Line(x=x, y=x, label="curve", colour="blue")], **kinds)
+
+
+def a_chart(count, **kinds):
+    return Chart(name="chart", caption="", panels=[a_panel() for _ in range(count)], **kinds)
+
+
+def test_the_bundled_library_is_the_version_that_its_page_names_under_its_licence():
+    head = PLOTLY.read_text(encoding="utf-8")[:400]
+    version = re.search(r"plotly\.js \(cartesian - minified\) v([\d.]+)", head)[1]
+    page = (PLOTLY.parent / "README.md").read_text(encoding="utf-8")
+    assert f"plotly.js {version}" in page
+    assert f"npm pack plotly.js-cartesian-dist-min@{version}" in page
+    assert "MIT" in (PLOTLY.parent / "plotly-LICENSE").read_text(encoding="utf-8")
+
+
+def test_numbers_come_back_to_single_precision():
+    line = Line(x=np.array([0.1, np.nan, 3.0]), y=np.array([]), label="", colour="blue", error=np.array([1.0, 2.0, 3.0]))
+    trace = draw(Chart(name="chart", caption="", panels=[Panel(x_label="a [m]", y_label="b [m]", lines=[line])]))["data"][0]
+    found = np.frombuffer(base64.b64decode(trace["x"]["bdata"]), dtype=trace["x"]["dtype"])
+    np.testing.assert_array_equal(found, np.array([0.1, np.nan, 3.0], dtype=np.float32))
+    assert trace["y"] == []
+    assert np.frombuffer(base64.b64decode(trace["error_y"]["array"]["bdata"]), dtype="<f4").tolist() == [1.0, 2.0, 3.0]
+
+
+@pytest.mark.parametrize(("count", "columns"), [(1, 1), (3, 1), (4, 2), (7, 2), (5, 3)])
+@pytest.mark.parametrize("share_x", [False, True])
+def test_panels_fill_the_room_row_by_row_and_do_not_overlap(count, columns, share_x):
+    layout = draw(a_chart(count, columns=columns, share_x=share_x))["layout"]
+    numbers = ["", *(str(i) for i in range(2, count + 1))]
+    # As many axes as panels: none for a place that stays empty.
+    assert {key for key in layout if "axis" in key} == {f"{axis}axis{number}" for axis in "xy" for number in numbers}
+    boxes = [(*layout[f"xaxis{n}"]["domain"], *layout[f"yaxis{n}"]["domain"]) for n in numbers]
+    assert min(left for left, *_ in boxes) == 0.0
+    assert max(right for _, right, *_ in boxes) == pytest.approx(1.0 if count >= columns else boxes[-1][1])
+    assert max(top for *_, top in boxes) == pytest.approx(1.0)
+    for i, (left, right, bottom, top) in enumerate(boxes):
+        assert 0.0 <= left < right <= 1.0
+        assert 0.0 <= bottom < top <= 1.0
+        for other in boxes[i + 1 :]:
+            assert other[0] > right or other[3] < bottom or other[1] < left
+
+
+def test_panels_of_a_column_share_the_abscissa_of_the_lowest_which_alone_has_figures():
+    layout = draw(a_chart(7, columns=2, share_x=True))["layout"]
+    # Seven panels in two columns: the last of the left one is the seventh, of the right one the sixth.
+    assert [layout[f"xaxis{n}"].get("matches") for n in ("", 2, 3, 4, 5)] == ["x7", "x6", "x7", "x6", "x7"]
+    assert [n for n in ("", 2, 3, 4, 5, 6, 7) if layout[f"xaxis{n}"]["showticklabels"]] == [6, 7]
+    assert "title" not in layout["xaxis5"]
+    free = draw(a_chart(7, columns=2))["layout"]
+    assert not any("matches" in free[f"xaxis{n}"] for n in ("", 2, 3, 4, 5, 6, 7))
+
+
+def test_a_label_is_one_entry_of_the_legend_however_many_panels_have_it():
+    figure = draw(a_chart(3))
+    assert [trace["showlegend"] for trace in figure["data"]] == [True, False, False]
+    assert {trace["legendgroup"] for trace in figure["data"]} == {"curve"}
+    assert figure["layout"]["showlegend"] is False  # a single entry says nothing
+
+
+def test_titles_stand_above_their_panels_and_notes_among_the_curves_of_theirs():
+    panels = [a_panel(title="first"), a_panel(title="second", notes=[Note(x=2.0, y=3.0, text="here", align="left")])]
+    layout = draw(Chart(name="chart", caption="", panels=panels, columns=2))["layout"]
+    first, second, note = layout["annotations"]
+    assert (first["text"], first["y"], first["yref"]) == ("first", 1.0, "paper")
+    assert second["x"] == pytest.approx(sum(layout["xaxis2"]["domain"]) / 2.0)
+    assert (note["text"], note["x"], note["y"], note["xref"], note["yref"], note["xanchor"]) == (
+        "here",
+        2.0,
+        3.0,
+        "x2",
+        "y2",
+        "left",
+    )
+
+
+def test_axes_are_logarithmic_and_equally_long_where_a_panel_asks_for_it():
+    layout = draw(Chart(name="chart", caption="", panels=[a_panel(log_x=True, x_range=(1.0, 100.0)), a_panel(equal=True)]))[
+        "layout"
+    ]
+    assert (layout["xaxis"]["type"], layout["xaxis"]["range"]) == ("log", [0.0, 2.0])
+    assert (layout["yaxis2"]["scaleanchor"], layout["yaxis2"]["scaleratio"]) == ("x2", 1)
+    low, high = layout["xaxis2"]["range"]
+    assert (low < 1.0, high > 10.0) == (True, True)  # every curve, with a little to spare
