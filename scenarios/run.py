@@ -45,8 +45,8 @@ def command(
         str | None,
         typer.Option(metavar="tcp://HOST:PORT", help="Address of a running Dask scheduler; default a cluster on this machine."),
     ] = None,
-    time_limit: Annotated[float, typer.Option(help="Longest computing time of a flight [s].")] = 600.0,
-    memory_limit: Annotated[float | None, typer.Option(help="Memory limit of a process [GiB]; default none.")] = None,
+    time_limit: Annotated[float, typer.Option(help="Longest computing time of a flight, in seconds.")] = 600.0,
+    memory_limit: Annotated[float | None, typer.Option(help="Memory limit of a process, in GiB; default none.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue the unfinished run in --out.")] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
     flightgear: Annotated[
