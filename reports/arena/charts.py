@@ -7,8 +7,11 @@ import numpy as np
 
 from reports.arena.data import ALL, Arena, Entrant
 from reports.document.chart import Chart, Line, Note, Panel, circle
+from reports.document.map_marks import hull_line, on_map, plume_lines
+from reports.document.palette import Meaning
 from reports.run.columns import column
-from reports.run.time_history import about_the_plume
+from reports.run.ship import hull_of
+from reports.run.time_history import about_the_plume, vessel_heading
 
 _FAMILIES = (
     ("with the reference's turn fed forward", "blue"),
@@ -118,11 +121,11 @@ def _crossing_panel(arena: Arena, entrants: Sequence[Entrant], condition: str, *
             ]
     reach = np.array([-0.7, len(entrants) - 0.3])
     if (most := arena.limits.get(condition)) is not None:
-        lines.append(Line(x=np.array([most, most]), y=reach, label="limit of any path", colour="vermillion", style="dash"))
+        lines.append(Line(x=np.array([most, most]), y=reach, label="limit of any path", colour=Meaning.LIMIT, style="dash"))
     names = [(rows[entrant.name], f"{entrant.title} {entrant.number}" if named else "") for entrant in entrants]
     return Panel(
         x_label="Crossings [1/min]",
-        y_label="Law [-]" if named else "",
+        y_label="Law" if named else "",
         title=_title(condition),
         lines=lines,
         x_range=(0.0, _BEYOND * _most(arena)),
@@ -146,7 +149,7 @@ def track_chart(arena: Arena, *, tracking: bool) -> Chart:
     return Chart(
         name="tracks" if tracking else "circles",
         caption=f"{what}: the last {_SHOWN_S:g} s of one flight a law, the same start for all; condition: {first}. Seen from the"
-        " vessel, with its plume up the page. The best on the tracking error come first.",
+        " ship, to scale, with her plume up the page. The best on the tracking error come first.",
         panels=panels,
         columns=4 if tracking else 5,
         panel_height=0.27 if tracking else 0.22,
@@ -164,19 +167,26 @@ def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | N
     radius = float(arena.run.manifest["config"]["keepout"]["radius_m"])
     right, along = circle(radius)
     reference, own = about_the_plume(shown, "reference_"), about_the_plume(shown)
-    middle = 1.3 * radius if tracking else 0.0
-    half = 0.8 * radius if tracking else 1.6 * radius
-    return Panel(
+    axis, hull = float(column(shown, "plume_axis_rad")[-1]), hull_of(arena.run.manifest["config"])
+    heading = float(vessel_heading(shown, 0.0)[-1])
+    track = Line(x=own[0], y=own[1], label="flown", colour=Meaning.FLOWN)
+    panel = Panel(
         x_label="Right [m]",
         y_label="Along [m]",
         title=f"{entrant.number} {entrant.title}" if tracking else str(entrant.number),
-        equal=True,
         lines=[
-            Line(x=right, y=along, label="keep-out area", colour="vermillion", fill=True),
-            Line(x=np.zeros(2), y=np.array([0.0, 3.0 * radius]), label="plume", colour="grey", style="dash"),
-            Line(x=reference[0], y=reference[1], label="reference", colour="sky"),
-            Line(x=own[0], y=own[1], label="UAV", colour="blue"),
+            Line(x=right, y=along, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True),
+            *plume_lines(np.array([0.0, 3.0 * radius]), None),
+            hull_line(hull.length, hull.beam, hull.funnel, heading - axis),
+            track,
+            Line(x=reference[0], y=reference[1], label="reference", colour=Meaning.ASKED, style="thin"),
         ],
-        x_range=(-half, half),
-        y_range=(middle - half, middle + half),
     )
+    # The same part of the plume for every law, however far from it one is.
+    middle, half = (1.3 * radius, 0.8 * radius) if tracking else (0.0, 1.6 * radius)
+    return on_map(panel, north=-axis, shown=[_square(middle, half)])
+
+
+def _square(middle: float, half: float) -> Line:
+    """Return what a panel has to show: a square about a place on the plume's axis."""
+    return Line(x=np.array([-half, half]), y=np.array([middle - half, middle + half]), label="", colour=Meaning.PLUME)

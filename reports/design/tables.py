@@ -184,9 +184,18 @@ def _words(name: str) -> str:
     return name.replace("_", " ")
 
 
+_WEIGHT_UNITS = {
+    "airspeed": "m/s", "pitch": "rad", "pitch_rate": "rad/s", "altitude": "m", "airspeed_integral": "m",
+    "altitude_integral": "m s", "roll": "rad", "roll_rate": "rad/s", "sideslip": "rad", "heading_integral": "rad",
+    "sideslip_integral": "rad s", "model_frequency": "rad/s", "model_damping": "-", "altitude_error_max": "m",
+    "airspeed_error_max": "m/s", "anti_windup_rate": "1/s",
+}  # fmt: skip
+"""Of the weights of a design record, by their names."""
+
+
 def weight_table(design: Record) -> Table:
     """Return the acceptable deviations that the gains follow from, and the autopilot's rate, in two columns of pairs."""
-    pairs = [[_words(name), f"{value:.3g}"] for name, value in design["weights"].items()]
+    pairs = [[_weight(name), f"{value:.3g}"] for name, value in design["weights"].items()]
     if "model_frequency_rad_s" in design and "model_frequency" not in design["weights"]:
         pairs += [
             ["heading-rate model: frequency [rad/s]", f"{design['model_frequency_rad_s']:.3g}"],
@@ -196,6 +205,11 @@ def weight_table(design: Record) -> Table:
     half = -(-len(pairs) // 2)
     rows = [[*left, *(pairs[half + i] if half + i < len(pairs) else ["", ""])] for i, left in enumerate(pairs[:half])]
     return Table(head=["Weight", "Value", "Weight", "Value"], rows=rows, widths=[2.0, 0.7, 2.0, 0.7], left_columns=4)
+
+
+def _weight(name: str) -> str:
+    unit = _WEIGHT_UNITS.get(name)
+    return _words(name) + (f" [{unit}]" if unit else "")
 
 
 def envelope_table(envelope: Record) -> Table:

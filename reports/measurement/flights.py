@@ -9,7 +9,7 @@ from common.binomial import percent
 from reports.document.blocks import Block, Heading, Section, Text
 from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
 from reports.measurement.data import Record
-from reports.measurement.flight_charts import error_chart, operating_curve, track_chart, trajectory_chart
+from reports.measurement.flight_charts import error_chart, operating_curve, sulphur_track_chart, trajectory_chart
 from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table
 from reports.measurement.tables import over_time_table, result_table
 from reports.run.columns import column
@@ -98,7 +98,7 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
             blocks: list[Block | None] = [
                 Text(_told(row)),
                 result_table(record),
-                track_chart(history[history["time_s"] >= row["settling_time_s"]]),
+                sulphur_track_chart(history[history["time_s"] >= row["settling_time_s"]]),
                 over_time_chart(record),
                 over_time_table(record),
                 budget_chart(record),

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import Meaning
 from reports.document.tables import kinematic
 from reports.run.columns import Array
 from reports.run.run_data import RunData
@@ -67,7 +68,7 @@ def sim_1_charts(run: RunData) -> list[Chart]:
     return [
         _side_by_side(
             run, ["sim1"], _figure_3, name="fig3", equal=True, panel_height=0.55, labels=("East [m]", "North [m]"),
-            caption="To put beside the paper's figure 3: the circular reference and the UAV. Diamonds: where each is at the start.",
+            caption="To put beside the paper's figure 3: the circular reference and the UAV. Rings: where each is at the start.",
         ),
         _side_by_side(
             run, ["sim1"], _figure_4, name="fig4", labels=("Time [s]", "Angle [rad]"),
@@ -90,7 +91,7 @@ def sim_2_charts(run: RunData) -> list[Chart]:
         _side_by_side(
             run, cases, _figure_6, name="fig6", equal=True, panel_height=0.42, labels=("East [m]", "North [m]"),
             caption="Figure 6: both UAVs start in front of the reference and fly the other way. UAV 1 steers by the line of sight,"
-            " UAV 2 by the δ formulation. Diamonds: starts.",
+            " UAV 2 by the δ formulation. Rings: starts.",
         ),
         _side_by_side(
             run, cases, _figure_7, name="fig7", labels=("Time [s]", "Heading-rate demand [rad/s]"),
@@ -118,10 +119,10 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         times = times[times <= flown.time[-1]]
         east, north = (np.interp(times, flown.time, flown.column(name)) for name in ("east_m", "north_m"))
         return [
-            Line(x=flown.column("vessel_east_m"), y=flown.column("vessel_north_m"), label="vessel", colour="black"),
-            Line(x=flown.column("reference_east_m"), y=flown.column("reference_north_m"), label="reference", colour="orange"),
-            Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour="blue"),
-            _diamonds(east, north, "plume crossing"),
+            Line(x=flown.column("vessel_east_m"), y=flown.column("vessel_north_m"), label="ship's track", colour=Meaning.SHIP),
+            Line(x=flown.column("reference_east_m"), y=flown.column("reference_north_m"), label="reference", colour=Meaning.ASKED),
+            Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour=Meaning.FLOWN),
+            _crossings(east, north),
         ]
 
     def figure_9(flights: dict[str, Flown]) -> list[Line]:
@@ -129,10 +130,8 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         crossings = run.crossings_of(str(flown.row["flight_id"]))
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
-            Line(x=flown.time, y=keepout_distance(flown.history, source_height, "sphere"), label="UAV", colour="blue"),
-            _diamonds(
-                crossings["time_s"].to_numpy(dtype=np.float64), crossings["distance_m"].to_numpy(dtype=np.float64), "plume crossing"
-            ),
+            Line(x=flown.time, y=keepout_distance(flown.history, source_height, "sphere"), label="UAV", colour=Meaning.FLOWN),
+            _crossings(crossings["time_s"].to_numpy(dtype=np.float64), crossings["distance_m"].to_numpy(dtype=np.float64)),
         ]
 
     return [
@@ -203,7 +202,7 @@ def _common_ranges(lines: list[Line]) -> tuple[tuple[float, float], tuple[float,
 def _figure_3(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
     return [
-        Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour="blue"),
+        Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour=Meaning.FLOWN),
         _reference(flown),
         _starts([flown]),
     ]
@@ -212,15 +211,18 @@ def _figure_3(flights: dict[str, Flown]) -> list[Line]:
 def _figure_4(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
     return [
-        Line(x=flown.time, y=flown.column("phi_rad"), label="φ", colour="blue"),
-        Line(x=flown.time, y=flown.column("phi_r_rad"), label="φ_r", colour="orange"),
+        Line(x=flown.time, y=flown.column("phi_rad"), label="φ", colour=Meaning.FLOWN),
+        Line(x=flown.time, y=flown.column("phi_r_rad"), label="φ_r", colour=Meaning.ASKED),
         *_coincidence_marks(flown, flown.column("phi_r_rad")),
     ]
 
 
 def _figure_5(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
-    return [Line(x=flown.time, y=flown.distance, label="distance d", colour="blue"), *_coincidence_marks(flown, flown.distance)]
+    return [
+        Line(x=flown.time, y=flown.distance, label="distance d", colour=Meaning.FLOWN),
+        *_coincidence_marks(flown, flown.distance),
+    ]
 
 
 def _coincidence_marks(flown: Flown, curve: Array) -> list[Line]:
@@ -228,8 +230,8 @@ def _coincidence_marks(flown: Flown, curve: Array) -> list[Line]:
     times = coincidences(flown)
     saddle = np.abs(np.interp(times, flown.time, flown.column("phi_rad"))) < _PHI_GONE
     marks = (
-        (saddle, "φ_r = φ = 0, a saddle point of d", "vermillion"),
-        (~saddle, "φ_r = φ ≠ 0, a peak or trough of d", "green"),
+        (saddle, "φ_r = φ = 0, a saddle point of d", "plum"),
+        (~saddle, "φ_r = φ ≠ 0, a peak or trough of d", "black"),
     )
     return [
         Line(x=times[which], y=np.interp(times[which], flown.time, curve), label=label, colour=colour, style="diamonds")
@@ -238,7 +240,7 @@ def _coincidence_marks(flown: Flown, curve: Array) -> list[Line]:
     ]
 
 
-_UAVS = {"sim2_los": ("UAV 1, line of sight", "vermillion"), "sim2_delta": ("UAV 2, δ formulation", "blue")}
+_UAVS = {"sim2_los": ("UAV 1, line of sight", "plum"), "sim2_delta": ("UAV 2, δ formulation", Meaning.FLOWN)}
 
 
 def _figure_6(flights: dict[str, Flown]) -> list[Line]:
@@ -257,7 +259,7 @@ def _figure_7(flights: dict[str, Flown]) -> list[Line]:
     ]
     first = next(iter(flights.values()))
     limit = float(first.row["heading_rate_limit_rad_s"])
-    return [*commands, *(_level(first.time, value, "±ω_max", "black") for value in (limit, -limit))]
+    return [*commands, *(_level(first.time, value, "±ω_max") for value in (limit, -limit))]
 
 
 def _distances(flights: dict[str, Flown]) -> list[Line]:
@@ -267,7 +269,7 @@ def _distances(flights: dict[str, Flown]) -> list[Line]:
 def _reference(flown: Flown) -> Line:
     """Return the circle of the reference, to be drawn over the tracks that come to lie on it."""
     east, north = flown.column("reference_east_m"), flown.column("reference_north_m")
-    return Line(x=east, y=north, label="reference", colour="orange", style="dash")
+    return Line(x=east, y=north, label="reference", colour=Meaning.ASKED, style="dash")
 
 
 def _starts(flights: list[Flown]) -> Line:
@@ -277,12 +279,12 @@ def _starts(flights: list[Flown]) -> Line:
         for east, north in (("east_m", "north_m"), ("reference_east_m", "reference_north_m"))
     ]
     x, y = np.array(places).T
-    return _diamonds(x, y, "start")
+    return Line(x=x, y=y, label="start", colour=Meaning.SHIP, style="ring")
 
 
-def _diamonds(x: Array, y: Array, label: str) -> Line:
-    return Line(x=x, y=y, label=label, colour="green" if label == "start" else "vermillion", style="diamonds")
+def _crossings(x: Array, y: Array) -> Line:
+    return Line(x=x, y=y, label="plume crossing", colour=Meaning.CROSSING, style="diamonds")
 
 
-def _level(time: Array, value: float, label: str, colour: str = "vermillion") -> Line:
+def _level(time: Array, value: float, label: str, colour: str = Meaning.LIMIT) -> Line:
     return Line(x=time[[0, -1]], y=np.array([value, value]), label=label, colour=colour, style="dash")
