@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from reports.document.chart import Chart
+from reports.document.scene import Scene
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,6 +58,7 @@ class FlightContent:
     title : above its page in print
     charts : its figures, or none if it has no record
     printed : whether it has a page in print, unless all are asked for
+    scene : for its replay on the screen, or none
     """
 
     flight_id: str
@@ -64,6 +66,7 @@ class FlightContent:
     title: str
     charts: list[Chart]
     printed: bool = True
+    scene: Scene | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

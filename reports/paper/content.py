@@ -15,6 +15,7 @@ from reports.flights.single_flight import flight_charts
 from reports.paper.bounds import bounds_section
 from reports.paper.charts import VEHICLES, find_flight, sim_1_charts, sim_2_charts, sim_3_charts, vehicle_name
 from reports.paper.checks import DISTANCE_PRINTED, INTERVAL_PRINTED, paper_verdict, rows_by_id
+from reports.replay.flight_scene import flight_scene
 from reports.run.run_data import RunData
 from reports.run.trials import read_trials
 
@@ -203,6 +204,7 @@ def _flights(run: RunData) -> FlightPicker:
                 label=f"{name} · {vehicle_name(run, fidelity)}",
                 title=f"{name}: {vehicle_name(run, fidelity)}",
                 charts=flight_charts(trial, row),
+                scene=flight_scene(trial, row),
             )
         )
     return FlightPicker(flights=flights)
