@@ -21,7 +21,7 @@ _FIGURES_MAX = 2
 
 def pair_charts(pairs: Pairs, found: dict[str, Difference]) -> list[Chart]:
     """Return, figure by figure, one run over the first, and beside it the differences; nothing where no figure differs."""
-    shown = [found[name] for name in _SHOWN if name in found and np.any(found[name].known != 0.0)]
+    shown = [found[name] for name in _SHOWN if name in found and not found[name].is_none]
     groups, over = _groups(pairs), _inputs(pairs)
     panels = [
         (_scatter(difference, groups, pairs), _changes(difference, *over, groups) if over else _ranked(difference, groups))
@@ -63,7 +63,7 @@ def _scatter(difference: Difference, groups: list[Group], pairs: Pairs) -> Panel
     known = np.isfinite(difference.change)
     limits = around(np.concatenate([difference.before[known], difference.after[known]]))
     ends = np.array(limits or (0.0, 1.0))
-    equal = Line(x=ends, y=ends, label="equal", colour="black", style="dash")
+    equal = Line(x=ends, y=ends, label="no difference", colour="black", style="dash")
     return Panel(
         title=difference.figure.name,
         x_label=f"In {pairs.first.letter} [{difference.figure.unit}]",
@@ -90,7 +90,7 @@ def _inputs(pairs: Pairs) -> tuple[Array, str] | None:
 def _changes(difference: Difference, x: Array, x_label: str, groups: list[Group]) -> Panel:
     zero = Line(x=np.array(around(x) or (0.0, 1.0)), y=np.zeros(2), label="no difference", colour="black", style="dash")
     return Panel(
-        title=difference.figure.name,
+        title="Difference",
         x_label=x_label,
         y_label=f"Difference [{difference.figure.unit}]",
         lines=[zero, *points(x, difference.change, groups)],
@@ -106,7 +106,7 @@ def _ranked(difference: Difference, groups: list[Group]) -> Panel:
     share[order] = 100.0 * (np.arange(len(order)) + 0.5) / len(order)
     zero = Line(x=np.zeros(2), y=np.array([0.0, 100.0]), label="no difference", colour="black", style="dash")
     return Panel(
-        title=difference.figure.name,
+        title="Difference",
         x_label=f"Difference [{difference.figure.unit}]",
         y_label="Pairs below [%]",
         lines=[zero, *points(change, share, groups)],

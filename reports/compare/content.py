@@ -16,8 +16,9 @@ from reports.run.columns import Mask, count, lost, total, violated
 TIME_OF_COMPUTING = "wall_time_s"
 """The column of a summary that differs between any two runs."""
 
-_CARDS = ("clearance_m", "tracking_error_rms_m", "crossing_interval_error")
-"""Figures at the head of the report on two runs."""
+_CARDS = ("fsc_percent", "clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
+_CARDS_MAX = 3
+"""Figures at the head of the report on two runs: the first of those that the flights have."""
 
 _NAMED_MAX = 6
 """Keys that a sentence names."""
@@ -95,7 +96,7 @@ def _pair_section(compared: Compared) -> Section:
     blocks: list[Block] = [Text(" ".join(pairing_sentences(pairs)))]
     if compared.differing:
         chart, table = most_changed(pairs, compared.found), changed_table(pairs)
-        blocks += [Text(_interval_sentences(compared)), difference_table(pairs, compared.found)]
+        blocks += [Text(_difference_sentences(compared)), difference_table(pairs, compared.found)]
         if table is not None:
             changed = count(pairs.no_longer_met | pairs.newly_met)
             first = f", of which the first {LISTED_MAX} are listed" if changed > LISTED_MAX else ""
@@ -123,14 +124,18 @@ def pairing_sentences(pairs: Pairs) -> list[str]:
     return sentences
 
 
-def _interval_sentences(compared: Compared) -> str:
+def _difference_sentences(compared: Compared) -> str:
     trials = {trial.key: trial for trial in compared.pairs.first.trials}
     at_random = all(trials[str(name)].sampled_at_random for name in dict.fromkeys(compared.pairs.before["trial"]))
     others = "" if at_random else " These flights are no random sample: it says how far they agree, not what others would show."
+    same = [of.figure.name.lower() for name, of in compared.found.items() if of.is_none and name != "keepout_violations"]
+    equal = f" The same in every pair that has them: {'; '.join(same)}." if same else ""
+    if len(compared.pairs) < PAIRS_MIN:
+        return f"Differences are those of each pair; of fewer than {PAIRS_MIN} pairs a median has no interval.{equal}"
     return (
-        "Differences are those of each pair. The interval is the exact one of their median, from order statistics, for any"
-        f" distribution; it takes {PAIRS_MIN} pairs, and is bold where it leaves out 0. Of {len(compared.found)} intervals at 95 %"
-        f" one in twenty leaves out 0 by chance.{others}"
+        "Differences are those of each pair. The interval is the exact one of their median at 95 %, from order statistics, for any"
+        f" distribution; it takes {PAIRS_MIN} pairs, and is bold where it leaves out 0, as one in twenty does by chance."
+        f"{others}{equal}"
     )
 
 
@@ -176,7 +181,7 @@ def _lines(compared: Compared) -> list[str]:
     pairs = compared.pairs
     first, other = pairs.first.letter, pairs.other.letter
     if compared.identical:
-        return [f"{other}: no figure differs from {first}, to the last bit"]
+        return [f"{other}: no figure differs from {first}"]
     lines = []
     if new := _new(pairs):
         what = "violate the keep-out area or lose the aircraft" if new > 1 else "violates the keep-out area or loses the aircraft"
@@ -199,10 +204,8 @@ def _cards(compared: Compared, *, alone: bool) -> list[tuple[str, str, str]]:
     cards.append((f"Keep-out violations of paired flights in {first}, in {other}", ", ".join(violations), ""))
     if not alone:
         return cards
-    for name in _CARDS:
-        if name in compared.found:
-            difference = compared.found[name]
-            figure = difference.figure
-            value = f"{signed(difference.median, figure.digits)} {figure.unit}"
-            cards.append((f"{figure.name}: median of {other} − {first}", value, ""))
+    for difference in [compared.found[name] for name in _CARDS if name in compared.found][:_CARDS_MAX]:
+        figure = difference.figure
+        value = f"{signed(difference.median, figure.digits)} {figure.unit}"
+        cards.append((f"{figure.name}: median of {other} − {first}", value, ""))
     return cards

@@ -63,9 +63,9 @@ MEASURES: Mapping[str, Measure] = {
     "guard_interventions": _of("guard_interventions", "Interventions of the guard", "-", 0),
     "guard_time_s": _of("guard_time_s", "Time guarded", "s", 1),
     "duration_s": _of("duration_s", "Flight time", "s", 1),
-    "fsc_percent": _of("fsc_percent", "Fuel sulphur content found", "%", 4),
-    "fsc_error_percent": Measure(figure=Figure(name="Its error", unit="%", digits=4), values=_off_fuel),
-    "fsc_uncertainty_percent": _of("fsc_uncertainty_percent", "Its stated uncertainty", "%", 4),
+    "fsc_percent": _of("fsc_percent", "Sulphur content found", "%", 4),
+    "fsc_error_percent": Measure(figure=Figure(name="Error of the sulphur content", unit="%", digits=4), values=_off_fuel),
+    "fsc_uncertainty_percent": _of("fsc_uncertainty_percent", "Uncertainty of the sulphur content", "%", 4),
 }
 """By the names of the columns of ``differences.csv``, in the order they are shown."""
 
@@ -99,6 +99,11 @@ class Difference:
         """Return the differences of the pairs of which both flights have the figure."""
         change = self.change
         return change[np.isfinite(change)]
+
+    @property
+    def is_none(self) -> bool:
+        """Return whether the figure is the same in both flights of every pair."""
+        return not np.any(self.known)
 
     @property
     def excludes_zero(self) -> bool:

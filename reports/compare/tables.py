@@ -48,8 +48,8 @@ _WHOLE = (
     _Whole("Plume crossings after settling, all flights", "crossing_count", np.sum),
     _Whole("Time guarded, all flights", "guard_time_s", np.sum),
     _Whole("Flight time, all flights", "duration_s", np.sum),
-    _Whole("Error of the sulphur content found, median", "fsc_error_percent", np.median),
-    _Whole("Its stated uncertainty, median", "fsc_uncertainty_percent", np.median),
+    _Whole("Error of the sulphur content, median", "fsc_error_percent", np.median),
+    _Whole("Uncertainty of the sulphur content, median", "fsc_uncertainty_percent", np.median),
 )
 
 
@@ -69,7 +69,7 @@ def side_by_side(runs: Sequence[Run]) -> Table:
         if any(value is not None for value in values):
             unit = "" if figure.unit == "-" else f" [{figure.unit}]"
             changes = [_signed(value, values[0], figure.digits) for value in values[1:]]
-            rows.append([f"{whole.words}{unit}", *(number(value, f"{{:,.{figure.digits}f}}") for value in values), *changes])
+            rows.append([f"{whole.words}{unit}", *(number(value, _pattern(figure.digits)) for value in values), *changes])
     letters = [run.letter for run in runs]
     return Table(
         head=["", *letters, *(f"{letter} − {letters[0]}" for letter in letters[1:])],
@@ -94,13 +94,18 @@ def signed(value: float, digits: int) -> str:
     """Return a difference with its sign: 0 where it is none at all, and two digits of one that is smaller than ``digits`` show."""
     if value == 0.0:
         return "0"
-    return f"{value:+.2g}" if abs(value) < 0.5 * 10.0**-digits else f"{value:+,.{digits}f}"
+    return f"{value:+.2g}" if abs(value) < 0.5 * 10.0**-digits else _pattern(digits, "+").format(value)
+
+
+def _pattern(digits: int, sign: str = "") -> str:
+    """Return how a figure is written; the median of counts may lie between two of them."""
+    return f"{{:{sign},.{digits}f}}" if digits else f"{{:{sign},.9g}}"
 
 
 def difference_table(pairs: Pairs, found: dict[str, Difference]) -> Table:
-    """Return how each figure differs between the flights of a pair: median, its interval, least and greatest difference."""
+    """Return how figures differ between the flights of a pair, of those that do: median, its interval, least and greatest."""
     rows, bold = [], []
-    for i, difference in enumerate(found.values()):
+    for i, difference in enumerate(of for name, of in found.items() if name == "keepout_violations" or not of.is_none):
         figure, known = difference.figure, difference.known
         both = np.isfinite(difference.change)
         interval = (
@@ -111,8 +116,7 @@ def difference_table(pairs: Pairs, found: dict[str, Difference]) -> Table:
         rows.append([
             figure.name if figure.unit == "-" else f"{figure.name} [{figure.unit}]",
             f"{len(known):,}",
-            f"{np.median(difference.before[both]):,.{figure.digits}f}",
-            f"{np.median(difference.after[both]):,.{figure.digits}f}",
+            *(number(np.median(values[both]), _pattern(figure.digits)) for values in (difference.before, difference.after)),
             signed(difference.median, figure.digits),
             interval,
             f"{signed(float(known.min()), figure.digits)} to {signed(float(known.max()), figure.digits)}",

@@ -154,7 +154,7 @@ def _distances(flown: list[_Flight]) -> Panel:
     return Panel(
         x_label="Time [s]",
         y_label="Distance [m]",
-        title="Distance that the keep-out area is about",
+        title="Distance from the keep-out area’s centre",
         lines=[*levels, *(flight.over_time(distance) for flight, distance in zip(flown, distances, strict=True))],
         y_range=(min(0.95 * radius, nearest - 2.0), max(_FAR * radius, 1.1 * late)),
     )

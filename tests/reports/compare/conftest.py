@@ -1,10 +1,10 @@
 """Short kinematic sweeps, flown once: a first one, one with a larger keep-out area, and the first once more."""
 
 import pytest
-from compared_runs import flown
 
 from reports.compare.content import compare, comparison_content
 from reports.compare.runs import read_runs
+from tests.reports.compare.compared_runs import flown
 
 
 @pytest.fixture(scope="session")

@@ -5,11 +5,12 @@ import multiprocessing
 import shutil
 
 import pytest
-from compared_runs import flown
 
+from reports.run.run_data import read_run
 from scenarios.engine.journal import Journal
 from scenarios.engine.task import Result, Task
 from tests.in_process import assert_refused, run_command
+from tests.reports.compare.compared_runs import flown
 
 
 def compared(*arguments):
@@ -130,6 +131,6 @@ def test_a_run_that_another_process_is_writing_is_refused_and_one_that_was_kille
         writer.join()
     files = sorted(path.name for path in copies[1].iterdir())
     assert "journal.sqlite-wal" in files
-    assert compared(*copies).status == 0
+    assert len(read_run(copies[1]).summary) == 3
     # SQLite has nothing to do with a run that is only read.
     assert sorted(path.name for path in copies[1].iterdir()) == files

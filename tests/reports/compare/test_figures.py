@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from compared_runs import made_run, rows_of
 
 from reports.compare.figures import MEASURES, PAIRS_MIN, differences
 from reports.compare.pairs import paired
 from reports.compare.tables import difference_table, signed
+from tests.reports.compare.compared_runs import made_run, rows_of
 
 
 def pairs_of(before, after, name="tracking_error_rms_m"):
@@ -89,6 +89,10 @@ def test_the_table_counts_lower_and_higher_and_marks_an_interval_without_0():
 )
 def test_a_difference_that_digits_would_hide_is_written_with_two(value, text):
     assert signed(value, 1) == text
+
+
+def test_the_median_of_counts_may_lie_between_two_of_them():
+    assert (signed(-6.5, 0), signed(1234.0, 0)) == ("-6.5", "+1,234")
 
 
 def test_every_figure_has_a_unit_and_a_name_of_its_own():

@@ -3,10 +3,10 @@
 import math
 
 import pytest
-from compared_runs import made_run, rows_of
 
 from reports.compare.pairs import paired
 from reports.errors import ReportError
+from tests.reports.compare.compared_runs import made_run, rows_of
 
 
 def paired_names(pairs):
