@@ -1,8 +1,7 @@
 """Command line: ``python -m reports.build RUN_DIR`` rebuilds a run's reports from what is on disk, or exports it."""
 
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -40,16 +39,17 @@ def build_reports(
     from reports.registry import content
     from reports.render.html import write_html
     from reports.render.pdf import write_pdf
+    from reports.run.files import damage_named, written
     from reports.run.run_data import read_run
 
     run = read_run(directory)
     print("building the report", file=sys.stderr)
-    with _damage_named(directory):
+    with damage_named(directory):
         report = content(run)
     for name in run.missing():
         tell_missing(name)
-    html = _written(directory / REPORT_HTML, partial(write_html, report))
-    return [html, _written(directory / REPORT_PDF, partial(write_pdf, report, all_flights=all_flights))]
+    html = written(directory / REPORT_HTML, partial(write_html, report))
+    return [html, written(directory / REPORT_PDF, partial(write_pdf, report, all_flights=all_flights))]
 
 
 def export_run(directory: Path, name: str, flight_id: str | None = None) -> list[Path]:
@@ -68,6 +68,7 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
     """
     from reports.errors import ReportError
     from reports.export import EXPORTERS
+    from reports.run.files import damage_named, written
 
     exporter = EXPORTERS.get(name)()
     run, folder = _run_of(directory, flight_id), directory / EXPORT
@@ -79,9 +80,9 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
     parts = {f"{run_name}.{flight_id}" if flight_id else str(run_name): run}
     if getattr(exporter, "one_flight", False) and (recorded := run.recorded()):
         parts = {f"{run_name}.{flight}": run.of_flight(flight) for flight in recorded}
-    with _damage_named(directory):
+    with damage_named(directory):
         folder.mkdir(exist_ok=True)
-        return [_written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
+        return [written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
 
 
 def stream_run(directory: Path, address: str, flight_id: str | None = None) -> tuple[str, int, float]:
@@ -92,10 +93,11 @@ def stream_run(directory: Path, address: str, flight_id: str | None = None) -> t
     ReportError : the run cannot be read, or has no such flight, or the address is not of that form
     """
     from reports.export.stream import stream_address, stream_flight
+    from reports.run.files import damage_named
 
     host = stream_address(address)
     run = _run_of(directory, flight_id)
-    with _damage_named(directory):
+    with damage_named(directory):
         return stream_flight(run, host)
 
 
@@ -111,32 +113,6 @@ def _run_of(directory: Path, flight_id: str | None) -> "RunData":
         known = ", ".join(recorded[:_NAMED]) + (", ..." if len(recorded) > _NAMED else "")
         raise ReportError(f"'{directory}' has no time history of a flight {flight_id[:80]!r}; it has those of {known or 'none'}")
     return run.of_flight(flight_id)
-
-
-@contextmanager
-def _damage_named(directory: Path) -> Iterator[None]:
-    """Refuse a run in one line, where reading what it holds fails."""
-    from reports.errors import ReportError
-
-    try:
-        yield
-    except ReportError:
-        raise
-    except (LookupError, TypeError, ValueError, AttributeError, OSError) as error:
-        what = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise ReportError(f"'{directory}' is damaged ({what}); run it again in another --out") from None
-
-
-def _written(path: Path, write: Callable[[Path], object]) -> Path:
-    """Write a file, whole or not at all, and return its path."""
-    from common.files import write_whole
-    from reports.errors import ReportError
-
-    try:
-        write_whole(path, write)
-    except OSError as error:
-        raise ReportError(f"'{path}' cannot be written: {error.strerror}; check permissions and space") from None
-    return path
 
 
 def print_design(record: dict[str, Any]) -> None:

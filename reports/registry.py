@@ -1,6 +1,6 @@
 """Which content a run's report has."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from common.registry import announced, is_file_part
 from common.run_layout import MANIFEST
@@ -43,11 +43,7 @@ def content(run: RunData) -> Content:
     # Studies of flights that others add have the report of any flights.
     made = STUDIES.get(study, flights_content)
     needed = FLIGHT_ENTRIES if made in (flights_content, paper_content, arena_content) else ()
-    if missing := [entry for entry in needed if entry not in run.manifest]:
-        raise ReportError(
-            f"'{run.path}' was flown by another version: its {MANIFEST} has no '{missing[0]}'; report on it with that version, or"
-            " run the scenario again in another --out"
-        )
+    refuse_other_version(run, needed)
     verdict, sections = made(run)
     # What is missing is known once everything has been asked for; it stands first.
     sections = [*missing_sections(run), *sections]
@@ -59,3 +55,17 @@ def content(run: RunData) -> Content:
         verdict=verdict,
         sections=[section for section in (*sections, provenance) if section.blocks],
     )
+
+
+def refuse_other_version(run: RunData, needed: Sequence[str]) -> None:
+    """Refuse a run whose manifest lacks an entry.
+
+    Raises
+    ------
+    ReportError : it names the first one that is missing
+    """
+    if missing := [entry for entry in needed if entry not in run.manifest]:
+        raise ReportError(
+            f"'{run.path}' was flown by another version: its {MANIFEST} has no '{missing[0]}'; report on it with that version, or"
+            " run the scenario again in another --out"
+        )

@@ -26,6 +26,7 @@ from common.run_layout import (
     trajectory_path,
 )
 from reports.errors import ReportError
+from reports.run.files import refuse_running
 
 WITHOUT_SUMMARY = ("design", "measurement")
 """Studies that have nothing to count."""
@@ -118,8 +119,9 @@ def read_run(path: Path) -> RunData:
 
     Raises
     ------
-    ReportError : it is not one, is damaged, or holds nothing finished
+    ReportError : it is not one, is damaged, holds nothing finished, or another program is writing to it
     """
+    refuse_running(path)
     try:
         manifest = json.loads((path / MANIFEST).read_text(encoding="utf-8"))
     except FileNotFoundError:
