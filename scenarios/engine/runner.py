@@ -11,7 +11,6 @@ from typing import Any, Protocol
 from common.files import remove_reports, write_whole
 from common.run_layout import FILES
 from scenarios.engine.executor import Executor
-from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.journal import Journal, damaged, is_damaged, is_full
 from scenarios.engine.memory import peak_memory
 from scenarios.engine.run_directory import RunDirectory
@@ -110,7 +109,9 @@ class RunResult:
         return self.summary.met and not self.interrupted
 
 
-def fly_study(study: Study, directory: Path, *, executor_factory: ExecutorFactory, resume: bool, progress: Progress) -> RunResult:
+def fly_study(
+    study: Study, directory: Path, *, executor_factory: Callable[[Work], Executor], resume: bool, progress: Progress
+) -> RunResult:
     """Fly a study, or the unfinished part of it, into a run directory.
 
     Parameters
@@ -162,7 +163,7 @@ class _Execution:
         self._manifest = study.initial_manifest()
         self._begun = False
 
-    def fly(self, executor_factory: ExecutorFactory) -> RunResult:
+    def fly(self, executor_factory: Callable[[Work], Executor]) -> RunResult:
         study, run, journal = self._study, self._run, self._journal
         began = time.perf_counter()
         interrupted = False

@@ -112,8 +112,8 @@ class FlightRecord:
 
 
 _UNITS = (
-    ("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"), ("_deg", "deg"), ("_utc", "UTC"),
-    ("_ppb", "ppb"), ("_ppm", "ppm"),
+    ("_per_m", "1/m"), ("_per_s", "1/s"), ("_percent", "%"), ("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"),
+    ("_s", "s"), ("_deg", "deg"), ("_utc", "UTC"), ("_ppb", "ppb"), ("_ppm", "ppm"),
 )  # fmt: skip
 """Ends of columns' names, and the units that they stand for."""
 

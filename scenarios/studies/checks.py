@@ -25,7 +25,7 @@ from scenarios.world.faults import SATELLITES, VESSEL_DATA
 from scenarios.world.vessel import check_manoeuvres
 from scenarios.world.world import mean_wind, vessel_of
 
-_REGISTRIES: dict[str, Registry[Any]] = {
+PART_REGISTRIES: dict[str, Registry[Any]] = {
     "reference.shape": REFERENCE_SHAPES,
     "vessel.track": VESSEL_TRACKS,
     "plume.model": PLUME_MODELS,
@@ -118,7 +118,7 @@ def _check_vessel(scenario: Scenario) -> None:
 def _check_parts(scenario: Scenario) -> None:
     for key, name in part_names(scenario):
         try:
-            if key in _REGISTRIES and not is_data_file(name):
-                _REGISTRIES[key].get(name)
+            if key in PART_REGISTRIES and not is_data_file(name):
+                PART_REGISTRIES[key].get(name)
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None

@@ -68,6 +68,9 @@ class FlightStudy:
 
     what = "flights"
 
+    chooses_flights = False
+    """Whether what is flown depends on what was flown before, so that no flight can be flown without the others."""
+
     def __init__(
         self, scenario: Scenario | TrialList, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()
     ) -> None:

@@ -1,12 +1,14 @@
 """Choice of the study that a scenario describes, and its execution."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from common.registry import PluginError
+from scenarios.engine.executor import Executor
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Progress, RunResult, Study, fly_study
+from scenarios.engine.task import Work
 from scenarios.errors import InputError
 from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.experiment import TrialList
@@ -46,7 +48,7 @@ def run_study(
     name: str,
     directory: Path,
     *,
-    executor_factory: ExecutorFactory | None = None,
+    executor_factory: Callable[[Work], Executor] | None = None,
     resume: bool = False,
     progress: Progress = lambda *_: None,
     overrides: Sequence[str] = (),

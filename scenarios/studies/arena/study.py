@@ -39,6 +39,8 @@ class ArenaStudy(FlightStudy):
     InputError : as of ``FlightStudy``; a law or a condition that does not exist, or an arena of several points
     """
 
+    chooses_flights = True
+
     def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
         if scenario.sweep.root or scenario.cases or scenario.comparison.variants or scenario.fidelity == "both":
             raise InputError(
