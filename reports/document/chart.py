@@ -113,6 +113,7 @@ class Chart:
     panel_height : of each row, relative to a full text width of 1
     share_x : panels of a column share their abscissa
     scale_label : "Quantity [unit]" of the colour scale, for lines with values
+    number : "Figure 3"; given when the report is put together
     """
 
     name: str
@@ -122,6 +123,7 @@ class Chart:
     panel_height: float = 0.36
     share_x: bool = False
     scale_label: str = ""
+    number: str = ""
 
     @property
     def rows(self) -> int:

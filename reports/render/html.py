@@ -24,6 +24,8 @@ def write_html(report: Content, path: Path) -> None:
         kind=lambda block: type(block).__name__,
         figure=lambda chart: _for_script(draw(chart)),
         flights=_flights,
+        cards=report.verdict.cards,
+        failures=report.verdict.first_failures,
     )
     path.write_text(page, encoding="utf-8")
 

@@ -50,6 +50,7 @@ def run_study(
     resume: bool = False,
     progress: Progress = lambda *_: None,
     overrides: Sequence[str] = (),
+    command: str = "",
 ) -> RunResult:
     """Fly a study into ``directory``.
 
@@ -61,6 +62,7 @@ def run_study(
     resume : continue the unfinished run in ``directory``
     progress : called as the study advances
     overrides : overrides that were applied to the scenario, recorded in the manifest
+    command : the command line, for the manifest; none if a program runs the study
 
     Raises
     ------
@@ -70,4 +72,5 @@ def run_study(
         RunDirectory(directory).refuse_taken()
     progress("preparing", 0, 1)
     study = study_of(scenario, name, overrides)
-    return fly_study(study, directory, executor_factory=executor_factory or ExecutorFactory(), resume=resume, progress=progress)
+    factory = executor_factory or ExecutorFactory()
+    return fly_study(study, directory, executor_factory=factory, resume=resume, progress=progress, command=command)
