@@ -1,7 +1,7 @@
 """Command line: ``python -m reports.build RUN_DIR`` rebuilds a run's reports from what is on disk, or exports it."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -22,7 +22,11 @@ _NAMED = 5
 
 
 def build_reports(
-    directory: Path, *, all_flights: bool = False, tell_missing: Callable[[str], None] = lambda _: None
+    directory: Path,
+    *,
+    all_flights: bool = False,
+    settings: Sequence[str] = (),
+    tell_missing: Callable[[str], None] = lambda _: None,
 ) -> list[Path]:
     """Write ``report.html`` and ``report.pdf`` into a run directory and return their paths.
 
@@ -30,22 +34,25 @@ def build_reports(
     ----------
     directory : of the run
     all_flights : print every flight that can be picked on the screen, not the telling ones alone
+    settings : ``report.KEY=VALUE`` of title, author, organisation and logo, in place of those of the run
     tell_missing : called with the path of each file of the run that is gone or cannot be read; the reports name it
 
     Raises
     ------
-    ReportError : the directory holds no run that can be reported on, or cannot be written
+    ReportError : the directory holds no run that can be reported on, or cannot be written; or a setting is none, or no picture
     """
     from reports.registry import content
     from reports.render.html import write_html
     from reports.render.pdf import write_pdf
     from reports.run.files import damage_named, written
+    from reports.run.letterhead import parse_settings
     from reports.run.run_data import read_run
 
+    given = parse_settings(settings)
     run = read_run(directory)
     print("building the report", file=sys.stderr)
     with damage_named(directory):
-        report = content(run)
+        report = content(run, given)
     for name in run.missing():
         tell_missing(name)
     html = written(directory / REPORT_HTML, partial(write_html, report))
@@ -115,6 +122,18 @@ def _run_of(directory: Path, flight_id: str | None) -> "RunData":
     return run.of_flight(flight_id)
 
 
+def check_settings(settings: Sequence[str]) -> None:
+    """Refuse settings of a report before anything is computed for it.
+
+    Raises
+    ------
+    ReportError : a setting is none, or its logo is no picture
+    """
+    from reports.run.letterhead import parse_settings
+
+    parse_settings(settings)
+
+
 def print_design(record: dict[str, Any]) -> None:
     """Print the summary of an autopilot's design, given its record (``innerloop.json``)."""
     from reports.design.console import print_summary
@@ -134,6 +153,12 @@ def command(
     stream: Annotated[
         str | None, typer.Option(metavar="udp://HOST:PORT", help="Send a flight to a ground station in real time, as MAVLink.")
     ] = None,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="report.KEY=VALUE", help="Title, author, organisation or logo of these reports; may be repeated."
+        ),
+    ] = None,
     all_flights: Annotated[
         bool, typer.Option("--all-flights", help="Print every flight that report.html shows, not the telling ones alone.")
     ] = False,
@@ -148,6 +173,8 @@ def command(
     try:
         if flight is not None and not (export or stream):
             raise ReportError("--flight is of use beside --export or --stream; reports are of the whole run: leave it out")
+        if overrides and (export or stream):
+            raise ReportError("--set is of the reports, which --export and --stream do not write: leave it out")
         if export or stream:
             for name in (name for names in export or () for name in names.split(",")):
                 for path in export_run(directory, name, flight):
@@ -157,7 +184,7 @@ def command(
                 print(f"stream: {messages} messages of {sent}, {seconds:.0f} s of flight, to {stream}")
         else:
             missing: list[str] = []
-            for path in build_reports(directory, all_flights=all_flights, tell_missing=missing.append):
+            for path in build_reports(directory, all_flights=all_flights, settings=overrides or (), tell_missing=missing.append):
                 print(f"report: {path}")
             for name in missing:
                 print(

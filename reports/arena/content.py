@@ -1,12 +1,15 @@
 """The report of an arena: a reader ranks the laws at a glance, and sees what each was given."""
 
+from dataclasses import replace
+
 from reports.arena.charts import crossing_chart, effort_charts, track_chart
 from reports.arena.data import Arena, Entrant, read_arena
 from reports.arena.tables import condition_table, given_table, plume_table, refused_table, tracking_table
 from reports.design.section import innerloop_section
-from reports.document.blocks import Block, Heading, Section, Text, Verdict
+from reports.document.blocks import Block, Card, Findings, Heading, Section, Text, Verdict
 from reports.document.tables import number, parameter_table, vehicles_flown
 from reports.flights.content import flights_content
+from reports.flights.first_page import flights_in_words
 from reports.run.columns import count, lost, measured, total, violated
 from reports.run.run_data import RunData
 
@@ -41,8 +44,8 @@ _GIVEN = (
 )
 
 
-def arena_content(run: RunData) -> tuple[Verdict, list[Section]]:
-    """Return the verdict and the sections of the report of an arena."""
+def arena_content(run: RunData) -> Findings:
+    """Return the findings of an arena."""
     arena = read_arena(run)
     if arena is None:
         # It was interrupted: there are flights, and nothing to rank.
@@ -55,7 +58,12 @@ def arena_content(run: RunData) -> tuple[Verdict, list[Section]]:
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         _section("parameters", "Parameters", "Parameters", [parameter_table(run)]),
     ]
-    return _verdict(arena), sections
+    flown = (
+        f"{len(arena.entrants)} steering laws, each flown {arena.flights} times in each of {len(arena.conditions)} conditions:"
+        f" {flights_in_words(run, measured(run.summary))}."
+    )
+    pictures = effort_charts(arena) if arena.in_task(tracking=True) else [crossing_chart(arena)]
+    return Findings(flown=flown, verdict=_verdict(arena), picture=replace(pictures[0], name="first"), sections=sections)
 
 
 def _section(anchor: str, title: str, nav_title: str, blocks: list[Block]) -> Section:
@@ -125,11 +133,18 @@ def _verdict(arena: Arena) -> Verdict:
         failures.append(f"{gone} flights lost the aircraft: of {', '.join(laws)}")
     crossed = arena.ranked("crossings_per_minute", arena.entrants, greater_first=True)
     figures = [
-        ("laws in a task", f"{len(arena.entrants)}", ""),
-        ("flights", f"{len(flown):,} of {planned:,}", ""),
-        ("conditions, and flights of each law in each", f"{len(arena.conditions)} × {arena.flights}", ""),
-        *((f"most crossings per minute: {entrant.title}", _mean(arena, entrant.name, "crossings_per_minute"), "")
+        *(
+            Card(f"{'Tracking' if task else 'Circling'} error, rms, of the best: {entrant.title}",
+                 f"{_mean(arena, entrant.name)} m")
+            for task, entrant in best
+        ),
+        *(Card(f"Most crossings per minute: {entrant.title}", _mean(arena, entrant.name, "crossings_per_minute"))
           for entrant in crossed[:1]),
+        Card("Keep-out violations", f"{total(flown, 'keepout_violations'):,}", "0", not violations),
+        Card("Aircraft lost", f"{gone:,}", "0", not gone),
+        Card("Flights flown", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
+        Card("Laws in a task", f"{len(arena.entrants)}"),
+        Card("Conditions, and flights of each law in each", f"{len(arena.conditions)} × {arena.flights}"),
     ]  # fmt: skip
     return Verdict(
         holds=not violations and not gone,

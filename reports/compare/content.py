@@ -1,7 +1,7 @@
 """The report of a comparison: what was changed, what came of it, and in which flights."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from reports.compare.charts import pair_charts
 from reports.compare.configuration import configuration_table, software_table, trials_apart
@@ -10,8 +10,11 @@ from reports.compare.pairs import Pairs, paired
 from reports.compare.runs import Run
 from reports.compare.tables import LISTED_MAX, changed_table, difference_table, side_by_side, signed
 from reports.compare.tracks import most_changed
-from reports.document.blocks import Block, Content, Heading, Section, Text, Verdict
+from reports.document.blocks import Block, Card, Content, Heading, Section, Text, Verdict
+from reports.document.chart import Chart
+from reports.document.numbering import numbered
 from reports.run.columns import Mask, count, lost, total, violated
+from reports.run.letterhead import letterhead
 
 TIME_OF_COMPUTING = "wall_time_s"
 """The column of a summary that differs between any two runs."""
@@ -64,18 +67,25 @@ def compare(runs: Sequence[Run]) -> list[Compared]:
 def comparison_content(runs: Sequence[Run], compared: Sequence[Compared]) -> Content:
     """Return everything that the report shows."""
     configuration = _configuration(runs)
+    tracks = [most_changed(of.pairs, of.found) if of.differing else None for of in compared]
+    # Page 1 has the tracks of the first pair of runs.
     sections = [
         Section(anchor="changed", title="What differs in the configuration", nav_title="Configuration", blocks=configuration),
         Section(anchor="figures", title="Figures side by side", nav_title="Figures", blocks=_figures(runs)),
-        *(_pair_section(of) for of in compared),
+        *(_pair_section(of, chart) for of, chart in zip(compared, [None, *tracks[1:]], strict=True)),
         Section(anchor="provenance", title="Provenance", blocks=[software_table(runs)]),
     ]
     described = "; ".join(f"{run.title} ({run.manifest['title']}, {run.state})" for run in runs)
+    picture, sections = numbered(tracks[0], sections)
+    names = " and ".join(run.name for run in runs) if len(runs) == 2 else f"{runs[0].name} and {len(runs) - 1} others"
     return Content(
         title=f"Comparison of {len(runs)} runs",
+        letterhead=replace(letterhead(runs[0].data, {}), run=names),
         description=f"{described}.",
         changes="",
+        flown=f"{described}.",
         verdict=_verdict(runs, compared),
+        picture=picture,
         sections=sections,
     )
 
@@ -91,18 +101,18 @@ def _figures(runs: Sequence[Run]) -> list[Block]:
     return [Text(text), side_by_side(runs)]
 
 
-def _pair_section(compared: Compared) -> Section:
+def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
     pairs, letter = compared.pairs, compared.pairs.other.letter
     blocks: list[Block] = [Text(" ".join(pairing_sentences(pairs)))]
     if compared.differing:
-        chart, table = most_changed(pairs, compared.found), changed_table(pairs)
+        table = changed_table(pairs)
         blocks += [Text(_difference_sentences(compared)), difference_table(pairs, compared.found)]
         if table is not None:
             changed = count(pairs.no_longer_met | pairs.newly_met)
             first = f", of which the first {LISTED_MAX} are listed" if changed > LISTED_MAX else ""
             blocks += [Heading(f"Flights whose criteria changed: {changed:,}{first}"), table]
         blocks += pair_charts(pairs, compared.found)
-        blocks += [chart] if chart is not None else []
+        blocks += [tracks] if tracks is not None else []
     else:
         blocks.append(Text(f"No figure of these flights differs between {pairs.first.letter} and {letter}."))
     title = f"Flight by flight: {letter} against {pairs.first.letter}"
@@ -193,19 +203,19 @@ def _lines(compared: Compared) -> list[str]:
     return lines
 
 
-def _cards(compared: Compared, *, alone: bool) -> list[tuple[str, str, str]]:
+def _cards(compared: Compared, *, alone: bool) -> list[Card]:
     pairs = compared.pairs
     first, other = pairs.first.letter, pairs.other.letter
     cards = [
-        (f"Flights paired, {other} with {first}", f"{len(pairs):,}", ""),
-        (f"Met in {first} alone, in {other} alone", f"{count(pairs.no_longer_met):,}, {count(pairs.newly_met):,}", ""),
+        Card(f"Flights paired, {other} with {first}", f"{len(pairs):,}"),
+        Card(f"Met in {first} alone, in {other} alone", f"{count(pairs.no_longer_met):,}, {count(pairs.newly_met):,}"),
     ]
     violations = [f"{total(rows, 'keepout_violations'):,}" for rows in (pairs.before, pairs.after)]
-    cards.append((f"Keep-out violations of paired flights in {first}, in {other}", ", ".join(violations), ""))
+    cards.append(Card(f"Keep-out violations of paired flights in {first}, in {other}", ", ".join(violations)))
     if not alone:
         return cards
     for difference in [compared.found[name] for name in _CARDS if name in compared.found][:_CARDS_MAX]:
         figure = difference.figure
         value = f"{signed(difference.median, figure.digits)} {figure.unit}"
-        cards.append((f"{figure.name}: median of {other} − {first}", value, ""))
+        cards.append(Card(f"{figure.name}: median of {other} − {first}", value))
     return cards

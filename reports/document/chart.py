@@ -122,6 +122,7 @@ class Chart:
     last_height : of the last panel where that is alone in its row and as wide as the page, as ``panel_height``; 0 where it is not
     share_x : panels of a column share their abscissa
     scale_label : "Quantity [unit]" of the colour scale, for lines with values
+    number : "Figure 3"; given when the report is put together
     """
 
     name: str
@@ -132,6 +133,7 @@ class Chart:
     last_height: float = 0.0
     share_x: bool = False
     scale_label: str = ""
+    number: str = ""
 
     @property
     def rows(self) -> int:

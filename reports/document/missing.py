@@ -12,6 +12,7 @@ from common.run_layout import (
     ESTIMATE,
     FLIGHTS,
     INTERVENTIONS,
+    LOGO,
     SAMPLES,
     STATISTICS,
     TRAJECTORIES,
@@ -34,6 +35,7 @@ _SHOWN: Mapping[str, str] = {
     FLIGHTS: "figures of this flight over time",
     TRAJECTORIES: "figures of this trajectory over time",
     WORST: "nothing: a scenario file of one of the worst flights",
+    **{f"{LOGO}{suffix}": "the logo" for suffix in (".png", ".jpg", ".svg")},
 }
 """What a report shows of a file or, of those in a directory, of each."""
 

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from common.binomial import percent
-from reports.document.blocks import Block, Heading, Section, Text
+from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
 from reports.measurement.data import Record
 from reports.measurement.flight_charts import error_chart, operating_curve, sulphur_track_chart, trajectory_chart
@@ -34,8 +34,8 @@ def sulphur_sections(run: RunData) -> list[Section]:
     return [whole, shown] if shown is not None else [whole]
 
 
-def sulphur_cards(run: RunData) -> list[tuple[str, str, str]]:
-    """Return what was measured of the fuel, for the head of the report: name, value and limit; nothing of a run without."""
+def sulphur_cards(run: RunData) -> list[Card]:
+    """Return what was measured of the fuel; nothing of a run without."""
     measured = _measured(run)
     if not len(measured):
         return []
@@ -43,18 +43,17 @@ def sulphur_cards(run: RunData) -> list[tuple[str, str, str]]:
         row = measured.iloc[0]
         result = f"{row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} %"
         return [
-            ("Sulphur in the fuel, with its 95 % interval", result, ""),
-            (
+            Card("Sulphur in the fuel, with its 95 % interval", result),
+            Card(
                 f"Verdict on {row['sulphur_limit_percent']:g} %, and probability of more",
                 f"{row['sulphur_verdict']}, {percent(row['probability_above'])}",
-                "",
             ),
         ]
     expected, found = (column(measured, name) for name in ("fsc_expected_percent", "fsc_percent"))
     inside = (column(measured, "fsc_low_percent") <= expected) & (expected <= column(measured, "fsc_high_percent"))
     return [
-        ("Bias of the sulphur content, mean of flights", f"{float(np.mean(found - expected)):+.4f} %", ""),
-        ("Flights whose 95 % interval holds the truth", percent(float(np.mean(inside))), ""),
+        Card("Bias of the sulphur content, mean of flights", f"{float(np.mean(found - expected)):+.4f} %"),
+        Card("Flights whose 95 % interval holds the truth", percent(float(np.mean(inside)))),
     ]
 
 

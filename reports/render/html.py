@@ -25,6 +25,8 @@ def write_html(report: Content, path: Path) -> None:
         figure=lambda chart: for_script(draw(chart)),
         flights=_flights,
         replay=replay,
+        cards=report.verdict.cards,
+        failures=report.verdict.first_failures,
     )
     path.write_text(page, encoding="utf-8")
 

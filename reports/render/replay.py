@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from reports.document.blocks import FlightPicker
-from reports.document.chart import COLOURS
+from reports.document.palette import COLOURS, Meaning
 from reports.document.scene import Scene
 from reports.render.script_data import for_script
 from reports.run.columns import Array
@@ -27,16 +27,16 @@ _STRAIGHT = 1e-6
 """Deviation from a straight line over time that a column is sent as one despite [m, rad]."""
 
 _MEANINGS = {
-    "flown": "blue",
-    "reference": "sky",
-    "limit": "vermillion",
-    "guard": "orange",
-    "guardLost": "purple",
-    "crossing": "green",
-    "ship": "black",
-    "plume": "grey",
+    "flown": Meaning.FLOWN,
+    "reference": Meaning.ASKED,
+    "limit": Meaning.LIMIT,
+    "guard": Meaning.GUARD,
+    "guardLost": Meaning.GUARD_LOST,
+    "crossing": Meaning.CROSSING,
+    "ship": Meaning.SHIP,
+    "plume": Meaning.PLUME,
 }
-"""What the replay shows, and its colour, as in the figures."""
+"""What the replay shows, and what its colour means, as in the figures."""
 
 Data = dict[str, Any]
 

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, RootModel, field_validator, model_validator
 
 from common.registry import PluginError
+from scenarios.schema.report import ReportConfig
 from scenarios.schema.section import Fraction, NonNegative, Positive, Range, Section, Seed, check_ordered
 from scenarios.search.method import SEARCH_METHODS
 
@@ -275,3 +276,4 @@ class TrialList(Section):
     """Number of time histories to be kept."""
     set: tuple[str, ...] = ()
     """Keys to set in every trial, as key=value; overrides of the command line that are not keys of this list come here."""
+    report: ReportConfig = ReportConfig()

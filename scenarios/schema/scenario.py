@@ -21,6 +21,7 @@ from scenarios.schema.experiment import (
 )
 from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
 from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
+from scenarios.schema.report import ReportConfig
 from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
 from scenarios.schema.world import (
     EmissionConfig,
@@ -95,6 +96,7 @@ class Scenario(Section):
     start: StartConfig = StartConfig()
     flight: FlightConfig = FlightConfig()
     criteria: CriteriaConfig = CriteriaConfig()
+    report: ReportConfig = ReportConfig()
 
     @property
     def circles(self) -> bool:

@@ -90,14 +90,13 @@ def test_what_each_law_was_given_and_what_it_cannot_do_is_said(run):
 
 
 def test_the_headline_names_the_best_of_each_task(run):
-    verdict, _ = arena_content(run)
+    verdict = arena_content(run).verdict
     assert re.match(r"Tracking: npfg is best, \d+\.\d\d m rms; circling: npfg \(circle\) is best", verdict.headline)
 
 
 def test_an_arena_that_was_not_evaluated_is_reported_as_flights(path, run):
     (path / "arena.json").rename(path / "gone")
     try:
-        _, sections = arena_content(run)
-        assert "plume" not in {section.anchor for section in sections}
+        assert "plume" not in {section.anchor for section in arena_content(run).sections}
     finally:
         (path / "gone").rename(path / "arena.json")

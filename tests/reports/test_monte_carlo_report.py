@@ -83,7 +83,7 @@ def lines_of(panel):
 
 def test_a_study_comes_first_in_the_report_and_a_run_without_statistics_has_no_such_sections(run):
     anchors = [section.anchor for section in content(run).sections]
-    assert anchors[:4] == ["study", "spread", "drivers", "trials"]
+    assert anchors[:5] == ["figures", "study", "spread", "drivers", "trials"]
     assert monte_carlo_sections(replace(run, statistics=None)) == []
 
 

@@ -36,7 +36,7 @@ def test_trials_are_reported_on_screen_and_in_print(run_path, report, tmp_path, 
     assert [flight_id.rsplit("_", 1)[0] for flight_id in figures] == ["steady"]
     assert all(len(charts) == 2 for charts in figures.values())
     # The kinematic vehicle is no aircraft, and of a list of trials each has a seed of its own.
-    assert "Flown with the kinematic vehicle" in text
+    assert "of the kinematic vehicle, eq. (1)" in report.flown
     assert dict(blocks_of(report, Table, "provenance")[0].rows)["Seed"] == "each trial's own"
 
 
