@@ -5,7 +5,6 @@ from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import ndtr
 
 from gnc.estimation.plume_grid import PlumeGrid
 from gnc.estimation.plume_passes import Evidence, PassCollector, PassReader, Path, Place
@@ -30,6 +29,12 @@ _MEMORY = 10.0
 
 _CHANCE = 0.02
 """Least chance of a hit or a miss that innovations are judged with [-]: models are not better than that."""
+
+_STRENGTH_ERROR = 0.25
+"""Error of the strength of a pass, over itself, by width, speed and gusts [-]: an assumption. It also covers the grid's step."""
+
+_BEND_MIN = 1e-12
+"""Least curvature of a likelihood [1/ppm^2]: a place that the vehicle has not been to says nothing."""
 
 _NOMINAL_RESPONSE = 0.5
 """Largest reading over strength before a pass has shown it [-]."""
@@ -129,11 +134,7 @@ class PlumeEstimator:
         prior, grid = self.prior, self.grid
         heights = prior.height_at(grid.height, self._distance, self._wind)
         least = SIGNAL_TO_NOISE * prior.sensor.noise / self._response
-        ratio = grid.strength / least[:, np.newaxis]
-        reach = np.sqrt(2.0 * np.log(np.maximum(ratio, 1.0)))[:, np.newaxis, :] * (grid.sigma_z / prior.meander_z)[..., np.newaxis]
-        off = ((heights - altitude) / prior.meander_z)[:, np.newaxis]
-        result: Array = ndtr(reach - off) - ndtr(-reach - off)
-        return result
+        return grid.chances(heights, altitude, least)
 
     def _diffuse(self, time: float) -> None:
         """Let the axis wander for ``time`` [s], and let some of what is known be forgotten."""
@@ -154,7 +155,7 @@ class PlumeEstimator:
         self._distance, altitude = path.at(self.offset)
         heights = prior.height_at(grid.height, self._distance, self._wind)
         # Likelihood of each strength at each place, over that of no pulse at all; its largest is 1.
-        exponent = np.multiply.outer(evidence.slope, grid.faint) - np.multiply.outer(evidence.bend, 0.5 * grid.faint**2)
+        exponent = self._over_nothing(evidence)
         largest = max(0.0, float(exponent.max()))
         nothing = math.exp(-largest)
         likelihood = np.exp(exponent - largest)
@@ -169,6 +170,18 @@ class PlumeEstimator:
         self.cells *= of_cells.reshape(w, -1, c, b)
         total = float(self.cells.sum())
         self.cells = self.cells / total if total > 0.0 else grid.prior.copy()
+
+    def _over_nothing(self, evidence: Evidence) -> Array:
+        """Return the log likelihood of each strength at each place less that of no pulse, shape (w, j, p).
+
+        A pulse of strength P fits readings that have one of P (1 + e), e ~ N(0, 0.25^2): e has been integrated out.
+        """
+        strength, slope = self.grid.faint, evidence.slope[..., np.newaxis]
+        bend = np.maximum(evidence.bend, _BEND_MIN)[..., np.newaxis]
+        best = slope**2 / bend
+        widened = 1.0 + bend * (_STRENGTH_ERROR * strength) ** 2
+        result: Array = 0.5 * (best - (best - 2.0 * slope * strength + bend * strength**2) / widened - np.log(widened))
+        return result
 
     def _beside(self, path: Path) -> Array:
         """Return how likely the centre is at each place, given each bearing, shape (b, j).
