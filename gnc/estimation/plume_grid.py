@@ -62,9 +62,6 @@ class PlumeGrid:
         scales = np.exp(prior.sigma_deviation * np.array([_NARROW, 0.0, _WIDE]))[:, np.newaxis]
         self.sigma_y: Array = scales * np.sqrt(np.maximum(prior.sigma_y**2 + squares, (_SPREAD_MIN * prior.sigma_y) ** 2))
         self.sigma_z: Array = scales * np.sqrt(np.maximum(prior.sigma_z**2 + squares, (_SPREAD_MIN * prior.sigma_z) ** 2))
-        # Meander within a pulse makes it wider and weaker.
-        self._wide: Array = np.sqrt(self.sigma_z**2 + (1.0 - prior.steady) * prior.meander_z**2)
-        self._meander = math.sqrt(prior.steady) * prior.meander_z
         median = np.log(prior.peak * prior.sigma_y * prior.sigma_z / (self.sigma_y * self.sigma_z))
         reach = _REACH * prior.peak_deviation
         logs = np.arange(median.min() - reach, median.max() + reach + STRENGTH_STEP, STRENGTH_STEP)
@@ -88,39 +85,37 @@ class PlumeGrid:
         result: Array = self.sigma_y[:, nearest]
         return result
 
-    def fading(self, height: Array, altitude: float) -> Array:
+    def fading(self, height: Array, altitude: float, looks: float) -> Array:
         """Return how likely a pass at an altitude reads a plume with so many steps less than its strength, shape (w, h, f).
 
-        The centre is z_m above the axis with z_m ~ N(0, s meander_z^2), where s is what is ``steady``, and the pulse has
-        sigma_z/S exp(-(h + z_m - z)^2/2 S^2) of the strength, with S^2 = sigma_z^2 + (1 - s) meander_z^2. The rest to 1 is the
-        chance of nothing.
+        The centre is z_m above the axis with z_m ~ N(0, meander_z^2), and the pulse has exp(-(h + z_m - z)^2/2 sigma_z^2) of the
+        strength; of several looks at the plume the best counts. The rest to 1 is the chance of nothing.
 
         Parameters
         ----------
         height : of the axes, shape (h,) [m]
         altitude : z [m]
+        looks : independent centres that a pass meets, at least 1 [-]
         """
-        weaker = 2.0 * np.log(self._wide / self.sigma_z)[..., np.newaxis]
-        return np.diff(self._within(np.maximum(self._edges**2 - weaker, 0.0), height, altitude), axis=-1, prepend=0.0)
+        return np.diff(self._within(self._edges, height, altitude, looks), axis=-1, prepend=0.0)
 
-    def chances(self, height: Array, altitude: float, least: Array) -> Array:
+    def chances(self, height: Array, altitude: float, looks: float, least: Array) -> Array:
         """Return how likely a pass at an altitude [m] reads a strength of at least ``least`` [ppm], shape (w, h, c).
 
         Parameters
         ----------
-        height : of the axes, shape (h,) [m]
-        altitude : z [m]
+        height, altitude, looks : as of ``fading``
         least : by spread, shape (w,) [ppm]
         """
-        stronger = 2.0 * np.log(self.strength / least[:, np.newaxis])[:, np.newaxis, :]
-        weaker = 2.0 * np.log(self._wide / self.sigma_z)[..., np.newaxis]
-        return self._within(np.maximum(stronger - weaker, 0.0), height, altitude)
+        reach = np.sqrt(2.0 * np.log(np.maximum(self.strength / least[:, np.newaxis], 1.0)))
+        return self._within(reach[:, np.newaxis, :], height, altitude, looks)
 
-    def _within(self, squares: Array, height: Array, altitude: float) -> Array:
-        """Return how likely the centre is so near in height, given the square of the distance over the pulse's spread."""
-        reach = np.sqrt(squares) * (self._wide / self._meander)[..., np.newaxis]
-        off = ((height - altitude) / self._meander)[:, np.newaxis]
-        result: Array = ndtr(reach - off) - ndtr(-reach - off)
+    def _within(self, reach: Array, height: Array, altitude: float, looks: float) -> Array:
+        """Return how likely the centre is so near in height, in spreads."""
+        meander = self._expected.meander_z
+        far = reach * (self.sigma_z / meander)[..., np.newaxis]
+        off = ((height - altitude) / meander)[:, np.newaxis]
+        result: Array = 1.0 - (1.0 - ndtr(far - off) + ndtr(-far - off)) ** looks
         return result
 
     def over_strengths(self, faint: Array) -> Array:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import erfcx
 
 from gnc.errors import InfeasibleError
 
@@ -38,11 +37,9 @@ _OWN_SHARE = 0.42
 _SOURCE_SPREAD = 4.0
 """Spread at the funnel, in the wake of the superstructure [m]: 0 to 8 m, of which no measurement is known."""
 
-_MEANDER_LENGTH, _MEANDER_HEIGHT = 2.5, 0.5
-"""Integral scale of the meander across and in height over that of the source [-]: neutral air over the sea, to a factor of 2."""
-
-_CROSSING_SPEED = 15.0
-"""Speed at which a vehicle crosses the axis [m/s]."""
+_MEANDER_LENGTH, _MEANDER_HEIGHT = 2.5, 0.25
+"""Integral scale across, and correlation length in height, of the meander, over the height of the source [-]: neutral air over
+the sea, to a factor of 2."""
 
 _AIR_DENSITY = 42.3
 """Moles of air per volume [mol/m^3], at 15 degC."""
@@ -103,8 +100,7 @@ class PlumePrior:
     sigma_y, sigma_z : spreads about the centre at one moment, at the expected height [m]
     sigma_deviation : of the logarithm of both spreads, which are too large or too small together [-]
     meander_y, meander_z : standard deviation of the centre about the axis [m]
-    steady : share of the variance of the meander in height that stays for the length of a pulse [-]; the rest makes the pulse
-        weaker and wider
+    meander_length : correlation length of the meander in height, along the plume [m]
     meander_time : integral scale of the lateral meander, as the ship meets it [s]
     peak, peak_deviation : CO2 above the background in the centre at one moment [ppm], its median, and the deviation of
         its logarithm [-]; both at the expected height and spread
@@ -125,7 +121,7 @@ class PlumePrior:
     sigma_deviation: float
     meander_y: float
     meander_z: float
-    steady: float
+    meander_length: float
     meander_time: float
     peak: float
     peak_deviation: float
@@ -234,7 +230,7 @@ def expected_plume(
         sigma_deviation=_SPREAD_ERROR,
         meander_y=max(rest * across, _MEANDER_MIN),
         meander_z=max(rest * up, _MEANDER_MIN),
-        steady=_steady(wind * sigma_y / _CROSSING_SPEED / (0.5 * _MEANDER_HEIGHT * source_height)),
+        meander_length=_MEANDER_HEIGHT * source_height,
         meander_time=_MEANDER_LENGTH * source_height / wind,
         peak=1e6 * co2_rate / (2.0 * math.pi * wind * sigma_y * sigma_z * _AIR_DENSITY),
         peak_deviation=math.hypot(load_deviation, wind_share, _SPREAD_ERROR),
@@ -242,14 +238,3 @@ def expected_plume(
         lowest=lowest,
         highest=highest,
     )
-
-
-def _steady(window: float) -> float:
-    """Return the variance of a Gaussian mean over a process with correlation (1 + |x|) e^-|x|, over the process's own [-].
-
-    Parameters
-    ----------
-    window : standard deviation of the weights of the mean [-]
-    """
-    q = math.sqrt(2.0) * window
-    return float((1.0 - q**2) * erfcx(q / math.sqrt(2.0)) + q * math.sqrt(2.0 / math.pi))
