@@ -21,7 +21,7 @@ from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRA
 from scenarios.schema.parts import names_file, part_names
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation.failure import failure
-from scenarios.world.faults import SATELLITES, VESSEL_DATA
+from scenarios.world.faults import NOT_OF_AIRCRAFT
 from scenarios.world.vessel import check_manoeuvres
 from scenarios.world.world import mean_wind, vessel_of
 
@@ -92,7 +92,7 @@ def _check_fault(scenario: Scenario) -> None:
     kinds = {scenario.fault.kind}
     for draw in scenario.draws:
         kinds |= {str(kind) for kind in draw.choice or ()} if draw.key == "fault.kind" else set()
-    known = {"none", VESSEL_DATA, SATELLITES}
+    known = set(NOT_OF_AIRCRAFT)
     if scenario.fidelity == "six_dof" and kinds - known:
         known |= set(fault_names(find_spec(scenario.aircraft)))
     for kind in sorted(kinds - known):
