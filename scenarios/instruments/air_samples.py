@@ -52,11 +52,15 @@ class AirSamples:
         """Return parts that follow each other as one."""
         if len(parts) == 1:
             return parts[0]
-        plume = PlumeSample(
-            *(np.concatenate([getattr(part.plume, field.name) for part in parts]) for field in fields(PlumeSample))
-        )
-        along = (np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "air", "pressure", "above"))
-        return cls(*along, plume=plume)
+
+        def whole(of: str) -> Array:
+            return np.concatenate([getattr(part, of) for part in parts])
+
+        def of_plume(of: str) -> Array:
+            return np.concatenate([getattr(part.plume, of) for part in parts])
+
+        plume = PlumeSample(*(of_plume(field.name) for field in fields(PlumeSample)))
+        return cls(whole("time"), whole("air"), whole("pressure"), whole("above"), plume)
 
 
 class AirSampler:

@@ -27,6 +27,7 @@ Array = npt.NDArray[np.float64]
 CO2 = GASES.index("co2")
 """Its column."""
 
+
 @dataclass(frozen=True, kw_only=True)
 class SnifferSettings:
     """Keys of the sniffer.
@@ -89,7 +90,8 @@ class SnifferOnBoard:
     @property
     def limit_percent(self) -> float:
         """Sulphur content that the verdict is on [% m/m]."""
-        return self._settings.limit_percent
+        limit: float = self._settings.limit_percent
+        return limit
 
     def readings(self, since: float) -> Readings:
         """Return what has been read since a time [s]."""

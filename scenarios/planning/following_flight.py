@@ -19,7 +19,6 @@ from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
     THRUST_LOST_FRACTION,
-    axis_height,
     following_parameters,
     guard_parameters,
     navigation_parameters,
@@ -28,6 +27,7 @@ from scenarios.planning.guidance import (
     turn_time,
 )
 from scenarios.planning.limits import PLAN_PERIOD, omega_max
+from scenarios.planning.plume_axis import plume_axis
 from scenarios.planning.reference import orbits, oscillation_at
 from scenarios.planning.standoff import standoff_parameters, vessel_circle
 from scenarios.planning.start import check_start, sampled_start
@@ -96,7 +96,8 @@ def following_flight(
         mission = standoff_parameters(scenario, setup, circle.radius)
     else:
         periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
-        orbit, mission = oscillation, following_parameters(scenario, setup, margin, widths, axis_height(scenario, vessel))
+        axis = plume_axis(scenario, vessel, widths, radius + margin.total)
+        orbit, mission = oscillation, following_parameters(scenario, setup, margin, widths, axis)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, mean_wind(scenario, vessel), generators.world)
@@ -135,6 +136,8 @@ def following_flight(
         sensing=Sensing(
             received=received,
             errors=SensorErrors(scenario.sensors, steps=steps, time_step=1.0 / g.rate_hz, generator=generators.sensors),
+            smells=f.plume == "estimated" or flight.until == "verdict",
+            told=f.plume == "told",
         ),
         oscillation=orbit,
         periods=periods,
@@ -154,7 +157,7 @@ def _guidance(
     tracking, hold = tracking_parameters(scenario, setup), speed_hold(scenario, setup)
     return GuidanceParameters(
         speed=g.airspeed_mps,
-        altitude=scenario.plume.source_height_m,
+        altitude=scenario.altitude,
         tracking=tracking,
         airspeed_law=PaceHold(speed=g.airspeed_mps, hold=hold, turn_speed=setup.turning_airspeed(omega_max(g))),
         navigation=navigation_parameters(scenario, setup),

@@ -50,8 +50,11 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
     for experiment in experiments:
         _check_names(experiment)
     points = [point.scenario for experiment in experiments for point in experiment.points]
-    if len({(s.aircraft, s.guidance.airspeed_mps, s.plume.source_height_m) for s in points}) > 1:
-        raise InputError("flights differ in aircraft, guidance.airspeed_mps or plume.source_height_m; give each a run of its own")
+    if len({(s.aircraft, s.guidance.airspeed_mps, s.altitude) for s in points}) > 1:
+        raise InputError(
+            "flights differ in aircraft, guidance.airspeed_mps or the altitude at the start (flight.altitude_m, else"
+            " plume.source_height_m); give each a run of its own"
+        )
     for scenario in points:
         _check_parts(scenario)
         if envelope is not None and scenario.fidelity == "six_dof":

@@ -73,7 +73,7 @@ class FlightStudy:
     ) -> None:
         first = next(iter(trials.values()))
         spec = spec_of(first)
-        self._design, self._refusal = design_of(spec, first.plume.source_height_m) if spec else (None, "")
+        self._design, self._refusal = design_of(spec, first.altitude) if spec else (None, "")
         envelope = self._design.design.schedule.envelope if self._design else spec.envelope if spec else None
         if envelope is not None:
             trials = {trial: scaled(of, envelope) for trial, of in trials.items()}

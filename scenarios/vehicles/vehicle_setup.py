@@ -139,9 +139,7 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
     with tempfile.TemporaryDirectory() as folder:
         write_tree(write_root(schedule, Path(folder)), run.model)
     run.write_json(run.innerloop, found.record)
-    start = level_trim(
-        schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, schedule.level(schedule.middle)
-    )
+    start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.altitude, schedule.level(schedule.middle))
     turns = schedule.trims[schedule.middle]
     reversal = found.record["turn_reversal"]
     slower_or_faster = abs(start.airspeed / reversal["airspeed_mps"] - 1.0)

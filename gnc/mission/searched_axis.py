@@ -1,0 +1,168 @@
+"""A plume's axis that is searched for, and followed by what is smelt of it."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState, SensorState
+from gnc.estimation.plume_prior import PlumePrior
+from gnc.mission.axis_height import AxisHeight
+from gnc.mission.mode import Mode
+from gnc.mission.plume_axis import Climb, Situation, trail
+from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
+
+_MODES = {PlumeState.SEARCHING: Mode.SEARCHING, PlumeState.FOUND: Mode.FOUND, PlumeState.LOST: Mode.LOST_AGAIN}
+
+_NOTED = 0.45
+"""Longest time between places that the estimator is told [s]."""
+
+_PASS_TIME, _PASS_MEMORY = 8.0, 0.3
+"""Time between passes before the first two [s], and weight of the last one in its mean [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchedPlume:
+    """A plume that is searched for.
+
+    Attributes
+    ----------
+    height : of the axis as it is predicted, flown at on the way
+    altitude : at the start [m]
+    climb : how the altitude follows
+    priors : at even steps of the apparent wind, from ``wind_step`` on
+    wind_step : between them [m/s]
+    climb_rate : that the vehicle climbs and sinks at [m/s]
+    ladder : whether a ladder of heights is climbed until it is found, instead of the height that tells most
+    """
+
+    height: AxisHeight
+    altitude: float
+    climb: Climb
+    priors: tuple[PlumePrior, ...]
+    wind_step: float
+    climb_rate: float
+    ladder: bool = False
+
+    def prior(self, apparent_wind: float) -> PlumePrior:
+        """Return what is expected in an apparent wind [m/s]."""
+        return self.priors[min(max(round(apparent_wind / self.wind_step) - 1, 0), len(self.priors) - 1)]
+
+    def search(self) -> Search:
+        """Return what decides where to cross next, fresh."""
+        lowest, highest = self.priors[0].lowest, self.priors[0].highest
+        if self.ladder:
+            return LadderSearch(lowest=lowest, highest=highest)
+        return HeightSearch(lowest=lowest, highest=highest, climb_rate=self.climb_rate)
+
+    def begin(self) -> "SearchedAxis":
+        """Return the axis of one flight."""
+        return SearchedAxis(self)
+
+
+@dataclass(slots=True)
+class PlumeEstimate:
+    """What is believed of a plume now; not a number before it is searched for.
+
+    Attributes
+    ----------
+    height, height_deviation : of the axis above the sea [m]
+    offset, offset_deviation : of the axis to the right of the predicted one [m]
+    spread : of one realisation in height [m]
+    measurable : probability that it can be crossed within the altitudes that are flown [-]
+    innovation : mean normalised innovation squared [-]
+    """
+
+    height: float = math.nan
+    height_deviation: float = math.nan
+    offset: float = math.nan
+    offset_deviation: float = math.nan
+    spread: float = math.nan
+    measurable: float = math.nan
+    innovation: float = math.nan
+
+
+class SearchedAxis:
+    """The axis as it is estimated from what is smelt, once the reference is tracked; attributes as of ``PlumeAxis``, and more.
+
+    Attributes
+    ----------
+    estimate : what is believed now
+    sensor : what the readings say of their sensor
+    """
+
+    __slots__ = (
+        "_estimator", "_last_heed", "_last_note", "_last_pass", "_parameters", "_pass_time", "_search", "_situation", "bearing",
+        "climb", "demanded", "estimate", "mode", "sensor",
+    )  # fmt: skip
+
+    def __init__(self, parameters: SearchedPlume) -> None:
+        self._parameters, self.climb, self.demanded = parameters, parameters.climb, parameters.altitude
+        self._estimator: PlumeEstimator | None = None
+        self._search = parameters.search()
+        self._situation: Situation | None = None
+        self._last_heed = self._last_note = self._last_pass = 0.0
+        self._pass_time, self.bearing, self.mode = _PASS_TIME, 0.0, Mode.SEARCHING
+        self.estimate, self.sensor = PlumeEstimate(), SensorState.WORKING
+
+    def heed(self, time: float, altitude: float, readings: Sequence[tuple[float, float]]) -> None:
+        """Take note of what was read, with its own time [s], and of the altitude [m] now."""
+        before, self._last_heed = self._last_heed, time
+        if self._estimator is None:
+            return
+        for read_at, reading in readings:
+            self._note(read_at, time, altitude, reading)
+        if not readings and time - self._last_note > _NOTED:
+            # As late as readings are.
+            self._note(before, time, altitude, math.nan)
+
+    def plan(self, time: float, situation: Situation, *, tracking: bool) -> None:
+        """Begin to search where the reference is first tracked; follow the prediction on the way there."""
+        p, self._situation = self._parameters, situation
+        wind = situation.centre.speed_ratio * situation.speed
+        if self._estimator is None:
+            if not tracking:
+                self.demanded = p.height.at(situation.centre.distance, wind)
+                return
+            self._estimator = PlumeEstimator(p.prior(wind))
+            self._last_note = self._last_pass = time
+            self._decide(self.demanded)
+        self._look()
+
+    def _note(self, at: float, now: float, altitude: float, reading: float) -> None:
+        """Tell the estimator the place at a time [s] at most as late as now, and what was read there [ppm]."""
+        situation, estimator = self._situation, self._estimator
+        if situation is None or estimator is None:
+            return
+        own, target, late = situation.own, situation.target, now - at
+        north = own.wind_north + own.speed * math.cos(own.course) - target.velocity_north
+        east = own.wind_east + own.speed * math.sin(own.course) - target.velocity_east
+        x = own.ground_north - target.north - late * north
+        y = own.ground_east - target.east - late * east
+        axis = trail(own, target)
+        cos_a, sin_a = math.cos(axis), math.sin(axis)
+        estimator.predict(max(0.0, at - self._last_note))
+        self._last_note = max(at, self._last_note)
+        wind = situation.centre.speed_ratio * situation.speed
+        if estimator.update(x * cos_a + y * sin_a, y * cos_a - x * sin_a, altitude, reading, apparent_wind=wind):
+            self._pass_time += _PASS_MEMORY * (at - self._last_pass - self._pass_time)
+            self._last_pass = at
+            self._decide(altitude)
+
+    def _decide(self, altitude: float) -> None:
+        """Choose where to cross next."""
+        if self._estimator is not None and self._situation is not None:
+            demand = self._search.next_demand(self._estimator, altitude, self._pass_time)
+            self.demanded = demand.altitude
+            self.bearing = math.atan2(demand.offset, self._situation.centre.distance)
+
+    def _look(self) -> None:
+        """Keep what is believed now for whoever looks at it."""
+        found = self._estimator
+        if found is None:
+            return
+        self.sensor = found.sensor
+        self.mode = _MODES[found.state] if found.sensor is SensorState.WORKING else Mode.SENSOR_FAILED
+        self.estimate = PlumeEstimate(
+            found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z, found.measurable,
+            found.innovation,
+        )  # fmt: skip
