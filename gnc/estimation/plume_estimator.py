@@ -1,10 +1,38 @@
 """Where a plume is, how wide and how strong, from what is smelt of it and from what is not."""
 
+import math
 from enum import Enum
 
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ndtr
+
+from gnc.estimation.plume_grid import PlumeGrid
+from gnc.estimation.plume_passes import Evidence, PassCollector, PassReader, Path, Place
 from gnc.estimation.plume_prior import GasSensor, PlumePrior
+from gnc.estimation.sensor_watch import SensorState, SensorWatch
 
 __all__ = ["GasSensor", "PlumeEstimator", "PlumePrior", "PlumeState", "SensorState"]
+
+Array = npt.NDArray[np.float64]
+
+SIGNAL_TO_NOISE = 5.0
+"""Peak of the readings over their noise from which a pass smells the plume [-] (Kattner 2015, of CO2)."""
+
+_FORGET = 1800.0
+"""Time in which a posterior falls back to the prior, if nothing is read [s]: a ship may change her load."""
+
+_LOST = 0.01
+"""Chance of a row of misses below which a plume that was found is lost again [-]."""
+
+_MEMORY = 10.0
+"""Passes that the mean of the innovations is over [-]."""
+
+_CHANCE = 0.02
+"""Least chance of a hit or a miss that innovations are judged with [-]: models are not better than that."""
+
+_NOMINAL_RESPONSE = 0.5
+"""Largest reading over strength before a pass has shown it [-]."""
 
 
 class PlumeState(Enum):
@@ -15,31 +43,53 @@ class PlumeState(Enum):
     LOST = "lost again"
 
 
-class SensorState(Enum):
-    """What the readings say about their sensor."""
-
-    WORKING = "working"
-    SILENT = "silent"
-    STUCK = "stuck"
-    SATURATED = "saturated"
-
-
 class PlumeEstimator:
-    """Bayes' rule on a grid of height, bearing, strength and width, once for each pass over the axis.
+    """Bayes' rule on a grid of spread, height, strength and bearing, once for each pass over the axis.
 
-    The frame is that of the *predicted* axis, which trails behind the funnel with the apparent wind as it is estimated on board: not
-    of the axis that this filter estimates.
+    The frame is that of the *predicted* axis, which trails behind the funnel with the apparent wind as estimated on board: not that
+    of the axis that this filter estimates. The mathematics is in docs/finding_the_plume.md.
 
     Parameters
     ----------
     prior : what is expected
+
+    Attributes
+    ----------
+    state : whether the plume is searched for, found, or lost again
+    signal_to_noise : peak of the readings over their noise, of the best pass so far [-]
+    found_at : time since the start at which the plume was found first [s]; not a number before
+    innovation : mean normalised innovation squared of the passes, 1 where the filter is consistent [-]
+    passes : number of passes so far [-]
     """
 
     def __init__(self, prior: PlumePrior) -> None:
-        raise NotImplementedError
+        self.prior, self.grid = prior, PlumeGrid(prior)
+        self.state = PlumeState.SEARCHING
+        self.signal_to_noise, self.found_at, self.innovation = 0.0, math.nan, 1.0
+        self.passes = 0
+        sensor = prior.sensor
+        self._watch = SensorWatch(interval=sensor.interval, saturated=sensor.saturated)
+        self._collector = PassCollector(delay=sensor.delay, tail=sensor.time_constant)
+        self._reader = PassReader(sensor)
+        self._time = self._pass_at = 0.0
+        self._spoilt = False
+        self._distance, self._wind = prior.distance, prior.apparent_wind
+        self._response = np.full(len(self.grid.spreads), _NOMINAL_RESPONSE)
+        self._misses = 1.0
+        self.cells: Array = self.grid.prior.copy()
+        self._note()
+
+    @property
+    def sensor(self) -> SensorState:
+        """What the readings say about the sensor; unless it works the estimate only diffuses."""
+        return self._watch.state
 
     def predict(self, time_step: float) -> None:
-        """Let ``time_step`` [s] go by: the axis may have wandered."""
+        """Let ``time_step`` [s] go by. What that does to the estimate is computed once for each pass."""
+        self._time += time_step
+        self._watch.wait(time_step)
+        if self._watch.state is not SensorState.WORKING:
+            self._spoilt = True
 
     def update(self, along: float, across: float, altitude: float, reading: float, *, apparent_wind: float | None = None) -> bool:
         """Take note of the vehicle's place and of a reading; return whether a pass is over and the estimate is a new one.
@@ -48,88 +98,140 @@ class PlumeEstimator:
 
         Parameters
         ----------
-        along, across : of the vehicle, behind the funnel and to the right of the predicted axis (seen along it) [m]
+        along, across : of the vehicle, behind the funnel and to the right of the predicted axis, seen along it [m]
         altitude : above the sea [m]
         reading : of CO2 [ppm], newly sampled; not a number where there is none. A constant background may be in it
         apparent_wind : past the ship now [m/s]; that of the prior unless given
         """
-        raise NotImplementedError
+        if not math.isnan(reading):
+            self._watch.read(reading)
+            self._spoilt = self._spoilt or self._watch.state is not SensorState.WORKING
+        path = self._collector.add(Place(self._time, along, across, altitude), reading)
+        if path is None:
+            return False
+        self._wind = apparent_wind or self.prior.apparent_wind
+        self._diffuse(self._time - self._pass_at)
+        self._pass_at = self._time
+        self.passes += 1
+        evidence = None if self._spoilt else self._reader.read(path, self.grid.places, self.grid.spreads)
+        self._spoilt = False
+        if evidence is not None:
+            self._correct(path, evidence)
+        self._note()
+        return True
 
-    @property
-    def state(self) -> PlumeState:
-        """Whether the plume is searched for, found, or lost again."""
-        raise NotImplementedError
+    def detection(self, altitude: float) -> float:
+        """Return the probability that a pass at an altitude [m] has a signal to noise above 5."""
+        return float(np.sum(self.chances(altitude) * self.cells.sum(axis=3)))
 
-    @property
-    def sensor(self) -> SensorState:
-        """What the readings say about the sensor; unless it works the estimate only diffuses."""
-        raise NotImplementedError
+    def chances(self, altitude: float) -> Array:
+        """Return the probability that a pass at an altitude [m] smells the plume of a cell, shape (w, h, c)."""
+        prior, grid = self.prior, self.grid
+        heights = prior.height_at(grid.height, self._distance, self._wind)
+        least = SIGNAL_TO_NOISE * prior.sensor.noise / self._response
+        ratio = grid.strength / least[:, np.newaxis]
+        reach = np.sqrt(2.0 * np.log(np.maximum(ratio, 1.0)))[:, np.newaxis, :] * (grid.sigma_z / prior.meander_z)[..., np.newaxis]
+        off = ((heights - altitude) / prior.meander_z)[:, np.newaxis]
+        result: Array = ndtr(reach - off) - ndtr(-reach - off)
+        return result
 
-    @property
-    def height(self) -> float:
-        """Mean height of the axis above the sea, at the distance and the apparent wind of the last place [m]."""
-        raise NotImplementedError
+    def _diffuse(self, time: float) -> None:
+        """Let the axis wander for ``time`` [s], and let some of what is known be forgotten."""
+        prior, grid = self.prior, self.grid
+        for axis, drift, values in ((1, prior.height_drift, grid.height), (3, prior.bearing_drift, grid.bearing)):
+            share = min(0.25, 0.5 * drift**2 * time / (values[1] - values[0]) ** 2)
+            moved = np.moveaxis(self.cells, axis, 0)
+            flow = share * np.diff(moved, axis=0)
+            moved[:-1] += flow
+            moved[1:] -= flow
+        forgotten = -math.expm1(-time / _FORGET)
+        self.cells += forgotten * (grid.prior - self.cells)
 
-    @property
-    def height_deviation(self) -> float:
-        """Its standard deviation [m]."""
-        raise NotImplementedError
+    def _correct(self, path: Path, evidence: Evidence) -> None:
+        """Take in what a pass says."""
+        prior, grid = self.prior, self.grid
+        self._response = evidence.response
+        self._distance, altitude = path.at(self.offset)
+        heights = prior.height_at(grid.height, self._distance, self._wind)
+        # Likelihood of each strength at each place, over that of no pulse at all; its largest is 1.
+        exponent = np.multiply.outer(evidence.slope, grid.faint) - np.multiply.outer(evidence.bend, 0.5 * grid.faint**2)
+        largest = max(0.0, float(exponent.max()))
+        nothing = math.exp(-largest)
+        likelihood = np.exp(exponent - largest)
+        beside = self._beside(path)
+        seen = beside @ likelihood + (1.0 - beside.sum(axis=1))[:, np.newaxis] * nothing
+        fading = grid.fading(heights, altitude)
+        expected = grid.over_strengths(seen)
+        w, b, f, c = expected.shape
+        of_cells = fading @ expected.transpose(0, 2, 3, 1).reshape(w, f, c * b)
+        of_cells += (nothing * (1.0 - fading.sum(axis=-1)))[..., np.newaxis]
+        self._judge(evidence, altitude)
+        self.cells *= of_cells.reshape(w, -1, c, b)
+        total = float(self.cells.sum())
+        self.cells = self.cells / total if total > 0.0 else grid.prior.copy()
+
+    def _beside(self, path: Path) -> Array:
+        """Return how likely the centre is at each place, given each bearing, shape (b, j).
+
+        Meander that two passes have in common does not average out: its variance counts (1 + r)/(1 - r) times, with r its
+        correlation from pass to pass.
+        """
+        prior, grid = self.prior, self.grid
+        apart = 2.0 * path.duration / prior.meander_time
+        common = (1.0 + apart) * math.exp(-apart)
+        step = grid.places[1] - grid.places[0]
+        cell = self._distance * (grid.bearing[1] - grid.bearing[0])
+        deviation = math.sqrt(prior.meander_y**2 * (1.0 + common) / (1.0 - common) + (step**2 + cell**2) / 12.0)
+        off = (grid.places - self._distance * grid.bearing[:, np.newaxis]) / deviation
+        result: Array = np.exp(-0.5 * off**2) * (step / (deviation * math.sqrt(2.0 * math.pi)))
+        result /= np.maximum(1.0, result.sum(axis=1, keepdims=True))
+        return result
+
+    def _judge(self, evidence: Evidence, altitude: float) -> None:
+        """Compare what a pass showed with what was expected of it: innovations, found, lost again."""
+        chance = min(max(self.detection(altitude), _CHANCE), 1.0 - _CHANCE)
+        signal_to_noise = evidence.peak / self.prior.sensor.noise
+        hit = signal_to_noise > SIGNAL_TO_NOISE and evidence.significance > SIGNAL_TO_NOISE
+        squared = (hit - chance) ** 2 / (chance * (1.0 - chance))
+        self.innovation += (squared - self.innovation) / min(self.passes, _MEMORY)
+        if hit:
+            self.signal_to_noise = max(self.signal_to_noise, signal_to_noise)
+            self.found_at = self._time if math.isnan(self.found_at) else self.found_at
+            self.state, self._misses = PlumeState.FOUND, 1.0
+            return
+        self._misses *= 1.0 - chance
+        if self.state is PlumeState.FOUND and self._misses < _LOST:
+            self.state = PlumeState.LOST
+            self.cells = 0.5 * (self.cells + self.grid.prior)
+
+    def _note(self) -> None:
+        """Compute the figures of the posterior."""
+        prior, grid = self.prior, self.grid
+        of_spreads = self.cells.sum(axis=(2, 3))
+        of_heights, of_bearings = of_spreads.sum(axis=0), self.cells.sum(axis=(0, 1, 2))
+        self._heights: Array = prior.height_at(grid.height, self._distance, self._wind)
+        self.height = float(of_heights @ self._heights)
+        step = float(self._heights[1] - self._heights[0])
+        self.height_deviation = math.sqrt(float(of_heights @ (self._heights - self.height) ** 2) + step**2 / 12.0)
+        self._of_heights = of_heights
+        self.bearing = float(of_bearings @ grid.bearing)
+        self.bearing_deviation = math.sqrt(float(of_bearings @ (grid.bearing - self.bearing) ** 2))
+        self.offset, self.offset_deviation = self._distance * self.bearing, self._distance * self.bearing_deviation
+        self.sigma_y = float(np.sum(of_spreads * grid.sigma_y))
+        self.sigma_z = float(np.sum(of_spreads * grid.sigma_z))
 
     @property
     def height_interval(self) -> tuple[float, float]:
         """2.5 % and 97.5 % quantiles of the height [m]."""
-        raise NotImplementedError
-
-    @property
-    def offset(self) -> float:
-        """Mean place of the axis to the right of the predicted one, at the distance of the last place [m]."""
-        raise NotImplementedError
-
-    @property
-    def offset_deviation(self) -> float:
-        """Its standard deviation [m]."""
-        raise NotImplementedError
-
-    @property
-    def bearing(self) -> float:
-        """Mean angle of the axis to the right of the predicted one [rad]: to be added to its course."""
-        raise NotImplementedError
-
-    @property
-    def bearing_deviation(self) -> float:
-        """Its standard deviation [rad]."""
-        raise NotImplementedError
-
-    @property
-    def sigma_y(self) -> float:
-        """Spread across of one realisation, at the estimated height [m]."""
-        raise NotImplementedError
-
-    @property
-    def sigma_z(self) -> float:
-        """Spread in height of one realisation, at the estimated height [m]."""
-        raise NotImplementedError
-
-    @property
-    def signal_to_noise(self) -> float:
-        """Peak of the readings over their noise, of the best pass so far [-]."""
-        raise NotImplementedError
-
-    @property
-    def found_at(self) -> float:
-        """Time since the start at which the plume was found first [s]; not a number before."""
-        raise NotImplementedError
-
-    @property
-    def innovation(self) -> float:
-        """Mean normalised innovation squared of the passes [-]: 1 where the filter is consistent."""
-        raise NotImplementedError
+        step = self._heights[1] - self._heights[0]
+        below = np.concatenate([[0.0], np.cumsum(self._of_heights)])
+        edges = np.concatenate([[self._heights[0] - 0.5 * step], self._heights + 0.5 * step])
+        low, high = np.interp((0.025, 0.975), below, edges)
+        return float(low), float(high)
 
     @property
     def measurable(self) -> float:
         """Probability that a pass at the best altitude within the limits smells the plume more often than not [-]."""
-        raise NotImplementedError
-
-    def detection(self, altitude: float) -> float:
-        """Return the probability that a pass at an altitude [m] has a signal to noise above 5."""
-        raise NotImplementedError
+        nearest = np.clip(self._heights, self.prior.lowest, self.prior.highest)
+        at_best = np.stack([self.chances(float(z))[:, i] for i, z in enumerate(nearest)], axis=1)
+        return float(np.sum(self.cells.sum(axis=3) * (at_best > 0.5)))

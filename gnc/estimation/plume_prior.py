@@ -3,7 +3,12 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from gnc.errors import InfeasibleError
+
+Array = npt.NDArray[np.float64]
 
 _ENTRAINMENT = 0.6
 """Briggs' entrainment coefficient of a plume that bends over in the wind [-]."""
@@ -13,6 +18,36 @@ _SPEED_MIN = 1.0
 
 _BUOYANT = 0.4 / math.sqrt(2.0)
 """Spread that the rise makes, over the rise [-]: AERMOD's buoyancy-induced dispersion."""
+
+_SIGMA_V, _SIGMA_W = 1.9, 1.3
+"""Standard deviations of the wind across and up, over the friction velocity [-]: neutral air, AERMOD."""
+
+_DRAG, _DRAG_SLOPE = 0.029, 0.0008
+"""Friction velocity over the wind at 10 m, in calm, and how it grows with the wind [-, s/m]: Charnock's law to 3 %, 3 to 15 m/s."""
+
+_WIND_MIN = 0.5
+"""Least wind that makes turbulence [m/s]."""
+
+_SURFACE_SCALE = 0.72
+"""Length over height at which the sea stops the spread in height [-] (AERMOD, elevated part)."""
+
+_OWN_SHARE = 0.42
+"""Spread about the moving centre over that about the axis, by turbulence [-]: 0.37 to 0.5 of the plume model at 200 m."""
+
+_SOURCE_SPREAD = 4.0
+"""Spread at the funnel, in the wake of the superstructure [m]: 0 to 8 m, of which no measurement is known."""
+
+_MEANDER_LENGTH = 2.5
+"""Integral scale of the lateral meander over the height of the source [-]: neutral air over the sea, to a factor of 2."""
+
+_AIR_DENSITY = 42.3
+"""Moles of air per volume [mol/m^3], at 15 degC."""
+
+_MODEL_ERROR, _SPREAD_ERROR, _BEARING_ERROR = 0.1, 0.25, 0.02
+"""Errors of the rise and of the spreads as computed, over themselves, and of the bearing [-, -, rad]: assumptions."""
+
+_MEANDER_MIN = 0.5
+"""Least standard deviation of the meander [m]."""
 
 
 def rise(momentum_flux: float, buoyancy_flux: float, distance: float, apparent_wind: float) -> float:
@@ -58,7 +93,7 @@ class PlumePrior:
     Attributes
     ----------
     distance, apparent_wind : behind the funnel, and past the ship, that the other values are for [m, m/s]
-    source_height : of the funnel's mouth above the sea, as expected [m]
+    source_height, source_deviation : of the funnel's mouth above the sea [m]
     height, height_deviation : of the axis above the sea, from stack, load and rise [m]
     bearing_deviation : of the axis from the one that the wind lets expect [rad]
     sigma_y, sigma_z : spreads about the centre at one moment, at the expected height [m]
@@ -75,6 +110,7 @@ class PlumePrior:
     distance: float
     apparent_wind: float
     source_height: float
+    source_deviation: float
     height: float
     height_deviation: float
     bearing_deviation: float
@@ -101,20 +137,100 @@ class PlumePrior:
             if not getattr(self, name) > 0.0:
                 raise InfeasibleError(f"{name} of the expected plume is {getattr(self, name):g}; it must be above 0")
 
-    def height_at(self, height: float, distance: float, apparent_wind: float) -> float:
-        """Return how high an axis of this ``height`` [m] at the prior's distance and wind is elsewhere [m].
+    @property
+    def buoyant_spread(self) -> float:
+        """Spread over rise that buoyancy makes [-]."""
+        return _BUOYANT
+
+    def rise_of(self, height: Array | float) -> Array:
+        """Return the expected rise of axes that are so high at the prior's distance and wind [m], at least 0.
+
+        Stack and rise share what an axis is off the expected height by as they share its variance.
+
+        Parameters
+        ----------
+        height : above the sea [m], any shape
+        """
+        share = max(0.0, 1.0 - (self.source_deviation / self.height_deviation) ** 2)
+        result: Array = np.maximum(0.0, self.height - self.source_height + share * (np.asarray(height) - self.height))
+        return result
+
+    def height_at(self, height: Array, distance: float, apparent_wind: float) -> Array:
+        """Return how high axes that are so high at the prior's distance and wind are elsewhere [m].
 
         The rise goes with x^(2/3)/U (Briggs, buoyancy alone).
 
         Parameters
         ----------
-        height : at the prior's distance, in its apparent wind [m]
+        height : at the prior's distance, in its apparent wind [m], any shape
         distance, apparent_wind : behind the funnel [m], past the ship [m/s]
         """
-        scale = rise(0.0, 1.0, distance, apparent_wind) / rise(0.0, 1.0, self.distance, self.apparent_wind)
-        return self.source_height + (height - self.source_height) * scale
+        scale = rise(0.0, 1.0, max(distance, 0.0), apparent_wind) / rise(0.0, 1.0, self.distance, self.apparent_wind)
+        result: Array = height + (scale - 1.0) * self.rise_of(height)
+        return result
 
-    @property
-    def buoyant_spread(self) -> float:
-        """Spread over rise that buoyancy makes [-]."""
-        return _BUOYANT
+
+def expected_plume(
+    *,
+    distance: float,
+    apparent_wind: float,
+    wind_speed: float,
+    wind_deviation: float,
+    source_height: float,
+    source_deviation: float,
+    momentum_flux: float,
+    buoyancy_flux: float,
+    co2_rate: float,
+    load_deviation: float,
+    sensor: GasSensor,
+    lowest: float,
+    highest: float,
+) -> PlumePrior:
+    """Return the plume that a ship of a class makes in some wind, over the sea in neutral air.
+
+    Spreads about a moving centre are those of source, buoyancy and turbulence; the meander has the rest of the turbulence. That the
+    first has so much of it is a fit to ``measurement.plume.spread`` at 200 to 500 m.
+
+    Parameters
+    ----------
+    distance : behind the funnel, where it is to be crossed [m]
+    apparent_wind, wind_speed : past the ship, and over the sea at 10 m [m/s]
+    wind_deviation : of each component of the apparent wind, as it is estimated on board [m/s]
+    source_height, source_deviation : of the funnel's mouth [m]
+    momentum_flux, buoyancy_flux, co2_rate : of the exhaust at the load that is expected [m^4/s^2, m^4/s^3, mol/s]
+    load_deviation : of the logarithm of the two latter [-]
+    sensor : for CO2
+    lowest, highest : altitudes that may be flown [m]
+    """
+    wind = max(apparent_wind, _SPEED_MIN)
+    climbed = rise(momentum_flux, buoyancy_flux, distance, wind)
+    wind_share, age = wind_deviation / wind, distance / wind
+    # The rise goes with the cube root of the flux, and with 1/U.
+    rise_deviation = climbed * math.hypot(load_deviation / 3.0, wind_share, _MODEL_ERROR)
+    height = source_height + climbed
+    friction = max(wind_speed, _WIND_MIN) * (_DRAG + _DRAG_SLOPE * wind_speed)
+    path = _SIGMA_W * friction * age
+    across, up = _SIGMA_V * friction * age, path / math.sqrt(1.0 + path / (_SURFACE_SCALE * height))
+    own = math.hypot(_SOURCE_SPREAD, _BUOYANT * climbed)
+    sigma_y, sigma_z = math.hypot(own, _OWN_SHARE * across), math.hypot(own, _OWN_SHARE * up)
+    rest = math.sqrt(1.0 - _OWN_SHARE**2)
+    return PlumePrior(
+        distance=distance,
+        apparent_wind=wind,
+        source_height=source_height,
+        source_deviation=source_deviation,
+        height=height,
+        height_deviation=math.hypot(source_deviation, rise_deviation),
+        bearing_deviation=math.hypot(wind_share, _BEARING_ERROR),
+        sigma_y=sigma_y,
+        sigma_z=sigma_z,
+        sigma_deviation=_SPREAD_ERROR,
+        meander_y=max(rest * across, _MEANDER_MIN),
+        meander_z=max(rest * up, _MEANDER_MIN),
+        meander_time=_MEANDER_LENGTH * source_height / wind,
+        peak=1e6 * co2_rate / (2.0 * math.pi * wind * sigma_y * sigma_z * _AIR_DENSITY),
+        peak_deviation=math.hypot(load_deviation, wind_share, _SPREAD_ERROR),
+        sensor=sensor,
+        lowest=lowest,
+        highest=highest,
+    )

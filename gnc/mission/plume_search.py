@@ -1,8 +1,29 @@
 """How high and how far off the predicted axis to fly next, so that the plume is found soon and then known well."""
 
+import math
 from typing import NamedTuple, Protocol
 
-from gnc.estimation.plume_estimator import PlumeEstimator
+import numpy as np
+import numpy.typing as npt
+
+from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState
+
+Array = npt.NDArray[np.float64]
+
+_STEP = 6.0
+"""Between the heights that are weighed [m]: less than the spread of a plume."""
+
+_HORIZON = 8
+"""Passes that are looked ahead [-]."""
+
+_COARSE = 2
+"""Cells of height that are taken as one when looking ahead [-]."""
+
+_KNOWN = 0.35
+"""Deviation of the height over the spread of a pass [-], down to which the plume's height is probed."""
+
+_PROBE = 0.8
+"""Height off the axis at which it is probed, over the spread of a pass [-]: a Gaussian is steepest at 1."""
 
 
 class Demand(NamedTuple):
@@ -33,7 +54,11 @@ class Search(Protocol):
 
 
 class HeightSearch:
-    """Maximises the probability of detection per time, then narrows the height down, then stays.
+    """Maximises the probability of detection per time; once the plume is found, narrows its height down, and then stays.
+
+    While it searches, each height is weighed by the passes that lie on the way to it and at it: the sum over them of the
+    probability that the plume has been smelt by then is the largest for the height with the least expected time to find. Misses
+    that have a plume in common are not independent; given a cell of the estimate they are.
 
     Parameters
     ----------
@@ -41,12 +66,39 @@ class HeightSearch:
     climb_rate : that the vehicle climbs and sinks at [m/s]
     """
 
+    __slots__ = ("_above", "_climb_rate", "_heights", "_highest", "_lowest")
+
     def __init__(self, *, lowest: float, highest: float, climb_rate: float) -> None:
-        raise NotImplementedError
+        self._lowest, self._highest, self._climb_rate = lowest, highest, climb_rate
+        self._heights: Array = np.linspace(lowest, highest, max(2, 1 + math.ceil((highest - lowest) / _STEP)))
+        self._above = False
 
     def next_demand(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> Demand:
         """Return where to cross next; arguments as of ``Search``."""
-        raise NotImplementedError
+        if estimator.state is not PlumeState.FOUND:
+            return Demand(self._soonest(estimator, altitude, self._climb_rate * pass_time), estimator.offset)
+        height = estimator.height
+        spread = math.hypot(estimator.sigma_z, estimator.prior.meander_z)
+        if estimator.height_deviation > _KNOWN * spread:
+            self._above = not self._above
+            height += (_PROBE if self._above else -_PROBE) * min(spread, estimator.height_deviation)
+        return Demand(min(max(height, self._lowest), self._highest), estimator.offset)
+
+    def _soonest(self, estimator: PlumeEstimator, altitude: float, climb: float) -> float:
+        """Return the height with the least expected time to find, where ``climb`` [m] is what a pass leaves time for."""
+        cells = estimator.cells.sum(axis=3)
+        missed = np.stack([1.0 - estimator.chances(z)[:, ::_COARSE] for z in self._heights.tolist()])
+        coarse = np.add.reduceat(cells, np.arange(0, cells.shape[1], _COARSE), axis=1)
+        steps = climb * np.arange(1, _HORIZON + 1)
+        way = altitude + np.clip(self._heights[:, np.newaxis] - altitude, -steps, steps)
+        step = self._heights[1] - self._heights[0]
+        index = np.clip(np.rint((way - self._lowest) / step).astype(np.intp), 0, len(self._heights) - 1)
+        still = np.ones((len(self._heights), *coarse.shape))
+        lost = np.zeros(len(self._heights))
+        for k in range(_HORIZON):
+            still *= missed[index[:, k]]
+            lost += np.tensordot(still, coarse, axes=3)
+        return float(self._heights[int(lost.argmin())])
 
 
 class LadderSearch:
@@ -58,9 +110,17 @@ class LadderSearch:
     rung : between heights [m]
     """
 
-    def __init__(self, *, lowest: float, highest: float, rung: float = 15.0) -> None:
-        raise NotImplementedError
+    __slots__ = ("_highest", "_lowest", "_rung", "_up")
 
-    def next_demand(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> Demand:
+    def __init__(self, *, lowest: float, highest: float, rung: float = 15.0) -> None:
+        self._lowest, self._highest, self._rung = lowest, highest, rung
+        self._up = True
+
+    def next_demand(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> Demand:  # noqa: ARG002 - of the Protocol
         """Return where to cross next; arguments as of ``Search``."""
-        raise NotImplementedError
+        height = estimator.height
+        if estimator.state is not PlumeState.FOUND:
+            if not self._lowest < altitude + (self._rung if self._up else -self._rung) < self._highest:
+                self._up = not self._up
+            height = altitude + (self._rung if self._up else -self._rung)
+        return Demand(min(max(height, self._lowest), self._highest), estimator.offset)

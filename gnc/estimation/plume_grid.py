@@ -1,0 +1,113 @@
+"""The cells that a plume estimate is spread over, and how strong a pulse each of them lets expect."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ndtr
+
+from gnc.estimation.plume_prior import PlumePrior
+
+Array = npt.NDArray[np.float64]
+
+STRENGTH_STEP = 0.4
+"""Step of the logarithm of strengths [-]: half of it is 20 %, about what the shape of a plume leaves open."""
+
+_FADE = 16
+"""Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.4 of the centre."""
+
+_HEIGHTS, _BEARINGS, _PLACES = 56, 11, 33
+"""Cells over height and bearing, and places of the centre across at one moment [-]."""
+
+_REACH = 3.0
+"""Standard deviations of the prior that the cells reach to [-]."""
+
+_LOWEST = 5.0
+"""Least height of an axis [m]."""
+
+_NARROW, _WIDE = -1.2, 1.2
+"""Deviations of the narrow and of the wide spread from the expected one [-]: with weights 1/4, 1/2, 1/4 the variance is 0.7."""
+
+_SPREAD_WEIGHTS = (0.25, 0.5, 0.25)
+
+_SPREAD_MIN = 0.4
+"""Least spread over that at the expected height [-]."""
+
+
+class PlumeGrid:
+    """Cells of spread, height, strength and bearing, in this order: shape (w, h, c, b).
+
+    A strength is the concentration in the centre of one realisation. Above the level of the sensor's delay there is nothing random
+    but the meander in height, which is independent from pass to pass: it forgets itself within 1 to 4 s.
+
+    Parameters
+    ----------
+    prior : what is expected
+
+    Attributes
+    ----------
+    height, strength, bearing : of the cells, shapes (h,), (c,), (b,) [m, ppm, rad]
+    sigma_y, sigma_z : of the cells, shape (w, h) [m]
+    faint : strengths from the faintest that a cell may be read with up to the strongest, shape (p,) [ppm]
+    prior : probability of each cell, shape (w, h, c, b)
+    """
+
+    def __init__(self, prior: PlumePrior) -> None:
+        self._expected = prior
+        low = max(_LOWEST, prior.height - _REACH * prior.height_deviation)
+        self.height: Array = np.linspace(low, prior.height + _REACH * prior.height_deviation, _HEIGHTS)
+        self.bearing: Array = np.linspace(-_REACH, _REACH, _BEARINGS) * prior.bearing_deviation
+        rises = prior.rise_of(self.height)
+        squares = prior.buoyant_spread**2 * (rises**2 - prior.rise_of(prior.height) ** 2)
+        scales = np.exp(prior.sigma_deviation * np.array([_NARROW, 0.0, _WIDE]))[:, np.newaxis]
+        self.sigma_y: Array = scales * np.sqrt(np.maximum(prior.sigma_y**2 + squares, (_SPREAD_MIN * prior.sigma_y) ** 2))
+        self.sigma_z: Array = scales * np.sqrt(np.maximum(prior.sigma_z**2 + squares, (_SPREAD_MIN * prior.sigma_z) ** 2))
+        median = np.log(prior.peak * prior.sigma_y * prior.sigma_z / (self.sigma_y * self.sigma_z))
+        reach = _REACH * prior.peak_deviation
+        logs = np.arange(median.min() - reach, median.max() + reach + STRENGTH_STEP, STRENGTH_STEP)
+        self.strength: Array = np.exp(logs)
+        self.faint: Array = np.exp(logs[0] + STRENGTH_STEP * np.arange(1 - _FADE, len(logs)))
+        self._index = _FADE - 1 + np.arange(len(logs)) - np.arange(_FADE)[:, np.newaxis]
+        self._edges: Array = np.sqrt(2.0 * STRENGTH_STEP * (np.arange(_FADE) + 0.5))
+        weight = np.array(_SPREAD_WEIGHTS)[:, np.newaxis, np.newaxis] * np.exp(
+            -0.5 * ((logs - median[..., np.newaxis]) / prior.peak_deviation) ** 2
+        )
+        weight *= _bell(self.height - prior.height, prior.height_deviation)[:, np.newaxis] / weight.sum(axis=2, keepdims=True)
+        cells = weight[..., np.newaxis] * _bell(self.bearing, prior.bearing_deviation)
+        self.prior: Array = cells / cells.sum()
+        across = _REACH * math.hypot(prior.bearing_deviation * prior.distance, prior.meander_y)
+        self.places: Array = np.linspace(-across, across, _PLACES)
+
+    @property
+    def spreads(self) -> Array:
+        """Spread of the pulse by the cells' first index, at the expected height, shape (w,) [m]."""
+        nearest = int(np.abs(self.height - self._expected.height).argmin())
+        result: Array = self.sigma_y[:, nearest]
+        return result
+
+    def fading(self, height: Array, altitude: float) -> Array:
+        """Return how likely a pass at an altitude reads a plume with so many steps less than its strength, shape (w, h, f).
+
+        The centre is z_m above the axis with z_m ~ N(0, meander_z^2), and the pulse has exp(-(h + z_m - z)^2/2 sigma_z^2) of the
+        strength. The rest to 1 is the chance of nothing.
+
+        Parameters
+        ----------
+        height : of the axes, shape (h,) [m]
+        altitude : z [m]
+        """
+        reach = self._edges * self.sigma_z[..., np.newaxis] / self._expected.meander_z
+        off = ((height - altitude) / self._expected.meander_z)[:, np.newaxis]
+        within = ndtr(reach - off) - ndtr(-reach - off)
+        result: Array = np.diff(within, axis=-1, prepend=0.0)
+        return result
+
+    def over_strengths(self, faint: Array) -> Array:
+        """Return values over ``faint``, shape (..., p), as they are for each step less than each strength, shape (..., f, c)."""
+        result: Array = faint[..., self._index]
+        return result
+
+
+def _bell(off: Array, deviation: float) -> Array:
+    result: Array = np.exp(-0.5 * (off / deviation) ** 2)
+    return result
