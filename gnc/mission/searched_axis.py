@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState, SensorState
-from gnc.estimation.plume_prior import PlumePrior
+from gnc.estimation.plume_prior import GasSensor, expected_plume
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb, Situation, trail
@@ -21,6 +22,26 @@ _PASS_TIME, _PASS_MEMORY = 8.0, 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Expectation:
+    """What is known beforehand of the ship's class and of the sensor, as arguments of ``plume_prior.expected_plume``."""
+
+    source_height: float
+    source_deviation: float
+    momentum_flux: float
+    buoyancy_flux: float
+    co2_rate: float
+    load_deviation: float
+    wind_deviation: float
+    sensor: GasSensor
+    lowest: float
+    highest: float
+
+    def arguments(self) -> dict[str, Any]:
+        """Return them by name."""
+        return {of.name: getattr(self, of.name) for of in fields(self)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SearchedPlume:
     """A plume that is searched for.
 
@@ -29,8 +50,7 @@ class SearchedPlume:
     height : of the axis as it is predicted, flown at on the way
     altitude : at the start [m]
     climb : how the altitude follows
-    priors : at even steps of the apparent wind, from ``wind_step`` on
-    wind_step : between them [m/s]
+    expected : of ship and sensor
     climb_rate : that the vehicle climbs and sinks at [m/s]
     ladder : whether a ladder of heights is climbed until it is found, instead of the height that tells most
     """
@@ -38,18 +58,13 @@ class SearchedPlume:
     height: AxisHeight
     altitude: float
     climb: Climb
-    priors: tuple[PlumePrior, ...]
-    wind_step: float
+    expected: Expectation
     climb_rate: float
     ladder: bool = False
 
-    def prior(self, apparent_wind: float) -> PlumePrior:
-        """Return what is expected in an apparent wind [m/s]."""
-        return self.priors[min(max(round(apparent_wind / self.wind_step) - 1, 0), len(self.priors) - 1)]
-
     def search(self) -> Search:
         """Return what decides where to cross next, fresh."""
-        lowest, highest = self.priors[0].lowest, self.priors[0].highest
+        lowest, highest = self.expected.lowest, self.expected.highest
         if self.ladder:
             return LadderSearch(lowest=lowest, highest=highest)
         return HeightSearch(lowest=lowest, highest=highest, climb_rate=self.climb_rate)
@@ -61,7 +76,7 @@ class SearchedPlume:
 
 @dataclass(slots=True)
 class PlumeEstimate:
-    """What is believed of a plume now; not a number before it is searched for.
+    """What was believed of a plume after the last pass; not a number before it is searched for.
 
     Attributes
     ----------
@@ -86,7 +101,7 @@ class SearchedAxis:
 
     Attributes
     ----------
-    estimate : what is believed now
+    estimate : what was believed after the last pass
     sensor : what the readings say of their sensor
     """
 
@@ -123,10 +138,14 @@ class SearchedAxis:
             if not tracking:
                 self.demanded = p.height.at(situation.centre.distance, wind)
                 return
-            self._estimator = PlumeEstimator(p.prior(wind))
+            blowing = math.hypot(situation.own.wind_north, situation.own.wind_east)
+            distance = situation.centre.distance
+            prior = expected_plume(distance=distance, apparent_wind=wind, wind_speed=blowing, **p.expected.arguments())
+            self._estimator = PlumeEstimator(prior)
             self._last_note = self._last_pass = time
             self._decide(self.demanded)
-        self._look()
+        self.sensor = self._estimator.sensor
+        self.mode = _MODES[self._estimator.state] if self.sensor is SensorState.WORKING else Mode.SENSOR_FAILED
 
     def _note(self, at: float, now: float, altitude: float, reading: float) -> None:
         """Tell the estimator the place at a time [s] at most as late as now, and what was read there [ppm]."""
@@ -154,15 +173,8 @@ class SearchedAxis:
             demand = self._search.next_demand(self._estimator, altitude, self._pass_time)
             self.demanded = demand.altitude
             self.bearing = math.atan2(demand.offset, self._situation.centre.distance)
-
-    def _look(self) -> None:
-        """Keep what is believed now for whoever looks at it."""
-        found = self._estimator
-        if found is None:
-            return
-        self.sensor = found.sensor
-        self.mode = _MODES[found.state] if found.sensor is SensorState.WORKING else Mode.SENSOR_FAILED
-        self.estimate = PlumeEstimate(
-            found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z, found.measurable,
-            found.innovation,
-        )  # fmt: skip
+            found = self._estimator
+            self.estimate = PlumeEstimate(
+                found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z, found.measurable,
+                found.innovation,
+            )  # fmt: skip

@@ -96,7 +96,7 @@ def following_flight(
         mission = standoff_parameters(scenario, setup, circle.radius)
     else:
         periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
-        axis = plume_axis(scenario, vessel, widths, radius + margin.total)
+        axis = plume_axis(scenario, vessel)
         orbit, mission = oscillation, following_parameters(scenario, setup, margin, widths, axis)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)

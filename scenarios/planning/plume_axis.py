@@ -1,20 +1,16 @@
 """What the guidance knows beforehand of a plume's axis: how high it is expected to be, how sure that is, and how it is found."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.plume_prior import GasSensor, PlumePrior, rise
+from gnc.estimation.plume_prior import GasSensor
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.plume_axis import AxisParameters, Climb, PredictedPlume
-from gnc.mission.searched_axis import SearchedPlume
+from gnc.mission.searched_axis import Expectation, SearchedPlume
 from measurement.emission.emission import Emission
-from measurement.gases import GASES, PARTS
-from measurement.plume.air import MarineAir
-from measurement.plume.settings import PlumeSettings
-from measurement.plume.spread import STEP, spreads
+from measurement.gases import GASES
 from measurement.sniffer.presets import sensor_preset
 from scenarios.instruments.sniffer import SnifferOnBoard
 from scenarios.schema.scenario import Scenario
@@ -30,40 +26,24 @@ ALTITUDE_MARGIN = {"none": 3.0, "light": 6.0, "moderate": 10.0, "severe": 15.0}
 _ROOM = 10.0
 """Least room between the altitudes that are flown, to search in [m]."""
 
-_WIND_STEP = 1.0
-"""Between the apparent winds for which is told what is expected [m/s]."""
+_LOADS = 9
+"""Loads, evenly within their range, of which the deviation of what is emitted is taken."""
 
-_WIND_LEAST = 2.0
-"""Apparent wind from which on the spreads hold [m/s]."""
+_SOURCE_ERROR, _LOAD_ERROR = 2.0, 0.3
+"""Deviation of the mouth's height [m], and of the logarithm of what is emitted [-], where neither has a range."""
 
-_LOADS, _SOURCES = 5, 3
-"""Values that a load and a height of the mouth are expected to have, within their ranges."""
-
-_TYPICAL_WIND = 7.0
-"""True wind whose turbulence is expected [m/s]: the mean over the sea."""
-
-_RISE_ERROR, _SOURCE_ERROR, _WIND_ERROR = 0.15, 2.0, 0.5
-"""Deviation of the rise, over it [-], of the mouth's height [m], and of each component of the estimated wind [m/s]."""
-
-_COURSE_ERROR = math.radians(2.0)
-"""Deviation of the wind's direction by the heading's bias, and of the axis by what the straight plume leaves out [rad]."""
-
-_SPREAD_ERROR, _STRENGTH_ERROR = 0.3, 0.3
-"""Deviation of the logarithms of spread and strength [-], beside what the load makes of it."""
+_WIND_ERROR = 0.5
+"""Deviation of each component of the apparent wind as it is estimated on board [m/s]."""
 
 CO2 = GASES.index("co2")
 
 
-def plume_axis(
-    scenario: Scenario, vessel: VesselTruth, widths: Sequence[tuple[float, float]], distance_min: float
-) -> AxisParameters:
+def plume_axis(scenario: Scenario, vessel: VesselTruth) -> AxisParameters:
     """Return how the guidance knows the plume's axis.
 
     Parameters
     ----------
     scenario, vessel : of the flight
-    widths : half-widths of the orbit along and across its course, at equal steps of nu from 0 [m]
-    distance_min : that the orbit keeps from the vessel [m]
 
     Raises
     ------
@@ -84,8 +64,7 @@ def plume_axis(
         height=height,
         altitude=scenario.altitude,
         climb=climb,
-        priors=_priors(scenario, vessel, widths, distance_min, limits=limits),
-        wind_step=_WIND_STEP,
+        expected=_expectation(scenario, vessel, limits),
         climb_rate=gradient * scenario.guidance.airspeed_mps,
         ladder=f.search == "ladder",
     )
@@ -152,61 +131,22 @@ def _expected(scenario: Scenario, vessel: VesselTruth, quantile: float) -> Emiss
     return emission(scenario, speed=math.hypot(v_north, v_east))
 
 
-def _priors(
-    scenario: Scenario,
-    vessel: VesselTruth,
-    widths: Sequence[tuple[float, float]],
-    distance_min: float,
-    *,
-    limits: tuple[float, float],
-) -> tuple[PlumePrior, ...]:
-    """Return what is expected at even steps of the apparent wind, where the orbit in it crosses the axis."""
-    speed, ratio_max = scenario.guidance.airspeed_mps, scenario.following.speed_ratio_max
-    winds = _WIND_STEP * np.arange(1.0, max(2.0, ratio_max * speed / _WIND_STEP))
-    ratios = np.linspace(0.0, ratio_max, len(widths))
-    distances = distance_min + np.interp(winds / speed, ratios, [along for along, _ in widths])
-    held = np.maximum(winds, _WIND_LEAST)
-    ages = distances / held
-    given = scenario.following.source_height_m or (scenario.plume.source_height_m,) * 2
-    sources = [given[0] + (i + 0.5) / _SOURCES * (given[1] - given[0]) for i in range(_SOURCES)]
-    emissions = [_expected(scenario, vessel, (i + 0.5) / _LOADS) for i in range(_LOADS)]
-    middle, source = emissions[_LOADS // 2], sources[_SOURCES // 2]
-    settings, air = PlumeSettings(), MarineAir(wind_speed=_TYPICAL_WIND)
-    of = spreads(middle, air, source, held, float(ages.max()), settings)
-    rows, at = np.arange(len(winds)), np.round(ages / STEP).astype(np.intp)
-    strengths = np.log([expected.rates[CO2] for expected in emissions])
-    sensor = _co2_sensor(scenario)
-    priors = []
-    for i, wind, distance in zip(rows.tolist(), winds.tolist(), distances.tolist(), strict=True):
-        rises = np.array([rise(expected.momentum_flux, expected.buoyancy_flux, distance, wind) for expected in emissions])
-        sigma_y, sigma_z = (float(values[i, at[i]]) for values in (of.relative_y, of.relative_z))
-        mean_rise = float(np.mean(rises))
-        wind_error = _WIND_ERROR / max(wind, _WIND_LEAST)
-        spread_of_height = math.sqrt(
-            float(np.var(rises) + np.var(sources)) + _SOURCE_ERROR**2 + mean_rise**2 * (_RISE_ERROR**2 + wind_error**2)
-        )
-        priors.append(
-            PlumePrior(
-                distance=distance,
-                apparent_wind=wind,
-                source_height=source,
-                height=source + mean_rise,
-                height_deviation=spread_of_height,
-                bearing_deviation=math.hypot(wind_error, _COURSE_ERROR),
-                sigma_y=sigma_y,
-                sigma_z=sigma_z,
-                sigma_deviation=_SPREAD_ERROR,
-                meander_y=float(of.meander_y[i, at[i]]),
-                meander_z=float(of.meander_z[i, at[i]]),
-                meander_time=settings.meander_length_across * source / wind,
-                peak=middle.rates[CO2] * PARTS["co2"] / (2.0 * math.pi * air.molar_density * wind * sigma_y * sigma_z),
-                peak_deviation=math.hypot(_STRENGTH_ERROR, float(np.std(strengths))),
-                sensor=sensor,
-                lowest=limits[0],
-                highest=limits[1],
-            )
-        )
-    return tuple(priors)
+def _expectation(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float]) -> Expectation:
+    """Return what is known of ship and sensor, within the altitudes that are flown."""
+    f, middle = scenario.following, _expected(scenario, vessel, 0.5)
+    sources, loads = f.source_height_m, [_expected(scenario, vessel, (i + 0.5) / _LOADS) for i in range(_LOADS)]
+    return Expectation(
+        source_height=axis_height(scenario, vessel).source,
+        source_deviation=(sources[1] - sources[0]) / math.sqrt(12.0) if sources else _SOURCE_ERROR,
+        momentum_flux=middle.momentum_flux,
+        buoyancy_flux=middle.buoyancy_flux,
+        co2_rate=middle.rates[CO2],
+        load_deviation=float(np.std(np.log([of.rates[CO2] for of in loads]))) if f.load else _LOAD_ERROR,
+        wind_deviation=_WIND_ERROR,
+        sensor=_co2_sensor(scenario),
+        lowest=limits[0],
+        highest=limits[1],
+    )
 
 
 def _co2_sensor(scenario: Scenario) -> GasSensor:

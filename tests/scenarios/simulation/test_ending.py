@@ -30,7 +30,7 @@ def ended(
     vehicle = SimpleNamespace(fault=lambda _: trouble)
     guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mission=SimpleNamespace(mode=mode))
     ending = Ending(plan, vehicle, guidance, SimpleNamespace(at=settled, crossings=flown))
-    ending.reached(300.0, sample, complete=0 < asked <= flown)
+    ending.reached(300.0, (0.0, 0.0, 0.0, 0.0, 0.0), sample, complete=0 < asked <= flown)
     return ending
 
 
