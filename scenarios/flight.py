@@ -20,6 +20,7 @@ from scenarios.instruments.instrument import EvaluatedInstrument, GasReader, Ins
 from scenarios.metrics.criteria import failed_criteria, kept_out
 from scenarios.metrics.crossings import crossing_rows
 from scenarios.metrics.figures import flight_figures, plan_row
+from scenarios.metrics.finding import finding_figures
 from scenarios.metrics.relative_state import flight_history
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.planner import plan_flight
@@ -120,6 +121,9 @@ class FlightWork:
                     row |= evaluation.figures
                     tables |= {file: [named | of for of in rows] for file, rows in evaluation.tables.items()}
                     document = evaluation.document or document
+            if sniffer := next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None):
+                noise = sniffer.spec.known("co2").noise
+                row |= finding_figures(history, request.scenario.flight, noise=noise, enough=record.enough)
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
             row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}

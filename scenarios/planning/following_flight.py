@@ -8,6 +8,7 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.reachable_set import VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
+from gnc.mission.plume_axis import AxisParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuardParameters, GuidanceParameters, ReportedVessel
@@ -27,7 +28,8 @@ from scenarios.planning.guidance import (
     turn_time,
 )
 from scenarios.planning.limits import PLAN_PERIOD, omega_max
-from scenarios.planning.plume_axis import plume_axis
+from scenarios.planning.plume.axis import plume_axis
+from scenarios.planning.plume.distance import additional_distance
 from scenarios.planning.reference import orbits, oscillation_at
 from scenarios.planning.standoff import standoff_parameters, vessel_circle
 from scenarios.planning.start import check_start, sampled_start
@@ -95,9 +97,9 @@ def following_flight(
         periods = circle.periods(f.speed_ratio_max)
         mission = standoff_parameters(scenario, setup, circle.radius)
     else:
-        periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
-        axis = plume_axis(scenario, vessel)
-        orbit, mission = oscillation, following_parameters(scenario, setup, margin, widths, axis)
+        nearest, orbit = radius + margin.total + oscillation.half_widths()[0], oscillation
+        further = additional_distance(scenario, vessel, nearest, wind.at_start)
+        periods, mission = _following(scenario, setup, margin, plume_axis(scenario, vessel), further)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, mean_wind(scenario, vessel), generators.world)
@@ -144,6 +146,14 @@ def following_flight(
         margin=margin,
         apparent_wind=wind,
     )
+
+
+def _following(
+    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, axis: AxisParameters, further: float
+) -> tuple[tuple[float, ...], FollowingParameters]:
+    """Return the periods of the orbit over nu [s], and how the plume is followed, farther off than need be by a distance [m]."""
+    periods, widths = orbits(scenario.guidance, scenario.reference, scenario.following.speed_ratio_max)
+    return periods, following_parameters(scenario, setup, margin, widths, axis, additional_distance=further)
 
 
 def _guidance(

@@ -131,7 +131,13 @@ def approach_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) 
 
 
 def following_parameters(
-    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, widths: Sequence[tuple[float, float]], axis: AxisParameters
+    scenario: Scenario,
+    setup: VehicleSetup,
+    margin: KeepoutMargin,
+    widths: Sequence[tuple[float, float]],
+    axis: AxisParameters,
+    *,
+    additional_distance: float,
 ) -> FollowingParameters:
     """Return how the plume of a moving vessel is followed.
 
@@ -141,12 +147,13 @@ def following_parameters(
     margin : of the keep-out area
     widths : half-widths of the orbit along and across its course, at equal steps of nu from 0 [m]
     axis : how the plume's axis is known
+    additional_distance : from the vessel, beyond what keeps out [m]
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports
     fastest, radius = omega_max(g), scenario.keepout.radius_m
     hold = speed_hold(scenario, setup)
     centre = CentreParameters(
-        distance_min=radius + margin.total,
+        distance_min=radius + margin.total + additional_distance,
         speed_ratio_max=f.speed_ratio_max,
         along=tuple(along for along, _ in widths),
         across=tuple(across for _, across in widths),

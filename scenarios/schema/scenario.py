@@ -133,6 +133,11 @@ class Scenario(Section):
         return self.guidance.mission == "standoff"
 
     @property
+    def finds(self) -> bool:
+        """Return whether a plume is searched for, told, or measured until there is a verdict."""
+        return self.following.plume != "predicted" or self.flight.until == "verdict"
+
+    @property
     def altitude(self) -> float:
         """Return the altitude at the start, for which the autopilot is designed [m]."""
         return self.plume.source_height_m if self.flight.altitude_m is None else self.flight.altitude_m

@@ -34,6 +34,7 @@ from scenarios.metrics.columns import (
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
 )
+from scenarios.metrics.finding import FINDING_FIGURES
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
@@ -89,6 +90,8 @@ class FlightStudy:
         points = [point.scenario for experiment in self.experiments.values() for point in experiment.points]
         instruments = evaluated_instruments(points)
         figures = (*SUMMARY_COLUMNS, *dict.fromkeys(name for instrument in instruments for name in instrument.FIGURES))
+        if any(point.finds for point in points):
+            figures += FINDING_FIGURES
         self.tables = {
             SUMMARY: figures,
             CROSSINGS: CROSSING_COLUMNS,

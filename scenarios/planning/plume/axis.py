@@ -111,7 +111,7 @@ def axis_height(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, fl
     climb = math.tan(math.radians(scenario.plume.elevation_deg))
     if scenario.emission.ship is None:
         return AxisHeight(source=source, climb=climb)
-    expected = _expected(scenario, vessel, 0.5)
+    expected = expected_emission(scenario, vessel, 0.5)
     return AxisHeight(
         source=source,
         climb=climb,
@@ -122,7 +122,7 @@ def axis_height(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, fl
     )
 
 
-def _expected(scenario: Scenario, vessel: VesselTruth, quantile: float) -> Emission:
+def expected_emission(scenario: Scenario, vessel: VesselTruth, quantile: float) -> Emission:
     """Return what is expected to be emitted, at a quantile of the load's range; at the load that the speed takes without one."""
     load = scenario.following.load
     if load is not None:
@@ -133,8 +133,8 @@ def _expected(scenario: Scenario, vessel: VesselTruth, quantile: float) -> Emiss
 
 def _expectation(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float]) -> Expectation:
     """Return what is known of ship and sensor, within the altitudes that are flown."""
-    f, middle = scenario.following, _expected(scenario, vessel, 0.5)
-    sources, loads = f.source_height_m, [_expected(scenario, vessel, (i + 0.5) / _LOADS) for i in range(_LOADS)]
+    f, middle = scenario.following, expected_emission(scenario, vessel, 0.5)
+    sources, loads = f.source_height_m, [expected_emission(scenario, vessel, (i + 0.5) / _LOADS) for i in range(_LOADS)]
     return Expectation(
         source_height=axis_height(scenario, vessel).source,
         source_deviation=(sources[1] - sources[0]) / math.sqrt(12.0) if sources else _SOURCE_ERROR,
