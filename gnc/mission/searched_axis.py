@@ -14,8 +14,11 @@ from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
 
 _MODES = {PlumeState.SEARCHING: Mode.SEARCHING, PlumeState.FOUND: Mode.FOUND, PlumeState.LOST: Mode.LOST_AGAIN}
 
-_NOTED = 0.45
-"""Longest time between places that the estimator is told [s]."""
+_NOTED, _SILENT = 0.75, 2.0
+"""Time between readings beyond which the estimator is told a place in between, and beyond which it is told of silence [s]."""
+
+Place = tuple[float, float, float, float]
+"""Time [s], place along the predicted axis and to the right of it, altitude [m]."""
 
 _PASS_TIME, _PASS_MEMORY = 8.0, 0.3
 """Time between passes before the first two [s], and weight of the last one in its mean [-]."""
@@ -83,7 +86,6 @@ class PlumeEstimate:
     height, height_deviation : of the axis above the sea [m]
     offset, offset_deviation : of the axis to the right of the predicted one [m]
     spread : of one realisation in height [m]
-    measurable : probability that it can be crossed within the altitudes that are flown [-]
     innovation : mean normalised innovation squared [-]
     """
 
@@ -92,7 +94,6 @@ class PlumeEstimate:
     offset: float = math.nan
     offset_deviation: float = math.nan
     spread: float = math.nan
-    measurable: float = math.nan
     innovation: float = math.nan
 
 
@@ -106,7 +107,7 @@ class SearchedAxis:
     """
 
     __slots__ = (
-        "_estimator", "_last_heed", "_last_note", "_last_pass", "_parameters", "_pass_time", "_search", "_situation", "bearing",
+        "_estimator", "_last_note", "_last_pass", "_parameters", "_pass_time", "_places", "_search", "_situation", "bearing",
         "climb", "demanded", "estimate", "mode", "sensor",
     )  # fmt: skip
 
@@ -115,20 +116,28 @@ class SearchedAxis:
         self._estimator: PlumeEstimator | None = None
         self._search = parameters.search()
         self._situation: Situation | None = None
-        self._last_heed = self._last_note = self._last_pass = 0.0
+        self._places: list[Place] = []
+        self._last_note = self._last_pass = 0.0
         self._pass_time, self.bearing, self.mode = _PASS_TIME, 0.0, Mode.SEARCHING
         self.estimate, self.sensor = PlumeEstimate(), SensorState.WORKING
 
+    def measurable(self) -> float:
+        """Return the probability that the plume can be crossed within the altitudes that are flown [-]; costly."""
+        return self._estimator.measurable if self._estimator is not None else math.nan
+
     def heed(self, time: float, altitude: float, readings: Sequence[tuple[float, float]]) -> None:
-        """Take note of what was read, with its own time [s], and of the altitude [m] now."""
-        before, self._last_heed = self._last_heed, time
-        if self._estimator is None:
+        """Take note of the altitude [m] now, and of what was read since the last readings came, each with its own time [s]."""
+        if self._estimator is None or self._situation is None:
             return
+        self._places.append((time, *_seen_along(self._situation), altitude))
         for read_at, reading in readings:
-            self._note(read_at, time, altitude, reading)
-        if not readings and time - self._last_note > _NOTED:
-            # As late as readings are.
-            self._note(before, time, altitude, math.nan)
+            if read_at - self._last_note > _NOTED:
+                self._note(0.5 * (self._last_note + read_at), math.nan)
+            self._note(read_at, reading)
+        if readings:
+            del self._places[:-2]
+        elif time - self._last_note > _SILENT:
+            self._note(time, math.nan)
 
     def plan(self, time: float, situation: Situation, *, tracking: bool) -> None:
         """Begin to search where the reference is first tracked; follow the prediction on the way there."""
@@ -147,22 +156,16 @@ class SearchedAxis:
         self.sensor = self._estimator.sensor
         self.mode = _MODES[self._estimator.state] if self.sensor is SensorState.WORKING else Mode.SENSOR_FAILED
 
-    def _note(self, at: float, now: float, altitude: float, reading: float) -> None:
-        """Tell the estimator the place at a time [s] at most as late as now, and what was read there [ppm]."""
+    def _note(self, at: float, reading: float) -> None:
+        """Tell the estimator the place at a time [s], and what was read there [ppm]."""
         situation, estimator = self._situation, self._estimator
         if situation is None or estimator is None:
             return
-        own, target, late = situation.own, situation.target, now - at
-        north = own.wind_north + own.speed * math.cos(own.course) - target.velocity_north
-        east = own.wind_east + own.speed * math.sin(own.course) - target.velocity_east
-        x = own.ground_north - target.north - late * north
-        y = own.ground_east - target.east - late * east
-        axis = trail(own, target)
-        cos_a, sin_a = math.cos(axis), math.sin(axis)
+        along, across, altitude = _place_at(self._places, at)
         estimator.predict(max(0.0, at - self._last_note))
         self._last_note = max(at, self._last_note)
         wind = situation.centre.speed_ratio * situation.speed
-        if estimator.update(x * cos_a + y * sin_a, y * cos_a - x * sin_a, altitude, reading, apparent_wind=wind):
+        if estimator.update(along, across, altitude, reading, apparent_wind=wind):
             self._pass_time += _PASS_MEMORY * (at - self._last_pass - self._pass_time)
             self._last_pass = at
             self._decide(altitude)
@@ -175,6 +178,24 @@ class SearchedAxis:
             self.bearing = math.atan2(demand.offset, self._situation.centre.distance)
             found = self._estimator
             self.estimate = PlumeEstimate(
-                found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z, found.measurable,
+                found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z,
                 found.innovation,
             )  # fmt: skip
+
+
+def _seen_along(situation: Situation) -> tuple[float, float]:
+    """Return where the vehicle is behind the vessel, along the predicted axis and to the right of it [m]."""
+    own, target = situation.own, situation.target
+    x, y = own.ground_north - target.north, own.ground_east - target.east
+    axis = trail(own, target)
+    cos_a, sin_a = math.cos(axis), math.sin(axis)
+    return x * cos_a + y * sin_a, y * cos_a - x * sin_a
+
+
+def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float]:
+    """Return the place at a time [s] between those that are known, of which there is one at least."""
+    later = next((i for i, place in enumerate(places) if place[0] >= time), len(places) - 1)
+    (then, *after), (before, *last) = places[later], places[max(0, later - 1)]
+    share = min(max((time - before) / (then - before), 0.0), 1.0) if then > before else 1.0
+    along, across, altitude = (a + share * (b - a) for a, b in zip(last, after, strict=True))
+    return along, across, altitude

@@ -27,6 +27,9 @@ Array = npt.NDArray[np.float64]
 CO2 = GASES.index("co2")
 """Its column."""
 
+_PASSED_ON = 0.45
+"""Time between readings that are passed on in flight, at least [s]: those of a faster sniffer come together."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class SnifferSettings:
@@ -107,7 +110,7 @@ class SnifferOnBoard:
         north, east, v_north, v_east, _ = motion
         altitude, airspeed, _, climb_rate, *_ = sample
         self._path.append((time, north, east, altitude, v_north, v_east, climb_rate, airspeed))
-        if time <= self._count / self.spec.rate_hz or len(self._path) < 2:
+        if time <= self._count / self.spec.rate_hz or time - self._path[0][0] < _PASSED_ON:
             return ()
         path = np.array(self._path)
         del self._path[:-1]

@@ -79,7 +79,7 @@ class Judge:
         if isinstance(axis, SearchedAxis):
             if axis.sensor is not SensorState.WORKING:
                 return Enough.SENSOR
-            if axis.estimate.measurable < _MEASURABLE:
+            if axis.measurable() < _MEASURABLE:
                 return Enough.OUT_OF_REACH
         if math.isnan(self._settling.at):
             return None

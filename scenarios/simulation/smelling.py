@@ -13,6 +13,9 @@ from scenarios.instruments.instrument import GasReader
 from scenarios.vehicles.vehicle import Vehicle
 from scenarios.world.world import World
 
+_SELDOM = 15.0
+"""Time between looks at what is costly to compute [s]."""
+
 
 class Smelling:
     """Passes on what a sniffer reads, and what a flight is told of its plume.
@@ -74,12 +77,15 @@ class PlumeBelief:
 
     def __init__(self, axis: SearchedAxis) -> None:
         self._axis = axis
+        self._measurable, self._next = math.nan, 0.0
 
     def read(self, time: float, motion: Motion, sample: tuple[float, ...]) -> tuple[float, ...]:  # noqa: ARG002 - of an instrument
         """Return a value for each column."""
         found = self._axis.estimate
+        if time >= self._next:
+            self._measurable, self._next = self._axis.measurable(), time + _SELDOM
         return (
-            found.height, found.height_deviation, found.offset, found.offset_deviation, found.spread, found.measurable,
+            found.height, found.height_deviation, found.offset, found.offset_deviation, found.spread, self._measurable,
             found.innovation,
         )  # fmt: skip
 
