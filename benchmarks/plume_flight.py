@@ -18,7 +18,7 @@ from measurement.emission.ship import ship_preset
 from measurement.gases import GASES
 from measurement.plume.air import MarineAir
 from measurement.plume.fluctuating_plume import FluctuatingPlume
-from measurement.sniffer import Sniffer, SnifferSpec, sensor_preset
+from measurement.sniffer import Sniffer, SnifferSpec
 
 Array = npt.NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def draw_case(seed: int, *, wind: tuple[float, float] = (3.0, 12.0), ship: tuple
 
 @dataclass
 class Flight:
-    """What happened; a row of ``passes`` is time, altitude, estimated height, its deviation, true height, peak over the centre's."""
+    """What happened; a row of ``passes`` is time, altitude, estimated height, its deviation, true height, peak over centre."""
 
     case: Case
     estimator: PlumeEstimator

@@ -5,7 +5,6 @@ from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import ndtr
 
 from gnc.estimation.plume_grid import PlumeGrid
 from gnc.estimation.plume_passes import Evidence, PassCollector, PassReader, Path, Place
@@ -30,6 +29,18 @@ _MEMORY = 10.0
 
 _CHANCE = 0.02
 """Least chance of a hit or a miss that innovations are judged with [-]: models are not better than that."""
+
+_STRENGTH_ERROR = 0.25
+"""Error of the strength of a pass, over itself, by width, speed and gusts [-]: an assumption. It also covers the grid's step."""
+
+_SPREAD_SHARE, _STRENGTH_SHARE = 0.02, 0.05
+"""Share of a cell that goes to the next one."""
+
+_LOOK = 1.0
+"""Way along the plume to an independent centre, over the correlation length of the meander [-]."""
+
+_BEND_MIN = 1e-12
+"""Least curvature of a likelihood [1/ppm^2]: a place that the vehicle has not been to says nothing."""
 
 _NOMINAL_RESPONSE = 0.5
 """Largest reading over strength before a pass has shown it [-]."""
@@ -75,7 +86,7 @@ class PlumeEstimator:
         self._spoilt = False
         self._distance, self._wind = prior.distance, prior.apparent_wind
         self._response = np.full(len(self.grid.spreads), _NOMINAL_RESPONSE)
-        self._misses = 1.0
+        self._misses = self._looks = 1.0
         self.cells: Array = self.grid.prior.copy()
         self._note()
 
@@ -129,17 +140,18 @@ class PlumeEstimator:
         prior, grid = self.prior, self.grid
         heights = prior.height_at(grid.height, self._distance, self._wind)
         least = SIGNAL_TO_NOISE * prior.sensor.noise / self._response
-        ratio = grid.strength / least[:, np.newaxis]
-        reach = np.sqrt(2.0 * np.log(np.maximum(ratio, 1.0)))[:, np.newaxis, :] * (grid.sigma_z / prior.meander_z)[..., np.newaxis]
-        off = ((heights - altitude) / prior.meander_z)[:, np.newaxis]
-        result: Array = ndtr(reach - off) - ndtr(-reach - off)
-        return result
+        return grid.chances(heights, altitude, self._looks, least)
 
     def _diffuse(self, time: float) -> None:
         """Let the axis wander for ``time`` [s], and let some of what is known be forgotten."""
         prior, grid = self.prior, self.grid
         for axis, drift, values in ((1, prior.height_drift, grid.height), (3, prior.bearing_drift, grid.bearing)):
             share = min(0.25, 0.5 * drift**2 * time / (values[1] - values[0]) ** 2)
+            moved = np.moveaxis(self.cells, axis, 0)
+            flow = share * np.diff(moved, axis=0)
+            moved[:-1] += flow
+            moved[1:] -= flow
+        for axis, share in ((0, _SPREAD_SHARE), (2, _STRENGTH_SHARE)):
             moved = np.moveaxis(self.cells, axis, 0)
             flow = share * np.diff(moved, axis=0)
             moved[:-1] += flow
@@ -154,13 +166,14 @@ class PlumeEstimator:
         self._distance, altitude = path.at(self.offset)
         heights = prior.height_at(grid.height, self._distance, self._wind)
         # Likelihood of each strength at each place, over that of no pulse at all; its largest is 1.
-        exponent = np.multiply.outer(evidence.slope, grid.faint) - np.multiply.outer(evidence.bend, 0.5 * grid.faint**2)
+        exponent = self._over_nothing(evidence)
         largest = max(0.0, float(exponent.max()))
         nothing = math.exp(-largest)
         likelihood = np.exp(exponent - largest)
         beside = self._beside(path)
         seen = beside @ likelihood + (1.0 - beside.sum(axis=1))[:, np.newaxis] * nothing
-        fading = grid.fading(heights, altitude)
+        self._looks = self._seen(path, evidence)
+        fading = grid.fading(heights, altitude, self._looks)
         expected = grid.over_strengths(seen)
         w, b, f, c = expected.shape
         of_cells = fading @ expected.transpose(0, 2, 3, 1).reshape(w, f, c * b)
@@ -169,6 +182,25 @@ class PlumeEstimator:
         self.cells *= of_cells.reshape(w, -1, c, b)
         total = float(self.cells.sum())
         self.cells = self.cells / total if total > 0.0 else grid.prior.copy()
+
+    def _over_nothing(self, evidence: Evidence) -> Array:
+        """Return the log likelihood of each strength at each place less that of no pulse, shape (w, j, p).
+
+        A pulse of strength P fits readings that have one of P (1 + e), e ~ N(0, 0.25^2): e has been integrated out.
+        """
+        strength, slope = self.grid.faint, evidence.slope[..., np.newaxis]
+        bend = np.maximum(evidence.bend, _BEND_MIN)[..., np.newaxis]
+        best = slope**2 / bend
+        widened = 1.0 + bend * (_STRENGTH_ERROR * strength) ** 2
+        result: Array = 0.5 * (best - (best - 2.0 * slope * strength + bend * strength**2) / widened - np.log(widened))
+        return result
+
+    def _seen(self, path: Path, evidence: Evidence) -> float:
+        """Return how many independent centres of the plume a pass meets [-]."""
+        prior, grid = self.prior, self.grid
+        across = float(grid.places[evidence.at]) if evidence.significance > SIGNAL_TO_NOISE else self.offset
+        way = 2.0 * float(grid.spreads[evidence.spread]) * path.drawn_out(across, self._wind)
+        return 1.0 + way / (_LOOK * prior.meander_length)
 
     def _beside(self, path: Path) -> Array:
         """Return how likely the centre is at each place, given each bearing, shape (b, j).

@@ -85,21 +85,37 @@ class PlumeGrid:
         result: Array = self.sigma_y[:, nearest]
         return result
 
-    def fading(self, height: Array, altitude: float) -> Array:
+    def fading(self, height: Array, altitude: float, looks: float) -> Array:
         """Return how likely a pass at an altitude reads a plume with so many steps less than its strength, shape (w, h, f).
 
         The centre is z_m above the axis with z_m ~ N(0, meander_z^2), and the pulse has exp(-(h + z_m - z)^2/2 sigma_z^2) of the
-        strength. The rest to 1 is the chance of nothing.
+        strength; of several looks at the plume the best counts. The rest to 1 is the chance of nothing.
 
         Parameters
         ----------
         height : of the axes, shape (h,) [m]
         altitude : z [m]
+        looks : independent centres that a pass meets, at least 1 [-]
         """
-        reach = self._edges * self.sigma_z[..., np.newaxis] / self._expected.meander_z
-        off = ((height - altitude) / self._expected.meander_z)[:, np.newaxis]
-        within = ndtr(reach - off) - ndtr(-reach - off)
-        result: Array = np.diff(within, axis=-1, prepend=0.0)
+        return np.diff(self._within(self._edges, height, altitude, looks), axis=-1, prepend=0.0)
+
+    def chances(self, height: Array, altitude: float, looks: float, least: Array) -> Array:
+        """Return how likely a pass at an altitude [m] reads a strength of at least ``least`` [ppm], shape (w, h, c).
+
+        Parameters
+        ----------
+        height, altitude, looks : as of ``fading``
+        least : by spread, shape (w,) [ppm]
+        """
+        reach = np.sqrt(2.0 * np.log(np.maximum(self.strength / least[:, np.newaxis], 1.0)))
+        return self._within(reach[:, np.newaxis, :], height, altitude, looks)
+
+    def _within(self, reach: Array, height: Array, altitude: float, looks: float) -> Array:
+        """Return how likely the centre is so near in height, in spreads."""
+        meander = self._expected.meander_z
+        far = reach * (self.sigma_z / meander)[..., np.newaxis]
+        off = ((height - altitude) / meander)[:, np.newaxis]
+        result: Array = 1.0 - (1.0 - ndtr(far - off) + ndtr(-far - off)) ** looks
         return result
 
     def over_strengths(self, faint: Array) -> Array:

@@ -20,6 +20,9 @@ _LONGEST = 25.0
 _FINE = 0.2
 """Step of the concentration along the path that the sensor's lag is computed from [s]: 4 m at 20 m/s."""
 
+_BESIDE = 0.25
+"""Least way across over that along, where the vehicle turns within the plume [-]: the turn is short."""
+
 _READINGS_MIN = 4
 """Least readings of a pass [-]: with fewer, background and pulse cannot be told apart."""
 
@@ -70,8 +73,23 @@ class Path:
 
     def at(self, across: float) -> tuple[float, float]:
         """Return along and altitude [m] where the way is nearest to a place ``across`` [m]."""
-        nearest = int(np.abs(self.across - across).argmin())
+        nearest = self._nearest(across)
         return float(self.along[nearest]), float(self.altitude[nearest])
+
+    def drawn_out(self, across: float, apparent_wind: float) -> float:
+        """Return how far along the plume, over how far across it, the vehicle goes by the place nearest to ``across`` [-].
+
+        Parameters
+        ----------
+        across : [m]
+        apparent_wind : with which the plume itself moves along [m/s]
+        """
+        i = min(max(self._nearest(across), 1), len(self.time) - 2)
+        along = self.along[i + 1] - self.along[i - 1] - apparent_wind * (self.time[i + 1] - self.time[i - 1])
+        return float(abs(along) / max(abs(self.across[i + 1] - self.across[i - 1]), _BESIDE * abs(along)))
+
+    def _nearest(self, across: float) -> int:
+        return int(np.abs(self.across - across).argmin())
 
 
 class PassCollector:

@@ -37,8 +37,9 @@ _OWN_SHARE = 0.42
 _SOURCE_SPREAD = 4.0
 """Spread at the funnel, in the wake of the superstructure [m]: 0 to 8 m, of which no measurement is known."""
 
-_MEANDER_LENGTH = 2.5
-"""Integral scale of the lateral meander over the height of the source [-]: neutral air over the sea, to a factor of 2."""
+_MEANDER_LENGTH, _MEANDER_HEIGHT = 2.5, 0.25
+"""Integral scale across, and correlation length in height, of the meander, over the height of the source [-]: neutral air over
+the sea, to a factor of 2."""
 
 _AIR_DENSITY = 42.3
 """Moles of air per volume [mol/m^3], at 15 degC."""
@@ -99,6 +100,7 @@ class PlumePrior:
     sigma_y, sigma_z : spreads about the centre at one moment, at the expected height [m]
     sigma_deviation : of the logarithm of both spreads, which are too large or too small together [-]
     meander_y, meander_z : standard deviation of the centre about the axis [m]
+    meander_length : correlation length of the meander in height, along the plume [m]
     meander_time : integral scale of the lateral meander, as the ship meets it [s]
     peak, peak_deviation : CO2 above the background in the centre at one moment [ppm], its median, and the deviation of
         its logarithm [-]; both at the expected height and spread
@@ -119,6 +121,7 @@ class PlumePrior:
     sigma_deviation: float
     meander_y: float
     meander_z: float
+    meander_length: float
     meander_time: float
     peak: float
     peak_deviation: float
@@ -227,6 +230,7 @@ def expected_plume(
         sigma_deviation=_SPREAD_ERROR,
         meander_y=max(rest * across, _MEANDER_MIN),
         meander_z=max(rest * up, _MEANDER_MIN),
+        meander_length=_MEANDER_HEIGHT * source_height,
         meander_time=_MEANDER_LENGTH * source_height / wind,
         peak=1e6 * co2_rate / (2.0 * math.pi * wind * sigma_y * sigma_z * _AIR_DENSITY),
         peak_deviation=math.hypot(load_deviation, wind_share, _SPREAD_ERROR),

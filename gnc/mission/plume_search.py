@@ -81,7 +81,7 @@ class HeightSearch:
         spread = math.hypot(estimator.sigma_z, estimator.prior.meander_z)
         if estimator.height_deviation > _KNOWN * spread:
             self._above = not self._above
-            height += (_PROBE if self._above else -_PROBE) * min(spread, estimator.height_deviation)
+            height += (_PROBE if self._above else -_PROBE) * spread
         return Demand(min(max(height, self._lowest), self._highest), estimator.offset)
 
     def _soonest(self, estimator: PlumeEstimator, altitude: float, climb: float) -> float:
