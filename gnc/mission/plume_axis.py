@@ -20,14 +20,26 @@ class Climb:
     ----------
     time : constant of the lag [s]
     gradient : steepest climb or descent over the vehicle's way [-]
+    reach : how far from the altitude that is flown the command may be [m]: an autopilot that has fallen behind by more may
+        integrate no longer, and never come back
     """
 
     time: float
     gradient: float
+    reach: float = math.inf
 
-    def step(self, altitude: float, demanded: float, speed: float, time_step: float) -> float:
-        """Return the altitude [m] a time step [s] later, for a vehicle of some speed [m/s]."""
-        return altitude + time_step * limited((demanded - altitude) / self.time, self.gradient * speed)
+    def step(self, altitude: float, demanded: float, speed: float, time_step: float, *, flown: float = math.nan) -> float:
+        """Return the altitude to command [m] a time step [s] later.
+
+        Parameters
+        ----------
+        altitude, demanded : commanded now, and in the end [m]
+        speed : of the vehicle [m/s]
+        time_step : [s]
+        flown : altitude now, as far as that is known [m]
+        """
+        following = altitude + time_step * limited((demanded - altitude) / self.time, self.gradient * speed)
+        return following if math.isnan(flown) else flown + limited(following - flown, self.reach)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,12 +51,14 @@ class Situation:
     own, target : motion of the vehicle and of the vessel
     centre : of oscillation
     speed : V_r [m/s]
+    plan_time : between plans [s]
     """
 
     own: OwnMotion
     target: TargetMotion
     centre: MovingCentre
     speed: float
+    plan_time: float
 
 
 class PlumeAxis(Protocol):
@@ -53,12 +67,13 @@ class PlumeAxis(Protocol):
     Attributes
     ----------
     climb : how the altitude follows
-    demanded : altitude that is demanded [m]
+    flown, demanded : altitude now, not a number where nobody says, and the one that is demanded [m]
     bearing : of the centre of oscillation, to the right of where the vessel's motion through the air has the plume trail [rad]
     mode : what is done while the reference is tracked
     """
 
     climb: Climb
+    flown: float
     demanded: float
     bearing: float
     mode: Mode
@@ -101,12 +116,12 @@ class PredictedPlume:
 class PredictedAxis:
     """The axis as it is predicted until it is told; attributes as of ``PlumeAxis``."""
 
-    __slots__ = ("_height", "_told", "bearing", "climb", "demanded", "mode")
+    __slots__ = ("_height", "_told", "bearing", "climb", "demanded", "flown", "mode")
 
     def __init__(self, parameters: PredictedPlume) -> None:
         self._height, self.climb, self.demanded = parameters.height, parameters.climb, parameters.altitude
         self._told: tuple[float, float] | None = None
-        self.bearing, self.mode = 0.0, Mode.TRACKING
+        self.bearing, self.flown, self.mode = 0.0, math.nan, Mode.TRACKING
 
     def tell(self, height: float, course: float) -> None:
         """Take the height above the sea [m] and the course [rad] of the axis at the centre of oscillation."""

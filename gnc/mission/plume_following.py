@@ -111,7 +111,13 @@ class PlumeFollowing:
         self.centre = MovingCentre(parameters.centre)
         self.mode = Mode.APPROACH
         self.axis = parameters.axis.begin()
-        self._situation = Situation(own=own, target=target, centre=self.centre, speed=self._speed)
+        self._situation = Situation(
+            own=own,
+            target=target,
+            centre=self.centre,
+            speed=self._speed,
+            plan_time=parameters.plan_interval * tracking.time_step,
+        )
         self.airspeed, self.altitude = parameters.approach.airspeed, parameters.axis.altitude
         self.tracker: Tracker[SteeredReference]
         self._reference: SteeredReference
@@ -162,7 +168,8 @@ class PlumeFollowing:
         if self.departing:
             self.mode = Mode.DEPARTING
             return
-        self.altitude = self.axis.climb.step(self.altitude, self.axis.demanded, self._speed, self._plan_time)
+        axis = self.axis
+        self.altitude = axis.climb.step(self.altitude, axis.demanded, self._speed, self._plan_time, flown=axis.flown)
         if own.lost > 0.0:
             self.mode = Mode.DEAD_RECKONING
         elif age > p.stale:

@@ -14,6 +14,9 @@ from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
 
 _MODES = {PlumeState.SEARCHING: Mode.SEARCHING, PlumeState.FOUND: Mode.FOUND, PlumeState.LOST: Mode.LOST_AGAIN}
 
+_BEARING_TIME = 15.0
+"""Time in which the centre of oscillation follows the bearing that is estimated [s]: it is swung round the vessel gently."""
+
 _NOTED, _SILENT = 0.75, 2.0
 """Time between readings beyond which the estimator is told a place in between, and beyond which it is told of silence [s]."""
 
@@ -107,8 +110,8 @@ class SearchedAxis:
     """
 
     __slots__ = (
-        "_estimator", "_last_note", "_last_pass", "_parameters", "_pass_time", "_places", "_search", "_situation", "bearing",
-        "climb", "demanded", "estimate", "mode", "sensor",
+        "_bearing", "_estimator", "_last_note", "_last_pass", "_parameters", "_pass_time", "_places", "_search", "_situation",
+        "bearing", "climb", "demanded", "estimate", "flown", "mode", "sensor",
     )  # fmt: skip
 
     def __init__(self, parameters: SearchedPlume) -> None:
@@ -118,18 +121,18 @@ class SearchedAxis:
         self._situation: Situation | None = None
         self._places: list[Place] = []
         self._last_note = self._last_pass = 0.0
-        self._pass_time, self.bearing, self.mode = _PASS_TIME, 0.0, Mode.SEARCHING
+        self._pass_time, self._bearing, self.bearing, self.flown, self.mode = _PASS_TIME, 0.0, 0.0, math.nan, Mode.SEARCHING
         self.estimate, self.sensor = PlumeEstimate(), SensorState.WORKING
 
     def measurable(self) -> float:
         """Return the probability that the plume can be crossed within the altitudes that are flown [-]; costly."""
         return self._estimator.measurable if self._estimator is not None else math.nan
 
-    def heed(self, time: float, altitude: float, readings: Sequence[tuple[float, float]]) -> None:
-        """Take note of the altitude [m] now, and of what was read since the last readings came, each with its own time [s]."""
+    def heed(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
+        """Take note of the place now, and of what was read since the last readings came, each with its own time [s]."""
         if self._estimator is None or self._situation is None:
             return
-        self._places.append((time, *_seen_along(self._situation), altitude))
+        self._places.append((time, *_seen_along(self._situation), self.flown))
         for read_at, reading in readings:
             if read_at - self._last_note > _NOTED:
                 self._note(0.5 * (self._last_note + read_at), math.nan)
@@ -153,6 +156,7 @@ class SearchedAxis:
             self._estimator = PlumeEstimator(prior)
             self._last_note = self._last_pass = time
             self._decide(self.demanded)
+        self.bearing += (self._bearing - self.bearing) * min(1.0, situation.plan_time / _BEARING_TIME)
         self.sensor = self._estimator.sensor
         self.mode = _MODES[self._estimator.state] if self.sensor is SensorState.WORKING else Mode.SENSOR_FAILED
 
@@ -175,7 +179,7 @@ class SearchedAxis:
         if self._estimator is not None and self._situation is not None:
             demand = self._search.next_demand(self._estimator, altitude, self._pass_time)
             self.demanded = demand.altitude
-            self.bearing = math.atan2(demand.offset, self._situation.centre.distance)
+            self._bearing = math.atan2(demand.offset, self._situation.centre.distance)
             found = self._estimator
             self.estimate = PlumeEstimate(
                 found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z,

@@ -99,7 +99,7 @@ def following_flight(
     else:
         nearest, orbit = radius + margin.total + oscillation.half_widths()[0], oscillation
         further = additional_distance(scenario, vessel, nearest, wind.at_start)
-        periods, mission = _following(scenario, setup, margin, plume_axis(scenario, vessel), further)
+        periods, mission = _following(scenario, setup, margin, plume_axis(scenario, vessel, setup.altitude_reach), further)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, mean_wind(scenario, vessel), generators.world)

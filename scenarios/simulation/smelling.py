@@ -39,11 +39,12 @@ class Smelling:
 
     def pass_on(self, step: int, time: float, motion: Motion, guidance: Guidance) -> None:
         """Pass on what has come until a step; the guidance has taken note of its own motion at it."""
-        if self._reader is not None and step % self._interval == 0:
-            sample = self._vehicle.sample()
-            readings = self._reader.follow(time, motion, sample)
-            if isinstance(self._axis, SearchedAxis):
-                self._axis.heed(time, sample[0], readings)
+        if step % self._interval == 0:
+            sample, axis = self._vehicle.sample(), self._axis
+            axis.flown = sample[0]
+            readings = self._reader.follow(time, motion, sample) if self._reader is not None else ()
+            if isinstance(axis, SearchedAxis):
+                axis.heed(time, readings)
         if self._told and step % guidance.plan_interval == 0:
             self._tell(time, guidance)
 

@@ -38,12 +38,13 @@ _WIND_ERROR = 0.5
 CO2 = GASES.index("co2")
 
 
-def plume_axis(scenario: Scenario, vessel: VesselTruth) -> AxisParameters:
+def plume_axis(scenario: Scenario, vessel: VesselTruth, altitude_reach: float = math.inf) -> AxisParameters:
     """Return how the guidance knows the plume's axis.
 
     Parameters
     ----------
     scenario, vessel : of the flight
+    altitude_reach : how far from the altitude that is flown a command may be [m]
 
     Raises
     ------
@@ -57,7 +58,7 @@ def plume_axis(scenario: Scenario, vessel: VesselTruth) -> AxisParameters:
         return PredictedPlume(height=axis_height(scenario, vessel), altitude=scenario.altitude, climb=climb)
     limits = flown_altitudes(scenario)
     height = axis_height(scenario, vessel, limits)
-    climb = Climb(time=KNOWN_TIME, gradient=gradient)
+    climb = Climb(time=KNOWN_TIME, gradient=gradient, reach=altitude_reach)
     if f.plume == "told":
         return PredictedPlume(height=height, altitude=scenario.altitude, climb=climb)
     return SearchedPlume(

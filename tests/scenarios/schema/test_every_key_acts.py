@@ -47,6 +47,16 @@ flight.crossings = 0
 flight.after_settling_s = 20.0
 start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
 """,
+    "searching": """
+vessel.speed_mps = 8.0
+wind = { speed_mps = 5.0, from_deg = 80.0 }
+plume = { model = "fluctuating", source_height_m = 20.0 }
+emission = { ship = "container", fuel = "vlsfo", sulphur_percent = 2.0 }
+payload = { instruments = ["sniffer"], sensor = "fast" }
+following = { plume = "estimated", source_height_m = [30.0, 80.0], load = [0.2, 0.9] }
+flight = { crossings = 0, altitude_m = 50.0 }
+start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
+""",
     "standoff": """
 guidance.mission = "standoff"
 guidance.law = "npfg"
@@ -108,6 +118,9 @@ VALUES = {
     "following.apparent_wind_min_mps": 12.0, "following.standoff_m": 50.0, "following.join_distance_m": 20.0,
     "following.tracked_m": 4.0, "following.vessel_acceleration_mps2": 0.3, "following.speed_error_mps": 1.0,
     "following.drift_rate_mps": 5.0, "following.vessel_speed_max_mps": 7.5,
+    "following.plume": "estimated", "following.search": "ladder", "following.distance": "best_measurement",
+    "following.source_height_m": [20.0, 40.0], "following.load": [0.1, 0.4], "following.climb_gradient": 0.02,
+    "flight.until": "verdict", "flight.altitude_m": 50.0,
     "start.distance_m": [350.0, 400.0], "start.spread_deg": 90.0, "start.range_m": 350.0, "start.aspect_deg": 20.0,
     "start.course_deg": 30.0, "start.place_m": [-300.0, 50.0],
     "flight.crossings": 4, "flight.duration_max_s": 20.0, "flight.settling_band_m": 0.5, "flight.log_rate_hz": 20.0,
@@ -125,6 +138,7 @@ OWN_VALUES = {
     "measuring": {
         "plume.direction": "given", "plume.meander": False, "payload.exact": True,
     },
+    "searching": {"following.plume": "told", "flight.altitude_min_m": 45.0, "flight.altitude_max_m": 60.0},
     "standoff": {"plume.direction": "given", "guidance.mission": "track", "criteria.crossing_interval_error": False},
     "circle": {"reference.path": "oscillation"},
 }  # fmt: skip
