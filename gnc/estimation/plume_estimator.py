@@ -85,7 +85,7 @@ class PlumeEstimator:
         self._time = self._pass_at = 0.0
         self._spoilt = False
         self._distance, self._wind = prior.distance, prior.apparent_wind
-        self._response = np.full(len(self.grid.spreads), _NOMINAL_RESPONSE)
+        self._least = SIGNAL_TO_NOISE * sensor.noise / _NOMINAL_RESPONSE
         self._misses = self._looks = 1.0
         self.cells: Array = self.grid.prior.copy()
         self._note()
@@ -133,27 +133,29 @@ class PlumeEstimator:
 
     def detection(self, altitude: float) -> float:
         """Return the probability that a pass at an altitude [m] has a signal to noise above 5."""
-        return float(np.sum(self.chances(altitude) * self.cells.sum(axis=3)))
+        weights, chances = self.prospects(np.array([altitude]))
+        return float(np.sum(weights * chances[0]))
 
-    def chances(self, altitude: float) -> Array:
-        """Return the probability that a pass at an altitude [m] smells the plume of a cell, shape (w, h, c)."""
-        prior, grid = self.prior, self.grid
-        heights = prior.height_at(grid.height, self._distance, self._wind)
-        least = SIGNAL_TO_NOISE * prior.sensor.noise / self._response
-        return grid.chances(heights, altitude, self._looks, least)
+    def prospects(self, altitudes: Array) -> tuple[Array, Array]:
+        """Return the probability of each of some cells, shape (h, c), and that a pass then smells the plume, shape (n, h, c).
+
+        Parameters
+        ----------
+        altitudes : of the passes, shape (n,) or, for each cell its own, (n, h) [m]
+        """
+        heights = self.grid.coarse_heights(self._heights)
+        off = heights - (altitudes[:, np.newaxis] if altitudes.ndim == 1 else altitudes)
+        return self._weights, self.grid.chances(off, self._looks, self._least)
 
     def _diffuse(self, time: float) -> None:
         """Let the axis wander for ``time`` [s], and let some of what is known be forgotten."""
         prior, grid = self.prior, self.grid
+        shares = [_SPREAD_SHARE, 0.0, _STRENGTH_SHARE, 0.0]
         for axis, drift, values in ((1, prior.height_drift, grid.height), (3, prior.bearing_drift, grid.bearing)):
-            share = min(0.25, 0.5 * drift**2 * time / (values[1] - values[0]) ** 2)
-            moved = np.moveaxis(self.cells, axis, 0)
-            flow = share * np.diff(moved, axis=0)
-            moved[:-1] += flow
-            moved[1:] -= flow
-        for axis, share in ((0, _SPREAD_SHARE), (2, _STRENGTH_SHARE)):
-            moved = np.moveaxis(self.cells, axis, 0)
-            flow = share * np.diff(moved, axis=0)
+            shares[axis] = min(0.25, 0.5 * drift**2 * time / (values[1] - values[0]) ** 2)
+        for axis, share in enumerate(shares):
+            moved = self.cells.swapaxes(0, axis)
+            flow = share * (moved[1:] - moved[:-1])
             moved[:-1] += flow
             moved[1:] -= flow
         forgotten = -math.expm1(-time / _FORGET)
@@ -162,7 +164,7 @@ class PlumeEstimator:
     def _correct(self, path: Path, evidence: Evidence) -> None:
         """Take in what a pass says."""
         prior, grid = self.prior, self.grid
-        self._response = evidence.response
+        self._least = SIGNAL_TO_NOISE * prior.sensor.noise / evidence.response
         self._distance, altitude = path.at(self.offset)
         heights = prior.height_at(grid.height, self._distance, self._wind)
         # Likelihood of each strength at each place, over that of no pulse at all; its largest is 1.
@@ -171,12 +173,13 @@ class PlumeEstimator:
         nothing = math.exp(-largest)
         likelihood = np.exp(exponent - largest)
         beside = self._beside(path)
-        seen = beside @ likelihood + (1.0 - beside.sum(axis=1))[:, np.newaxis] * nothing
         self._looks = self._seen(path, evidence)
         fading = grid.fading(heights, altitude, self._looks)
+        elsewhere = nothing * (1.0 - beside.sum(axis=1))
+        seen = (beside @ likelihood).transpose(0, 2, 1) + elsewhere
         expected = grid.over_strengths(seen)
-        w, b, f, c = expected.shape
-        of_cells = fading @ expected.transpose(0, 2, 3, 1).reshape(w, f, c * b)
+        w, f, c, b = expected.shape
+        of_cells = fading @ expected.reshape(w, f, c * b)
         of_cells += (nothing * (1.0 - fading.sum(axis=-1)))[..., np.newaxis]
         self._judge(evidence, altitude)
         self.cells *= of_cells.reshape(w, -1, c, b)
@@ -239,8 +242,11 @@ class PlumeEstimator:
     def _note(self) -> None:
         """Compute the figures of the posterior."""
         prior, grid = self.prior, self.grid
-        of_spreads = self.cells.sum(axis=(2, 3))
-        of_heights, of_bearings = of_spreads.sum(axis=0), self.cells.sum(axis=(0, 1, 2))
+        of_bearings = np.ones(self.cells[..., 0].size) @ self.cells.reshape(-1, len(grid.bearing))
+        of_strengths = self.cells.sum(axis=3)
+        self._weights = grid.coarse(of_strengths)
+        of_spreads = of_strengths.sum(axis=2)
+        of_heights = of_spreads.sum(axis=0)
         self._heights: Array = prior.height_at(grid.height, self._distance, self._wind)
         self.height = float(of_heights @ self._heights)
         step = float(self._heights[1] - self._heights[0])
@@ -264,6 +270,6 @@ class PlumeEstimator:
     @property
     def measurable(self) -> float:
         """Probability that a pass at the best altitude within the limits smells the plume more often than not [-]."""
-        nearest = np.clip(self._heights, self.prior.lowest, self.prior.highest)
-        at_best = np.stack([self.chances(float(z))[:, i] for i, z in enumerate(nearest)], axis=1)
-        return float(np.sum(self.cells.sum(axis=3) * (at_best > 0.5)))
+        best = np.clip(self.grid.coarse_heights(self._heights), self.prior.lowest, self.prior.highest)
+        weights, chances = self.prospects(best[np.newaxis])
+        return float(np.sum(weights * (chances[0] > 0.5)))

@@ -16,7 +16,7 @@ STRENGTH_STEP = 0.4
 _FADE = 16
 """Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.4 of the centre."""
 
-_HEIGHTS, _BEARINGS, _PLACES = 56, 11, 33
+_HEIGHTS, _BEARINGS, _PLACES = 45, 9, 31
 """Cells over height and bearing, and places of the centre across at one moment [-]."""
 
 _REACH = 3.0
@@ -29,6 +29,9 @@ _NARROW, _WIDE = -1.2, 1.2
 """Deviations of the narrow and of the wide spread from the expected one [-]: with weights 1/4, 1/2, 1/4 the variance is 0.7."""
 
 _SPREAD_WEIGHTS = (0.25, 0.5, 0.25)
+
+_MIDDLE, _COARSE = 1, 2
+"""The expected spread among the three, and cells of height that count as one where passes to come are weighed [-]."""
 
 _SPREAD_MIN = 0.4
 """Least spread over that at the expected height [-]."""
@@ -97,31 +100,40 @@ class PlumeGrid:
         altitude : z [m]
         looks : independent centres that a pass meets, at least 1 [-]
         """
-        return np.diff(self._within(self._edges, height, altitude, looks), axis=-1, prepend=0.0)
+        reach = self._edges * self.sigma_z[..., np.newaxis]
+        return np.diff(self._within(reach, (height - altitude)[:, np.newaxis], looks), axis=-1, prepend=0.0)
 
-    def chances(self, height: Array, altitude: float, looks: float, least: Array) -> Array:
-        """Return how likely a pass at an altitude [m] reads a strength of at least ``least`` [ppm], shape (w, h, c).
+    def chances(self, off: Array, looks: float, least: float) -> Array:
+        """Return how likely a pass reads a strength of at least ``least`` [ppm], of the expected spread, shape (..., h', c).
 
         Parameters
         ----------
-        height, altitude, looks : as of ``fading``
-        least : by spread, shape (w,) [ppm]
+        off : height of each axis of ``coarse`` above the pass, shape (..., h') [m]
+        looks : as of ``fading``
         """
-        reach = np.sqrt(2.0 * np.log(np.maximum(self.strength / least[:, np.newaxis], 1.0)))
-        return self._within(reach[:, np.newaxis, :], height, altitude, looks)
+        reach = np.sqrt(2.0 * np.log(np.maximum(self.strength / least, 1.0)))
+        return self._within(reach * self.sigma_z[_MIDDLE, ::_COARSE, np.newaxis], off[..., np.newaxis], looks)
 
-    def _within(self, reach: Array, height: Array, altitude: float, looks: float) -> Array:
-        """Return how likely the centre is so near in height, in spreads."""
+    def coarse(self, cells: Array) -> Array:
+        """Return the probability of every second height and each strength, shape (h', c), of cells (w, h, c)."""
+        result: Array = np.add.reduceat(cells.sum(axis=0), np.arange(0, len(self.height), _COARSE), axis=0)
+        return result
+
+    def coarse_heights(self, heights: Array) -> Array:
+        """Return the heights of ``coarse``, of those of the cells, shape (h',)."""
+        result: Array = heights[::_COARSE]
+        return result
+
+    def _within(self, reach: Array, off: Array, looks: float) -> Array:
+        """Return how likely the centre of the best look is nearer in height than ``reach`` [m], with the axis ``off`` [m]."""
         meander = self._expected.meander_z
-        far = reach * (self.sigma_z / meander)[..., np.newaxis]
-        off = ((height - altitude) / meander)[:, np.newaxis]
-        result: Array = 1.0 - (1.0 - ndtr(far - off) + ndtr(-far - off)) ** looks
+        far, middle = reach / meander, off / meander
+        result: Array = 1.0 - (1.0 - ndtr(far - middle) + ndtr(-far - middle)) ** looks
         return result
 
     def over_strengths(self, faint: Array) -> Array:
-        """Return values over ``faint``, shape (..., p), as they are for each step less than each strength, shape (..., f, c)."""
-        result: Array = faint[..., self._index]
-        return result
+        """Return values over ``faint``, shape (w, p, b), as they are for each step less than each strength, shape (w, f, c, b)."""
+        return faint.take(self._index, axis=1)
 
 
 def _bell(off: Array, deviation: float) -> Array:

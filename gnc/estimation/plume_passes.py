@@ -17,8 +17,8 @@ _TURNED = 5.0
 _LONGEST = 25.0
 """Time after which a pass is over without a turn [s]."""
 
-_FINE = 0.2
-"""Step of the concentration along the path that the sensor's lag is computed from [s]: 4 m at 20 m/s."""
+_FINE = 0.25
+"""Step of the concentration along the path that the sensor's lag is computed from [s]: 5 m at 20 m/s, about a spread."""
 
 _BESIDE = 0.25
 """Least way across over that along, where the vehicle turns within the plume [-]: the turn is short."""
@@ -34,6 +34,9 @@ _TAIL_ERROR = 0.3
 
 _FIRST_BACKGROUND = 1e3
 """Standard deviation of the background before anything is read [ppm]: clean air has some 400."""
+
+_BEND_MIN = 1e-12
+"""Least curvature of a likelihood [1/ppm^2]: a place that the vehicle has not been to says nothing."""
 
 _STILL = 0.1
 """Scatter of a pass over the sensor's noise below which its readings are not believed [-]."""
@@ -162,7 +165,7 @@ class Evidence:
     Attributes
     ----------
     slope, bend : shape (w, j) [1/ppm, 1/ppm^2]
-    response : largest reading that a pulse of strength 1 makes, where the axis is crossed fastest, shape (w,) [-]
+    response : largest reading that a pulse of strength 1 of the middle spread makes, where the axis is crossed best [-]
     strength, at, spread : of the pulse that fits best: its strength [ppm], and its indices j and w
     peak : largest reading above the background that this pulse makes [ppm]
     significance : strength of this pulse over its uncertainty by noise alone [-]
@@ -170,7 +173,7 @@ class Evidence:
 
     slope: Array
     bend: Array
-    response: Array
+    response: float
     strength: float
     at: int
     spread: int
@@ -230,11 +233,11 @@ class PassReader:
         noise = sensor.noise**2
         total = noise + (_SHAPE_ERROR * max(0.0, float((y - np.median(y)).max()))) ** 2
         slope, bend = _projected(templates, y, background, total)
-        clear_slope, clear_bend = _projected(templates, y, background, noise)
-        gain = np.where(slope > 0.0, slope, 0.0) ** 2 / np.maximum(bend, 1e-12)
+        gain = np.where(slope > 0.0, slope, 0.0) ** 2 / np.maximum(bend, _BEND_MIN)
         best = int(gain.argmax())
         spread, at = divmod(best, len(places))
-        strength = max(0.0, float(slope.flat[best] / max(bend.flat[best], 1e-12)))
+        alone_slope, alone_bend = _projected(templates[best : best + 1], y, background, noise)
+        strength = max(0.0, float(slope[best] / max(float(bend[best]), _BEND_MIN)))
         pulse = strength * templates[best]
         self._settle(y - pulse, background, total, level)
         self._ended = float(path.time[-1])
@@ -243,12 +246,12 @@ class PassReader:
         return Evidence(
             slope=slope.reshape(len(spreads), -1),
             bend=bend.reshape(len(spreads), -1),
-            response=templates.max(axis=1).reshape(len(spreads), -1).max(axis=1),
+            response=float(templates[len(places) : 2 * len(places)].max()),
             strength=strength,
             at=at,
             spread=spread,
             peak=float(pulse.max()),
-            significance=float(clear_slope.flat[best] / math.sqrt(max(clear_bend.flat[best], 1e-12))),
+            significance=float(alone_slope[0] / math.sqrt(max(float(alone_bend[0]), _BEND_MIN))),
         )
 
     def _settle(self, rest: Array, background: Array, variance: float, level: float) -> None:
@@ -279,5 +282,5 @@ def _projected(templates: Array, y: Array, background: Array, variance: float) -
     inner = np.linalg.inv(variance * np.eye(len(background)) + background @ background.T)
     within = templates @ background.T
     slope = (templates @ y - within @ (inner @ (background @ y))) / variance
-    bend = (np.einsum("km,km->k", templates, templates) - np.einsum("kb,bc,kc->k", within, inner, within)) / variance
+    bend = (np.einsum("km,km->k", templates, templates) - ((within @ inner) * within).sum(axis=1)) / variance
     return slope, bend

@@ -16,9 +16,6 @@ _STEP = 6.0
 _HORIZON = 8
 """Passes that are looked ahead [-]."""
 
-_COARSE = 2
-"""Cells of height that are taken as one when looking ahead [-]."""
-
 _KNOWN = 0.35
 """Deviation of the height over the spread of a pass [-], down to which the plume's height is probed."""
 
@@ -86,18 +83,17 @@ class HeightSearch:
 
     def _soonest(self, estimator: PlumeEstimator, altitude: float, climb: float) -> float:
         """Return the height with the least expected time to find, where ``climb`` [m] is what a pass leaves time for."""
-        cells = estimator.cells.sum(axis=3)
-        missed = np.stack([1.0 - estimator.chances(z)[:, ::_COARSE] for z in self._heights.tolist()])
-        coarse = np.add.reduceat(cells, np.arange(0, cells.shape[1], _COARSE), axis=1)
+        weights, chances = estimator.prospects(self._heights)
+        missed = 1.0 - chances
         steps = climb * np.arange(1, _HORIZON + 1)
         way = altitude + np.clip(self._heights[:, np.newaxis] - altitude, -steps, steps)
         step = self._heights[1] - self._heights[0]
         index = np.clip(np.rint((way - self._lowest) / step).astype(np.intp), 0, len(self._heights) - 1)
-        still = np.ones((len(self._heights), *coarse.shape))
+        still = np.ones_like(missed)
         lost = np.zeros(len(self._heights))
         for k in range(_HORIZON):
             still *= missed[index[:, k]]
-            lost += np.tensordot(still, coarse, axes=3)
+            lost += np.tensordot(still, weights)
         return float(self._heights[int(lost.argmin())])
 
 
