@@ -110,7 +110,7 @@ class Ending:
     def _shortfall(self) -> str:
         settling, plan, mode = self._settling, self._plan, self._guidance.mission.mode
         if self._judge is not None and self._judge.enough is not None:
-            return f"{self.enough}: it left at {self._judge.left_at:.0f} s without a verdict"
+            return self._judge.words
         if math.isnan(settling.at):
             flown = "did not settle"
         elif self._missing:

@@ -58,6 +58,18 @@ class Judge:
         self.enough: Enough | None = None
         self.left_at, self._left_from = math.nan, math.inf
 
+    @property
+    def words(self) -> str:
+        """Return why the flight left without a verdict, in a sentence."""
+        axis = self._mission.axis
+        believed = ""
+        if isinstance(axis, SearchedAxis) and not math.isnan(axis.estimate.height):
+            found = axis.estimate
+            believed = (
+                f"; the plume's axis was taken to be {found.height:.0f} m high, with a deviation of {found.height_deviation:.0f} m"
+            )
+        return f"{self.enough.value if self.enough else ''}: it left at {self.left_at:.0f} s without a verdict{believed}"
+
     def over(self, time: float, distance: float) -> bool:
         """Return whether the flight has left, at a time [s] and a distance from the vessel [m]."""
         if self.enough is not None:
