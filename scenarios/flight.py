@@ -16,10 +16,11 @@ from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.points import STUDY
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
-from scenarios.instruments.instrument import EvaluatedInstrument, Instrument
+from scenarios.instruments.instrument import EvaluatedInstrument, GasReader, Instrument
 from scenarios.metrics.criteria import failed_criteria, kept_out
 from scenarios.metrics.crossings import crossing_rows
 from scenarios.metrics.figures import flight_figures, plan_row
+from scenarios.metrics.finding import finding_figures
 from scenarios.metrics.relative_state import flight_history
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.planner import plan_flight
@@ -105,7 +106,8 @@ class FlightWork:
             tables[DRAWS][0]["nu"] = row.get("nu")
             instruments = _payload(request, plan)
             read = [instrument for instrument in instruments if isinstance(instrument, Instrument)]
-            record = fly(plan, release(plan, self._setup(request), self.viewer), read, every_step=task.every_step)
+            vehicle = release(plan, self._setup(request), self.viewer)
+            record = fly(plan, vehicle, read, reader=_reader(plan, instruments), every_step=task.every_step)
             history = flight_history(plan, record)
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)
@@ -119,6 +121,9 @@ class FlightWork:
                     row |= evaluation.figures
                     tables |= {file: [named | of for of in rows] for file, rows in evaluation.tables.items()}
                     document = evaluation.document or document
+            if sniffer := next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None):
+                noise = sniffer.spec.known("co2").noise
+                row |= finding_figures(history, request.scenario.flight, noise=noise, enough=record.enough)
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
             row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}
@@ -203,6 +208,13 @@ def _payload(request: FlightRequest, plan: FlightPlan) -> list[Instrument | Eval
     """Return the flight's instruments, fresh."""
     generator = own_generator(request.noise, PAYLOAD)
     return [PAYLOADS.get(name)(request.scenario, plan.world, generator) for name in plan.payload]
+
+
+def _reader(plan: FlightPlan, instruments: list[Instrument | EvaluatedInstrument]) -> GasReader | None:
+    """Return the instrument that is read in flight, of a flight that reads one."""
+    if plan.sensing is None or not plan.sensing.smells:
+        return None
+    return next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None)
 
 
 def _plain(values: Mapping[str, object]) -> Row:

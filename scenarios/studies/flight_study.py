@@ -34,6 +34,7 @@ from scenarios.metrics.columns import (
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
 )
+from scenarios.metrics.finding import FINDING_FIGURES
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
@@ -76,7 +77,7 @@ class FlightStudy:
     ) -> None:
         first = next(iter(trials.values()))
         spec = spec_of(first)
-        self._design, self._refusal = design_of(spec, first.plume.source_height_m) if spec else (None, "")
+        self._design, self._refusal = design_of(spec, first.altitude) if spec else (None, "")
         envelope = self._design.design.schedule.envelope if self._design else spec.envelope if spec else None
         if envelope is not None:
             trials = {trial: scaled(of, envelope) for trial, of in trials.items()}
@@ -93,6 +94,8 @@ class FlightStudy:
         points = [point.scenario for experiment in self.experiments.values() for point in experiment.points]
         instruments = evaluated_instruments(points)
         figures = (*SUMMARY_COLUMNS, *dict.fromkeys(name for instrument in instruments for name in instrument.FIGURES))
+        if any(point.finds for point in points):
+            figures += FINDING_FIGURES
         self.tables = {
             SUMMARY: figures,
             CROSSINGS: CROSSING_COLUMNS,

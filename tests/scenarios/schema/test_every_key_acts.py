@@ -47,6 +47,18 @@ flight.crossings = 0
 flight.after_settling_s = 20.0
 start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
 """,
+    "searching": """
+vessel.speed_mps = 8.0
+wind = { speed_mps = 5.0, from_deg = 80.0 }
+plume = { model = "fluctuating", source_height_m = 30.0 }
+emission = { ship = "container", fuel = "vlsfo", sulphur_percent = 2.0 }
+payload = { instruments = ["sniffer"], sensor = "fast" }
+following = { plume = "estimated", source_height_m = [12.0, 20.0], load = [0.2, 0.9] }
+flight.crossings = 0
+flight.altitude_m = 60.0
+flight.altitude_min_m = 52.0
+start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
+""",
     "standoff": """
 guidance.mission = "standoff"
 guidance.law = "npfg"
@@ -108,6 +120,9 @@ VALUES = {
     "following.apparent_wind_min_mps": 12.0, "following.standoff_m": 50.0, "following.join_distance_m": 20.0,
     "following.tracked_m": 4.0, "following.vessel_acceleration_mps2": 0.3, "following.speed_error_mps": 1.0,
     "following.drift_rate_mps": 5.0, "following.vessel_speed_max_mps": 7.5,
+    "following.plume": "estimated", "following.search": "ladder", "following.distance": "best_measurement",
+    "following.source_height_m": [20.0, 40.0], "following.load": [0.1, 0.4], "following.climb_gradient": 0.02,
+    "flight.until": "verdict", "flight.altitude_m": 50.0,
     "start.distance_m": [350.0, 400.0], "start.spread_deg": 90.0, "start.range_m": 350.0, "start.aspect_deg": 20.0,
     "start.course_deg": 30.0, "start.place_m": [-300.0, 50.0],
     "flight.crossings": 4, "flight.duration_max_s": 20.0, "flight.settling_band_m": 0.5, "flight.log_rate_hz": 20.0,
@@ -125,13 +140,25 @@ OWN_VALUES = {
     "measuring": {
         "plume.direction": "given", "plume.meander": False, "payload.exact": True,
     },
+    "searching": {"following.plume": "told", "flight.altitude_min_m": 45.0},
     "standoff": {"plume.direction": "given", "guidance.mission": "track", "criteria.crossing_interval_error": False},
     "circle": {"reference.path": "oscillation"},
 }  # fmt: skip
 """Where that is what a mission has anyway, or its flight fails one limit as it does the other."""
 
-MEASURING = ("emission.", "flight.", "payload.", "plume.", "wind.")
-"""Sections that act on what is measured: the others do nothing more in a flight that measures."""
+SEARCHING = (
+    "following.plume", "following.search", "following.distance", "following.source_height_m", "following.load",
+    "following.climb_gradient", "flight.until", "flight.altitude_m", "flight.altitude_min_m", "flight.altitude_max_m",
+)  # fmt: skip
+"""Keys that act on a search."""
+
+MEASURING = tuple(
+    key for key in VALUES if key.startswith(("emission.", "flight.", "payload.", "plume.", "wind.")) and key != "flight.until"
+)
+"""Keys that act on what is measured, of a flight that is shorter than a verdict takes."""
+
+LOOKED_AT = {"measuring": (*MEASURING, "plume.meander", "payload.exact"), "searching": SEARCHING}
+"""Keys that are tried in a flight in which the others do nothing more than elsewhere."""
 
 ELSEWHERE = {
     "study", "title", "description", "fidelity", "aircraft", "payload.instruments", "vessel.track", "wind.table", "plume.model",
@@ -180,7 +207,7 @@ def test_with_another_value_of_any_key_the_flight_differs_or_the_key_is_refused(
     row, history = flown(path)
     silent, unnamed = [], []
     for key, value in (VALUES | OWN_VALUES.get(base, {})).items():
-        if base == "measuring" and not key.startswith(MEASURING):
+        if key not in LOOKED_AT.get(base, (key,)):
             continue
         try:
             other, changed = flown(path, f"{key}={written(value)}")
@@ -191,7 +218,7 @@ def test_with_another_value_of_any_key_the_flight_differs_or_the_key_is_refused(
         if other == row and (history is changed or history.equals(changed)):
             silent.append(key)
     assert set(silent) <= LEVEL | BEYOND_OR_WITHIN | IN_SILENCE, silent
-    assert len(BEYOND_OR_WITHIN & set(silent)) == (base != "measuring")
+    assert len(BEYOND_OR_WITHIN & set(silent)) == (base not in LOOKED_AT)
     assert not unnamed
 
 
