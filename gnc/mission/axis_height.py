@@ -3,11 +3,16 @@
 import math
 from dataclasses import dataclass
 
+from gnc.numeric import limited
+
 _ENTRAINMENT = 0.6
 """Briggs' entrainment coefficient of a plume that bends over in the wind [-]."""
 
 _SPEED_MIN = 1.0
 """Apparent wind that the rise is computed for at least [m/s]: below it a plume has no direction, and rises straight up."""
+
+_FOLLOWING_TIME, _CLIMB_GRADIENT = 20.0, 0.05
+"""Time in which the altitude follows that of the plume's axis [s], and the steepest climb on the way [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,3 +44,16 @@ class AxisHeight:
         momentum, buoyancy = 3.0 * self.momentum_flux * distance / u**2, 1.5 * self.buoyancy_flux * distance**2 / u**3
         rise = math.cbrt((momentum + buoyancy) / _ENTRAINMENT**2)
         return min(max(self.source + self.climb * distance + rise, self.lowest), self.highest)
+
+    def followed(self, altitude: float, *, distance: float, speed: float, airspeed: float, interval: float) -> float:
+        """Return the altitude [m] after an interval [s] of following ``at``: slowly, because that follows wind that is estimated.
+
+        Parameters
+        ----------
+        altitude : now [m]
+        distance, speed : as of ``at``
+        airspeed : that is flown [m/s]
+        interval : [s]
+        """
+        climb = _CLIMB_GRADIENT * airspeed
+        return altitude + interval * limited((self.at(distance, speed) - altitude) / _FOLLOWING_TIME, climb)

@@ -11,7 +11,6 @@ from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.egress import Egress
 from gnc.mission.mode import Mode
-from gnc.numeric import limited
 from gnc.reference.mean_motion import mean_motion
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
 from gnc.reference.reference import Swing
@@ -24,10 +23,6 @@ MANOEUVRE_RANGE, REPORTED_SCATTER = 200.0, 0.03
 
 GLIDE_ALTITUDE = -1000.0
 """Altitude that a gliding vehicle is commanded [m]: so far below that the autopilot holds its airspeed by pitch, and sinks."""
-
-
-_HEIGHT_TIME, _CLIMB_GRADIENT = 20.0, 0.05
-"""Time in which the altitude follows that of the plume's axis [s], and the steepest climb on the way [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -165,11 +160,14 @@ class PlumeFollowing:
             self.mode = Mode.TRACKING if self._tracking else Mode.APPROACH
 
     def _climb(self) -> None:
-        """Bring the altitude to that of the plume's axis at the centre: slowly, because it follows wind that is estimated."""
-        height = self._parameters.height
-        expected = height.at(self.centre.distance, self.centre.speed_ratio * self._speed)
-        climb = _CLIMB_GRADIENT * self._speed
-        self.altitude += self._plan_time * limited((expected - self.altitude) / _HEIGHT_TIME, climb)
+        """Bring the altitude to that of the plume's axis at the centre."""
+        self.altitude = self._parameters.height.followed(
+            self.altitude,
+            distance=self.centre.distance,
+            speed=self.centre.speed_ratio * self._speed,
+            airspeed=self._speed,
+            interval=self._plan_time,
+        )
 
     def _widen_margin(self) -> None:
         """Keep farther off while the vessel may be farther from where it is taken to be than as long as its reports come."""

@@ -15,6 +15,7 @@ from gnc.estimation.target_motion import TargetMotion
 from gnc.laws.path.lgvf import heading_for
 from gnc.laws.steering_law import Surroundings, begun
 from gnc.mission.approach import COURSE_GAIN
+from gnc.mission.axis_height import AxisHeight
 from gnc.mission.direct_tracking import CLOSING_RATE, STANDOFF, SteadyCentre
 from gnc.mission.egress import Egress
 from gnc.mission.mode import Mode
@@ -38,7 +39,7 @@ class StandoffParameters:
     speed_ratio_max : above it the vessel outruns the vehicle [-]
     glide_airspeed : while leaving without thrust or control [m/s]
     plan_interval : guidance steps between plans
-    altitude : to hold [m]
+    height : of the plume's axis, and so of the flight
     """
 
     radius: float
@@ -47,7 +48,7 @@ class StandoffParameters:
     speed_ratio_max: float
     glide_airspeed: float
     plan_interval: int
-    altitude: float
+    height: AxisHeight
 
 
 @dataclass(slots=True)
@@ -145,20 +146,21 @@ class StandoffOrbit:
     """
 
     __slots__ = (
-        "_closing", "_egress", "_lag", "_own", "_parameters", "_target", "airspeed", "altitude", "centre", "centre_error",
-        "leaving", "mode", "started", "tracker",
+        "_closing", "_egress", "_lag", "_own", "_parameters", "_plan_time", "_target", "airspeed", "altitude", "centre",
+        "centre_error", "leaving", "mode", "started", "tracker",
     )  # fmt: skip
 
     def __init__(
         self, parameters: StandoffParameters, tracking: TrackingParameters, *, own: OwnMotion, target: TargetMotion
     ) -> None:
         self._parameters, self._own, self._target, self._lag = parameters, own, target, tracking.lag
-        self._closing = CLOSING_RATE * parameters.speed * parameters.plan_interval * tracking.time_step
+        self._plan_time = parameters.plan_interval * tracking.time_step
+        self._closing = CLOSING_RATE * parameters.speed * self._plan_time
         self._egress = Egress(tracking.heading_rate_max)
         self.tracker = CircleTracker(tracking, parameters, own, target)
         self.centre = SteadyCentre(0.0, 0.0, 0.0)
         self.centre_error, self.leaving, self.started = self.tracker.radius - parameters.radius, False, False
-        self.airspeed, self.altitude, self.mode = parameters.speed, parameters.altitude, Mode.APPROACH
+        self.airspeed, self.altitude, self.mode = parameters.speed, parameters.height.source, Mode.APPROACH
 
     @property
     def in_place(self) -> bool:
@@ -181,6 +183,9 @@ class StandoffOrbit:
         self.centre, self.started = SteadyCentre(0.0, 0.0, ratio), True
         if not self.leaving:
             self.mode = Mode.OUTRUN if ratio >= p.speed_ratio_max else Mode.TRACKING
+            self.altitude = p.height.followed(
+                self.altitude, distance=p.radius, speed=ratio * p.speed, airspeed=p.speed, interval=self._plan_time
+            )
 
     def command(self) -> float:
         """Return the heading rate that leads away from the vessel [rad/s]."""

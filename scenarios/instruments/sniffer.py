@@ -88,7 +88,7 @@ class SnifferOnBoard:
         self._sniffer = Sniffer(actual, generator=generator, time_step=TIME_STEP)
         self._background = np.array([CLEAN_AIR[gas] for gas in GASES])
 
-    def evaluate(self, column: Callable[[str], Array], settled_at: float) -> Evaluation:
+    def evaluate(self, column: Callable[[str], Array], since: float) -> Evaluation:
         """Return readings, and figures of the passes through the plume."""
         time = column("time_s")
         at = np.arange(0.0, time[-1], TIME_STEP)
@@ -107,12 +107,13 @@ class SnifferOnBoard:
         above, fraction = up - plume.axis_height, fraction_of_axis(plume)
         along = [np.interp(time, at, values) for values in (*air.T, plume.across, above, fraction)]
         columns = np.column_stack([*along[: len(GASES)], readings.values[held], *along[len(GASES) :]])
-        if not settled_at < at[-1]:
+        if not since < at[-1]:
             return Evaluation(columns=columns)
-        settled, flown = readings.time >= settled_at, at >= settled_at
+        measured, flown = readings.time >= since, at >= since
         limit, fuel, expected = self._settings.limit_percent, self._exhaust.fuel, expected_fsc(self._exhaust.fuel)
-        measured = Readings(readings.time[settled], readings.values[settled])
-        known = fuel_estimate(measured, self._spec, limit=limit, expected=expected)
+        known = fuel_estimate(
+            Readings(readings.time[measured], readings.values[measured]), self._spec, limit=limit, expected=expected
+        )
         figures = {
             "sensor": self._settings.sensor,
             "fsc_fuel_percent": fuel.sulphur_percent,

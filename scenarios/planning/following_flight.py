@@ -90,13 +90,14 @@ def following_flight(
     margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
     mission: FollowingParameters | StandoffParameters
     orbit: PeriodicPath
+    height = axis_height(scenario, vessel)
     if scenario.stands_off:
         orbit = circle = vessel_circle(scenario, nu, farthest)
         periods = circle.periods(f.speed_ratio_max)
-        mission = standoff_parameters(scenario, setup, circle.radius)
+        mission = standoff_parameters(scenario, setup, circle.radius, height)
     else:
         periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
-        orbit, mission = oscillation, following_parameters(scenario, setup, margin, widths, axis_height(scenario, vessel))
+        orbit, mission = oscillation, following_parameters(scenario, setup, margin, widths, height)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, mean_wind(scenario, vessel), generators.world)

@@ -160,6 +160,8 @@ RULES = (
     Rule(keys=("emission.fuel", "emission.sulphur_percent", "emission.load", "wind.temperature_c", "wind.stability_per_s",
                "flight.altitude_min_m", "flight.altitude_max_m"),
          acts=lambda s: s.emission.ship is not None, user="a ship with exhaust: set emission.ship", depends=("emission.ship",)),
+    Rule(keys=("flight.measured_s",), acts=lambda s: bool(s.payload.instruments), user="instruments: set payload.instruments",
+         depends=("payload.instruments",)),
     Rule(keys=("wind.speed_mps", "wind.from_deg"), acts=lambda s: s.wind.table is None,
          user="a wind without a table: leave this key or wind.table out", depends=("wind.table",)),
     Rule(keys=("wind.from_deg",), acts=lambda s: s.wind.blows, user="wind: set wind.speed_mps",
