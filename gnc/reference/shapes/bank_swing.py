@@ -82,8 +82,7 @@ class BankSwing:
 
     def frequency(self, eta: float, heading_rate: float) -> float:
         """Return the largest omega_0 within a heading rate and the roll rate, no more than that at ``ETA_FREQUENCY`` [rad/s]."""
-        if eta < ETA_FREQUENCY:
-            eta = ETA_FREQUENCY
+        eta = eta if eta > ETA_FREQUENCY else ETA_FREQUENCY
         if eta > self._rolled:
             quarter, largest = self._ramp + (eta - self._rolled) / self._heading_rate, self._heading_rate
         else:
@@ -155,7 +154,7 @@ class BankSwing:
         return math.atan(tangent) / self._roll_rate, self._per_tangent * tangent
 
     def _shape(self, eta: float) -> tuple[float, float, float]:
-        """Return a quarter of the period, the time in which bank comes to its largest value [s], and the heading rate then [rad/s]."""
+        """Return a quarter of the period, the time until bank is largest [s], and the heading rate then [rad/s]."""
         if eta > self._rolled:
             return self._ramp + (eta - self._rolled) / self._heading_rate, self._ramp, self._heading_rate
         quarter, largest = self._rolled_through(eta)
