@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
@@ -34,6 +35,9 @@ from scenarios.simulation.release import release
 from scenarios.simulation.time_history import history_files
 from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
 from scenarios.world.noise import PAYLOAD, own_generator
+
+_Tables = dict[str, list[Row]]
+"""Rows by the file name of their table."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +95,7 @@ class FlightWork:
     def fly(self, task: Task) -> Result:
         """Plan, fly, measure and record one flight."""
         began = time.perf_counter()
-        row, tables = self._named(task), dict[str, list[Row]]()
+        row, tables = self._named(task), _Tables()
         history: pd.DataFrame | None = None
         document: Mapping[str, Any] | None = None
         try:
@@ -112,18 +116,20 @@ class FlightWork:
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)
             tables[CROSSINGS] = [named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)]
-            tables |= self.more_tables(request, plan, record)
             tables[INTERVENTIONS] = [named | stretch._asdict() for stretch in record.interventions]
             for instrument in instruments:
                 if isinstance(instrument, EvaluatedInstrument):
-                    evaluation = instrument.evaluate(record.column, record.settled_at)
-                    history[list(instrument.COLUMNS)] = evaluation.columns
+                    evaluation = instrument.evaluate(record.column, _measured_from(request, record))
+                    # A history of every step has more rows than samples; each sample stands until the next.
+                    held = np.searchsorted(record.column("time_s"), history["time_s"], side="right") - 1
+                    history[list(instrument.COLUMNS)] = evaluation.columns[held]
                     row |= evaluation.figures
                     tables |= {file: [named | of for of in rows] for file, rows in evaluation.tables.items()}
                     document = evaluation.document or document
             if sniffer := next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None):
                 noise = sniffer.spec.known("co2").noise
                 row |= finding_figures(history, request.scenario.flight, noise=noise, enough=record.enough)
+            tables |= self.more_tables(request, plan, record, row)
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
             row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}
@@ -146,8 +152,8 @@ class FlightWork:
             request.scenario, flight_id=request.flight_id, seed=request.noise, setup=self._setup(request), spreads=self.spreads
         )
 
-    def more_tables(self, request: FlightRequest, plan: FlightPlan, record: FlightRecord) -> dict[str, list[Row]]:  # noqa: ARG002
-        """Return rows of tables that a study of its own adds, by the file name of the table."""
+    def more_tables(self, request: FlightRequest, plan: FlightPlan, record: FlightRecord, row: Row) -> _Tables:  # noqa: ARG002
+        """Return rows of tables that a study of its own adds to a flight's row, by the file name of the table."""
         return {}
 
     def _setup(self, request: FlightRequest) -> VehicleSetup:
@@ -202,6 +208,12 @@ def _never_flown(request: FlightRequest, figures: Row) -> Row:
     """Return how many manoeuvres of the vessel begin after the end of the flight, of one that has any."""
     begins = [manoeuvre.at_s for manoeuvre in request.scenario.vessel.manoeuvres]
     return {"manoeuvres_unflown": sum(at >= figures["duration_s"] for at in begins)} if begins else {}
+
+
+def _measured_from(request: FlightRequest, record: FlightRecord) -> float:
+    """Return when instruments begin to be evaluated, from settling on if nothing else is said; not a number if never [s]."""
+    measured = request.scenario.flight.measured_s
+    return record.settled_at if measured is None else float(record.column("time_s")[-1]) - measured
 
 
 def _payload(request: FlightRequest, plan: FlightPlan) -> list[Instrument | EvaluatedInstrument]:

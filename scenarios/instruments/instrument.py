@@ -74,13 +74,13 @@ class EvaluatedInstrument(Protocol):
     FIGURES: tuple[str, ...]
     TABLES: Mapping[str, tuple[str, ...]]
 
-    def evaluate(self, column: Callable[[str], Array], settled_at: float, /) -> Evaluation:
+    def evaluate(self, column: Callable[[str], Array], since: float, /) -> Evaluation:
         """Return what it makes of the flight.
 
         Parameters
         ----------
         column : returns a column of the flight's record by name, shape (samples,)
-        settled_at : when the flight had settled, not a number if it never had [s]
+        since : when the measurement begins: where the flight has settled; not a number if it never does [s]
         """
 
 

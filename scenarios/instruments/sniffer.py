@@ -138,7 +138,7 @@ class SnifferOnBoard:
             values[~good] = self._stuck
         return read
 
-    def evaluate(self, column: Callable[[str], Array], settled_at: float) -> Evaluation:
+    def evaluate(self, column: Callable[[str], Array], since: float) -> Evaluation:
         """Return readings, and figures of the passes through the plume."""
         time = column("time_s")
         left = time >= self._path[0][0] if self._path else np.ones(len(time), bool)
@@ -151,11 +151,11 @@ class SnifferOnBoard:
         fraction = fraction_of_axis(plume)
         along = [np.interp(time, at, values) for values in (*air.T, plume.across, above, fraction)]
         columns = np.column_stack([*along[: len(GASES)], readings.values[held], *along[len(GASES) :]])
-        if not settled_at < at[-1]:
+        if not since < at[-1]:
             return Evaluation(columns=columns)
-        flown = at >= settled_at
+        flown = at >= since
         limit, fuel, expected = self._settings.limit_percent, self._exhaust.fuel, expected_fsc(self._exhaust.fuel)
-        known = fuel_estimate(self.readings(settled_at), self.spec, limit=limit, expected=expected)
+        known = fuel_estimate(self.readings(since), self.spec, limit=limit, expected=expected)
         figures = {
             "sensor": self._settings.sensor,
             "fsc_fuel_percent": fuel.sulphur_percent,

@@ -28,7 +28,7 @@ from scenarios.planning.guidance import (
     turn_time,
 )
 from scenarios.planning.limits import PLAN_PERIOD, omega_max
-from scenarios.planning.plume.axis import plume_axis
+from scenarios.planning.plume.axis import axis_height, plume_axis
 from scenarios.planning.plume.distance import additional_distance
 from scenarios.planning.reference import orbits, oscillation_at
 from scenarios.planning.standoff import standoff_parameters, vessel_circle
@@ -95,7 +95,7 @@ def following_flight(
     if scenario.stands_off:
         orbit = circle = vessel_circle(scenario, nu, farthest)
         periods = circle.periods(f.speed_ratio_max)
-        mission = standoff_parameters(scenario, setup, circle.radius)
+        mission = standoff_parameters(scenario, setup, circle.radius, axis_height(scenario, vessel))
     else:
         nearest, orbit = radius + margin.total + oscillation.half_widths()[0], oscillation
         further = additional_distance(scenario, vessel, nearest, wind.at_start)

@@ -252,8 +252,6 @@ class ArenaConfig(Section):
     """Error beyond which a setting is no worse to the tuner [m]."""
     window_s: Positive = 150.0
     """End of each flight on which it is measured, settled or not [s]."""
-    plume_half_width_m: Positive = 10.0
-    """Distance from the plume's axis that counts as in the plume [m]."""
     resamples: Annotated[int, Field(ge=100, le=1_000_000)] = 2000
     """Resamples of the paired bootstrap [-]."""
     limits: tuple[tuple[float, float], ...] = ()

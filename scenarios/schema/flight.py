@@ -38,6 +38,8 @@ class FlightConfig(Section):
     """Crossings to fly after settling; 0 to fly for the whole duration [-]."""
     after_settling_s: Positive | None = None
     """How long to fly after settling, with crossings at least as many; only crossings count if not given [s]."""
+    measured_s: Positive | None = None
+    """End of the flight over which instruments are evaluated, settled or not; from settling on if not given [s]."""
     duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 1500.0
     """Longest flight [s]."""
     until: Literal["flown", "verdict"] = "flown"
