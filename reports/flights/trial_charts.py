@@ -13,7 +13,7 @@ from reports.document.palette import Meaning
 from reports.document.panels import COUNTED_MIN, Group, capped, classes, histogram, points, quartiles, strips
 from reports.flights.names import fault_name, manoeuvre_name
 from reports.flights.panels_over import CLEARANCE, PanelsOver, by_violation
-from reports.monte_carlo.names import input_label
+from reports.monte_carlo.names import input_name
 from reports.run.columns import NOTICEABLE, Array, clearance, column, total
 from reports.run.ship import hull_of
 from reports.run.trials import Kind, Trial
@@ -59,7 +59,7 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
             (column(trial.flown, _TRACKING[0]), _TRACKING[1], []),
         ]
         caption = "Closest approach of the whole flight, and tracking error after settling."
-        return [_strips(trial, name, caption, words, input_label(key), figures)]
+        return [_strips(trial, name, caption, words, input_name(key), figures)]
     over = PanelsOver(trial, key, by_violation(trial))
     bank = "Largest commanded heading rate against ω_max, largest bank, and settling time."
     if trial.setting("fidelity") == "kinematic":

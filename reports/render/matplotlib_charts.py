@@ -15,7 +15,7 @@ from reports.run.columns import Array
 WIDTH_INCHES = 7.0
 """Width of a figure: the text width of an A4 page."""
 
-_LEGEND_CHARACTERS = 105
+_LEGEND_CHARACTERS = 118
 """What fits beside each other in a legend line of the figure's width."""
 
 _LEGEND_ROW = 0.16
