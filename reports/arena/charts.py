@@ -2,17 +2,18 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from reports.arena.data import ALL, Arena, Entrant
 from reports.arena.figures import CROSSINGS, EFFORT, ERROR, PLUME_TIME, SULPHUR, Figure
-from reports.document.chart import Chart, Line, Note, Panel, circle
-from reports.document.map_marks import hull_line, on_map, plume_lines
+from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.palette import Meaning
+from reports.document.ship_map import ship_panel
 from reports.run.columns import column
-from reports.run.ship import hull_of
-from reports.run.time_history import about_the_plume, vessel_heading
+from reports.run.surroundings import surroundings
+from reports.run.time_history import about_the_plume
 
 _FAMILIES = (
     ("with the reference's turn fed forward", "blue"),
@@ -183,33 +184,24 @@ def track_chart(arena: Arena, *, tracking: bool) -> Chart:
 
 def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | None:
     first = next(iter(arena.conditions))
-    flights = [str(flight) for flight in entrant.rows.loc[entrant.rows["trial"] == first, "flight_id"]]
-    history = next((found for flight in flights if (found := arena.run.history(flight)) is not None), None)
-    if history is None:
+    flown = [row for _, row in entrant.rows.iterrows() if row["trial"] == first]
+    row = next((row for row in flown if arena.run.has_history(str(row["flight_id"]))), None)
+    history = None if row is None else arena.run.history(str(row["flight_id"]))
+    if row is None or history is None:
         return None
     time = column(history, "time_s")
     shown = history[time >= time[-1] - _SHOWN_S]
-    radius = float(arena.run.manifest["config"]["keepout"]["radius_m"])
-    right, along = circle(radius)
+    about = surroundings(arena.run.manifest["config"], row, shown)
     reference, own = about_the_plume(shown, "reference_"), about_the_plume(shown)
-    axis, hull = float(column(shown, "plume_axis_rad")[-1]), hull_of(arena.run.manifest["config"])
-    heading = float(vessel_heading(shown, 0.0)[-1])
-    track = Line(x=own[0], y=own[1], label="flown", colour=Meaning.FLOWN)
-    panel = Panel(
-        x_label="Right [m]",
-        y_label="Along [m]",
-        title=f"{entrant.number} {entrant.title}" if tracking else str(entrant.number),
-        lines=[
-            Line(x=right, y=along, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True),
-            *plume_lines(np.array([0.0, 3.0 * radius]), None),
-            hull_line(hull.length, hull.beam, hull.funnel, heading - axis),
-            track,
-            Line(x=reference[0], y=reference[1], label="reference", colour=Meaning.ASKED, style="thin"),
-        ],
-    )
+    lines = [
+        Line(x=own[0], y=own[1], label="flown", colour=Meaning.FLOWN),
+        Line(x=reference[0], y=reference[1], label="reference", colour=Meaning.ASKED, style="thin"),
+    ]
     # The same part of the plume for every law, however far from it one is.
-    middle, half = (1.3 * radius, 0.8 * radius) if tracking else (0.0, 1.6 * radius)
-    return on_map(panel, north=-axis, shown=[_square(middle, half)])
+    middle, half = (1.3 * about.radius, 0.8 * about.radius) if tracking else (0.0, 1.6 * about.radius)
+    title = f"{entrant.number} {entrant.title}" if tracking else str(entrant.number)
+    panel = ship_panel(about, lines, title=title, shown=[_square(middle, half)])
+    return replace(panel, x_label="Right [m]", y_label="Along [m]")
 
 
 def _square(middle: float, half: float) -> Line:

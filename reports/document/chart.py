@@ -108,6 +108,10 @@ class Panel:
     y_whole: bool = False
 
 
+_CROWDED = 4
+"""Panels side by side whose titles would touch."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chart:
     """A figure of one or more panels.
@@ -148,6 +152,11 @@ class Chart:
     def is_wide(self, index: int) -> bool:
         """Return whether a panel, by its place, is the one that is as wide as the page."""
         return bool(self.last_height) and index == len(self.panels) - 1
+
+    @property
+    def crowded(self) -> bool:
+        """Whether so many panels stand side by side that their titles are in small letters."""
+        return self.columns >= _CROWDED
 
     @property
     def labels(self) -> list[str]:

@@ -139,7 +139,7 @@ def strips(
     Parameters
     ----------
     values, kinds : of each flight
-    x_label, y_label : of the figure, and of the kinds
+    x_label, y_label : of the figure, and of the kinds where these are named
     groups : as in ``points``
     upright : values to be marked, by name
     named : whether the rows have their names, which a panel to the right of one that has needs not
@@ -157,7 +157,7 @@ def strips(
     names = [(len(rows) - 1.0 - i, row if named else "") for i, row in enumerate(rows)]
     return Panel(
         x_label=x_label,
-        y_label=y_label,
+        y_label=y_label if named else "",
         lines=lines,
         x_range=_around([values, np.array([value for value, _ in upright])]),
         y_range=(float(reach[0]), float(reach[1])),

@@ -17,7 +17,7 @@ from reports.run.trials import Trial
 POINTS_MAX = 1300
 """Points of a curve at most, beside the closest approach."""
 
-GUARD, GUARD_LOST = "guard changed commands", "guard could not hold its radius"
+GUARD, GUARD_LOST = "guard changed commands", "guard lost its radius"
 """What stretches of the keep-out guard are called."""
 
 _GUARDED_MAX = 400
@@ -142,6 +142,12 @@ class FlightView:
         """Return samples where ``place`` has them."""
         x, y = place(samples)
         return Line(x=x, y=y, label=label, colour=colour, style=style)
+
+
+def flight_view(trial: Trial, row: "pd.Series[Any]") -> FlightView | None:
+    """Return a flight of a trial, given its row; None if it has no time history."""
+    history = trial.run.history(str(row["flight_id"]))
+    return None if history is None or len(history) < 2 else FlightView(trial, row, history)
 
 
 def _joined(times: list[tuple[float, float]]) -> list[tuple[float, float]]:

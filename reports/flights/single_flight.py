@@ -10,8 +10,8 @@ import pandas as pd
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning
-from reports.flights.flight_view import FlightView
-from reports.flights.tracks import track_charts
+from reports.flights.flight_view import FlightView, flight_view
+from reports.flights.tracks import track_chart
 from reports.run.columns import NOTICEABLE, Array, column
 from reports.run.time_history import tracking_error
 from reports.run.trials import Trial
@@ -30,11 +30,8 @@ _TIME = "Time [s]"
 
 def flight_charts(trial: Trial, row: "pd.Series[Any]") -> list[Chart]:
     """Return the figures of one flight of a trial, given its row; none if it has no time history."""
-    history = trial.run.history(str(row["flight_id"]))
-    if history is None or len(history) < 2:
-        return []
-    view = FlightView(trial, row, history)
-    return [*track_charts(view), _Histories(view).chart()]
+    view = flight_view(trial, row)
+    return [] if view is None else [track_chart(view), _Histories(view).chart()]
 
 
 class _Histories:
@@ -60,7 +57,7 @@ class _Histories:
             panels=panels,
             columns=columns,
             share_x=True,
-            panel_height=min(0.2, 0.46 / -(-len(panels) // columns)),
+            panel_height=min(0.2, 0.45 / -(-len(panels) // columns)),
         )
 
     def _line(self, y: Array, label: str = "flown", colour: str = Meaning.FLOWN, style: Style = "solid") -> Line:

@@ -8,14 +8,14 @@ import numpy as np
 import pandas as pd
 
 from reports.document.axes import in_kilometres
-from reports.document.chart import Chart, Line, Note, Panel, circle
-from reports.document.map_marks import hull_line, on_map, plume_lines
+from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
-from reports.flights.flight_view import FlightView, Place
+from reports.document.ship_map import ship_lines, ship_panel, ship_words
+from reports.flights.flight_view import FlightView, Place, flight_view
 from reports.run.columns import Array, column
-from reports.run.plume_shape import PlumeShape, plume_shape
-from reports.run.ship import hull_of
-from reports.run.time_history import about_the_plume, turned, vessel_heading
+from reports.run.surroundings import Surroundings, surroundings
+from reports.run.time_history import about_the_plume, turned
 from reports.run.trials import Trial
 
 _STEPS = (10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)
@@ -33,19 +33,19 @@ _NEAR_S = 60.0
 _NEARER = 0.5
 """Size of what is shown from near, over that of the whole, up to which it has a panel of its own."""
 
-_BESIDE, _WIDE, _FLAT = 1.2, 1.9, 4.4
+_BESIDE, _WIDE, _FLAT = 1.2, 1.9, 4.8
 """Width over height: of a panel that has another beside it, of one that is alone, and of one over the ground."""
 
 _AWAY = 1.5
 """Way of the ship over the size of the track about her, from which there is a panel over the ground."""
 
 
-def track_charts(view: FlightView) -> list[Chart]:
-    """Return where one flight went: about the ship, and over the ground."""
-    return _Tracks(view).charts()
+def track_chart(view: FlightView) -> Chart:
+    """Return where one flight went: about the ship, her plume up the page, from near, and over the ground."""
+    return _Tracks(view).chart()
 
 
-def track_chart(flights: Sequence[tuple[Trial, "pd.Series[Any]", str]], *, name: str = "picture") -> Chart | None:
+def track_picture(flights: Sequence[tuple[Trial, "pd.Series[Any]", str]], *, name: str = "picture") -> Chart | None:
     """Return a large picture of one flight about its ship, or of a few side by side; None if none has a time history.
 
     Parameters
@@ -53,17 +53,12 @@ def track_chart(flights: Sequence[tuple[Trial, "pd.Series[Any]", str]], *, name:
     flights : each with its trial, its row and what is written above it
     name : of the chart
     """
-    views = []
-    for trial, row, title in flights:
-        history = trial.run.history(str(row["flight_id"]))
-        if history is not None and len(history) > 1:
-            views.append((_Tracks(FlightView(trial, row, history)), title))
+    views = [(view, title) for trial, row, title in flights if (view := flight_view(trial, row)) is not None]
     if not views:
         return None
-    aspect = _WIDE if len(views) == 1 else _BESIDE
-    panels = [in_kilometres(tracks.about(title, aspect) if tracks.view.vessel else tracks.ground(title)) for tracks, title in views]
-    caption = views[0][0].caption()
-    return Chart(name=name, caption=caption, panels=panels, columns=len(panels), panel_height=0.5 if len(views) == 1 else 0.45)
+    aspect, height = (_WIDE, 0.5) if len(views) == 1 else (_BESIDE, 0.42)
+    drawn = [_Tracks(view).picture(title, aspect) for view, title in views]
+    return Chart(name=name, caption=drawn[0][1], panels=[panel for panel, _ in drawn], columns=len(drawn), panel_height=height)
 
 
 class _Tracks:
@@ -71,128 +66,78 @@ class _Tracks:
 
     def __init__(self, view: FlightView) -> None:
         self.view = view
-        self._trial, self._row = view.trial, view.row
-        self._hull = hull_of(self._trial.config)
-        heading = vessel_heading(view.whole, float(self._trial.setting("vessel.course_deg", 0.0)))
-        # What stands still in these panels is as it was at the closest approach.
-        self._heading = float(heading[view.whole.index.get_loc(view.closest.index[0])])
-        self._axis = float(view.closest["plume_axis_rad"].iloc[0]) if view.vessel else 0.0
-        self._shape = self._plume() if view.vessel else None
+        nearest = int(view.whole.index.get_indexer(view.closest.index)[0])
+        # What stands still in a panel is as it was at the closest approach.
+        self._about = surroundings(view.trial.config, view.row, view.whole, nearest) if view.vessel else None
         self._step = next((s for s in _STEPS if view.ends[1] / s <= _MARKS_MAX), _STEPS[-1])
 
-    def charts(self) -> list[Chart]:
-        """Return its charts."""
-        if not self.view.vessel:
-            panel = in_kilometres(self.ground())
-            return [Chart(name="tracks", caption="Over the ground.", panels=[panel], panel_height=0.42)]
-        near, ground = self._near(), self.ground() if self._way() is not None else None
-        panels = [self.about("The whole flight", _BESIDE if near else _WIDE), *([near] if near else [])]
+    def chart(self) -> Chart:
+        """Return where it went."""
+        about = self._about
+        if about is None:
+            return Chart(name="tracks", caption="Over the ground.", panels=[in_kilometres(self.ground())], panel_height=0.42)
+        near, ground = self._near(about), self.ground() if self._way() is not None else None
+        panels = [self._whole(about, "The whole flight", _BESIDE if near else _WIDE), *([near] if near else [])]
         over = " Below, over the ground, with ship, keep-out area and plume as they were at the closest approach." if ground else ""
-        return [
-            Chart(
-                name="tracks",
-                caption=self.caption() + over,
-                panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
-                columns=len(panels),
-                panel_height=0.36,
-                last_height=0.19 if ground else 0.0,
-            )
-        ]
-
-    def caption(self) -> str:
-        """Return what a panel about the ship shows, in words."""
-        shape = "sphere" if self._trial.shape == "sphere" else "cylinder"
-        hull, smoke = self._hull, self._shape is not None and self._shape.smoke
-        width = " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
-        moved = " Ship, north and wind are as they were at the closest approach." if self._moved() else ""
-        return (
-            f"Seen from the ship, with the axis of her plume up the page.{width} The keep-out {shape} is about her funnel; her hull"
-            f" is that of {hull.title}, {hull.length:g} m by {hull.beam:g} m, as the scenario gives none.{moved}"
+        return Chart(
+            name="tracks",
+            caption=ship_words(about) + over,
+            panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
+            columns=len(panels),
+            panel_height=0.35,
+            last_height=0.19 if ground else 0.0,
         )
 
-    def _moved(self) -> bool:
-        """Return whether the course along which the plume trails changed."""
-        return bool(np.ptp(np.unwrap(column(self.view.samples, "plume_axis_rad"))) > math.radians(2.0))
+    def picture(self, title: str, aspect: float) -> tuple[Panel, str]:
+        """Return the whole flight in one panel, and what it shows in words."""
+        about = self._about
+        panel = self.ground(title) if about is None else self._whole(about, title, aspect)
+        return in_kilometres(panel), "Over the ground." if about is None else ship_words(about)
 
-    def _plume(self) -> PlumeShape:
-        """Return the plume's shape, in the wind and at the ship's speed that the flight began with."""
-        north, east = (float(column(self.view.whole, f"vessel_velocity_{axis}_mps")[0]) for axis in ("north", "east"))
-        wind, towards = self._wind()
-        apparent = math.hypot(wind * math.cos(towards) - north, wind * math.sin(towards) - east)
-        reach = 1.2 * float(np.nanmax(np.hypot(*about_the_plume(self.view.samples))))
-        length = max(1.6 * self.view.radius, min(reach, 4.0 * self.view.radius))
-        return plume_shape(self._trial.config, speed=math.hypot(north, east), wind=wind, apparent_wind=apparent, length=length)
-
-    def _wind(self) -> tuple[float, float]:
-        """Return the wind's speed [m/s] and the course that it blows along [rad]: it is given by where it comes from."""
-        speed, origin = (float(self._row.get(name, math.nan)) for name in ("wind_speed_mps", "wind_from_deg"))
-        return (speed, math.radians(origin) + math.pi) if speed > 0.0 and math.isfinite(origin) else (0.0, 0.0)
-
-    def _still(self, up: float, x: float, y: float, angle: float) -> list[Line]:
-        """Return plume, keep-out area and ship where the page's course ``up`` is up, her funnel at a place."""
-        if self._shape is None:
-            return []
-        right, along = circle(self.view.radius)
-        hull = self._hull
-        return [
-            Line(x=x + right, y=y + along, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True),
-            *plume_lines(self._shape.distance, self._shape.half_width if self._shape.smoke else None, angle, x, y),
-            hull_line(hull.length, hull.beam, hull.funnel, self._heading - up, x, y),
-        ]
-
-    def about(self, title: str, aspect: float) -> Panel:
+    def _whole(self, about: Surroundings, title: str, aspect: float) -> Panel:
         """Return the whole flight, seen from the ship with her plume up the page."""
         view = self.view
+        times, notes = self._times(about_the_plume, until=view.settled_at)
         lines = [
-            *self._still(self._axis, 0.0, 0.0, 0.0),
             *view.guarded(about_the_plume),
             view.line(about_the_plume, view.samples, "flown", Meaning.FLOWN),
             self._reference(about_the_plume, view.samples),
             *view.marks(about_the_plume),
             *view.ends_of(about_the_plume),
+            *times,
         ]
-        times, notes = self._times(about_the_plume, until=view.settled_at)
-        return self._about([*lines, *times], notes, title, aspect)
+        return ship_panel(about, lines, title=title, notes=notes, shown=[*ship_lines(about, about.axis), *lines], aspect=aspect)
 
-    def _near(self) -> Panel | None:
+    def _near(self, about: Surroundings) -> Panel | None:
         """Return the last of the flight from near; None where it never settled, or where the whole is no larger."""
-        view, period = self.view, math.tau / float(self._row.get("omega_0_rad_s", math.nan))
+        view, period = self.view, math.tau / float(self.view.row.get("omega_0_rad_s", math.nan))
         last = _NEAR_PERIODS * period if math.isfinite(period) else _NEAR_S
         begin = max(view.settled_at, float(view.ends[1]) - last)
         late = view.since(begin)
         if late is None:
             return None
-        shown = late.whole
-        track = view.line(about_the_plume, shown, "flown", Meaning.FLOWN)
+        track = late.line(about_the_plume, late.whole, "flown", Meaning.FLOWN)
+        reference = self._reference(about_the_plume, late.whole)
         size, whole = (max(float(np.ptp(x)), float(np.ptp(y))) for x, y in ((track.x, track.y), about_the_plume(view.samples)))
         if size > _NEARER * max(whole, 2.0 * view.radius):
             return None
-        reference = self._reference(about_the_plume, shown)
-        lines = [*self._still(self._axis, 0.0, 0.0, 0.0), *late.guarded(about_the_plume), track, reference]
-        marks = late.marks(about_the_plume)
-        return self._about([*lines, *marks], [], f"The last {view.ends[1] - begin:.0f} s", _BESIDE, [track, reference])
-
-    def _about(self, lines: Sequence[Line], notes: Sequence[Note], title: str, aspect: float, shown: Sequence[Line] = ()) -> Panel:
-        """Return a panel about the ship as a map."""
-        panel = Panel(x_label="Right of the plume's axis [m]", y_label="Along it [m]", title=title, lines=lines, notes=notes)
-        wind, towards = self._wind()
-        return on_map(panel, north=-self._axis, wind=(wind, towards - self._axis), shown=shown, aspect=aspect)
+        lines = [*late.guarded(about_the_plume), track, reference, *late.marks(about_the_plume)]
+        title = f"The last {view.ends[1] - begin:.0f} s"
+        return ship_panel(about, lines, title=title, shown=[track, reference], aspect=_BESIDE)
 
     def ground(self, title: str = "") -> Panel:
         """Return the flight over the ground: along the way of a ship that goes far, else with north up the page."""
-        view = self.view
-        way = self._way()
+        view, about, way = self.view, self._about, self._way()
         up = way or 0.0
 
         def place(samples: pd.DataFrame, prefix: str = "") -> tuple[Array, Array]:
             return turned(column(samples, f"{prefix}north_m"), column(samples, f"{prefix}east_m"), up)
 
         lines: list[Line] = []
-        if view.vessel:
-            x, y = place(view.closest, "vessel_")
-            lines += self._still(up, float(x[0]), float(y[0]), self._axis - up)
-            x, y = place(view.samples, "vessel_")
-            lines.append(Line(x=x, y=y, label="ship's track", colour=Meaning.SHIP, style="thin"))
+        if about is not None:
+            (x, y), track = place(view.closest, "vessel_"), place(view.samples, "vessel_")
+            lines += ship_lines(about, up, float(x[0]), float(y[0]))
+            lines.append(Line(x=track[0], y=track[1], label="ship's track", colour=Meaning.SHIP, style="thin"))
         lines += [
             *view.guarded(place),
             view.line(place, view.samples, "flown", Meaning.FLOWN),
@@ -203,8 +148,8 @@ class _Tracks:
         times, notes = self._times(place, until=float(view.ends[1]), beside=way is None)
         labels = ("East [m]", "North [m]") if way is None else ("Along the ship's way [m]", "To port [m]")
         panel = Panel(x_label=labels[0], y_label=labels[1], title=title, lines=[*lines, *times], notes=notes)
-        wind, towards = self._wind()
-        return on_map(panel, north=-up, wind=(wind, towards - up), aspect=_WIDE if way is None else _FLAT)
+        wind = None if about is None else (about.wind[0], about.wind[1] - up)
+        return on_map(panel, north=-up, wind=wind, aspect=_WIDE if way is None else _FLAT)
 
     def _way(self) -> float | None:
         """Return the course that puts the ship's way across the page [rad]; None where she does not go far."""

@@ -5,6 +5,7 @@ import pandas as pd
 
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.panels import around, level
 from reports.measurement.data import Record, errors, finite, over_time, thinned, value
@@ -22,6 +23,9 @@ _BAR = 0.72
 _ALL = "all together"
 _BARS = {_ALL: (_ALL, "black"), "noise": ("noise: falls with further passes", "orange")}
 """Label and colour of bars that are no common error's."""
+
+_ASPECT = 1.8
+"""Width of a track's plan over its height."""
 
 _LONG = 4.0
 """Length of a track over its width from which on its plan is not drawn to one scale."""
@@ -155,8 +159,9 @@ def logged_track_chart(samples: pd.DataFrame) -> Chart | None:
     if finite(north, east):
         lines = _coloured(east, north, co2)
         sides = sorted((float(np.nanmax(north) - np.nanmin(north)), float(np.nanmax(east) - np.nanmin(east))))
-        plan = Panel(x_label="East [m]", y_label="North [m]", title="In plan", lines=lines, equal=sides[1] < _LONG * sides[0])
-        panels.append(in_kilometres(plan))
+        plan = Panel(x_label="East [m]", y_label="North [m]", title="In plan", lines=lines)
+        # A long and narrow track is not drawn to one scale, and is no map.
+        panels.append(in_kilometres(on_map(plan, north=0.0, aspect=_ASPECT) if sides[1] < _LONG * sides[0] else plan))
         distance = np.concatenate([[0.0], np.nancumsum(np.hypot(np.diff(north), np.diff(east)))])
         if finite(height):
             lines = _coloured(distance, height, co2)

@@ -6,9 +6,12 @@ import pandas as pd
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
 from reports.document.panels import level
+from reports.document.ship_map import ship_panel, ship_words
 from reports.measurement.data import Record
 from reports.run.columns import column
 from reports.run.run_data import RunData
+from reports.run.surroundings import Surroundings
+from reports.run.time_history import about_the_plume
 
 _METHODS = {"fsc": "regression", "areas_fsc": "areas"}
 """What the columns of each method begin with."""
@@ -121,33 +124,32 @@ def _shares(rows: pd.DataFrame, x: str) -> Panel:
     return Panel(x_label=_AXES[x], y_label="Measured over true [-]", title="Share of the truth", lines=lines)
 
 
-def sulphur_track_chart(history: pd.DataFrame) -> Chart:
+def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
     """Return the concentration along a flight by the colour of its track: seen from the ship, and in height over distance.
 
     Parameters
     ----------
     history : of the flight once it had settled
+    about : what was about it
     """
     rows = history.iloc[:: max(1, -(-len(history) // _POINTS_MAX))]
-    north, east = (column(rows, f"{axis}_m") - column(rows, f"vessel_{axis}_m") for axis in ("north", "east"))
     height, above, co2 = (column(rows, name) for name in ("altitude_m", "plume_above_m", "co2_ppm"))
-    distance = np.hypot(north, east)
+    right, along = about_the_plume(rows)
+    distance = np.hypot(right, along)
     order = np.argsort(distance)
-    axis = Line(x=distance[order], y=(height - above)[order], label="plume's axis", colour="vermillion", style="points")
+    axis = Line(x=distance[order], y=(height - above)[order], label="plume's axis", colour=Meaning.PLUME, style="dots")
+    track = Line(x=right, y=along, label="", colour=Meaning.FLOWN, style="points", values=co2)
     panels = [
-        Panel(
-            x_label="East of the ship [m]",
-            y_label="North of the ship [m]",
-            title="Seen from the ship",
-            lines=[Line(x=east, y=north, label="", colour="blue", style="points", values=co2)],
-            equal=True,
-        ),
+        ship_panel(about, [track], title="Seen from the ship", shown=[track]),
         Panel(
             x_label="Distance from the ship [m]",
             y_label="Height [m]",
             title="In height",
-            lines=[axis, Line(x=distance, y=height, label="", colour="blue", style="points", values=co2)],
+            lines=[axis, Line(x=distance, y=height, label="", colour=Meaning.FLOWN, style="points", values=co2)],
         ),
     ]
-    caption = "CO2 along the track by its colour, as it was, and the height of the plume's mean axis where it was crossed."
+    caption = (
+        "CO2 along the track by its colour, as it was, and the height of the plume's mean axis where it was crossed."
+        f" {ship_words(about)}"
+    )
     return Chart(name="sulphur-track", caption=caption, panels=panels, columns=2, panel_height=0.4, scale_label="CO2 [ppm]")

@@ -7,6 +7,7 @@ import pandas as pd
 
 from common.binomial import percent
 from reports.document.blocks import Block, Card, Heading, Section, Text
+from reports.document.chart import Chart
 from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
 from reports.measurement.data import Record
 from reports.measurement.flight_charts import error_chart, operating_curve, sulphur_track_chart, trajectory_chart
@@ -14,6 +15,7 @@ from reports.measurement.flight_tables import accuracy_table, best_table, calls_
 from reports.measurement.tables import over_time_table, result_table
 from reports.run.columns import column
 from reports.run.run_data import RunData
+from reports.run.surroundings import surroundings
 
 _TRUTH = {"co2_true_ppm": "co2_ppm", "so2_true_ppb": "so2_ppb"}
 """What figures call the truth, and what a time history does."""
@@ -97,7 +99,7 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
             blocks: list[Block | None] = [
                 Text(_told(row)),
                 result_table(record),
-                sulphur_track_chart(history[history["time_s"] >= row["settling_time_s"]]),
+                _track(run, row, history),
                 over_time_chart(record),
                 over_time_table(record),
                 budget_chart(record),
@@ -108,6 +110,13 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
             shown = [block for block in blocks if block is not None]
             return Section(anchor="measurement", title=title, nav_title="Measurement", blocks=shown)
     return None
+
+
+def _track(run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> Chart | None:
+    """Return the track of a flight once it had settled; None where it never had."""
+    settled = history[history["time_s"] >= row["settling_time_s"]]
+    config = run.manifest["trials"][row["trial"]]
+    return sulphur_track_chart(settled, surroundings(config, row, settled)) if len(settled) > 1 else None
 
 
 def _told(row: "pd.Series[Any]") -> str:

@@ -2,16 +2,19 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
-from reports.document.chart import Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
+from reports.document.ship_map import ship_lines
 from reports.document.tables import kinematic
 from reports.run.columns import Array
 from reports.run.run_data import RunData
+from reports.run.surroundings import surroundings
 from reports.run.time_history import keepout_distance, thinned, tracking_error
 
 VEHICLES = ("kinematic", "six_dof")
@@ -67,7 +70,7 @@ def sim_1_charts(run: RunData) -> list[Chart]:
     """Return figures 3, 4 and 5: a circular reference, opposite initial headings."""
     return [
         _side_by_side(
-            run, ["sim1"], _figure_3, name="fig3", equal=True, panel_height=0.55, labels=("East [m]", "North [m]"),
+            run, ["sim1"], _figure_3, name="fig3", aspect=0.9, panel_height=0.55, labels=("East [m]", "North [m]"),
             caption="To put beside the paper's figure 3: the circular reference and the UAV. Rings: where each is at the start.",
         ),
         _side_by_side(
@@ -89,7 +92,7 @@ def sim_2_charts(run: RunData) -> list[Chart]:
     cases = ["sim2_los", "sim2_delta"]
     return [
         _side_by_side(
-            run, cases, _figure_6, name="fig6", equal=True, panel_height=0.42, labels=("East [m]", "North [m]"),
+            run, cases, _figure_6, name="fig6", aspect=1.2, panel_height=0.42, labels=("East [m]", "North [m]"),
             caption="Figure 6: both UAVs start in front of the reference and fly the other way. UAV 1 steers by the line of sight,"
             " UAV 2 by the δ formulation. Rings: starts.",
         ),
@@ -118,10 +121,13 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         times = run.crossings_of(str(flown.row["flight_id"]))["time_s"].to_numpy(dtype=np.float64)
         times = times[times <= flown.time[-1]]
         east, north = (np.interp(times, flown.time, flown.column(name)) for name in ("east_m", "north_m"))
+        about = surroundings(run.manifest["config"], flown.row, flown.history)
+        place = (float(flown.column(name)[-1]) for name in ("vessel_east_m", "vessel_north_m"))
         return [
-            Line(x=flown.column("vessel_east_m"), y=flown.column("vessel_north_m"), label="ship's track", colour=Meaning.SHIP),
-            Line(x=flown.column("reference_east_m"), y=flown.column("reference_north_m"), label="reference", colour=Meaning.ASKED),
-            Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour=Meaning.FLOWN),
+            *ship_lines(about, 0.0, *place),
+            _path(flown, "vessel_", "ship's track", Meaning.SHIP, "thin"),
+            _path(flown, "", "UAV"),
+            _path(flown, "reference_", "reference", Meaning.ASKED, "thin"),
             _crossings(east, north),
         ]
 
@@ -136,10 +142,10 @@ def sim_3_charts(run: RunData) -> list[Chart]:
 
     return [
         _side_by_side(
-            run, ["sim3"], figure_8, name="fig8", equal=True, labels=("East [m]", "North [m]"), shown_after=100.0, columns=1,
+            run, ["sim3"], figure_8, name="fig8", aspect=4.6, labels=("East [m]", "North [m]"), shown_after=100.0, columns=1,
             panel_height=0.2,
             caption="Figure 8: over the ground. The UAV starts at a random place behind the vessel. Diamonds: plume crossings"
-            " after settling, of which the first hundred seconds are shown.",
+            " after settling, of which the first hundred seconds are shown; ship, plume and keep-out area at the end of them.",
         ),
         _side_by_side(
             run, ["sim3"], figure_9, name="fig9", labels=("Time [s]", "Distance to the vessel [m]"), shown_after=math.inf,
@@ -167,12 +173,15 @@ def _side_by_side(
     name: str,
     caption: str,
     labels: tuple[str, str],
-    equal: bool = False,
+    aspect: float = 0.0,
     shown_after: float = 20.0,
     columns: int = 2,
     panel_height: float = 0.4,
 ) -> Chart:
-    """Return a panel for each vehicle that has flown every case, up to ``shown_after`` [s] after the last of them has settled."""
+    """Return a panel for each vehicle that has flown every case, up to ``shown_after`` [s] after the last of them has settled.
+
+    With an ``aspect``, width over height, they are maps.
+    """
     found = {fidelity: {case: find_flight(run, f"{case}_{fidelity}") for case in cases} for fidelity in VEHICLES}
     pairs = {fidelity: {c: f for c, f in flights.items() if f is not None} for fidelity, flights in found.items()}
     pairs = {fidelity: flights for fidelity, flights in pairs.items() if len(flights) == len(cases)}
@@ -181,14 +190,16 @@ def _side_by_side(
     drawn = {
         vehicle_name(run, key): lines({c: flown.until(until) for c, flown in flights.items()}) for key, flights in pairs.items()
     }
-    x_range, y_range = _common_ranges([line for curves in drawn.values() for line in curves]) if drawn else (None, None)
+    every = [line for curves in drawn.values() for line in curves]
     panels = [
-        Panel(
-            x_label=labels[0], y_label=labels[1], title=title[0].upper() + title[1:], equal=equal, lines=curves,
-            x_range=x_range, y_range=y_range,
-        )
+        Panel(x_label=labels[0], y_label=labels[1], title=title[0].upper() + title[1:], lines=curves)
         for title, curves in drawn.items()
-    ]  # fmt: skip
+    ]
+    if aspect:
+        panels = [on_map(panel, north=0.0, shown=every, aspect=aspect) for panel in panels]
+    elif drawn:
+        x_range, y_range = _common_ranges(every)
+        panels = [replace(panel, x_range=x_range, y_range=y_range) for panel in panels]
     return Chart(name=name, caption=caption, panels=panels, columns=columns, panel_height=panel_height)
 
 
@@ -201,11 +212,7 @@ def _common_ranges(lines: list[Line]) -> tuple[tuple[float, float], tuple[float,
 
 def _figure_3(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
-    return [
-        Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour=Meaning.FLOWN),
-        _reference(flown),
-        _starts([flown]),
-    ]
+    return [_path(flown, "", "UAV"), _reference(flown), _starts([flown])]
 
 
 def _figure_4(flights: dict[str, Flown]) -> list[Line]:
@@ -245,10 +252,7 @@ _UAVS = {"sim2_los": ("UAV 1, line of sight", "plum"), "sim2_delta": ("UAV 2, δ
 
 def _figure_6(flights: dict[str, Flown]) -> list[Line]:
     first = next(iter(flights.values()))
-    tracks = [
-        Line(x=flown.column("east_m"), y=flown.column("north_m"), label=_UAVS[case][0], colour=_UAVS[case][1])
-        for case, flown in flights.items()
-    ]
+    tracks = [_path(flown, "", *_UAVS[case]) for case, flown in flights.items()]
     return [*tracks, _reference(first), _starts(list(flights.values()))]
 
 
@@ -266,10 +270,14 @@ def _distances(flights: dict[str, Flown]) -> list[Line]:
     return [Line(x=flown.time, y=flown.distance, label=_UAVS[case][0], colour=_UAVS[case][1]) for case, flown in flights.items()]
 
 
+def _path(flown: Flown, prefix: str, label: str, colour: str = Meaning.FLOWN, style: Style = "solid") -> Line:
+    """Return where the UAV, or what a prefix names, went over the ground."""
+    return Line(x=flown.column(f"{prefix}east_m"), y=flown.column(f"{prefix}north_m"), label=label, colour=colour, style=style)
+
+
 def _reference(flown: Flown) -> Line:
     """Return the circle of the reference, to be drawn over the tracks that come to lie on it."""
-    east, north = flown.column("reference_east_m"), flown.column("reference_north_m")
-    return Line(x=east, y=north, label="reference", colour=Meaning.ASKED, style="dash")
+    return _path(flown, "reference_", "reference", Meaning.ASKED, "dash")
 
 
 def _starts(flights: list[Flown]) -> Line:

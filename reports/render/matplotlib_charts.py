@@ -15,8 +15,11 @@ from reports.run.columns import Array
 WIDTH_INCHES = 7.0
 """Width of a figure: the text width of an A4 page."""
 
-_LEGEND_CHARACTERS = 105
+_LEGEND_CHARACTERS = 118
 """What fits beside each other in a legend line of the figure's width."""
+
+_TITLE_SIZE, _SMALL_TITLE_SIZE = 8.5, 7.0
+"""Letters of the titles above panels, and above many side by side [pt]."""
 
 _LEGEND_ROW = 0.16
 """Height of a row of a legend [inches]."""
@@ -27,7 +30,6 @@ _DEPTH = 2.0
 _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 8.0,
-    "axes.titlesize": 8.5,
     "axes.axisbelow": True,
     "axes.grid": True,
     "grid.color": "#dddddd",
@@ -65,20 +67,11 @@ def draw(chart: Chart) -> Figure:
         figure = Figure(figsize=(WIDTH_INCHES, height), layout="constrained")
         axes = _axes(figure, chart)
         handles: dict[str, Any] = {}
-        scale, shaded = chart.scale, None
+        shaded = None
         for i, panel in enumerate(chart.panels):
-            ax = axes[i]
-            for line in panel.lines:
-                if line.values is not None and scale:
-                    shaded = _draw_shaded(ax, line, line.values, scale)
-                    continue
-                handle = _draw_line(ax, line)
-                if line.label:
-                    handles.setdefault(line.label, handle)
-            for band in panel.bands:
-                tint = {"color": COLOURS[band.colour], "alpha": BAND_OPACITY, "linewidth": 0.0}
-                handles.setdefault(band.label, ax.axvspan(band.start, band.end, **tint))
-            _dress(ax, panel, last_row=i + chart.columns >= len(chart.panels) or not chart.share_x)
+            shaded = _draw_marks(axes[i], panel, handles, chart.scale) or shaded
+            title_size = _SMALL_TITLE_SIZE if chart.crowded else _TITLE_SIZE
+            _dress(axes[i], panel, title_size=title_size, last_row=i + chart.columns >= len(chart.panels) or not chart.share_x)
         for ax in axes[len(chart.panels) :]:
             ax.set_axis_off()
         for ax in axes[max(0, len(chart.panels) - chart.columns) : len(chart.panels)]:
@@ -101,6 +94,22 @@ def _axes(figure: Figure, chart: Chart) -> list[Any]:
     grid = figure.add_gridspec(chart.rows + 1, chart.columns, height_ratios=ratios)
     places = [grid[i // chart.columns, i % chart.columns] for i in range(len(chart.panels) - 1)]
     return [figure.add_subplot(place) for place in (*places, grid[-1, :])]
+
+
+def _draw_marks(ax: Any, panel: Panel, handles: dict[str, Any], scale: Limits) -> Any:
+    """Draw lines and bands, add what the legend has of them, and return what a colour scale is made for, if there is anything."""
+    shaded = None
+    for line in panel.lines:
+        if line.values is not None and scale:
+            shaded = _draw_shaded(ax, line, line.values, scale)
+            continue
+        handle = _draw_line(ax, line)
+        if line.label:
+            handles.setdefault(line.label, handle)
+    for band in panel.bands:
+        tint = {"color": COLOURS[band.colour], "alpha": BAND_OPACITY, "linewidth": 0.0}
+        handles.setdefault(band.label, ax.axvspan(band.start, band.end, **tint))
+    return shaded
 
 
 def _legend_columns(labels: list[str]) -> int:
@@ -130,12 +139,12 @@ def _draw_shaded(ax: Any, line: Line, values: Array, scale: tuple[float, float])
     return ax.scatter(line.x[order], line.y[order], s=4.0, linewidths=0.0, **colours)
 
 
-def _dress(ax: Any, panel: Panel, *, last_row: bool) -> None:
+def _dress(ax: Any, panel: Panel, *, title_size: float, last_row: bool) -> None:
     if last_row:
         ax.set_xlabel(panel.x_label)
     ax.set_ylabel(panel.y_label)
     if panel.title:
-        ax.set_title(panel.title)
+        ax.set_title(panel.title, fontsize=title_size)
     x_range = _mark(ax, "x", [line.x for line in panel.lines], panel.x_range, log=panel.log_x, whole=panel.x_whole)
     y_range = _mark(ax, "y", [line.y for line in panel.lines], panel.y_range, log=panel.log_y, whole=panel.y_whole)
     for note in panel.notes:

@@ -17,7 +17,7 @@ from reports.document.palette import BAND_OPACITY, COLOURS, INK
 WIDTH, NARROW_WIDTH = 980, 460
 """Widths that the two layouts are made for [px]; figures shrink with the window."""
 
-_BAR, _LEGEND_ROW, _BOTTOM = 34, 21, 55
+_BAR, _LEGEND_ROW, _BOTTOM = 32, 28, 55
 """Room for the mode bar, for each row of the legend above the panels, and for labels below them [px]."""
 
 _MARGINS = 90
@@ -28,6 +28,9 @@ _BESIDE = 0.09
 
 _BELOW, _BELOW_LABELS, _TITLE = 14, 62, 28
 """Room between panels that stand one below the other: with a shared abscissa, with labels between them, and for a title [px]."""
+
+_TITLE_SIZE, _SMALL_TITLE_SIZE = 16, 12
+"""Letters of the titles above panels, and above many side by side [px]."""
 
 _SYMBOL, _CHARACTER = 46.0, 6.6
 """Width of an entry of the legend: its symbol and the room about it, and each letter [px]."""
@@ -165,7 +168,8 @@ def _words(chart: Chart, place: _Place) -> list[Data]:
         across, up = place.domains(i)
         if panel.title:
             at = {"x": sum(across) / 2.0, "y": up[1], "xref": "paper", "yref": "paper", "xanchor": "center", "yanchor": "bottom"}
-            words.append({"text": panel.title, "font": {"size": 16}, "showarrow": False, **at})
+            font = {"size": _SMALL_TITLE_SIZE if chart.crowded else _TITLE_SIZE}
+            words.append({"text": panel.title, "font": font, "showarrow": False, **at})
         for note in panel.notes:
             at = {"x": note.x, "y": note.y, "xref": f"x{_number(i)}", "yref": f"y{_number(i)}", "xanchor": note.align}
             words.append({"text": note.text, "font": {"size": 11, "color": INK}, "showarrow": False, **at})

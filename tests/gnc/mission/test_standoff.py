@@ -12,8 +12,8 @@ from gnc.laws.cascade import CascadeLaw
 from gnc.laws.path.lgvf import LgvfLaw
 from gnc.laws.path.npfg import NpfgLaw
 from gnc.mission.axis_height import AxisHeight
-from gnc.mission.plume_axis import Climb
 from gnc.mission.mode import Mode
+from gnc.mission.plume_axis import Climb
 from gnc.mission.standoff import CirclePoint, StandoffOrbit, StandoffParameters
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move

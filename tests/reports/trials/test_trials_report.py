@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from report_parts import blocks_of
+from report_parts import assert_axes_read_quantity_and_unit, blocks_of
 from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
@@ -46,8 +46,7 @@ def test_every_axis_of_trials_reads_quantity_and_unit_and_every_chart_shows_some
     for chart in charts_of(report):
         for panel in chart.panels:
             assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)
-            for label in (panel.x_label, panel.y_label):
-                assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)
+    assert_axes_read_quantity_and_unit(charts_of(report))
 
 
 def test_of_nothing_flown_nothing_is_claimed(run):
