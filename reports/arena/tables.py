@@ -42,7 +42,9 @@ def tracking_table(arena: Arena, *, tracking: bool) -> Table:
     entrants = arena.ranked("error_rms_m", arena.in_task(tracking=tracking))
     head = ["No.", "Law", *(figure.title for figure in _TRACKING), "Settled", "at, median [s]", "Violations"]
     extra = [_ending(entrant) for entrant in entrants]
-    return _table(arena, entrants, _TRACKING, head, extra, widths=[0.4, 2.1, 1.8, 1.9, 1.9, 1.4, 0.8, 0.8, 0.8])
+    what = "Tracking" if tracking else "Circling"
+    widths = [0.4, 2.1, 1.8, 1.9, 1.9, 1.4, 0.8, 0.8, 0.8]
+    return _table(arena, entrants, _TRACKING, head, extra, widths=widths, caption=f"{what}, over all conditions.")
 
 
 def _ending(entrant: Entrant) -> list[str]:
@@ -62,7 +64,9 @@ def plume_table(arena: Arena) -> Table:
     head = ["No.", "Law", "Task", *(figure.title for figure in _PLUME), "Closest approach [m]", "Keep-out violations"]
     extra = [[_closest(entrant), str(total(entrant.rows, "keepout_violations"))] for entrant in entrants]
     tasks = [["tracks" if entrant.tracks else "circles"] for entrant in entrants]
-    return _table(arena, entrants, _PLUME, head, extra, widths=[0.4, 2.4, 0.7, 1.7, 1.7, 1.6, 1.0, 0.9], before=tasks)
+    widths = [0.4, 2.4, 0.7, 1.7, 1.7, 1.6, 1.0, 0.9]
+    caption = "Measuring the plume, over all conditions."
+    return _table(arena, entrants, _PLUME, head, extra, widths=widths, caption=caption, before=tasks)
 
 
 def _closest(entrant: Entrant) -> str:
@@ -78,6 +82,7 @@ def _table(
     extra: Sequence[list[str]],
     *,
     widths: list[float],
+    caption: str,
     before: Sequence[list[str]] = (),
 ) -> Table:
     rows, bold = [], []
@@ -87,7 +92,9 @@ def _table(
         rows.append([*ahead, *(_interval(estimate, figure) for figure, estimate in found), *extra[i]])
         bold += [(i, len(ahead) + j) for j, (_, estimate) in enumerate(found) if estimate.as_good or estimate.best]
     left = 3 if before else 2
-    return Table(head=head, rows=rows, widths=widths, left_columns=left, bold=bold, print_size_pt=6.4, breakable=True)
+    return Table(
+        head=head, rows=rows, widths=widths, left_columns=left, bold=bold, print_size_pt=6.4, breakable=True, caption=caption
+    )
 
 
 def _interval(estimate: Estimate, figure: _Figure) -> str:
@@ -131,7 +138,14 @@ def given_table(arena: Arena) -> Table:
         rows.append([str(entrant.number), entrant.title, entrant.given, parameters or "none", costs])
     head = ["No.", "Law", "What it makes use of", "Parameters: default → tuned", "Cost [m]"]
     return Table(
-        head=head, rows=rows, widths=[0.4, 1.6, 2.7, 3.4, 1.2], left_columns=5, prose=True, breakable=True, print_size_pt=6.4
+        caption="What each law was given: its way to the reference, its parameters, and what either set costs the tuner.",
+        head=head,
+        rows=rows,
+        widths=[0.4, 1.6, 2.7, 3.4, 1.2],
+        left_columns=5,
+        prose=True,
+        breakable=True,
+        print_size_pt=6.4,
     )
 
 
