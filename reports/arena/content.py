@@ -1,14 +1,12 @@
 """The report of an arena: a reader ranks the laws at a glance, and sees what each was given."""
 
-from dataclasses import replace
-
 from reports.arena.charts import crossing_chart, effort_charts, track_chart, worth_chart
 from reports.arena.data import Arena, Entrant, read_arena
 from reports.arena.figures import CROSSINGS, ERROR, PLUME_TIME, SULPHUR, Figure
 from reports.arena.tables import condition_table, given_table, plume_table, refused_table, tracking_table
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Card, Findings, Heading, Section, Text, Verdict
-from reports.document.tables import parameter_table, vehicles_flown
+from reports.document.tables import parameter_table
 from reports.flights.content import flights_content
 from reports.flights.first_page import flights_in_words
 from reports.run.columns import count, lost, measured, total, violated
@@ -72,7 +70,7 @@ def arena_content(run: RunData) -> Findings:
         f" {flights_in_words(run, measured(run.summary))}."
     )
     pictures = effort_charts(arena) if arena.in_task(tracking=True) else [crossing_chart(arena)]
-    return Findings(flown=flown, verdict=_verdict(arena), picture=replace(pictures[0], name="first"), sections=sections)
+    return Findings(flown=flown, verdict=_verdict(arena), picture=pictures[0], sections=sections)
 
 
 def _section(anchor: str, title: str, nav_title: str, blocks: list[Block]) -> Section:
@@ -166,7 +164,7 @@ def _verdict(arena: Arena) -> Verdict:
         holds=not violations and not gone,
         complete=len(rows) == planned,
         headline=headline[:1].upper() + headline[1:],
-        detail=f"{vehicles_flown(arena.run)} Means over all conditions, over the end of each flight. {_alike(arena, best)}",
+        detail=f"Means over all conditions, over the end of each flight. {_alike(arena, best)}",
         failures=failures,
         figures=figures,
     )

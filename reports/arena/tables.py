@@ -17,7 +17,9 @@ def tracking_table(arena: Arena, *, tracking: bool) -> Table:
     entrants = arena.ranked(ERROR, arena.in_task(tracking=tracking))
     head = ["No.", "Law", *(figure.title for figure in TRACKING_FIGURES), "Settled", "at, median [s]", "Violations"]
     extra = [_ending(entrant) for entrant in entrants]
-    return _table(arena, entrants, TRACKING_FIGURES, head, extra, widths=[0.4, 2.1, 1.8, 1.9, 1.9, 1.4, 0.8, 0.8, 0.8])
+    what = "Tracking" if tracking else "Circling"
+    widths = [0.4, 2.1, 1.8, 1.9, 1.9, 1.4, 0.8, 0.8, 0.8]
+    return _table(arena, entrants, TRACKING_FIGURES, head, extra, widths=widths, caption=f"{what}, over all conditions.")
 
 
 def _ending(entrant: Entrant) -> list[str]:
@@ -39,7 +41,8 @@ def plume_table(arena: Arena) -> Table:
     extra = [[_closest(entrant), str(total(entrant.rows, "keepout_violations"))] for entrant in entrants]
     tasks = [["tracks" if entrant.tracks else "circles"] for entrant in entrants]
     widths = [0.4, 2.4, 0.7, *(1.7 for _ in figures), 1.0, 0.9]
-    return _table(arena, entrants, figures, head, extra, widths=widths, before=tasks)
+    caption = "Measuring the plume, over all conditions."
+    return _table(arena, entrants, figures, head, extra, widths=widths, caption=caption, before=tasks)
 
 
 def _closest(entrant: Entrant) -> str:
@@ -55,6 +58,7 @@ def _table(
     extra: Sequence[list[str]],
     *,
     widths: list[float],
+    caption: str,
     before: Sequence[list[str]] = (),
 ) -> Table:
     rows, bold = [], []
@@ -64,7 +68,9 @@ def _table(
         rows.append([*ahead, *(_interval(estimate, figure) for figure, estimate in found), *extra[i]])
         bold += [(i, len(ahead) + j) for j, (_, estimate) in enumerate(found) if estimate.as_good or estimate.best]
     left = 3 if before else 2
-    return Table(head=head, rows=rows, widths=widths, left_columns=left, bold=bold, print_size_pt=6.4, breakable=True)
+    return Table(
+        head=head, rows=rows, widths=widths, left_columns=left, bold=bold, print_size_pt=6.4, breakable=True, caption=caption
+    )
 
 
 def _interval(estimate: Estimate, figure: Figure) -> str:
@@ -106,7 +112,14 @@ def given_table(arena: Arena) -> Table:
         rows.append([str(entrant.number), entrant.title, entrant.given, parameters or "none", costs])
     head = ["No.", "Law", "What it makes use of", "Parameters: default → tuned", "Cost [m]"]
     return Table(
-        head=head, rows=rows, widths=[0.4, 1.6, 2.7, 3.4, 1.2], left_columns=5, prose=True, breakable=True, print_size_pt=6.4
+        caption="What each law was given: its way to the reference, its parameters, and what either set costs the tuner.",
+        head=head,
+        rows=rows,
+        widths=[0.4, 1.6, 2.7, 3.4, 1.2],
+        left_columns=5,
+        prose=True,
+        breakable=True,
+        print_size_pt=6.4,
     )
 
 

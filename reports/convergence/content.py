@@ -1,7 +1,5 @@
 """The report of a convergence study."""
 
-from dataclasses import replace
-
 import pandas as pd
 
 from common.run_layout import COUNTEREXAMPLES
@@ -28,7 +26,7 @@ def convergence_content(run: RunData) -> Findings:
     return Findings(
         flown=_flown(data),
         verdict=convergence_verdict(data),
-        picture=replace(pictures[0], name="first") if pictures else None,
+        picture=pictures[0] if pictures else None,
         sections=sections,
     )
 

@@ -58,7 +58,7 @@ def first_chart(design: Record) -> Chart | None:
         f"Steps of heading rate, airspeed and altitude from level flight at {speed(design['design_airspeed_mps'])}: as the linear"
         " design predicts them, and as flown in JSBSim."
     )
-    return Chart(name="first", caption=caption, panels=panels, columns=2, panel_height=0.34)
+    return Chart(name="first", caption=caption, panels=panels, columns=2)
 
 
 def _turn(design: Record) -> Chart:

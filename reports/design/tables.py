@@ -141,7 +141,12 @@ def pole_table(design: Record) -> Table:
         ]
         rows.append(cells)
     head = ["", "Largest real part [1/s]", "at", "Least damping [-]", "Frequency [rad/s]", "at"]
-    return Table(head=head, rows=rows, widths=[1.3, 1.2, 1.2, 1.1, 1.1, 1.2])
+    return Table(
+        caption="The slowest and the least damped pole, with and without the autopilot, and where they are.",
+        head=head,
+        rows=rows,
+        widths=[1.3, 1.2, 1.2, 1.1, 1.1, 1.2],
+    )
 
 
 def step_table(design: Record) -> Table:
@@ -158,7 +163,7 @@ def step_table(design: Record) -> Table:
         for response in responses_of(design, command)
     ]
     head = ["Step [rad/s, m/s, m]", "", "Rise 10–90 % [s]", "Overshoot [%]", "Altitude moves [m]", "Airspeed moves [m/s]"]
-    return Table(head=head, rows=rows, widths=[1.4, 1.1, 1.2, 1.0, 1.25, 1.5], left_columns=2)
+    return Table(caption="What the steps show.", head=head, rows=rows, widths=[1.4, 1.1, 1.2, 1.0, 1.25, 1.5], left_columns=2)
 
 
 def _moved(response: Record, key: str) -> str:
@@ -173,7 +178,9 @@ def verification_table(design: Record) -> Table:
     inputs = list(dict.fromkeys(row["input"] for row in design["verification"]))
     rows = [[_words(name), *(number(_percent(errors.get((name, output))), "{:.2f}") for output in outputs)] for name in inputs]
     head = ["Input", *(f"{_words(output)} [%]" for output in outputs)]
-    return Table(head=head, rows=rows, widths=[1.3] + [1.0] * len(outputs))
+    return Table(
+        caption="Error of the linear model, by input and output.", head=head, rows=rows, widths=[1.3] + [1.0] * len(outputs)
+    )
 
 
 def _percent(error: Any) -> float | None:
@@ -204,7 +211,13 @@ def weight_table(design: Record) -> Table:
     pairs.append(["autopilot: computations a second [Hz]", f"{design['autopilot_rate_hz']:.3g}"])
     half = -(-len(pairs) // 2)
     rows = [[*left, *(pairs[half + i] if half + i < len(pairs) else ["", ""])] for i, left in enumerate(pairs[:half])]
-    return Table(head=["Weight", "Value", "Weight", "Value"], rows=rows, widths=[2.0, 0.7, 2.0, 0.7], left_columns=4)
+    return Table(
+        caption="Acceptable deviations, from which the gains follow, and the autopilot's rate.",
+        head=["Weight", "Value", "Weight", "Value"],
+        rows=rows,
+        widths=[2.0, 0.7, 2.0, 0.7],
+        left_columns=4,
+    )
 
 
 def _weight(name: str) -> str:
@@ -222,4 +235,12 @@ def envelope_table(envelope: Record) -> Table:
         ["Largest bank commanded", f"{envelope['bank_max_deg']:g}°"],
         ["Bank of the study", f"{envelope['bank_deg']:g}°"],
     ]
-    return Table(head=["", ""], rows=rows, widths=[1.6, 3.0], left_columns=2, prose=True, print_size_pt=8.0)
+    return Table(
+        caption="Where the aircraft may be flown, and where the study flies it.",
+        head=["", ""],
+        rows=rows,
+        widths=[1.6, 3.0],
+        left_columns=2,
+        prose=True,
+        print_size_pt=8.0,
+    )

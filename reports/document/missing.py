@@ -57,6 +57,13 @@ def missing_sections(run: RunData) -> list[Section]:
         f"{len(names)} {'files' if len(names) > 1 else 'file'} of this run cannot be shown; scenarios.run with --resume makes them"
         " again."
     )
-    table = Table(head=["File", "State", "What is not shown"], rows=rows, widths=[3.0, 1.0, 4.0], prose=True, left_columns=3)
+    table = Table(
+        caption="Files that are gone or cannot be read.",
+        head=["File", "State", "What is not shown"],
+        rows=rows,
+        widths=[3.0, 1.0, 4.0],
+        prose=True,
+        left_columns=3,
+    )
     blocks: list[Block] = [Text(text), table, *([Text(f"{more} more are missing.")] if more > 0 else [])]
     return [Section(anchor="missing", title="Missing files", nav_title="Missing", blocks=blocks)]

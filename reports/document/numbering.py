@@ -1,4 +1,4 @@
-"""Numbers of figures and tables, the same on the screen and in print."""
+"""Numbers of figures and tables, the same on the screen and in print, and the size of page 1's picture."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -6,6 +6,9 @@ from itertools import count
 
 from reports.document.blocks import Block, Heading, Section, Table
 from reports.document.chart import Chart
+
+PICTURE_HEIGHT = 0.66
+"""Height of the panels of page 1's picture, over its width: what a printed page has room for below the figures [-]."""
 
 
 def numbered(picture: Chart | None, sections: Iterable[Section]) -> tuple[Chart | None, list[Section]]:
@@ -15,8 +18,9 @@ def numbered(picture: Chart | None, sections: Iterable[Section]) -> tuple[Chart 
     heading's or its section's title. Flights of a picker are numbered by what prints them: only some are printed.
     """
     figures, tables = count(1), count(1)
-    first = replace(picture, number=f"Figure {next(figures)}") if picture else None
-    return first, [replace(section, blocks=_numbered(section, figures, tables)) for section in sections]
+    if picture:
+        picture = replace(picture, name="first", panel_height=PICTURE_HEIGHT / picture.rows, number=f"Figure {next(figures)}")
+    return picture, [replace(section, blocks=_numbered(section, figures, tables)) for section in sections]
 
 
 def _numbered(section: Section, figures: "count[int]", tables: "count[int]") -> list[Block]:

@@ -13,6 +13,7 @@ def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
     """Return every parameter of the run with its unit and meaning, and rows for what follows from them."""
     rows = [[p["key"], parameter_value(p["value"], p["key"]), p["unit"], p["meaning"]] for p in run.manifest["parameters"]]
     return Table(
+        caption="Every parameter, with its unit and meaning.",
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
         rows=[*rows, *derived],
         widths=[3.1, 1.2, 0.7, 3.9],
@@ -57,15 +58,6 @@ def length(metres: float) -> str:
 def limit(value: float) -> str:
     """Return a limit to three digits: one that is fitted to an aircraft has many."""
     return f"{float(f'{value:.3g}'):g}"
-
-
-def vehicles_flown(run: RunData) -> str:
-    """Return a sentence on the vehicle of a run."""
-    fidelity, by_equation = run_config(run).get("fidelity"), f"the kinematic vehicle, {kinematic(run)}"
-    if fidelity == "kinematic":
-        return f"Flown with {by_equation}, not with an aircraft."
-    name = run.innerloop["title"] if run.innerloop else run_config(run).get("aircraft", "unknown")
-    return f"Aircraft: {name}, in six degrees of freedom" + (f"; and {by_equation}." if fidelity == "both" else ".")
 
 
 def vehicle_flown(run: RunData) -> str:

@@ -117,4 +117,9 @@ def _table(trial: Trial, pairs: pd.DataFrame) -> Table:
     head = [
         "Variant", "Flights", "Keep-out violations", "Closest beyond r_min [m]", "Tracking rms, median [m]", "largest [m]", "Met",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[2.2, 0.8, 1.0, 1.2, 1.2, 1.0, 0.8])
+    return Table(
+        caption="Flights beside the same flights with some keys set otherwise.",
+        head=head,
+        rows=rows,
+        widths=[2.2, 0.8, 1.0, 1.2, 1.2, 1.0, 0.8],
+    )

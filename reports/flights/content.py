@@ -1,9 +1,7 @@
 """The report of flights: its sections are by what the run has."""
 
-from dataclasses import replace
-
 from reports.design.section import innerloop_section
-from reports.document.blocks import Block, Findings, Heading, Section, Text
+from reports.document.blocks import Block, Findings, Section, Text
 from reports.document.chart import Chart
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import closest_and_typical, flights_in_words
@@ -50,19 +48,19 @@ def flights_content(run: RunData) -> Findings:
 def _picture(sections: list[Section]) -> Chart | None:
     """Return the first figure of a report without a time history: how near flights came, if it is that of a Monte Carlo study."""
     charts = (block for section in sections for block in section.blocks if isinstance(block, Chart))
-    return next((replace(chart, name="first") for chart in charts), None)
+    return next(charts, None)
 
 
 def _overview(trials: list[Trial]) -> Section:
-    criteria: list[Block] = [Heading("Criteria beside the keep-out area, and the worst measured values"), criteria_table(trials)]
+    criteria = criteria_table(trials)
     if len(trials) == 1:
-        return Section(anchor="trials", title="Criteria and the worst measured values", nav_title="Criteria", blocks=criteria[1:])
+        return Section(anchor="trials", title="Criteria and the worst measured values", nav_title="Criteria", blocks=[criteria])
     meaning = (
         "Completed: the aircraft came through, settled, and flew the crossings that were asked for, or one at least. Met: it kept"
         " out, completed, and met every other criterion. Kept out: known to have kept out to its end. Distances are from the"
         " keep-out sphere's centre, or horizontal where the keep-out area is a cylinder."
     )
-    return Section(anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), *criteria])
+    return Section(anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), criteria])
 
 
 def _trial(trial: Trial, *, only: bool) -> Section:

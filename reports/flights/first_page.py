@@ -20,9 +20,6 @@ _CAPTION = (
     " approach; dots are where the keep-out guard changed commands."
 )
 
-_HEIGHT = 0.64
-"""Height of panels side by side, over the width of all: what page 1 has room for [-]."""
-
 _CALM = 0.05
 """Speed of the wind below which air counts as still [m/s]."""
 
@@ -49,7 +46,7 @@ def hours(flown: pd.DataFrame) -> str:
 
 
 def _range(values: Array) -> str:
-    low, high = (f"{float(end):.3g}" for end in (np.nanmin(values), np.nanmax(values)))
+    low, high = (f"{round(float(end), 1):g}" for end in (np.nanmin(values), np.nanmax(values)))
     return low if low == high else f"{low} to {high}"
 
 
@@ -95,6 +92,6 @@ def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: st
         return None
     tracks = found[0][0]
     if len(found) == 1:
-        return replace(tracks, name="first", panel_height=_HEIGHT)
+        return tracks
     panels = [replace(chart.panels[0], title=name) for chart, name in found]
-    return replace(tracks, name="first", panels=panels, columns=len(panels), panel_height=_HEIGHT, caption=_CAPTION + told)
+    return replace(tracks, panels=panels, columns=len(panels), caption=_CAPTION + told)

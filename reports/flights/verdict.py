@@ -170,7 +170,7 @@ def _bound_figure(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> lis
     if bound is None:
         return []
     name = f"Probability of a keep-out violation in a flight, at most, with {percent(bound[1])} confidence"
-    return [Card(name, f"{bound[0]:.4g}")]
+    return [Card(name, percent(bound[0]))]
 
 
 def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Card]:

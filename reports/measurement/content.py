@@ -1,7 +1,6 @@
 """The report of a measured flight."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from reports.document.blocks import Block, Findings, Section
 from reports.document.chart import Chart
@@ -27,7 +26,7 @@ def measurement_content(run: RunData) -> Findings:
     figures = record["estimate"]["figures"]
     flown = f"A flight of {figures['duration_s']:.0f} s with {figures['passes']} passes through the plume: {_instrument(record)}."
     pictures = _there(over_time_chart(record), *([] if samples is None else _there(regression_chart(samples, record))))
-    picture = next((replace(chart, name="first") for chart in pictures if isinstance(chart, Chart)), None)
+    picture = next((chart for chart in pictures if isinstance(chart, Chart)), None)
     return Findings(flown=flown, verdict=measurement_verdict(record), picture=picture, sections=sections)
 
 

@@ -141,7 +141,7 @@ def method_table(flights: pd.DataFrame) -> Table:
         least = f"{float(np.min(clearance(own))):.1f}"
         rows.append([method_name(name) or "any", f"{len(own):,}", f"{len(inside):,}", first, least])
     head = ["Method", "Flights", "Violations", "First violation", "Closest beyond r_min [m]"]
-    return Table(head=head, rows=rows, widths=[1.6, 0.8, 0.8, 1.4, 1.4], left_columns=1)
+    return Table(caption="What each method has found.", head=head, rows=rows, widths=[1.6, 0.8, 0.8, 1.4, 1.4], left_columns=1)
 
 
 def worst_table(flights: pd.DataFrame, worst: list[dict[str, Any]]) -> Table:

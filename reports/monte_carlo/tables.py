@@ -15,6 +15,7 @@ def violation_table(statistics: Record) -> Table:
     level = percent(statistics["interval_confidence"])
     counted = [("Flights with a measurement", "measured"), ("All, those of unknown end counted as violations", "pessimistic")]
     return Table(
+        caption="Flights that violated the keep-out area, and the interval of that probability.",
         head=[
             "Counted",
             "Flights",
@@ -71,7 +72,13 @@ def quantile_table(statistics: Record) -> Table:
         cells = [_quantile(figure, quantiles.get(probability)) for probability in every]
         rows.append([figure.label, f"{found['known']:,}{missing}", *cells])
     head = ["Figure", "Flights", *(percent(probability) for probability in every)]
-    return Table(head=head, rows=rows, widths=[1.5, 0.9, *([1.1] * len(every))], print_size_pt=6.5)
+    return Table(
+        caption="Quantiles of each figure, each with its interval.",
+        head=head,
+        rows=rows,
+        widths=[1.5, 0.9, *([1.1] * len(every))],
+        print_size_pt=6.5,
+    )
 
 
 def _quantile(figure: Figure, quantile: Record | None) -> str:

@@ -75,12 +75,14 @@ def sim_1_charts(run: RunData) -> list[Chart]:
         ),
         _side_by_side(
             run, ["sim1"], _figure_4, name="fig4", labels=("Time [s]", "Angle [rad]"),
-            caption="Figure 4: φ, course of the UAV against that of z, goes to zero first; then φ_r follows as the unforced system"
+            caption="The paper's figure 4: "
+            "φ, course of the UAV against that of z, goes to zero first; then φ_r follows as the unforced system"
             " does.",
         ),
         _side_by_side(
             run, ["sim1"], _figure_5, name="fig5", labels=("Time [s]", "Distance to the reference [m]"),
-            caption="Figure 5: while |φ| ≤ |φ_r| the distance does not rise. Where φ_r = φ the rate of V₁ vanishes, eq. (35): a"
+            caption="The paper's figure 5: "
+            "while |φ| ≤ |φ_r| the distance does not rise. Where φ_r = φ the rate of V₁ vanishes, eq. (35): a"
             " peak or a trough of the distance while φ is not zero, a saddle point once it is. The aircraft closes in there too,"
             " for it trims its airspeed.",
         ),
@@ -93,12 +95,13 @@ def sim_2_charts(run: RunData) -> list[Chart]:
     return [
         _side_by_side(
             run, cases, _figure_6, name="fig6", aspect=1.2, panel_height=0.42, labels=("East [m]", "North [m]"),
-            caption="Figure 6: both UAVs start in front of the reference and fly the other way. UAV 1 steers by the line of sight,"
-            " UAV 2 by the δ formulation. Rings: starts.",
+            caption="The paper's figure 6: both UAVs start in front of the reference and fly the other way. UAV 1 steers by the"
+            " line of sight, UAV 2 by the δ formulation. Rings: starts.",
         ),
         _side_by_side(
             run, cases, _figure_7, name="fig7", labels=("Time [s]", "Heading-rate demand [rad/s]"),
-            caption="Figure 7: the heading-rate demand of each law. Dashed: ±ω_max. The kinematic UAV 1 flies its demand, as in the"
+            caption="The paper's figure 7: "
+            "the heading-rate demand of each law. Dashed: ±ω_max. The kinematic UAV 1 flies its demand, as in the"
             " paper; the aircraft's commands are cut at ω_max.",
         ),
         _side_by_side(
@@ -144,12 +147,14 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         _side_by_side(
             run, ["sim3"], figure_8, name="fig8", aspect=4.6, labels=("East [m]", "North [m]"), shown_after=100.0, columns=1,
             panel_height=0.2,
-            caption="Figure 8: over the ground. The UAV starts at a random place behind the vessel. Diamonds: plume crossings"
-            " after settling, of which the first hundred seconds are shown; ship, plume and keep-out area at the end of them.",
+            caption="The paper's figure 8: over the ground. The UAV starts at a random place behind the vessel. Diamonds: plume"
+            " crossings after settling, of which the first hundred seconds are shown; ship, plume and keep-out area at the end of"
+            " them.",
         ),
         _side_by_side(
             run, ["sim3"], figure_9, name="fig9", labels=("Time [s]", "Distance to the vessel [m]"), shown_after=math.inf,
-            caption="Figure 9: distance between the vessel, at its funnel, and the UAV; dashed the radius of the keep-out area.",
+            caption="The paper's figure 9: "
+            "distance between the vessel, at its funnel, and the UAV; dashed the radius of the keep-out area.",
         ),
     ]  # fmt: skip
 

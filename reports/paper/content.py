@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -47,7 +46,6 @@ def paper_content(run: RunData) -> Findings:
             blocks=[
                 Heading("What each simulation sets"),
                 _case_table(run),
-                Heading("Every other parameter"),
                 parameter_table(run),
             ],
         ),
@@ -66,7 +64,7 @@ def _picture(run: RunData) -> Chart | None:
     rows = {fidelity: row for fidelity in VEHICLES if (row := rows_by_id(run).get(f"sim3_{fidelity}")) is not None}
     shown = [(trial, row, f"Simulation 3: {vehicle_name(run, fidelity)}") for fidelity, row in rows.items()]
     charts = (chart for figures in (sim_1_charts, sim_2_charts) for chart in figures(run) if chart.panels)
-    return track_picture(shown) or next((replace(chart, name="first") for chart in charts), None)
+    return track_picture(shown) or next(charts, None)
 
 
 _NUMBERS = (
@@ -125,7 +123,12 @@ def _flight_table(run: RunData) -> Table:
         "Flight", "Settled [s]", "Distance at the end", "Demand [rad/s]", "Interval [s]", "Crossing [m]", "Closest [m]",
         "Outcome",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[1.9, 0.9, 1.1, 1.1, 0.9, 1.0, 1.0, 1.6])
+    return Table(
+        caption="The flights, a row each, with their outcome.",
+        head=head,
+        rows=rows,
+        widths=[1.9, 0.9, 1.1, 1.1, 0.9, 1.0, 1.0, 1.6],
+    )
 
 
 def _number_table(run: RunData) -> Table:
@@ -171,7 +174,13 @@ def _number_table(run: RunData) -> Table:
         ["Sim. 2", "line of sight: distance at the end", "not printed", *both("sim2_los", end, _END)],
     ]  # fmt: skip
     head = ["", "What section V says", "Printed", "Kinematic", "Six degrees of freedom"]
-    return Table(head=head, rows=table, widths=[0.6, 2.6, 0.9, 1.7, 1.7], left_columns=2)
+    return Table(
+        caption="What section V of the paper prints, and what both vehicles show.",
+        head=head,
+        rows=table,
+        widths=[0.6, 2.6, 0.9, 1.7, 1.7],
+        left_columns=2,
+    )
 
 
 def _rise_once_inside(run: RunData, flight_id: str) -> str:

@@ -33,7 +33,7 @@ def write_pdf(report: Content, path: Path, *, all_flights: bool = False) -> None
 def _data(report: Content, directory: Path, *, all_flights: bool) -> Data:
     pickers = [block for section in report.sections for block in section.blocks if isinstance(block, FlightPicker)]
     sections = [_section(section, directory) for section in report.sections]
-    # Flights have pages of their own at the end, and their figures the numbers after all others.
+    # Flights have pages of their own before the provenance, and their figures the numbers after all others.
     numbers = count(figures_in(report.picture, report.sections) + 1)
     flights = [flight for picker in pickers for flight in picker.flights if all_flights or flight.printed]
     head, verdict = report.letterhead, report.verdict
