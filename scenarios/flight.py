@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
@@ -117,13 +118,16 @@ class FlightWork:
             for instrument in instruments:
                 if isinstance(instrument, EvaluatedInstrument):
                     evaluation = instrument.evaluate(record.column, record.settled_at)
-                    history[list(instrument.COLUMNS)] = evaluation.columns
+                    # Each sample stands until the next, where every step is recorded.
+                    held = np.searchsorted(record.column("time_s"), history["time_s"], side="right") - 1
+                    history[list(instrument.COLUMNS)] = evaluation.columns[held]
                     row |= evaluation.figures
                     tables |= {file: [named | of for of in rows] for file, rows in evaluation.tables.items()}
                     document = evaluation.document or document
             if sniffer := next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None):
                 noise = sniffer.spec.known("co2").noise
-                row |= finding_figures(history, request.scenario.flight, noise=noise, enough=record.enough)
+                sampled = history[:: plan.log_interval] if task.every_step else history
+                row |= finding_figures(sampled, request.scenario.flight, noise=noise, enough=record.enough)
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
             row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}
