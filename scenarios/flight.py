@@ -120,7 +120,7 @@ class FlightWork:
             for instrument in instruments:
                 if isinstance(instrument, EvaluatedInstrument):
                     evaluation = instrument.evaluate(record.column, _measured_from(request, record))
-                    # A history of every step has more rows than samples; each sample stands until the next.
+                    # Each sample stands until the next, where every step is recorded.
                     held = np.searchsorted(record.column("time_s"), history["time_s"], side="right") - 1
                     history[list(instrument.COLUMNS)] = evaluation.columns[held]
                     row |= evaluation.figures
@@ -128,7 +128,8 @@ class FlightWork:
                     document = evaluation.document or document
             if sniffer := next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None):
                 noise = sniffer.spec.known("co2").noise
-                row |= finding_figures(history, request.scenario.flight, noise=noise, enough=record.enough)
+                sampled = history[:: plan.log_interval] if task.every_step else history
+                row |= finding_figures(sampled, request.scenario.flight, noise=noise, enough=record.enough)
             tables |= self.more_tables(request, plan, record, row)
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}

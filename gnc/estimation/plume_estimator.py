@@ -33,9 +33,6 @@ _CHANCE = 0.02
 _STRENGTH_ERROR = 0.25
 """Error of the strength of a pass, over itself, by width, speed and gusts [-]: an assumption. It also covers the grid's step."""
 
-_SPREAD_SHARE, _STRENGTH_SHARE = 0.02, 0.05
-"""Share of a cell that goes to the next one."""
-
 _LOOK = 1.0
 """Way along the plume to an independent centre, over the correlation length of the meander [-]."""
 
@@ -147,13 +144,17 @@ class PlumeEstimator:
         off = heights - (altitudes[:, np.newaxis] if altitudes.ndim == 1 else altitudes)
         return self._weights, self.grid.chances(off, self._looks, self._least)
 
+    def expected_deviation(self, altitudes: Array) -> Array:
+        """Return what the standard deviation of the height is expected to be after a pass at each altitude [m], shape (n,)."""
+        heights = self.grid.coarse_heights(self._heights)
+        off = heights - altitudes[:, np.newaxis]
+        return self.grid.expected_deviation(self._weights, heights, off, self._looks)
+
     def _diffuse(self, time: float) -> None:
         """Let the axis wander for ``time`` [s], and let some of what is known be forgotten."""
         prior, grid = self.prior, self.grid
-        shares = [_SPREAD_SHARE, 0.0, _STRENGTH_SHARE, 0.0]
         for axis, drift, values in ((1, prior.height_drift, grid.height), (3, prior.bearing_drift, grid.bearing)):
-            shares[axis] = min(0.25, 0.5 * drift**2 * time / (values[1] - values[0]) ** 2)
-        for axis, share in enumerate(shares):
+            share = min(0.25, 0.5 * drift**2 * time / (values[1] - values[0]) ** 2)
             moved = self.cells.swapaxes(0, axis)
             flow = share * (moved[1:] - moved[:-1])
             moved[:-1] += flow

@@ -33,6 +33,9 @@ _SPREAD_WEIGHTS = (0.25, 0.5, 0.25)
 _MIDDLE, _COARSE = 1, 2
 """The expected spread among the three, and cells of height that count as one where passes to come are weighed [-]."""
 
+_TINY = 1e-300
+"""Least probability that is divided by [-]."""
+
 _SPREAD_MIN = 0.4
 """Least spread over that at the expected height [-]."""
 
@@ -129,6 +132,30 @@ class PlumeGrid:
         meander = self._expected.meander_z
         far, middle = reach / meander, off / meander
         result: Array = 1.0 - (1.0 - ndtr(far - middle) + ndtr(-far - middle)) ** looks
+        return result
+
+    def expected_deviation(self, weights: Array, heights: Array, off: Array, looks: float) -> Array:
+        """Return the standard deviation of the height that is expected after a pass whose strength is read [m], shape (n,).
+
+        Parameters
+        ----------
+        weights : probability of each height and strength of ``coarse``, shape (h', c)
+        heights : of the axes, shape (h',) [m]
+        off : heights above each of the passes, shape (n, h') [m]
+        looks : as of ``fading``
+        """
+        reach = self._edges * self.sigma_z[_MIDDLE, ::_COARSE, np.newaxis]
+        fading = np.diff(self._within(reach, off[..., np.newaxis], looks), axis=-1, prepend=0.0)
+        # By height and reading, summed over the strengths that lead to it.
+        padded = np.pad(weights, ((0, 0), (_FADE - 1, _FADE - 1)))
+        windows = np.lib.stride_tricks.sliding_window_view(padded, _FADE, axis=1)
+        joint = np.einsum("nhf,hof->nho", fading, windows)
+        nothing = weights.sum(axis=1) * (1.0 - fading.sum(axis=-1))
+        joint = np.concatenate([joint, nothing[..., np.newaxis]], axis=-1)
+        total = np.maximum(joint.sum(axis=1), _TINY)
+        mean = np.einsum("nho,h->no", joint, heights)
+        square = float(weights.sum(axis=1) @ heights**2)
+        result: Array = np.sqrt(np.maximum(square - (mean**2 / total).sum(axis=1), 0.0))
         return result
 
     def over_strengths(self, faint: Array) -> Array:

@@ -19,8 +19,8 @@ _HORIZON = 8
 _KNOWN = 0.35
 """Deviation of the height over the spread of a pass [-], down to which the plume's height is probed."""
 
-_PROBE = 0.8
-"""Height off the axis at which it is probed, over the spread of a pass [-]: a Gaussian is steepest at 1."""
+_PROBE, _PROBES = 1.0, 9
+"""How far off the estimated height it is probed, over the spread of a pass, and heights that are weighed [-, -]."""
 
 
 class Demand(NamedTuple):
@@ -63,23 +63,27 @@ class HeightSearch:
     climb_rate : that the vehicle climbs and sinks at [m/s]
     """
 
-    __slots__ = ("_above", "_climb_rate", "_heights", "_highest", "_lowest")
+    __slots__ = ("_climb_rate", "_heights", "_highest", "_lowest")
 
     def __init__(self, *, lowest: float, highest: float, climb_rate: float) -> None:
         self._lowest, self._highest, self._climb_rate = lowest, highest, climb_rate
         self._heights: Array = np.linspace(lowest, highest, max(2, 1 + math.ceil((highest - lowest) / _STEP)))
-        self._above = False
 
     def next_demand(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> Demand:
         """Return where to cross next; arguments as of ``Search``."""
         if estimator.state is not PlumeState.FOUND:
             return Demand(self._soonest(estimator, altitude, self._climb_rate * pass_time), estimator.offset)
-        height = estimator.height
         spread = math.hypot(estimator.sigma_z, estimator.prior.meander_z)
+        height = estimator.height
         if estimator.height_deviation > _KNOWN * spread:
-            self._above = not self._above
-            height += (_PROBE if self._above else -_PROBE) * spread
+            height = self._narrowest(estimator, _PROBE * spread)
         return Demand(min(max(height, self._lowest), self._highest), estimator.offset)
+
+    def _narrowest(self, estimator: PlumeEstimator, reach: float) -> float:
+        """Return the height within ``reach`` [m] of the estimated one at which a pass says most of the axis' height."""
+        low, high = (min(max(estimator.height + side * reach, self._lowest), self._highest) for side in (-1.0, 1.0))
+        altitudes = np.linspace(low, high, _PROBES)
+        return float(altitudes[int(estimator.expected_deviation(altitudes).argmin())])
 
     def _soonest(self, estimator: PlumeEstimator, altitude: float, climb: float) -> float:
         """Return the height with the least expected time to find, where ``climb`` [m] is what a pass leaves time for."""
