@@ -15,13 +15,17 @@ _SHOWN = (
 )  # fmt: skip
 """Figures that have panels."""
 
+_PAIRS_MIN = 3
+"""Pairs that make a picture: of fewer the table says it all."""
+
 _FIGURES_MAX = 2
 """Figures of flights in one chart, a row of panels each: two charts fill a page."""
 
 
 def pair_charts(pairs: Pairs, found: dict[str, Difference]) -> list[Chart]:
     """Return, figure by figure, one run over the first, and beside it the differences; nothing where no figure differs."""
-    shown = [found[name] for name in _SHOWN if name in found and not found[name].is_none]
+    known = [found[name] for name in _SHOWN if name in found and not found[name].is_none]
+    shown = [difference for difference in known if len(difference.known) >= _PAIRS_MIN]
     groups, over = _groups(pairs), _inputs(pairs)
     panels = [
         (_scatter(difference, groups, pairs), _changes(difference, *over, groups) if over else _ranked(difference, groups))

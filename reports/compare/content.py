@@ -98,6 +98,8 @@ def _configuration(runs: Sequence[Run]) -> list[Block]:
 
 def _figures(runs: Sequence[Run]) -> list[Block]:
     text = "Of every flight of each run, whether or not another run has it too. Figures after settling are of flights that settled."
+    if len({len(run.data.summary) for run in runs}) > 1:
+        text += " There is no difference from a run with another number of flights; those of the paired flights are below."
     return [Text(text), side_by_side(runs)]
 
 
@@ -172,9 +174,8 @@ def headline(compared: Sequence[Compared]) -> str:
     worse, better = (sum(count(mask) for mask in masks) for masks in zip(*(_turned(of.pairs) for of in compared), strict=True))
     if not worse and not better:
         return f"No criterion changed in {what}; figures differ"
-    parts = [f"{worse:,} no longer meet{'s' * (worse == 1)} the criteria"] * bool(worse)
-    parts += [f"{better:,} newly meet{'s' * (better == 1)} them" if worse else f"{better:,} newly meet the criteria"] * bool(better)
-    return f"Of {what}, {', '.join(parts)}"
+    turned = [f"{n:,} {words}{'s' * (n == 1)}" for n, words in ((worse, "no longer meet"), (better, "newly meet")) if n]
+    return f"Of {what}, {' and '.join(turned)} the criteria"
 
 
 def _turned(pairs: Pairs) -> tuple[Mask, Mask]:

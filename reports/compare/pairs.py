@@ -123,6 +123,6 @@ def _matched(one: pd.DataFrame, two: pd.DataFrame, keys: list[str]) -> pd.DataFr
 
 def _differs(before: "pd.Series[Any]", after: "pd.Series[Any]") -> Mask:
     """Return which values differ; two that are missing do not."""
-    one, two = before.to_numpy(dtype=object), after.to_numpy(dtype=object)
-    differs: Mask = np.array([not (a == b or (pd.isna(a) and pd.isna(b))) for a, b in zip(one, two, strict=True)], dtype=np.bool_)
+    equal = np.asarray(before.to_numpy() == after.to_numpy(), dtype=np.bool_)
+    differs: Mask = ~(equal | (before.isna().to_numpy() & after.isna().to_numpy()))
     return differs

@@ -18,7 +18,10 @@ RUNS_MAX = 6
 _WITHOUT_FLIGHTS = ("design", "measurement", "convergence")
 """Studies that fly nothing."""
 
-_ENTRIES = (*FLIGHT_ENTRIES, "name", "overrides", "config_hash", "fingerprint", "packages", "flights_planned")
+_ENTRIES = (
+    *FLIGHT_ENTRIES, "name", "overrides", "config_hash", "fingerprint", "packages", "git_revision", "python", "platform",
+    "flights_planned",
+)  # fmt: skip
 _COLUMNS = (
     "flight_id", "trial", "seed", "outcome", "message", "criteria_met", "kept_out", "keepout_violations", "keepout_radius_m",
     "min_distance_m", "settling_time_s", "tracking_error_rms_m", "duration_s",

@@ -10,7 +10,7 @@ from reports.compare.content import Compared
 from reports.compare.figures import MEASURES
 from reports.run.columns import met
 
-_NAMES = ("run", "flight_id", "trial", "seed", "criteria_met_first", "criteria_met")
+_NAMES = ("run", "directory", "flight_id", "trial", "seed", "criteria_met_first", "criteria_met")
 
 
 def write_differences(compared: Sequence[Compared], path: Path) -> None:
@@ -27,7 +27,7 @@ def _rows(compared: Compared, names: Sequence[str]) -> Iterator[list[object]]:
     pairs = compared.pairs
     was_met, is_met = met(pairs.before), met(pairs.after)
     for i, (flight, trial, seed) in enumerate(zip(pairs.names, pairs.before["trial"], pairs.before["seed"], strict=True)):
-        row: list[object] = [pairs.other.name, flight, str(trial), seed, bool(was_met[i]), bool(is_met[i])]
+        row: list[object] = [pairs.other.letter, pairs.other.name, flight, str(trial), seed, bool(was_met[i]), bool(is_met[i])]
         for name in names:
             difference = compared.found.get(name)
             values = (difference.before, difference.after, difference.change) if difference else ()

@@ -12,7 +12,8 @@ from reports.compare.pairs import Pairs
 from reports.compare.runs import Run
 from reports.document.blocks import Table
 from reports.document.tables import number, outcome
-from reports.run.columns import Array, Mask, column, completed, count, kept_out, lost, measured, met
+from reports.monte_carlo.names import Figure
+from reports.run.columns import Array, Mask, column, completed, count, kept_out, lost, met
 
 LISTED_MAX = 40
 """Flights that are listed one by one."""
@@ -54,21 +55,21 @@ _WHOLE = (
 
 
 def side_by_side(runs: Sequence[Run]) -> Table:
-    """Return the figures of each run, of all of its flights, and their differences from those of the first."""
+    """Return the figures of each run, of all of its flights, and their differences from the first, where both have as many."""
     tables = [run.data.summary for run in runs]
     sizes = [len(rows) for rows in tables]
+    alike = [size == sizes[0] for size in sizes[1:]]
     rows = [["Flights", *(f"{size:,}" for size in sizes), *(signed(size - sizes[0], 0) for size in sizes[1:])]]
     for words, chosen in _COUNTS.items():
         counts = [count(chosen(table)) for table in tables]
-        # Of other numbers of flights a difference of counts says nothing.
-        changes = [signed(n - counts[0], 0) if size == sizes[0] else "–" for n, size in zip(counts[1:], sizes[1:], strict=True)]
+        changes = [signed(found - counts[0], 0) if same else "–" for found, same in zip(counts[1:], alike, strict=True)]
         rows.append([words, *(f"{found:,} of {size:,}" for found, size in zip(counts, sizes, strict=True)), *changes])
     for whole in _WHOLE:
         figure = MEASURES[whole.measure].figure
-        values = [_taken(whole, measured(table)) for table in tables]
+        values = [_taken(whole, table) for table in tables]
         if any(value is not None for value in values):
             unit = "" if figure.unit == "-" else f" [{figure.unit}]"
-            changes = [_signed(value, values[0], figure.digits) for value in values[1:]]
+            changes = [_change(value, values[0], figure) if same else "–" for value, same in zip(values[1:], alike, strict=True)]
             rows.append([f"{whole.words}{unit}", *(number(value, _pattern(figure.digits)) for value in values), *changes])
     letters = [run.letter for run in runs]
     return Table(
@@ -86,8 +87,8 @@ def _taken(whole: _Whole, rows: pd.DataFrame) -> float | None:
     return float(whole.taken(known)) if len(known) else None
 
 
-def _signed(value: float | None, first: float | None, digits: int) -> str:
-    return "–" if value is None or first is None else signed(value - first, digits)
+def _change(value: float | None, first: float | None, figure: Figure) -> str:
+    return "–" if value is None or first is None else signed(value - first, figure.digits)
 
 
 def signed(value: float, digits: int) -> str:

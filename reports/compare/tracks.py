@@ -28,7 +28,7 @@ _FAR = 1.6
 _ERROR_MIN = 0.1
 """Floor of the tracking error's logarithmic axis [m]."""
 
-_COLOURS = ("blue", "green")
+_COLOURS = ("blue", "orange")
 """Of the first run and of the other."""
 
 

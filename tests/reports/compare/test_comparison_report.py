@@ -79,7 +79,7 @@ def test_the_table_of_pairs_has_each_figure_of_both_runs_and_their_difference(co
     before, after = (pd.read_csv(path / "summary.csv") for path in (first, larger))
     assert list(table["flight_id"]) == list(before["flight_id"])
     assert list(table["seed"]) == list(before["seed"])
-    assert list(table["run"]) == ["larger"] * 3
+    assert [*table["run"], *table["directory"]] == ["B"] * 3 + ["larger"] * 3
     assert list(table["criteria_met_first"]) == [True] * 3
     assert not table["criteria_met"].any()
     for name in ("min_distance_m", "tracking_error_rms_m", "settling_time_s", "duration_s"):
@@ -124,6 +124,15 @@ def test_a_flight_that_one_run_has_not_flown_yet_has_no_partner(first, same):
     (figures,) = blocks_of(report, Table, "figures")
     # Counts of 3 and of 2 flights have no difference that says anything.
     assert next(row for row in figures.rows if row[0] == "Flights that kept out")[1:] == ["3 of 3", "2 of 2", "–"]
+    assert [row[-1] for row in figures.rows] == ["-1"] + ["–"] * (len(figures.rows) - 1)
+
+
+def test_the_headline_counts_both_directions(first, same):
+    runs = read_runs([first, same])
+    runs[0].data.summary.loc[0, "criteria_met"] = False
+    assert headline(compare(runs)) == "Of 3 pairs of flights, 1 newly meets the criteria"
+    runs[1].data.summary.loc[1:, "criteria_met"] = False
+    assert headline(compare(runs)) == "Of 3 pairs of flights, 2 no longer meet and 1 newly meets the criteria"
 
 
 @pytest.mark.parametrize("change", [{"keepout_violations": 1}, {"outcome": "aircraft_lost"}])
