@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,7 +10,7 @@ from reports.compare.figures import MEASURES, Difference
 from reports.compare.pairs import Pairs
 from reports.compare.runs import Run
 from reports.document.blocks import Table
-from reports.document.tables import number, outcome
+from reports.document.tables import ending, number
 from reports.monte_carlo.names import Figure
 from reports.run.columns import Array, Mask, column, completed, count, kept_out, lost, met
 
@@ -132,12 +131,6 @@ def difference_table(pairs: Pairs, found: dict[str, Difference]) -> Table:
     return Table(head=head, rows=rows, widths=[2.7, 0.6, 0.9, 0.8, 1.0, 1.5, 1.6, 0.9], bold=bold)
 
 
-def _ended(row: "pd.Series[Any]") -> str:
-    """Return how a flight ended: all criteria that it failed, or why it was not completed, without the advice that follows."""
-    words = outcome(row)
-    return words if row["outcome"] == "completed" else words.split(";", maxsplit=1)[0]
-
-
 def changed_table(pairs: Pairs) -> Table | None:
     """Return the flights whose criteria changed, those that are no longer met first; None if there are none."""
     worse, better = pairs.no_longer_met, pairs.newly_met
@@ -149,8 +142,8 @@ def changed_table(pairs: Pairs) -> Table | None:
         [
             pairs.names[i],
             f"met in {first if worse[i] else other} alone",
-            _ended(pairs.before.iloc[i]),
-            _ended(pairs.after.iloc[i]),
+            ending(pairs.before.iloc[i]),
+            ending(pairs.after.iloc[i]),
         ]
         for i in places[:LISTED_MAX]
     ]

@@ -83,6 +83,12 @@ def outcome(row: "pd.Series[Any]") -> str:
     return f"{ended}: {message}" if message else ended
 
 
+def ending(row: "pd.Series[Any]") -> str:
+    """Return how a flight ended: every criterion that it failed, or why it was not completed, without the advice that follows."""
+    words = outcome(row)
+    return words if row["outcome"] == "completed" else words.split(";", maxsplit=1)[0]
+
+
 def parameter_value(value: Any, key: str = "") -> str:
     """Return the value of a parameter in words; some lists mean a range, which their key tells."""
     if isinstance(value, bool):

@@ -9,7 +9,7 @@ import pandas as pd
 from common.binomial import CONFIDENCE, percent, upper_bound
 from common.run_layout import SUMMARY
 from reports.document.blocks import Block, Table, Text
-from reports.document.tables import number, outcome
+from reports.document.tables import ending, number, outcome
 from reports.flights.criteria import counted, criteria_of
 from reports.flights.names import fault_name
 from reports.run.columns import clearance, column, completed, count, kept_out, lost, met, total, violated
@@ -179,7 +179,7 @@ def failed_blocks(run: RunData) -> list[Block]:
             number(row["nu"], "{:.2f}"),
             number(row["keepout_violations"], "{:.0f}"),
             number(row["min_distance_m"], "{:.1f}"),
-            outcome(row),
+            ending(row),
         ]
         for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()
     ]
