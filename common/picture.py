@@ -10,6 +10,9 @@ from pathlib import Path
 BYTES_MAX = 1_000_000
 """Largest file of a picture: it is written into every report."""
 
+_SVG = "{http://www.w3.org/2000/svg}svg"
+"""Root of an SVG document."""
+
 _SUFFIXES = {"image/png": ".png", "image/jpeg": ".jpg", "image/svg+xml": ".svg"}
 """Kinds of pictures that reports can show, and how the names of their files end."""
 
@@ -71,6 +74,17 @@ def _media_type(content: bytes) -> str | None:
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         pass
     try:
-        return "image/svg+xml" if ET.fromstring(content).tag == "{http://www.w3.org/2000/svg}svg" else None
+        return "image/svg+xml" if ET.fromstring(content).tag == _SVG and _is_printed(content) else None
     except (ET.ParseError, ValueError):
         return None
+
+
+def _is_printed(svg: bytes) -> bool:
+    """Return whether the library that sets reports for print can draw an SVG: one without a size, or with links, it cannot."""
+    import typst
+
+    try:
+        typst.compile(b'#image(bytes(sys.inputs.svg), format: "svg", width: 20pt)', sys_inputs={"svg": svg.decode()})
+    except typst.TypstError:
+        return False
+    return True

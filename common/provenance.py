@@ -21,13 +21,18 @@ _FOLDERS = re.compile(r"""(?<![^\s=,'"\[({])(?:~|[A-Za-z]:)?[/\\](?:[^,'"\])}]*[
 """The folders of an absolute path, up to its last name."""
 
 
+def without_folders(text: str) -> str:
+    """Return a text with the absolute paths in it cut to their last name."""
+    return _FOLDERS.sub("", text)
+
+
 def command_line(module: str, arguments: Sequence[str]) -> str:
     """Return the command line of a module, as a shell reads it, with no host and with absolute paths cut to their last name."""
     shown = []
     host = False
     for argument in arguments:
         option, equals, _ = argument.partition("=")
-        text = "HOST:PORT" if host else f"{option}=HOST:PORT" if equals and option in _HOSTS else _FOLDERS.sub("", argument)
+        text = "HOST:PORT" if host else f"{option}=HOST:PORT" if equals and option in _HOSTS else without_folders(argument)
         shown.append(shlex.quote(text))
         host = argument in _HOSTS
     return " ".join(["python -m", module, *shown])

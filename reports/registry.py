@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
+from common.provenance import without_folders
 from common.registry import announced, is_file_part
 from common.run_layout import MANIFEST
 from reports.arena.content import arena_content
@@ -62,7 +63,7 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
         title=title(run, settings or {}),
         letterhead=head,
         description=run.manifest["config"]["description"],
-        changes=", ".join(change for change in run.manifest["overrides"] if not change.strip().startswith("report.")),
+        changes=", ".join(without_folders(change) for change in run.manifest["overrides"] if not change.startswith("report.")),
         flown=found.flown,
         verdict=found.verdict,
         picture=picture,

@@ -1,5 +1,6 @@
 """Where a run comes from: how it was made, of which source and input, with which software, on which kind of host."""
 
+from common.provenance import without_folders
 from common.run_layout import FORMAT
 from reports.document.blocks import Section, Table
 from reports.document.tables import run_config
@@ -29,7 +30,7 @@ def _made(run: RunData, head: Letterhead) -> list[list[str]]:
     rows = [
         [of, f"{manifest['name']}: {manifest['title']}"],
         ["Command", manifest.get("command") or "not recorded: a program made the run"],
-        ["Changed for this run", ", ".join(manifest["overrides"]) or "nothing"],
+        ["Changed for this run", ", ".join(map(without_folders, manifest["overrides"])) or "nothing"],
         ["Began", head.when],
         ["State", manifest["state"]],
     ]

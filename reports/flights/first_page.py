@@ -52,27 +52,24 @@ def _range(values: Array) -> str:
 
 def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
     """Return the tracks of the flight that came closest and of the one with the median closest approach, if any has a record."""
-    flights = [
-        (trial, row, float(distance))
-        for trial in trials
-        for (_, row), distance in zip(trial.flown.iterrows(), clearance(trial.flown), strict=True)
-        if trial.run.has_history(str(row["flight_id"]))
-    ]
+    flights = []
+    for trial in trials:
+        flown = trial.flown
+        recorded = flown[[trial.run.has_history(str(flight_id)) for flight_id in flown["flight_id"]]]
+        flights += [(float(distance), trial, recorded, i) for i, distance in enumerate(clearance(recorded))]
     if not flights:
         return None
-    flights.sort(key=lambda flight: flight[2])
-    if len(flights) == 1:
-        trial, row, _ = flights[0]
-        return track_picture([(trial, row, "")])
-    chosen = {"Closest": flights[0], "Typical": flights[len(flights) // 2]}
+    flights.sort(key=lambda flight: flight[0])
+    places = {"Closest": 0, "Typical": len(flights) // 2} if len(flights) > 1 else {"": 0}
     several = len(trials) > 1
-    return track_picture(
-        [
-            (trial, row, f"{what}: {f'{trial.title}, ' * several}{flight_name(trial, row)}, {float(row['min_distance_m']):.1f} m")
-            for what, (trial, row, _) in chosen.items()
-        ],
-        told=" Closest: the flight with the closest approach. Typical: the one whose closest approach is the median.",
-    )
+    shown = []
+    for what, place in places.items():
+        _, trial, rows, i = flights[place]
+        row = rows.iloc[i]
+        name = f"{f'{trial.title}, ' * several}{flight_name(trial, row)}"
+        shown.append((trial, row, f"{what}: {name}, {float(row['min_distance_m']):.1f} m"))
+    told = " Closest: the flight with the closest approach. Typical: the one whose closest approach is the median."
+    return track_picture(shown, told=told)
 
 
 def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: str = "") -> Chart | None:

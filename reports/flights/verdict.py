@@ -234,4 +234,7 @@ def _worst(criteria: list[Criterion], key: str) -> Card | None:
     if not known:
         return None
     worst = max(known, key=lambda criterion: criterion.fraction)
-    return Card(f"{worst.what}, worst", worst.worst.split(";")[0], worst.limit, worst.fraction <= 1.0)
+    failed = sum(criterion.failed for criterion in criteria if criterion.key == key)
+    # Flights without the figure fail the criterion as well.
+    without = f", {failed:,} without" if failed and worst.fraction <= 1.0 else ""
+    return Card(f"{worst.what}, worst", worst.worst.split(";")[0] + without, worst.limit, not failed)

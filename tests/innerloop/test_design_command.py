@@ -72,3 +72,10 @@ def test_a_design_made_anew_leaves_no_report_of_the_older_one(tmp_path, designs)
     assert run_command("innerloop.design", "x8", "--out", out, "--no-report").status == 0
     # What somebody else put there stays.
     assert {path.name for path in out.iterdir()} == {"manifest.json", "innerloop.json", "model", "notes.txt"}
+
+
+def test_a_logo_that_is_no_picture_is_refused_before_anything_is_designed(tmp_path):
+    ended = run_command("innerloop.design", "x8", "--out", tmp_path / "x8", "--set", "report.logo=gone.png")
+    assert ended.status == 2
+    assert ended.errors.startswith("error: report.logo: 'gone.png' cannot be read")
+    assert not (tmp_path / "x8").exists()

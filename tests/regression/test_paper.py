@@ -159,7 +159,8 @@ def test_its_report_has_every_figure_for_both_vehicles_and_every_published_numbe
         for panel in charts[f"fig{number}"].panels:
             assert re.fullmatch(r".+ \[[^\]]+\]", panel.x_label)
             assert all(np.isfinite(line.y).all() and len(line.y) for line in panel.lines)
-    numbers = {row[1]: row[2:] for row in next(block for block in blocks if isinstance(block, Table)).rows}
+    (section,) = (section for section in report.sections if section.anchor == "numbers")
+    numbers = {row[1]: row[2:] for row in next(block for block in section.blocks if isinstance(block, Table)).rows}
     # Beside the printed number the reproduced ones, as in the summary.
     for what, printed, column in (
         ("smoke plume measurements every", "9.5 s", "crossing_interval_mean_s"),

@@ -87,9 +87,9 @@ def test_every_block_is_printed_and_each_flight_has_a_page(tmp_path):
     )
     write_pdf(a_report([Text("Text.")]), tmp_path / "text.pdf")
     write_pdf(a_report([table]), tmp_path / "table.pdf")
-    # Page 1, and one for the sections.
+    # Page 1, and one for the sections; with flights, theirs, and one for the last section behind them.
     assert pages(tmp_path / "text.pdf") == 2
-    assert pages(tmp_path / "flights.pdf") == 4
+    assert pages(tmp_path / "flights.pdf") == 5
     assert headings(tmp_path / "flights.pdf") == {
         "About this run", "The first section", "Heading", "Second section", "Page a", "Page b",
     }  # fmt: skip
