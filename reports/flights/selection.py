@@ -11,6 +11,7 @@ from reports.document.blocks import Block, FlightContent, FlightPicker, Section,
 from reports.document.tables import number, outcome
 from reports.flights.names import flight_name
 from reports.flights.single_flight import flight_charts
+from reports.replay.flight_scene import flight_scene
 from reports.run.columns import clearance, column, met, violated
 from reports.run.trials import Trial
 
@@ -62,6 +63,7 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
         label=f"{name} · {state.split(':', maxsplit=1)[0]}",
         title=f"{name}: {state} ({world or 'not flown'})",
         charts=flight_charts(trial, row),
+        scene=flight_scene(trial, row),
     )
 
 

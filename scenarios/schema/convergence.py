@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from scenarios.schema.report import ReportConfig
 from scenarios.schema.section import Positive, Section
 
 LawName = Literal["lyapunov", "cascade", "cascade_cut"]
@@ -66,3 +67,4 @@ class ConvergenceScenario(Section):
     """Of the initial states and of the references [-]."""
     ensemble: Ensemble = Ensemble()
     guidance: EnsembleGuidance = EnsembleGuidance()
+    report: ReportConfig = ReportConfig()

@@ -21,6 +21,7 @@ from scenarios.schema.experiment import TrialList
 from scenarios.schema.keys import suggestion
 from scenarios.schema.overrides import Document, apply_override, given_keys, merged, parse_override, set_value
 from scenarios.schema.parts import with_absolute_files
+from scenarios.schema.report import read_logo
 from scenarios.schema.scenario import Scenario
 
 Study = TypeVar("Study", Scenario, ConvergenceScenario, TrialList)
@@ -73,7 +74,8 @@ def load_study(name: str | Document, overrides: Sequence[str] = (), *, refusing:
 
     Raises
     ------
-    InputError : no such scenario, unreadable TOML, an unknown key, a value out of range, or a key without effect
+    InputError : no such scenario, unreadable TOML, an unknown key, a value out of range, a key without effect, or a logo that is no
+        picture
     """
     document = load_document(name, overrides)
     scenario: AnyStudy = checked(document, _kind(document))
@@ -82,6 +84,7 @@ def load_study(name: str | Document, overrides: Sequence[str] = (), *, refusing:
         own, whole = _given(name)
         refuse_unused(checked(whole, Scenario), given_keys(own))
         refuse_unused(scenario, {parse_override(override)[0] for override in overrides})
+    read_logo(scenario.report)
     return scenario
 
 
@@ -94,7 +97,7 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
     """
     _, document = _given(name)
     if document.get("study") == "trials":
-        own = [override for override in overrides if override.partition("=")[0].strip() in TrialList.model_fields]
+        own = [override for override in overrides if _section(override) in TrialList.model_fields]
         for_trials = [override for override in overrides if override not in own]
         given = document.get("set", [])
         if for_trials and isinstance(given, list):
@@ -105,6 +108,11 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
     for key, value in parsed:
         apply_override(document, key, value, kind)
     return document
+
+
+def _section(override: str) -> str:
+    """Return the first part of the key of an override."""
+    return override.partition("=")[0].strip().partition(".")[0]
 
 
 def bases() -> dict[str, Path]:
@@ -221,6 +229,8 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
     """Return the scenario with dotted keys set to new values, checked again."""
     if not values:
         return scenario
+    if own := [key for key in values if key.partition(".")[0] == "report"]:
+        raise InputError(f"'{own[0]}' varies from flight to flight; a report is of all flights: set it once, for the scenario")
     document = scenario.model_dump()
     if "guidance.law" in values:
         # Keys that only the other law has, such as those of a steering law that is added, go with it.

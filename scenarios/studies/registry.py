@@ -52,6 +52,7 @@ def run_study(
     resume: bool = False,
     progress: Progress = lambda *_: None,
     overrides: Sequence[str] = (),
+    command: str = "",
 ) -> RunResult:
     """Fly a study into ``directory``.
 
@@ -63,6 +64,7 @@ def run_study(
     resume : continue the unfinished run in ``directory``
     progress : called as the study advances
     overrides : overrides that were applied to the scenario, recorded in the manifest
+    command : the command line, for the manifest; none if a program runs the study
 
     Raises
     ------
@@ -72,4 +74,5 @@ def run_study(
         RunDirectory(directory).refuse_taken()
     progress("preparing", 0, 1)
     study = study_of(scenario, name, overrides)
-    return fly_study(study, directory, executor_factory=executor_factory or ExecutorFactory(), resume=resume, progress=progress)
+    factory = executor_factory or ExecutorFactory()
+    return fly_study(study, directory, executor_factory=factory, resume=resume, progress=progress, command=command)

@@ -1,0 +1,61 @@
+"""What the replay of one flight shows: who was where, and what is about them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from reports.run.columns import Array
+
+COLUMNS = (
+    "north", "east", "altitude", "heading", "pitch", "roll", "reference_north", "reference_east", "vessel_north", "vessel_east",
+    "vessel_heading", "plume_axis",
+)  # fmt: skip
+"""What a scene knows at each of its times."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlumeShape:
+    """A plume as a tube about its axis; every array has the shape (n,).
+
+    Attributes
+    ----------
+    distance : from the funnel along the sea, increasing from 0 [m]
+    height : of the axis above the sea [m]
+    half_width, half_height : of the tube across and up [m]
+    """
+
+    distance: Array
+    height: Array
+    half_width: Array
+    half_height: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scene:
+    """One flight over the sea.
+
+    Attributes
+    ----------
+    start : of the first sample [s]
+    interval : between samples, always the same [s]
+    columns : for each name of ``COLUMNS`` shape (n,): places of the vessel over the ground, those of UAV and reference north and
+        east of the vessel, altitude above the sea [m]; angles without jumps, clockwise from north where they are courses [rad]
+    guard : stretches in which the keep-out guard changed commands: from, to [s], and whether it held its radius
+    crossings : times at which the plume was crossed, shape (k,) [s]
+    keepout_radius : r_min [m]
+    keepout_shape : "sphere" or "cylinder"
+    source_height : of the funnel's mouth above the sea [m]
+    hull_length, hull_beam : of the vessel [m]
+    plume : its shape
+    """
+
+    start: float
+    interval: float
+    columns: Mapping[str, Array]
+    guard: Sequence[tuple[float, float, bool]]
+    crossings: Array
+    keepout_radius: float
+    keepout_shape: str
+    source_height: float
+    hull_length: float
+    hull_beam: float
+    plume: PlumeShape

@@ -1,0 +1,60 @@
+// A flight as the page holds it: columns over time, and what they are between their samples.
+
+function decodedColumn(column, samples) {
+  const values = new Float64Array(samples);
+  if (column.data === undefined) {
+    const slope = (column.last - column.first) / Math.max(1, samples - 1);
+    for (let i = 0; i < samples; i++) values[i] = column.first + slope * i;
+    return values;
+  }
+  const bytes = Uint8Array.from(atob(column.data), (letter) => letter.charCodeAt(0));
+  const levels = new DataView(bytes.buffer);
+  const step = (column.high - column.low) / 65535;
+  for (let i = 0; i < samples; i++) values[i] = column.low + step * levels.getUint16(2 * i, true);
+  return values;
+}
+
+class Flight {
+  constructor(data) {
+    this.start = data.start;
+    this.interval = data.interval;
+    this.samples = data.samples;
+    this.end = data.start + data.interval * (data.samples - 1);
+    this.guard = data.guard;
+    this.crossings = data.crossings;
+    this.keepout = data.keepout;
+    this.hull = data.hull;
+    this.plume = data.plume;
+    this.columns = Object.fromEntries(Object.entries(data.columns).map(([name, c]) => [name, decodedColumn(c, data.samples)]));
+  }
+
+  // A column at a time [s]: the cubic of Catmull and Rom through its samples, so that paths have no corners.
+  value(name, time) {
+    const values = this.columns[name], last = this.samples - 1;
+    const place = Math.min(Math.max((time - this.start) / this.interval, 0), last);
+    const i = Math.min(Math.floor(place), last - 1), s = place - i;
+    const b = values[i], c = values[i + 1];
+    const a = i > 0 ? values[i - 1] : 2 * b - c, d = i + 2 <= last ? values[i + 2] : 2 * c - b;
+    return b + 0.5 * s * (c - a + s * (2 * a - 5 * b + 4 * c - d + s * (3 * (b - c) + d - a)));
+  }
+
+  // Everything at a time: places over the ground and altitude [m], angles [rad], the distance that the keep-out area is about [m].
+  at(time) {
+    const now = {time};
+    for (const name of Object.keys(this.columns)) now[name] = this.value(name, time);
+    const up = this.keepout.shape === "cylinder" ? 0 : now.altitude - this.keepout.height;
+    now.distance = Math.hypot(now.north, now.east, up);
+    for (const axis of ["north", "east"])
+      for (const what of ["", "reference_"]) {
+        now[`relative_${what}${axis}`] = now[what + axis];
+        now[what + axis] += now[`vessel_${axis}`];
+      }
+    return now;
+  }
+
+  // What the keep-out guard does at a time: null, "guard", or "guardLost" where it cannot hold its radius.
+  guardAt(time) {
+    const stretch = this.guard.find(([from, to]) => from <= time && time < to);
+    return stretch ? (stretch[2] ? "guard" : "guardLost") : null;
+  }
+}

@@ -1,0 +1,1 @@
+"""Flights as they are replayed on the screen."""

@@ -1,0 +1,79 @@
+"""How wide and how high the plume of a run is drawn."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from measurement.emission.emission import emission_of
+from measurement.emission.fuel import fuel_preset
+from measurement.emission.ship import ship_preset
+from measurement.errors import MeasurementError
+from measurement.plume.air import MarineAir
+from measurement.plume.settings import PlumeSettings
+from measurement.plume.spread import STEP, spreads
+from reports.document.scene import PlumeShape
+from reports.run.columns import Array
+
+LINE_HALF_WIDTH = 4.0
+"""Half-width of a plume that is an axis alone, which has none: enough to be seen [m]."""
+
+SPREADS = 2.0
+"""Spreads from the axis to the edge that is drawn [-]: there the concentration is exp(-2) of that on the axis."""
+
+_SECTIONS = 25
+"""Cross-sections that a tube is made of."""
+
+_WIND_MIN = 1.0
+"""Apparent wind below which a plume has no direction [m/s]."""
+
+_ZERO_CELSIUS = 273.15
+"""[K]"""
+
+Config = Mapping[str, Any]
+
+
+def plume_shape(config: Config, *, speed: float, wind: float, apparent_wind: float, length: float) -> PlumeShape:
+    """Return the shape of a flight's plume: of smoke its mean over time, of an axis without smoke a thin tube.
+
+    Parameters
+    ----------
+    config : of the flight's trial, as the manifest has it
+    speed : of the vessel over the ground [m/s]
+    wind, apparent_wind : of the air over the ground, and past the funnel [m/s]
+    length : along the sea [m]
+    """
+    distance = np.linspace(0.0, length, _SECTIONS)
+    if config["plume"].get("model") == "fluctuating" and config.get("emission", {}).get("ship") and apparent_wind >= _WIND_MIN:
+        try:
+            return _smoke(config, distance, speed=speed, wind=wind, apparent_wind=apparent_wind)
+        except MeasurementError:
+            # A range that this version has narrowed; what is left is the axis.
+            pass
+    climb = math.tan(math.radians(float(config["plume"].get("elevation_deg", 0.0))))
+    width = np.full(_SECTIONS, LINE_HALF_WIDTH)
+    return PlumeShape(
+        distance=distance, height=float(config["plume"]["source_height_m"]) + climb * distance, half_width=width, half_height=width
+    )
+
+
+def _smoke(config: Config, distance: Array, *, speed: float, wind: float, apparent_wind: float) -> PlumeShape:
+    """Return axis and spreads of the exhaust about the axis, with the meander of its centre."""
+    plume, emitted, air = config["plume"], config["emission"], config["wind"]
+    settings = PlumeSettings(**{f.name: plume[f.name] for f in fields(PlumeSettings) if f.name in plume})
+    ship, fuel = ship_preset(emitted["ship"]), fuel_preset(emitted["fuel"], emitted["sulphur_percent"])
+    load = emitted["load"]
+    emission = emission_of(ship, fuel, speed=speed) if load is None else emission_of(ship, fuel, power=load * ship.power_max)
+    marine = MarineAir(wind_speed=wind, temperature=air["temperature_c"] + _ZERO_CELSIUS, brunt_vaisala=air["stability_per_s"])
+    age = distance / apparent_wind
+    table = spreads(emission, marine, float(plume["source_height_m"]), np.array([apparent_wind]), float(age[-1]), settings)
+    ages = STEP * np.arange(table.height.shape[1])
+    across, up = np.hypot(table.relative_y[0], table.meander_y[0]), np.hypot(table.relative_z[0], table.meander_z[0])
+    return PlumeShape(
+        distance=distance,
+        height=np.interp(age, ages, table.height[0]),
+        half_width=SPREADS * np.interp(age, ages, across),
+        half_height=SPREADS * np.interp(age, ages, up),
+    )

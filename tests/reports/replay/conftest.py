@@ -1,0 +1,35 @@
+"""Small kinematic runs of every study whose report has a replay, each flown once."""
+
+import pytest
+from trial_runs import small_trials
+
+from scenarios.schema.load import load_study
+from scenarios.studies import paper
+from scenarios.studies.registry import run_study
+
+OVERRIDES = {
+    "sweep_nu": ("sweep.nu=[0.5]", "flight.crossings=3", "comparison={}"),
+    "monte_carlo": ("flights=2", "draws=[]", "turbulence={}"),
+    "sulphur": ("reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "flight.after_settling_s=60"),
+    "paper": ("flight.crossings=5",),
+}
+
+
+@pytest.fixture(scope="session")
+def run_of(tmp_path_factory):
+    """A function from a study's name to its run directory."""
+    directory, flown = tmp_path_factory.mktemp("replay"), {}
+
+    def run(name):
+        if name == "trials" and name not in flown:
+            flown[name] = small_trials(directory)
+        elif name not in flown:
+            with pytest.MonkeyPatch.context() as patch:
+                # The bounds of the paper's run are not what is tested here, and take most of its time.
+                patch.setattr(paper, "SEARCH_STATES", 10_000)
+                patch.setattr(paper, "RESERVES", (0.0, 0.2, 0.4))
+                run_study(load_study(name, ("fidelity=kinematic", *OVERRIDES[name])), name, directory / name)
+            flown[name] = directory / name
+        return flown[name]
+
+    return run

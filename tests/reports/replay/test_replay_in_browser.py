@@ -1,0 +1,153 @@
+"""Reports of every kind that has a replay, opened from disk in a browser that has no network."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from browser import PROGRAM, Browser
+
+from reports.registry import content
+from reports.render.html import write_html
+from reports.run.run_data import read_run
+
+pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no chromium is installed; .ci/run installs it")
+
+KINDS = ("monte_carlo", "sulphur", "paper", "trials", "sweep_nu")
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    opened = Browser(tmp_path_factory.mktemp("profile"))
+    yield opened
+    opened.close()
+
+
+@pytest.fixture(scope="module")
+def page_of(run_of, tmp_path_factory):
+    """A function from a study's name to its run as read, and to its page."""
+    directory, pages = tmp_path_factory.mktemp("pages"), {}
+
+    def page(name):
+        if name not in pages:
+            run = read_run(run_of(name))
+            write_html(content(run), directory / f"{name}.html")
+            pages[name] = run
+        return pages[name], directory / f"{name}.html"
+
+    return page
+
+
+def show(browser, page, width=1200):
+    """Open a page, or, where it is open, give it a width."""
+    if browser.run("location.href") == page.as_uri():
+        browser.errors.clear()
+        browser.resize(width)
+    else:
+        browser.open(page, width)
+
+
+def turned(angle, other):
+    """Return the angle between two courses or banks [rad]."""
+    return abs(math.remainder(angle - other, math.tau))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, page_of):
+    run, page = page_of(kind)
+    show(browser, page)
+    flight = browser.run("document.getElementById('pick').value")
+    history = run.history(flight)
+    for share in (0.0, 0.37, 0.8):
+        sample = history.iloc[round(share * (len(history) - 1))]
+        moved = f"slider.value = {sample['time_s']}; slider.dispatchEvent(new Event('input')); return window.replay.place();"
+        place = browser.run(f"(() => {{ const slider = document.querySelector('[data-part=time]'); {moved} }})()")
+        # The slider's steps are those of the history, 0.1 s.
+        assert place["time"] == pytest.approx(sample["time_s"], abs=1e-9)
+        # 16 bits for some 2 km are good to 1.5 cm, the cubic between samples to centimetres.
+        for axis in ("north", "east"):
+            assert place[axis] == pytest.approx(sample[f"{axis}_m"], abs=0.1)
+        assert place["altitude"] == pytest.approx(sample["altitude_m"], abs=0.02)
+        # A kinematic vehicle has no heading of its own, and rolls within a fraction of a second.
+        heading = sample["heading_rad"] if np.isfinite(sample["heading_rad"]) else sample["course_rad"]
+        assert turned(place["heading"], heading) < 0.03
+        assert turned(place["roll"], np.nan_to_num(sample["roll_rad"])) < 0.06
+    assert browser.errors == []
+
+
+def test_nothing_is_asked_of_a_network_and_what_is_drawn_is_not_blank(browser, page_of):
+    _, page = page_of("sweep_nu")
+    show(browser, page)
+    assert browser.run("performance.getEntriesByType('resource').map((entry) => entry.name)") == []
+    assert browser.run("navigator.onLine") is False
+    shades = browser.run(
+        "(() => { const {world, camera, renderer} = window.replay, {width, height} = renderer.domElement;"
+        " window.replay.place(); renderer.render(world.scene, camera.camera); const gl = renderer.getContext(),"
+        " pixels = new Uint8Array(4 * width * height); gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);"
+        " return new Set(new Uint32Array(pixels.buffer)).size; })()"
+    )
+    # Sky and sea alone would be a few shades.
+    assert shades > 200
+
+
+def test_the_keyboard_moves_time_camera_and_play(browser, page_of):
+    _, page = page_of("sweep_nu")
+    show(browser, page)
+    browser.run("window.replay.seek(0), document.querySelector('[data-part=stage]').focus()")
+    browser.press("ArrowRight")
+    browser.press("ArrowRight")
+    browser.press("ArrowLeft")
+    # Two seconds on and one back, from the slider's place.
+    assert browser.run("window.replay.place().time") == pytest.approx(1.0)
+    for key, camera in (("1", "follow"), ("3", "free"), ("2", "vessel")):
+        browser.press(key)
+        assert browser.run("window.replay.mode") == camera
+    seen = "(window.replay.place(), window.replay.camera.course)"
+    before = browser.run(seen)
+    browser.press("d")
+    assert turned(browser.run(seen), before) == pytest.approx(0.1, abs=1e-6)
+    browser.press(" ")
+    assert browser.run("window.replay.playing") is True
+    moved = "(function wait() { window.replay.time > 1 ? done(true) : requestAnimationFrame(wait); })()"
+    assert browser.run(f"new Promise((done) => {moved})")
+    browser.press(" ")
+    assert browser.run("window.replay.playing") is False
+    assert browser.errors == []
+
+
+def test_the_page_is_not_wider_than_a_small_screen(browser, page_of):
+    _, page = page_of("sweep_nu")
+    show(browser, page, 520)
+    widest = "Math.max(...[...document.querySelectorAll('.replay, .replay *')].map((part) => part.getBoundingClientRect().right))"
+    assert browser.run(widest) <= 520
+    assert browser.run("document.querySelector('[data-part=stage]').clientWidth") > 400
+
+
+def test_another_flight_is_picked_and_those_without_a_history_have_no_replay(browser, page_of):
+    run, page = page_of("trials")
+    show(browser, page)
+    pick = "(() => {{ const pick = document.getElementById('pick'); pick.value = {}; pick.dispatchEvent(new Event('change')); }})()"
+    for flight in browser.run("Object.keys(window.replay.flights)"):
+        browser.run(pick.format(json.dumps(flight)))
+        start = run.history(flight).iloc[0]
+        assert browser.run("window.replay.place()")["north"] == pytest.approx(start["north_m"], abs=0.1)
+    browser.run("window.replay.show('no such flight')")
+    assert browser.run("document.getElementById('replay').hidden") is True
+
+
+def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(page_of, tmp_path):
+    _, page = page_of("sweep_nu")
+    # Both switches: without a graphics processor the first alone leaves the one that is made of software.
+    without = Browser(tmp_path, "--disable-3d-apis", "--disable-gpu")
+    try:
+        without.open(page)
+        assert without.run("document.querySelector('[data-part=without]').innerText").startswith(
+            "This browser does not draw in three"
+        )
+        assert without.run("window.replay.place()") is None
+        without.run("window.replay.seek(12.5)")
+        without.settle()
+        assert without.run("document.querySelector('[data-part=clock]').textContent").startswith("12.5 s")
+        assert without.errors == []
+    finally:
+        without.close()
