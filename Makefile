@@ -1,22 +1,24 @@
-# On a fresh machine: `make sweep_nu` flies the study and reports, `make test` runs every test. Both build .venv first, once.
+# On a fresh machine: `make sweep_nu` flies the study and reports, `make test` runs every test. Each installs what it
+# needs into .venv, once.
 PYTHON ?= python3
 BIN := .venv/bin
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
 .PHONY: sweep_nu test check bench lock clean
 
 sweep_nu: .venv
 	@$(BIN)/python -m scenarios.run sweep_nu
 
-test: .venv
+test: .venv/.developer
 	@$(BIN)/python -m pytest -n 2 --dist loadfile
 
-check: .venv
+check: .venv/.developer
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: .venv
+bench: .venv/.developer
 	@$(BIN)/python -m benchmarks.closed_loop
 
 .venv: .venv/.installed
@@ -27,10 +29,15 @@ bench: .venv
 	@echo "building .venv, once"
 	@$(PYTHON) -m venv .venv || \
 		{ echo "error: $(PYTHON) cannot make environments; install its venv package (Debian: apt install python3-venv)"; exit 2; }
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	@$(INSTALL) -e .
 	@touch $@
 
-lock: .venv
+.venv/.developer: .venv/.installed
+	@echo "installing the developers' tools into .venv, once"
+	@$(INSTALL) -e '.[dev]'
+	@touch $@
+
+lock: .venv/.developer
 	@{ echo '# Pinned versions of everything the environment holds. `make lock` writes this file anew.'; \
 		$(BIN)/python -m pip freeze --exclude-editable; } > constraints.txt
 

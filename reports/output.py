@@ -4,10 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from common.files import write_whole
 from common.run_layout import time_history_path
 from common.spelling import did_you_mean
 from reports.errors import ReportError
+from reports.run.files import written
 from reports.run.run_data import RunData
 
 if TYPE_CHECKING:
@@ -18,12 +18,9 @@ if TYPE_CHECKING:
 TRACKS = "tracks"
 """Name of the figure of where a flight went."""
 
-_PANEL_HEIGHT = 0.36
-"""Height of a row of panels, over the width of the figure [-]."""
-
 
 def flight_figure(run: RunData, flight_id: str, *, tracks_alone: bool = False) -> "Figure":
-    """Return the track of a flight and its time histories as one figure: the panels of the report.
+    """Return the track of a flight and its time histories as one figure: those of the report.
 
     Parameters
     ----------
@@ -35,15 +32,9 @@ def flight_figure(run: RunData, flight_id: str, *, tracks_alone: bool = False) -
     ------
     ReportError : it has no time history
     """
-    from dataclasses import replace
-
     from reports.render.matplotlib_charts import draw
 
-    charts = [chart for chart in _charts(run, flight_id) if chart.name == TRACKS or not tracks_alone]
-    if tracks_alone:
-        return draw(charts[0])
-    panels = [panel for chart in charts for panel in chart.panels]
-    return draw(replace(charts[0], panels=panels, columns=2, panel_height=_PANEL_HEIGHT))
+    return draw(*(chart for chart in _charts(run, flight_id) if chart.name == TRACKS or not tracks_alone))
 
 
 def _charts(run: RunData, flight_id: str) -> "list[Chart]":
@@ -81,7 +72,7 @@ def write_report(run: RunData, path: Path, *, all_flights: bool = False) -> None
     writers: dict[str, Callable[..., None]] = {".html": write_html, ".pdf": partial(write_pdf, all_flights=all_flights)}
     if path.suffix not in writers:
         raise ReportError(f"'{path.name}' ends in {path.suffix!r}; a report is written as {' or '.join(writers)}")
-    write_whole(path, partial(writers[path.suffix], content(run)))
+    written(path, partial(writers[path.suffix], content(run)))
 
 
 def write_flight(run: RunData, flight_id: str, path: Path) -> None:
@@ -100,7 +91,7 @@ def write_flight(run: RunData, flight_id: str, path: Path) -> None:
     if not run.has_history(flight_id):
         raise _without_history(flight_id)
     if (exporter := _exporter(path.name)) is not None:
-        write_whole(path, lambda part: exporter(run.of_flight(flight_id), part))
+        written(path, lambda part: exporter(run.of_flight(flight_id), part))
         return
     writers = {".parquet": _as_parquet, ".arrow": _as_arrow, ".csv": _as_csv}
     if path.suffix not in writers:
@@ -108,7 +99,7 @@ def write_flight(run: RunData, flight_id: str, path: Path) -> None:
         guess = did_you_mean(path.suffix, known) or ";"
         raise ReportError(f"'{path.name}' ends in {path.suffix!r}{guess} formats of a flight are {', '.join(known)}")
     source = run.path / time_history_path(flight_id)
-    write_whole(path, lambda part: writers[path.suffix](source, part))
+    written(path, lambda part: writers[path.suffix](source, part))
 
 
 def _suffixes() -> dict[str, Callable[[RunData, Path], None]]:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import MaxNLocator, NullLocator
 
 from reports.document.axes import log_axis, mark_text
@@ -60,32 +60,39 @@ _LINE_STYLES: dict[str, dict[str, Any]] = {
 Limits = tuple[float, float] | None
 
 
-def draw(chart: Chart) -> Figure:
-    """Return the chart as a matplotlib figure."""
+def draw(*charts: Chart) -> Figure:
+    """Return a chart as a matplotlib figure; of several, each below the one before."""
     with rc_context(_STYLE):
-        height = WIDTH_INCHES * chart.height + 0.35 + _LEGEND_ROW * _legend_rows(chart)
-        figure = Figure(figsize=(WIDTH_INCHES, height), layout="constrained")
-        axes = _axes(figure, chart)
-        handles: dict[str, Any] = {}
-        shaded = None
-        for i, panel in enumerate(chart.panels):
-            shaded = _draw_marks(axes[i], panel, handles, chart.scale) or shaded
-            title_size = _SMALL_TITLE_SIZE if chart.crowded else _TITLE_SIZE
-            _dress(axes[i], panel, title_size=title_size, last_row=i + chart.columns >= len(chart.panels) or not chart.share_x)
-        for ax in axes[len(chart.panels) :]:
-            ax.set_axis_off()
-        for ax in axes[max(0, len(chart.panels) - chart.columns) : len(chart.panels)]:
-            # The last of a column may not be in the last row, where figures are written beside a shared axis.
-            ax.tick_params(labelbottom=True)
-        if shaded is not None:
-            figure.colorbar(shaded, ax=axes, label=chart.scale_label, shrink=0.85, pad=0.015)
-        if len(handles) > 1:
-            columns = _legend_columns(list(handles))
-            figure.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=columns, fontsize=7.5)
+        heights = [WIDTH_INCHES * chart.height + 0.35 + _LEGEND_ROW * _legend_rows(chart) for chart in charts]
+        figure = Figure(figsize=(WIDTH_INCHES, sum(heights)), layout="constrained")
+        parts = [figure] if len(charts) == 1 else figure.subfigures(len(charts), squeeze=False, height_ratios=heights).flat
+        for part, chart in zip(parts, charts, strict=True):
+            _draw_on(part, chart)
         return figure
 
 
-def _axes(figure: Figure, chart: Chart) -> list[Any]:
+def _draw_on(figure: Figure | SubFigure, chart: Chart) -> None:
+    """Draw a chart on a figure, or on a part of one."""
+    axes = _axes(figure, chart)
+    handles: dict[str, Any] = {}
+    shaded = None
+    for i, panel in enumerate(chart.panels):
+        shaded = _draw_marks(axes[i], panel, handles, chart.scale) or shaded
+        title_size = _SMALL_TITLE_SIZE if chart.crowded else _TITLE_SIZE
+        _dress(axes[i], panel, title_size=title_size, last_row=i + chart.columns >= len(chart.panels) or not chart.share_x)
+    for ax in axes[len(chart.panels) :]:
+        ax.set_axis_off()
+    for ax in axes[max(0, len(chart.panels) - chart.columns) : len(chart.panels)]:
+        # The last of a column may not be in the last row, where figures are written beside a shared axis.
+        ax.tick_params(labelbottom=True)
+    if shaded is not None:
+        figure.colorbar(shaded, ax=axes, label=chart.scale_label, shrink=0.85, pad=0.015)
+    if len(handles) > 1:
+        columns = _legend_columns(list(handles))
+        figure.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=columns, fontsize=7.5)
+
+
+def _axes(figure: Figure | SubFigure, chart: Chart) -> list[Any]:
     """Return the axes of the panels in their order, and those that no panel needs."""
     if not chart.last_height:
         axes = figure.subplots(chart.rows, chart.columns, squeeze=False, sharex="col" if chart.share_x else "none")

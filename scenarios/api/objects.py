@@ -173,6 +173,8 @@ class _Namer:
 
     def part(self, key: str, part: Any) -> str:
         """Return the name of an object that is given for a key."""
+        from aircraft.fleet.stock import stock_names
+
         key = key.removeprefix("sweep.")
         registry = _registry(key)
         if known := registry.name_of(part):
@@ -186,12 +188,14 @@ class _Namer:
             name = type(part).__name__
         else:
             raise InputError(f"{key} is an object of class {type(part).__name__}; give the class itself: each flight makes its own")
-        if not name.replace("-", "_").isidentifier():
+        if key != "aircraft" and not name.isidentifier():
             raise InputError(f"{key} is {name}, which has no name; define it by class or def")
         try:
             registry.checked(name, part)
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None
+        if key == "aircraft" and name in stock_names():
+            raise InputError(f"aircraft is an object called '{name}', as one of JSBSim's own is; call yours otherwise")
         given = Lent(key, name, Copies(part) if made and key in _COPIED else part)
         if self.found.setdefault((registry.kind, name), given).part != given.part:
             raise InputError(f"{key}: two objects are called '{name}'; give each a name of its own")

@@ -97,7 +97,7 @@ class Run:
         """
         from reports.output import write_report
 
-        with _one_line(path or ""):
+        with _one_line():
             if path is not None:
                 write_report(self._data, Path(path), all_flights=all_flights)
                 return str(path)
@@ -211,7 +211,7 @@ class Flight:
         """
         from reports.output import write_flight
 
-        with _one_line(path):
+        with _one_line():
             write_flight(self.run._data, self.flight_id, Path(path))
         return Path(path)
 
@@ -248,8 +248,8 @@ def _with_units(frame: "pd.DataFrame") -> "pd.DataFrame":
 
 
 @contextmanager
-def _one_line(path: str | os.PathLike[str] = "") -> Iterator[None]:
-    """Raise what is wrong with a run, a format, or the ``path`` of a file to be written, as an InputError."""
+def _one_line() -> Iterator[None]:
+    """Raise what is wrong with a run, a format, or a file to be written, as an InputError."""
     from common.registry import PluginError
     from reports.errors import ReportError
 
@@ -257,7 +257,3 @@ def _one_line(path: str | os.PathLike[str] = "") -> Iterator[None]:
         yield
     except (ReportError, PluginError) as error:
         raise InputError(str(error)) from None
-    except OSError as error:
-        raise InputError(
-            f"'{path or error.filename}' cannot be written: {error.strerror}; check the path, permissions and space"
-        ) from None

@@ -90,10 +90,11 @@ class Scenario:
         """
         value: Any = self.config.model_dump()
         for part in key.split("."):
-            value = value[int(part)] if isinstance(value, list | tuple) and part.isdigit() and int(part) < len(value) else value
             if isinstance(value, Mapping) and part in value:
                 value = value[part]
-            elif not part.isdigit():
+            elif isinstance(value, list | tuple) and part.isdigit() and int(part) < len(value):
+                value = value[int(part)]
+            else:
                 raise InputError(f"unknown key '{key}'{suggestion(type(self.config), key)}")
         return value
 

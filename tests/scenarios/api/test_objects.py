@@ -148,6 +148,7 @@ def local_law():
         ({"law": local_law()}, "guidance.law: 'Hidden' cannot be sent to other processes"),
         ({"laws": [Pursuit, Pursuit(gain=2.0)]}, "laws is an object of class Pursuit; give the class itself"),
         ({"aircraft": replace(X8, title="Mine")}, "aircraft 'x8' is known already, and is not the object that was given"),
+        ({"aircraft": replace(X8, name="737")}, "aircraft is an object called '737', as one of JSBSim's own is"),
         ({"aircraft": X8.envelope}, "aircraft 'Envelope' is of type Envelope; it must be an AircraftSpec"),
         ({"seed": object()}, "seed is an object; it takes a number, a word or a list"),
         ({"wind": {"speed_mps": None}}, "wind.speed_mps: value is None"),

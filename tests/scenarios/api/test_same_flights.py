@@ -1,11 +1,13 @@
 """A program gets what the command line gets: the same rows, crossings and time histories, byte for byte."""
 
 import csv
+import json
+import tomllib
 
 import pandas as pd
 import pytest
 
-from scenarios import fly, load, run
+from scenarios import InputError, fly, load, run
 from scenarios.engine.fingerprint import fingerprint
 from tests.in_process import run_command
 
@@ -67,15 +69,13 @@ def test_files_of_a_run_are_the_same(by_command, by_program):
 
 
 def test_the_manifest_has_the_same_configuration(by_program, by_command):
-    theirs = fly_manifest(by_command)
+    theirs = manifest(by_command)
     for entry in ("config_hash", "config", "overrides", "name", "trials"):
         assert by_program.manifest[entry] == theirs[entry]
     assert by_program.manifest["fingerprint"] == fingerprint()
 
 
-def fly_manifest(directory):
-    import json
-
+def manifest(directory):
     return json.loads((directory / "manifest.json").read_text(encoding="utf-8"))
 
 
@@ -100,8 +100,6 @@ def test_an_aircraft_flies_the_same_in_both(tmp_path):
 
 
 def test_a_mapping_is_the_file_that_it_would_be(file, by_program):
-    import tomllib
-
     flight = fly(tomllib.loads(SHORT), nu=0.5, guidance={"look_ahead_m": 55})
     assert flight.history.equals(by_program.flights["nu_0.50"].history)
 
@@ -110,4 +108,8 @@ def test_a_scenario_is_changed_as_by_the_command_line(file):
     scenario = load(file).set(nu=0.4, wind={"speed_mps": 3.0}, **{"guidance.rate_hz": 10})
     assert scenario.changes == ("sweep.nu=[0.4]", "wind.speed_mps=3.0", "guidance.rate_hz=10")
     assert scenario["wind.speed_mps"] == 3.0
+    assert scenario["comparison.variants.0.name"] == "no_guard"
+    for unknown in ("wind.sped_mps", "comparison.variants.1.name", "comparison.variants.name", "title.0"):
+        with pytest.raises(InputError, match="unknown key"):
+            scenario[unknown]
     assert load(file).changes == ()
