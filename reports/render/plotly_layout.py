@@ -35,8 +35,11 @@ _TITLE_SIZE, _SMALL_TITLE_SIZE = 16, 12
 _SYMBOL, _CHARACTER = 46.0, 6.6
 """Width of an entry of the legend: its symbol and the room about it, and each letter [px]."""
 
-_LABELS_NARROW = 3
-"""Panels side by side from which two stay side by side on a narrow screen."""
+_ONE_BY_ONE = 3
+"""Panels side by side of which each has a row of its own on a narrow screen; of more two stay side by side."""
+
+_HIGHEST = 0.6
+"""Height of a row on a narrow screen at most, over its width, where the panels are no maps."""
 
 _FEW = 8.0
 """Range of whole numbers from which Plotly marks whole numbers by itself."""
@@ -69,8 +72,11 @@ def layout(chart: Chart) -> Data:
 
 def narrow(chart: Chart) -> Data:
     """Return what of the layout changes on a narrow screen: entries that take the place of, or are merged into, its own."""
-    columns = 1 if chart.columns <= _LABELS_NARROW else 2
-    chart = replace(chart, columns=columns, panel_height=chart.panel_height * chart.columns / columns)
+    columns = 1 if chart.columns <= _ONE_BY_ONE else 2
+    height = chart.panel_height * chart.columns / columns
+    if not any(panel.equal for panel in chart.panels):
+        height = min(height, max(chart.panel_height, _HIGHEST))
+    chart = replace(chart, columns=columns, panel_height=height)
     place = _Place(chart, NARROW_WIDTH, below_labels=True)
     found: Data = {"height": place.height, "margin": {"t": place.top, "l": 60, "r": 10}, "legend": {"y": place.legend}}
     if any(panel.title or panel.notes for panel in chart.panels):
