@@ -25,8 +25,8 @@ _STEPS = (10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)
 _MARKS_MAX = 8
 """Marks of the time along a track at most."""
 
-_APART = 0.06
-"""Distance of words in a row at least, over the length of the track."""
+_APART = 0.08
+"""Distance of words in a row at least, over the width of the panel."""
 
 _NEAR_PERIODS = 2.0
 """Periods of the oscillation that are shown from near, at the end of the flight."""
@@ -190,9 +190,11 @@ class _Tracks:
         if not len(times):
             return [], []
         x, y = place(self.view.at_times(times))
-        # One above the other they would be unreadable.
-        beside = beside or bool(np.any(np.diff(np.sort(x)) < _APART * float(np.ptp(place(self.view.samples)[0]))))
-        high = float(np.max(place(self.view.samples)[1])) + self.view.radius
+        flown, radius = place(self.view.samples), self.view.radius
+        width = max(float(np.ptp(flown[0])), _FLAT * (float(np.ptp(flown[1])) + 2.0 * radius))
+        # In a row they have to be apart.
+        beside = beside or bool(np.any(np.diff(np.sort(x)) < _APART * width))
+        high = float(np.max(flown[1])) + radius
         notes = [
             Note(x=float(right), y=float(up), text=f"  {_duration(time)}", align="left")
             if beside
