@@ -122,8 +122,8 @@ class _Tracks:
 
     def _near(self, about: Surroundings) -> Panel | None:
         """Return the last of the flight from near; None where it never settled, or where the whole is no larger."""
-        view, period = self.view, math.tau / float(self.view.row.get("omega_0_rad_s", math.nan))
-        last = _NEAR_PERIODS * period if math.isfinite(period) else _NEAR_S
+        view, rate = self.view, float(self.view.row.get("omega_0_rad_s", math.nan))
+        last = _NEAR_PERIODS * math.tau / rate if rate > 0.0 else _NEAR_S
         begin = max(view.settled_at, float(view.ends[1]) - last)
         late = view.since(begin)
         if late is None:
