@@ -90,7 +90,7 @@ class PanelsOver:
             self._limit("keepout_radius_m", f"r_min of the keep-out {self._trial.shape}"),
             self._theory("r_co_m", "centre of oscillation r_CO", "grey"),
             self._points("crossing_distance_mean_m", "crossings, mean", Meaning.CROSSING),
-            self._points("crossing_distance_min_m", "crossings, closest", Meaning.CROSSING, "diamonds"),
+            self._points("crossing_distance_min_m", "crossings, closest", Meaning.CROSSING, "ring"),
             self._points(
                 "min_distance_m",
                 closest,
@@ -143,7 +143,7 @@ class PanelsOver:
 
     def _panel(self, y_label: str, lines: list[Line], y_range: tuple[float, float] | None = None) -> Panel | None:
         known = [line for line in lines if np.isfinite(line.y).any()]
-        shown = any(line.style in ("points", "diamonds") for line in known)
+        shown = any(line.style in ("points", "diamonds", "ring") for line in known)
         if not shown:
             return None
         x_range = _RATIOS if self._key == "nu" else around(self._x)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,9 @@ _STEPS = (10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)
 _MARKS_MAX = 8
 """Marks of the time along a track at most."""
 
+_APART = 0.08
+"""Distance of words in a row at least, over the width of the panel."""
+
 _NEAR_PERIODS = 2.0
 """Periods of the oscillation that are shown from near, at the end of the flight."""
 
@@ -36,7 +40,7 @@ _NEARER = 0.5
 _BESIDE, _WIDE, _FLAT = 1.2, 1.9, 4.8
 """Width over height: of a panel that has another beside it, of one that is alone, and of one over the ground."""
 
-_AWAY = 1.5
+_AWAY = 1.0
 """Way of the ship over the size of the track about her, from which there is a panel over the ground."""
 
 
@@ -45,20 +49,28 @@ def track_chart(view: FlightView) -> Chart:
     return _Tracks(view).chart()
 
 
-def track_picture(flights: Sequence[tuple[Trial, "pd.Series[Any]", str]], *, name: str = "picture") -> Chart | None:
-    """Return a large picture of one flight about its ship, or of a few side by side; None if none has a time history.
+def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: str = "", *, name: str = "picture") -> Chart | None:
+    """Return a large picture of flights side by side, each about its ship; all tracks of a flight that is alone.
 
     Parameters
     ----------
-    flights : each with its trial, its row and what is written above it
+    shown : trial, row and title of each flight
+    told : what the caption says besides
     name : of the chart
+
+    Returns
+    -------
+    The figure, or None if no flight has a time history.
     """
-    views = [(view, title) for trial, row, title in flights if (view := flight_view(trial, row)) is not None]
-    if not views:
+    found = [(_Tracks(view), title) for trial, row, title in shown if (view := flight_view(trial, row)) is not None]
+    if not found:
         return None
-    aspect, height = (_WIDE, 0.5) if len(views) == 1 else (_BESIDE, 0.42)
-    drawn = [_Tracks(view).picture(title, aspect) for view, title in views]
-    return Chart(name=name, caption=drawn[0][1], panels=[panel for panel, _ in drawn], columns=len(drawn), panel_height=height)
+    if len(found) == 1:
+        chart = found[0][0].chart()
+        return replace(chart, name=name, caption=chart.caption + told)
+    drawn = [tracks.picture(title) for tracks, title in found]
+    panels = [panel for panel, _ in drawn]
+    return Chart(name=name, caption=drawn[0][1] + told, panels=panels, columns=len(panels), panel_height=0.42)
 
 
 class _Tracks:
@@ -88,10 +100,10 @@ class _Tracks:
             last_height=0.19 if ground else 0.0,
         )
 
-    def picture(self, title: str, aspect: float) -> tuple[Panel, str]:
+    def picture(self, title: str) -> tuple[Panel, str]:
         """Return the whole flight in one panel, and what it shows in words."""
         about = self._about
-        panel = self.ground(title) if about is None else self._whole(about, title, aspect)
+        panel = self.ground(title) if about is None else self._whole(about, title, _BESIDE)
         return in_kilometres(panel), "Over the ground." if about is None else ship_words(about)
 
     def _whole(self, about: Surroundings, title: str, aspect: float) -> Panel:
@@ -110,8 +122,8 @@ class _Tracks:
 
     def _near(self, about: Surroundings) -> Panel | None:
         """Return the last of the flight from near; None where it never settled, or where the whole is no larger."""
-        view, period = self.view, math.tau / float(self.view.row.get("omega_0_rad_s", math.nan))
-        last = _NEAR_PERIODS * period if math.isfinite(period) else _NEAR_S
+        view, rate = self.view, float(self.view.row.get("omega_0_rad_s", math.nan))
+        last = _NEAR_PERIODS * math.tau / rate if rate > 0.0 else _NEAR_S
         begin = max(view.settled_at, float(view.ends[1]) - last)
         late = view.since(begin)
         if late is None:
@@ -156,9 +168,15 @@ class _Tracks:
         view = self.view
         if not view.vessel:
             return None
-        north, east = (float(np.diff(column(view.whole, f"vessel_{axis}_m")[[0, -1]])[0]) for axis in ("north", "east"))
+        places = np.column_stack([column(view.samples, f"vessel_{axis}_m") for axis in ("north", "east")])
+        # Along the largest extent of her way, as she went it first.
+        _, _, directions = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
+        along = places @ directions[0]
         size = float(np.nanmax(np.hypot(*about_the_plume(view.samples))))
-        return math.atan2(east, north) - 0.5 * math.pi if math.hypot(north, east) > _AWAY * size else None
+        if float(np.ptp(along)) < _AWAY * size:
+            return None
+        north, east = directions[0] * (1.0 if along[len(along) // 2] > along[0] else -1.0)
+        return math.atan2(east, north) - 0.5 * math.pi
 
     @staticmethod
     def _reference(place: Place, samples: pd.DataFrame) -> Line:
@@ -172,7 +190,11 @@ class _Tracks:
         if not len(times):
             return [], []
         x, y = place(self.view.at_times(times))
-        high = float(np.max(place(self.view.samples)[1])) + self.view.radius
+        flown, radius = place(self.view.samples), self.view.radius
+        width = max(float(np.ptp(flown[0])), _FLAT * (float(np.ptp(flown[1])) + 2.0 * radius))
+        # In a row they have to be apart.
+        beside = beside or bool(np.any(np.diff(np.sort(x)) < _APART * width))
+        high = float(np.max(flown[1])) + radius
         notes = [
             Note(x=float(right), y=float(up), text=f"  {_duration(time)}", align="left")
             if beside

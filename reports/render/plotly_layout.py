@@ -23,8 +23,8 @@ _BAR, _LEGEND_ROW, _BOTTOM = 32, 28, 55
 _MARGINS = 90
 """Room left and right of the panels [px]."""
 
-_BESIDE = 0.09
-"""Room between panels that stand side by side, over the width of all [-]."""
+_BESIDE, _TITLED = 0.09, 45.0
+"""Room between panels that stand side by side, over the width of all [-], and of it what no names of an ordinate may take [px]."""
 
 _BELOW, _BELOW_LABELS, _TITLE = 14, 62, 28
 """Room between panels that stand one below the other: with a shared abscissa, with labels between them, and for a title [px]."""
@@ -35,8 +35,11 @@ _TITLE_SIZE, _SMALL_TITLE_SIZE = 16, 12
 _SYMBOL, _CHARACTER = 46.0, 6.6
 """Width of an entry of the legend: its symbol and the room about it, and each letter [px]."""
 
-_LABELS_NARROW = 3
-"""Panels side by side from which two stay side by side on a narrow screen."""
+_ONE_BY_ONE = 3
+"""Panels side by side of which each has a row of its own on a narrow screen; of more two stay side by side."""
+
+_HIGHEST = 0.6
+"""Height of a row on a narrow screen at most, over its width, where the panels are no maps."""
 
 _FEW = 8.0
 """Range of whole numbers from which Plotly marks whole numbers by itself."""
@@ -69,8 +72,11 @@ def layout(chart: Chart) -> Data:
 
 def narrow(chart: Chart) -> Data:
     """Return what of the layout changes on a narrow screen: entries that take the place of, or are merged into, its own."""
-    columns = 1 if chart.columns <= _LABELS_NARROW else 2
-    chart = replace(chart, columns=columns, panel_height=chart.panel_height * chart.columns / columns)
+    columns = 1 if chart.columns <= _ONE_BY_ONE else 2
+    height = chart.panel_height * chart.columns / columns
+    if not any(panel.equal for panel in chart.panels):
+        height = min(height, max(chart.panel_height, _HIGHEST))
+    chart = replace(chart, columns=columns, panel_height=height)
     place = _Place(chart, NARROW_WIDTH, below_labels=True)
     found: Data = {"height": place.height, "margin": {"t": place.top, "l": 60, "r": 10}, "legend": {"y": place.legend}}
     if any(panel.title or panel.notes for panel in chart.panels):
@@ -86,6 +92,9 @@ class _Place:
 
     def __init__(self, chart: Chart, width: int, *, below_labels: bool = False) -> None:
         self._chart = chart
+        names = [name for i, panel in enumerate(chart.panels) if i % chart.columns for _, name in panel.y_names]
+        named = _TITLED + _CHARACTER * max(map(len, names)) if any(names) else 0.0
+        self._beside = max(_BESIDE, named / (width - _MARGINS))
         self._titled = any(panel.title for panel in chart.panels)
         self._gap = _BELOW_LABELS + _TITLE * self._titled if below_labels or not chart.share_x else _BELOW
         rows = chart.rows + bool(chart.last_height)
@@ -103,8 +112,8 @@ class _Place:
         share = (1.0 - gap * (rows - 1)) / chart.height
         if chart.is_wide(index):
             return [0.0, 1.0], [0.0, share * chart.last_height]
-        width, height = (1.0 - _BESIDE * (chart.columns - 1)) / chart.columns, share * chart.panel_height
-        left, top = column * (width + _BESIDE), 1.0 - row * (height + gap)
+        width, height = (1.0 - self._beside * (chart.columns - 1)) / chart.columns, share * chart.panel_height
+        left, top = column * (width + self._beside), 1.0 - row * (height + gap)
         return [left, min(1.0, left + width)], [max(0.0, top - height), top]
 
 

@@ -148,3 +148,14 @@ def test_the_legend_has_room_above_the_panels_and_more_of_it_on_a_narrow_screen(
     figure = draw(Chart(name="c", caption="", panels=[Panel(x_label="a [m]", y_label="b [m]", lines=lines)]))
     few = draw(a_chart(1))
     assert few["layout"]["margin"]["t"] < figure["layout"]["margin"]["t"] < figure["narrow"]["margin"]["t"]
+
+
+def test_names_of_an_ordinate_have_room_beside_the_panel_to_their_left():
+    names = [(0.0, "holding off"), (1.0, "tracking")]
+    plain = draw(a_chart(2, columns=2))["layout"]
+    named = draw(Chart(name="c", caption="", panels=[a_panel(), a_panel(y_names=names)], columns=2))["layout"]
+    gaps = [layout["xaxis2"]["domain"][0] - layout["xaxis"]["domain"][1] for layout in (plain, named)]
+    # Eleven letters of 13 px take some 70 px of a chart that is 890 px wide without its margins.
+    assert gaps[1] > gaps[0]
+    assert gaps[1] * 890.0 > 70.0 + 35.0
+    assert named["xaxis2"]["domain"][1] == pytest.approx(1.0)

@@ -1,10 +1,9 @@
 """What a report shows of a subset simulation, of made-up ones with statistics as the study itself writes them."""
 
-import re
-
 import numpy as np
 import pandas as pd
 import pytest
+from report_parts import assert_axes_read_quantity_and_unit
 
 from reports.document.blocks import Table, Text
 from reports.document.chart import Chart
@@ -84,9 +83,7 @@ def test_every_axis_reads_quantity_and_unit_and_both_drawers_draw_all_charts(rea
         for chart in charts:
             assert len(matplotlib_charts.draw(chart).axes) >= len(chart.panels)
             assert len(plotly_charts.draw(chart)["data"]) == sum(len(panel.lines) for panel in chart.panels)
-            for panel in chart.panels:
-                for label in (panel.x_label, panel.y_label):
-                    assert re.fullmatch(r".+ \[[^\]]+\]", label), (chart.name, label)
+        assert_axes_read_quantity_and_unit(charts)
 
 
 def test_the_curve_rises_with_the_distance_and_lies_within_its_band(reached):

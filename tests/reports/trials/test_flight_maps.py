@@ -1,7 +1,6 @@
 """Maps of flights: the guard's stretches, the ship, her plume and what was about them."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -107,10 +106,23 @@ def test_from_near_only_the_marks_of_the_time_shown_are_seen(flight):
 def test_a_picture_has_a_panel_for_each_flight_with_a_time_history(run, flight):
     trial, row = flight
     trials = read_trials(run)
-    picture = track_picture([(trial, row, "closest"), (trials[1], trials[1].rows.iloc[0], "typical")])
-    assert [panel.title for panel in picture.panels] == ["closest", "typical"]
-    assert picture.columns == 2
-    assert len(track_picture([(trial, row, "only")]).panels) == 1
     unknown = row.copy()
     unknown["flight_id"] = "nobody"
-    assert track_picture([(replace(trial), unknown, "none")]) is None
+    shown = [(trial, row, "closest"), (trial, unknown, "none"), (trials[1], trials[1].rows.iloc[0], "typical")]
+    picture = track_picture(shown, " Told.")
+    assert [panel.title for panel in picture.panels] == ["closest", "typical"]
+    assert (picture.columns, picture.last_height, picture.caption[-6:]) == (2, 0.0, " Told.")
+    assert len(track_picture(shown[:2]).panels) == len(flight_charts(trial, row)[0].panels)
+    assert track_picture(shown[1:2]) is None
+
+
+def test_the_ground_lies_along_the_way_of_a_ship_that_goes_far(run):
+    # The ship goes north at 5 to 14 m/s for some two minutes, and the track about her is some hundred metres wide.
+    trial = read_trials(run)[0]
+    charts = [flight_charts(trial, row)[0] for _, row in trial.rows.iterrows()]
+    ground = [chart.panels[-1] for chart in charts if chart.last_height]
+    for panel in ground:
+        (way,) = (line for line in panel.lines if line.label == "ship's track")
+        assert way.y == pytest.approx(np.zeros(len(way.y)), abs=1e-6)
+        assert np.all(np.diff(way.x) >= 0.0)
+    assert ground
