@@ -7,6 +7,12 @@ import pandas as pd
 
 from reports.run.columns import Array, column
 
+_AT_REST = 0.01
+"""Speed below which a vessel's heading is not that of its motion [m/s]."""
+
+_LOST = 2.0
+"""Value of the column ``guard`` where the guard cannot hold its own radius; it is 1 where it changes commands, and else 0."""
+
 
 def tracking_error(history: pd.DataFrame) -> Array:
     """Return the distance to the reference at every sample [m]."""
@@ -33,10 +39,40 @@ def keepout_distance(history: pd.DataFrame, source_height: float, shape: str) ->
 def about_the_plume(history: pd.DataFrame, prefix: str = "") -> tuple[Array, Array]:
     """Return metres right of and along the plume's axis, seen from the vessel, of the UAV or what a prefix names."""
     north, east = (column(history, f"{prefix}{axis}_m") - column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
-    axis = column(history, "plume_axis_rad")
-    return np.cos(axis) * east - np.sin(axis) * north, np.cos(axis) * north + np.sin(axis) * east
+    return turned(north, east, column(history, "plume_axis_rad"))
+
+
+def turned(north: Array, east: Array, up: Array | float) -> tuple[Array, Array]:
+    """Return metres to the right and up of a page on which the course ``up`` [rad] is up."""
+    return np.cos(up) * east - np.sin(up) * north, np.cos(up) * north + np.sin(up) * east
 
 
 def thinned(history: pd.DataFrame, points_max: int) -> pd.DataFrame:
     """Return every so many samples, ``points_max`` of them at most."""
     return history.iloc[:: max(1, math.ceil(len(history) / points_max))]
+
+
+def vessel_heading(history: pd.DataFrame, course_deg: float) -> Array:
+    """Return where the vessel's bow points at each sample, without jumps [rad]: along its motion, at rest as it was before.
+
+    Parameters
+    ----------
+    history : of the flight
+    course_deg : of a vessel that is at rest all the time [deg]
+    """
+    north, east = (column(history, f"vessel_velocity_{axis}_mps") for axis in ("north", "east"))
+    moving = np.hypot(north, east) > _AT_REST
+    if not moving.any():
+        return np.full(len(history), math.radians(course_deg))
+    last = np.maximum.accumulate(np.where(moving, np.arange(len(history)), np.argmax(moving)))
+    heading: Array = np.unwrap(np.arctan2(east, north)[last])
+    return heading
+
+
+def guard_stretches(history: pd.DataFrame) -> list[tuple[int, int, bool]]:
+    """Return when the guard changed commands: the first sample, that after the last, and whether it held its radius."""
+    state = np.nan_to_num(column(history, "guard"))
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(state)) + 1])
+    ends = np.append(starts[1:], len(state))
+    stretches = zip(starts.tolist(), ends.tolist(), strict=True)
+    return [(start, end, bool(state[start] < _LOST)) for start, end in stretches if state[start] > 0.0]

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,6 @@ from measurement.errors import MeasurementError
 from measurement.plume.air import MarineAir
 from measurement.plume.settings import PlumeSettings
 from measurement.plume.spread import STEP, spreads
-from reports.document.scene import PlumeShape
 from reports.run.columns import Array
 
 LINE_HALF_WIDTH = 4.0
@@ -24,7 +23,7 @@ SPREADS = 2.0
 """Spreads from the axis to the edge that is drawn [-]: there the concentration is exp(-2) of that on the axis."""
 
 _SECTIONS = 25
-"""Cross-sections that a tube is made of."""
+"""Cross-sections of a plume."""
 
 _WIND_MIN = 1.0
 """Apparent wind below which a plume has no direction [m/s]."""
@@ -33,6 +32,25 @@ _ZERO_CELSIUS = 273.15
 """[K]"""
 
 Config = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlumeShape:
+    """A plume as a tube about its axis; every array has the shape (n,).
+
+    Attributes
+    ----------
+    distance : from the funnel along the sea, increasing from 0 [m]
+    height : of the axis above the sea [m]
+    half_width, half_height : of the tube across and up [m]
+    smoke : whether the model has a width; of an axis alone it is ``LINE_HALF_WIDTH``
+    """
+
+    distance: Array
+    height: Array
+    half_width: Array
+    half_height: Array
+    smoke: bool
 
 
 def plume_shape(config: Config, *, speed: float, wind: float, apparent_wind: float, length: float) -> PlumeShape:
@@ -53,10 +71,8 @@ def plume_shape(config: Config, *, speed: float, wind: float, apparent_wind: flo
             # A range that this version has narrowed; what is left is the axis.
             pass
     climb = math.tan(math.radians(float(config["plume"].get("elevation_deg", 0.0))))
-    width = np.full(_SECTIONS, LINE_HALF_WIDTH)
-    return PlumeShape(
-        distance=distance, height=float(config["plume"]["source_height_m"]) + climb * distance, half_width=width, half_height=width
-    )
+    height, width = float(config["plume"]["source_height_m"]) + climb * distance, np.full(_SECTIONS, LINE_HALF_WIDTH)
+    return PlumeShape(distance=distance, height=height, half_width=width, half_height=width, smoke=False)
 
 
 def _smoke(config: Config, distance: Array, *, speed: float, wind: float, apparent_wind: float) -> PlumeShape:
@@ -76,4 +92,5 @@ def _smoke(config: Config, distance: Array, *, speed: float, wind: float, appare
         height=np.interp(age, ages, table.height[0]),
         half_width=SPREADS * np.interp(age, ages, across),
         half_height=SPREADS * np.interp(age, ages, up),
+        smoke=True,
     )

@@ -1,0 +1,39 @@
+"""How large the ship of a run is drawn: a scenario names her engine and funnel at most, never her hull."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hull:
+    """A hull as it is drawn.
+
+    Attributes
+    ----------
+    title : what she is taken to be, in words
+    length, beam : [m]
+    funnel : from the stern, over the length [-]
+    """
+
+    title: str
+    length: float
+    beam: float
+    funnel: float = 0.2
+
+
+HULLS = {
+    "container": Hull(title="a container feeder", length=160.0, beam=25.0),
+    "coaster": Hull(title="a coaster", length=90.0, beam=14.0),
+    "tanker": Hull(title="a tanker", length=180.0, beam=30.0),
+    "cruise": Hull(title="a cruise ship", length=290.0, beam=36.0, funnel=0.35),
+}
+"""By the names of ``measurement/emission/ships.toml``: usual sizes of such ships, assumptions."""
+
+ANY = Hull(title="a merchant ship", length=150.0, beam=23.0)
+"""Of a ship of which nothing is known."""
+
+
+def hull_of(config: Mapping[str, Any]) -> Hull:
+    """Return the hull of the ship of a trial, by its configuration."""
+    return HULLS.get(str(config.get("emission", {}).get("ship")), ANY)
