@@ -11,7 +11,7 @@ COLOURS = {
     "purple": "#CC79A7",
     "plum": "#882255",
     "black": "#222222",
-    "grey": "#8a8a8a",
+    "grey": "#6e6e6e",
     "white": "#ffffff",
 }
 """Okabe and Ito's palette, and the wine of Tol's muted one: colour-blind readers can tell them apart. White is the page's."""

@@ -10,7 +10,6 @@ import numpy.typing as npt
 from reports.document.blocks import FlightPicker
 from reports.document.palette import COLOURS, Meaning
 from reports.document.scene import Scene
-from reports.render.script_data import for_script
 from reports.run.columns import Array
 
 THREE = Path(__file__).parent / "bundle" / "three.min.js"
@@ -25,6 +24,9 @@ _PLACE, _ANGLE = 0.01, 0.002
 """Steps in which places and angles are sent [m, rad]: 1 cm, and 0.1 deg."""
 
 _ANGLES = ("heading", "pitch", "roll", "vessel_heading", "plume_axis")
+
+_STEPS_MAX = 2.0**40
+"""Farthest that is sent, in steps: ten million kilometres, as of a vehicle out of control."""
 
 _STRAIGHT = 1e-6
 """Deviation from a straight line over time that a column is sent as one despite [m, rad]."""
@@ -64,10 +66,10 @@ def scripts() -> str:
     return "\n".join(path.read_text(encoding="utf-8") for path in SCRIPTS)
 
 
-def data(picker: FlightPicker) -> str:
+def data(picker: FlightPicker) -> Data:
     """Return what the scripts of the replay read: the scenes of the flights that have one, and their colours."""
     scenes = {flight.flight_id: draw_scene(flight.scene) for flight in picker.flights if flight.scene}
-    return for_script({"flights": scenes, "colours": colours()})
+    return {"flights": scenes, "colours": colours()}
 
 
 def draw_scene(scene: Scene) -> Data:
@@ -95,7 +97,7 @@ def packed_column(values: Array, step: float) -> Data:
     first, last = float(values[0]), float(values[-1])
     if np.abs(values - np.linspace(first, last, len(values))).max() <= _STRAIGHT:
         return {"first": first, "last": last}
-    levels = np.round(values / step).astype(np.int64)
+    levels = np.round(np.clip(values / step, -_STEPS_MAX, _STEPS_MAX)).astype(np.int64)
     # Second differences are small: most are a byte.
     changes = np.diff(np.concatenate([[0, 0], levels]), n=2)
     return {"step": step, "data": base64.b64encode(_packed(changes)).decode("ascii")}

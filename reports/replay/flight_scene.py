@@ -23,15 +23,17 @@ _PLUME_LENGTH = 3.0
 def flight_scene(trial: Trial, row: "pd.Series[Any]") -> Scene | None:
     """Return the scene of one flight of a trial, given its row; None if it has no time history, or no vessel."""
     history = trial.run.history(str(row["flight_id"]))
-    if history is None or len(history) < 2 or not np.isfinite(column(history, "vessel_north_m")).all():
+    if history is None or len(history) < 2 or not np.isfinite(row["keepout_radius_m"]):
         return None
     recorded = column(history, "time_s")
+    if not all(np.isfinite(known).all() for known in (recorded, column(history, "vessel_north_m"), column(history, "north_m"))):
+        return None
     interval = max(INTERVAL, float(np.median(np.diff(recorded))))
-    # Samples of the history wherever that is as even as it is recorded.
-    time = recorded[0] + interval * np.arange(math.floor((recorded[-1] - recorded[0]) / interval + 1e-6) + 1)
+    # Never more than the history has, whatever its times are.
+    time = recorded[0] + interval * np.arange(min(len(history), int((recorded[-1] - recorded[0]) / interval + 1e-6) + 1))
 
     def at_times(values: Array, *, angles: bool = False) -> Array:
-        # A value that is not known, as of a vehicle out of control, stays what it was.
+        # A value that is not known stays what it was.
         known = np.isfinite(values)
         if not known.any():
             return np.zeros(len(time))
@@ -68,7 +70,7 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]") -> Scene | None:
             (float(recorded[first]), float(recorded[min(after, len(recorded) - 1)]), held)
             for first, after, held in guard_stretches(history)
         ],
-        crossings=trial.run.crossings_of(str(row["flight_id"]))["time_s"].to_numpy(dtype=np.float64),
+        crossings=column(trial.run.crossings_of(str(row["flight_id"])).dropna(subset="time_s"), "time_s"),
         keepout_radius=float(row["keepout_radius_m"]),
         keepout_shape=trial.shape,
         source_height=trial.source_height,
@@ -80,7 +82,7 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]") -> Scene | None:
 def _plume(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame) -> PlumeShape:
     """Return the plume's shape, in the wind and at the vessel's speed that the flight began with."""
     north, east = (float(column(history, f"vessel_velocity_{axis}_mps")[0]) for axis in ("north", "east"))
-    wind, origin = (float(row[name]) if np.isfinite(row[name]) else 0.0 for name in ("wind_speed_mps", "wind_from_deg"))
+    wind, origin = (float(np.nan_to_num(row.get(name, 0.0))) for name in ("wind_speed_mps", "wind_from_deg"))
     towards = math.radians(origin) + math.pi
     apparent = math.hypot(wind * math.cos(towards) - north, wind * math.sin(towards) - east)
     length = _PLUME_LENGTH * float(row["keepout_radius_m"])

@@ -4,6 +4,7 @@ import base64
 import json
 import re
 from dataclasses import replace
+from html.parser import HTMLParser
 
 import numpy as np
 import pandas as pd
@@ -12,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from reports.document.blocks import FlightContent, FlightPicker
+from reports.document.blocks import FlightPicker
 from reports.document.scene import COLUMNS
 from reports.registry import content
 from reports.render import html, replay
@@ -143,12 +144,42 @@ def test_the_library_is_in_the_page_once_and_only_where_there_is_a_replay(run_of
     assert banner not in path.read_text(encoding="utf-8")
 
 
-def test_names_of_flights_never_become_markup(scene):
+class Scripts(HTMLParser):
+    """The texts of the elements of a page that are scripts, by their identifiers."""
+
+    def __init__(self):
+        super().__init__()
+        self.texts, self._name = {}, None
+
+    def handle_starttag(self, tag, attrs):
+        self._name = dict(attrs).get("id", str(len(self.texts))) if tag == "script" else None
+
+    def handle_data(self, data):
+        if self._name is not None:
+            self.texts[self._name] = self.texts.get(self._name, "") + data
+
+
+def test_names_of_flights_never_become_markup(run_of, tmp_path):
     hostile = "</script><!--<script>alert(1)//"
-    flight = FlightContent(flight_id=hostile, label="", title="", charts=[], scene=scene)
-    data = replay.data(FlightPicker(flights=[flight]))
-    assert "<" not in data
-    assert list(json.loads(data)["flights"]) == [hostile]
+    report, path = content(read_run(run_of("sweep_nu"))), tmp_path / "report.html"
+
+    def renamed(block):
+        flights = [replace(flight, flight_id=hostile, label=hostile) for flight in block.flights]
+        return replace(block, flights=flights)
+
+    sections = [
+        replace(section, blocks=[renamed(block) if isinstance(block, FlightPicker) else block for block in section.blocks])
+        for section in report.sections
+    ]
+    html.write_html(report, path)
+    whole = Scripts()
+    whole.feed(path.read_text(encoding="utf-8"))
+    html.write_html(replace(report, sections=sections), path)
+    page = Scripts()
+    page.feed(path.read_text(encoding="utf-8"))
+    assert list(page.texts) == list(whole.texts)
+    assert list(json.loads(page.texts["replay-data"])["flights"]) == [hostile]
+    assert list(json.loads(page.texts["flight-figures"])) == [hostile]
 
 
 @pytest.mark.parametrize("text", [replay.library(), replay.scripts()])
