@@ -7,7 +7,8 @@ import importlib.metadata
 import importlib.util
 import pkgutil
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import FunctionType
 from typing import Any, Generic, TypeVar
@@ -57,6 +58,29 @@ class Registry(Generic[Part]):
 
         return added
 
+    @contextmanager
+    def lent(self, name: str, part: Part) -> Iterator[None]:
+        """Know a part by ``name`` inside the context: one that is given as an object, and not by its name.
+
+        Raises
+        ------
+        PluginError : another part is known by this name
+        """
+        if self._parts.get(name) is part:
+            yield
+            return
+        if name in self.names():
+            raise PluginError(f"{self.words} '{name}' is known already, and is not the object that was given; call yours otherwise")
+        self._parts[name] = part
+        try:
+            yield
+        finally:
+            del self._parts[name]
+
+    def name_of(self, part: object) -> str | None:
+        """Return the name of a part that is registered, or None if it is not."""
+        return next((name for name, known in self._parts.items() if known is part), None)
+
     def names(self) -> list[str]:
         """Return every known name, in alphabetical order."""
         return sorted({*self._known(), *self._entry_points()})
@@ -69,7 +93,7 @@ class Registry(Generic[Part]):
         PluginError : there is none, or it does not load, or it lacks a method
         """
         if is_file_part(name):
-            return self._checked(name, part_in_file(name))
+            return self.checked(name, part_in_file(name))
         if name not in self._parts and name.isidentifier() and importlib.util.find_spec(f"{self._folder}.{name}"):
             # A file of its name comes first: the others may take long to import.
             importlib.import_module(f"{self._folder}.{name}")
@@ -77,7 +101,7 @@ class Registry(Generic[Part]):
             return self._parts[name]
         if (found := self._entry_points().get(name)) is not None:
             try:
-                return self._checked(name, found.load())
+                return self.checked(name, found.load())
             except PluginError:
                 raise
             except Exception as error:
@@ -98,7 +122,13 @@ class Registry(Generic[Part]):
     def _entry_points(self) -> dict[str, importlib.metadata.EntryPoint]:
         return announced(self.kind)
 
-    def _checked(self, name: str, part: Any) -> Part:
+    def checked(self, name: str, part: Any) -> Part:
+        """Return a part called ``name`` that has every method of its Protocol.
+
+        Raises
+        ------
+        PluginError : it lacks one
+        """
         for method in () if isinstance(part, FunctionType) else self._methods:
             if not any(callable(getattr(part, alternative, None)) for alternative in method.split("|")):
                 missing = method.replace("|", "() or ")

@@ -3,6 +3,10 @@
 MANIFEST = "manifest.json"
 """Configuration, software, and how the run ended."""
 
+FORMAT = 1
+"""Version of a run directory, the manifest's entry ``format``; one without is of version 1. It rises when files or entries that
+are read change their meaning."""
+
 FILES = "files"
 """Entry of the manifest with the files that a run had when it ended."""
 
@@ -65,6 +69,12 @@ WORST = "worst"
 
 REPORT_HTML, REPORT_PDF = "report.html", "report.pdf"
 """The reports."""
+
+REPORT_SETTINGS = ("title", "author", "organisation", "logo")
+"""What a report says of itself: keys of a scenario's section ``report``, and of the manifest's entry of that name."""
+
+LOGO = "logo"
+"""Name of the file of the reports' logo; its suffix says what kind of picture it is."""
 
 EXPORT = "export"
 """Directory of what exporters wrote."""

@@ -28,6 +28,12 @@ def command(
         int | None,
         typer.Option(min=1, max=1_000_000, help="Repeat the search for the worst reversal of a turn with so many, e.g. 10000."),
     ] = None,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="report.KEY=VALUE", help="Title, author, organisation or logo of the reports; may be repeated."
+        ),
+    ] = None,
     list_aircraft: Annotated[
         bool, typer.Option("--list", help="List every known aircraft: whether it can be flown, or why not; then exit.")
     ] = False,
@@ -42,7 +48,7 @@ def command(
     if aircraft is None:
         raise typer.Exit(refuse("no aircraft given; `--list` lists the known ones"))
     try:
-        _design(aircraft, out, altitude, reversals, no_report=no_report)
+        _design(aircraft, out, altitude, reversals, overrides or [], no_report=no_report)
     except (AircraftError, ReportError) as error:
         raise typer.Exit(refuse(error)) from None
     except OSError as error:
@@ -65,19 +71,24 @@ def _list(altitude: float) -> None:
     print(f"{count} can be flown", file=sys.stderr)
 
 
-def _design(aircraft: str, out: Path | None, altitude: float, reversals: int | None, *, no_report: bool) -> None:
+def _design(
+    aircraft: str, out: Path | None, altitude: float, reversals: int | None, overrides: list[str], *, no_report: bool
+) -> None:
     from aircraft.fleet.find import find_spec
+    from reports.build import build_reports, check_settings, print_design
+
+    check_settings(overrides)
 
     spec = find_spec(aircraft)
     out = out or Path("runs") / f"design-{spec.name}"
     _refuse_another_run(out)
 
     from common.files import remove_reports, write_json
+    from common.provenance import command_line
     from innerloop.designs.cache import designed
     from innerloop.designs.manifest import design_manifest
     from innerloop.jsbsim.root import write_root
     from innerloop.jsbsim.script import write_script
-    from reports.build import build_reports, print_design
 
     print(f"designing the autopilot of {spec.title}", file=sys.stderr)
     started = time.monotonic()
@@ -92,10 +103,11 @@ def _design(aircraft: str, out: Path | None, altitude: float, reversals: int | N
     if reversals:
         record = _with_repeated_search(found, root, reversals)
     write_json(out / DESIGN_RECORD, record)
-    write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started))
+    command = command_line("innerloop.design", sys.argv[1:])
+    write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started, command=command))
     print_design(record)
     print(f"\ndesign: {out}\nJSBSim root with the autopilot: {out / 'model'}")
-    for path in () if no_report else build_reports(out):
+    for path in () if no_report else build_reports(out, settings=overrides):
         print(f"report: {path}")
 
 

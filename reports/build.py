@@ -1,8 +1,7 @@
 """Command line: ``python -m reports.build RUN_DIR`` rebuilds a run's reports from what is on disk, or exports it."""
 
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -23,7 +22,11 @@ _NAMED = 5
 
 
 def build_reports(
-    directory: Path, *, all_flights: bool = False, tell_missing: Callable[[str], None] = lambda _: None
+    directory: Path,
+    *,
+    all_flights: bool = False,
+    settings: Sequence[str] = (),
+    tell_missing: Callable[[str], None] = lambda _: None,
 ) -> list[Path]:
     """Write ``report.html`` and ``report.pdf`` into a run directory and return their paths.
 
@@ -31,25 +34,29 @@ def build_reports(
     ----------
     directory : of the run
     all_flights : print every flight that can be picked on the screen, not the telling ones alone
+    settings : ``report.KEY=VALUE`` of title, author, organisation and logo, in place of those of the run
     tell_missing : called with the path of each file of the run that is gone or cannot be read; the reports name it
 
     Raises
     ------
-    ReportError : the directory holds no run that can be reported on, or cannot be written
+    ReportError : the directory holds no run that can be reported on, or cannot be written; or a setting is none, or no picture
     """
     from reports.registry import content
     from reports.render.html import write_html
     from reports.render.pdf import write_pdf
+    from reports.run.files import damage_named, written
+    from reports.run.letterhead import parse_settings
     from reports.run.run_data import read_run
 
+    given = parse_settings(settings)
     run = read_run(directory)
     print("building the report", file=sys.stderr)
-    with _damage_named(directory):
-        report = content(run)
+    with damage_named(directory):
+        report = content(run, given)
     for name in run.missing():
         tell_missing(name)
-    html = _written(directory / REPORT_HTML, partial(write_html, report))
-    return [html, _written(directory / REPORT_PDF, partial(write_pdf, report, all_flights=all_flights))]
+    html = written(directory / REPORT_HTML, partial(write_html, report))
+    return [html, written(directory / REPORT_PDF, partial(write_pdf, report, all_flights=all_flights))]
 
 
 def export_run(directory: Path, name: str, flight_id: str | None = None) -> list[Path]:
@@ -68,6 +75,7 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
     """
     from reports.errors import ReportError
     from reports.export import EXPORTERS
+    from reports.run.files import damage_named, written
 
     exporter = EXPORTERS.get(name)()
     run, folder = _run_of(directory, flight_id), directory / EXPORT
@@ -79,9 +87,9 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
     parts = {f"{run_name}.{flight_id}" if flight_id else str(run_name): run}
     if getattr(exporter, "one_flight", False) and (recorded := run.recorded()):
         parts = {f"{run_name}.{flight}": run.of_flight(flight) for flight in recorded}
-    with _damage_named(directory):
+    with damage_named(directory):
         folder.mkdir(exist_ok=True)
-        return [_written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
+        return [written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
 
 
 def stream_run(directory: Path, address: str, flight_id: str | None = None) -> tuple[str, int, float]:
@@ -92,10 +100,11 @@ def stream_run(directory: Path, address: str, flight_id: str | None = None) -> t
     ReportError : the run cannot be read, or has no such flight, or the address is not of that form
     """
     from reports.export.stream import stream_address, stream_flight
+    from reports.run.files import damage_named
 
     host = stream_address(address)
     run = _run_of(directory, flight_id)
-    with _damage_named(directory):
+    with damage_named(directory):
         return stream_flight(run, host)
 
 
@@ -113,30 +122,16 @@ def _run_of(directory: Path, flight_id: str | None) -> "RunData":
     return run.of_flight(flight_id)
 
 
-@contextmanager
-def _damage_named(directory: Path) -> Iterator[None]:
-    """Refuse a run in one line, where reading what it holds fails."""
-    from reports.errors import ReportError
+def check_settings(settings: Sequence[str]) -> None:
+    """Refuse settings of a report before anything is computed for it.
 
-    try:
-        yield
-    except ReportError:
-        raise
-    except (LookupError, TypeError, ValueError, AttributeError, OSError) as error:
-        what = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise ReportError(f"'{directory}' is damaged ({what}); run it again in another --out") from None
+    Raises
+    ------
+    ReportError : a setting is none, or its logo is no picture
+    """
+    from reports.run.letterhead import parse_settings
 
-
-def _written(path: Path, write: Callable[[Path], object]) -> Path:
-    """Write a file, whole or not at all, and return its path."""
-    from common.files import write_whole
-    from reports.errors import ReportError
-
-    try:
-        write_whole(path, write)
-    except OSError as error:
-        raise ReportError(f"'{path}' cannot be written: {error.strerror}; check permissions and space") from None
-    return path
+    parse_settings(settings)
 
 
 def print_design(record: dict[str, Any]) -> None:
@@ -158,6 +153,12 @@ def command(
     stream: Annotated[
         str | None, typer.Option(metavar="udp://HOST:PORT", help="Send a flight to a ground station in real time, as MAVLink.")
     ] = None,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="report.KEY=VALUE", help="Title, author, organisation or logo of these reports; may be repeated."
+        ),
+    ] = None,
     all_flights: Annotated[
         bool, typer.Option("--all-flights", help="Print every flight that report.html shows, not the telling ones alone.")
     ] = False,
@@ -172,6 +173,8 @@ def command(
     try:
         if flight is not None and not (export or stream):
             raise ReportError("--flight is of use beside --export or --stream; reports are of the whole run: leave it out")
+        if overrides and (export or stream):
+            raise ReportError("--set is of the reports, which --export and --stream do not write: leave it out")
         if export or stream:
             for name in (name for names in export or () for name in names.split(",")):
                 for path in export_run(directory, name, flight):
@@ -181,7 +184,7 @@ def command(
                 print(f"stream: {messages} messages of {sent}, {seconds:.0f} s of flight, to {stream}")
         else:
             missing: list[str] = []
-            for path in build_reports(directory, all_flights=all_flights, tell_missing=missing.append):
+            for path in build_reports(directory, all_flights=all_flights, settings=overrides or (), tell_missing=missing.append):
                 print(f"report: {path}")
             for name in missing:
                 print(

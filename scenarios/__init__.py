@@ -1,1 +1,36 @@
-"""The world and the runs: vessel, plume, the one closed loop, metrics, sweeps and the command line."""
+"""From a scenario to results: the world, the closed loop, the studies; and the programming interface, ``docs/api.md``.
+
+``from scenarios import fly, run, load, Scenario``. Names are loaded when they are asked for: importing the package is light.
+"""
+
+import importlib
+import sys
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from scenarios.api import Flight, InputError, Run, Scenario, Statistics, fly, load, run
+
+__all__ = ["Flight", "InputError", "Run", "Scenario", "Statistics", "fly", "load", "run"]
+
+
+class _Package(ModuleType):
+    """This package, in which ``run`` is the function: importing the command line ``scenarios.run`` would put its module there."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (name in __all__ and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package
+
+
+def __getattr__(name: str) -> object:
+    """Return a public name, loaded at its first use."""
+    if name not in __all__:
+        raise AttributeError(f"module 'scenarios' has no attribute '{name}'")
+    return getattr(importlib.import_module("scenarios.api"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

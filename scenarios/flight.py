@@ -10,16 +10,18 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.points import STUDY
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
-from scenarios.instruments.instrument import EvaluatedInstrument, Instrument
+from scenarios.instruments.instrument import EvaluatedInstrument, GasReader, Instrument
 from scenarios.metrics.criteria import failed_criteria, kept_out
 from scenarios.metrics.crossings import crossing_rows
 from scenarios.metrics.figures import flight_figures, plan_row
+from scenarios.metrics.finding import finding_figures
 from scenarios.metrics.relative_state import flight_history
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.planner import plan_flight
@@ -33,6 +35,9 @@ from scenarios.simulation.release import release
 from scenarios.simulation.time_history import history_files
 from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
 from scenarios.world.noise import PAYLOAD, own_generator
+
+_Tables = dict[str, list[Row]]
+"""Rows by the file name of their table."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +95,7 @@ class FlightWork:
     def fly(self, task: Task) -> Result:
         """Plan, fly, measure and record one flight."""
         began = time.perf_counter()
-        row, tables = self._named(task), dict[str, list[Row]]()
+        row, tables = self._named(task), _Tables()
         history: pd.DataFrame | None = None
         document: Mapping[str, Any] | None = None
         try:
@@ -105,20 +110,27 @@ class FlightWork:
             tables[DRAWS][0]["nu"] = row.get("nu")
             instruments = _payload(request, plan)
             read = [instrument for instrument in instruments if isinstance(instrument, Instrument)]
-            record = fly(plan, release(plan, self._setup(request), self.viewer), read, every_step=task.every_step)
+            vehicle = release(plan, self._setup(request), self.viewer)
+            record = fly(plan, vehicle, read, reader=_reader(plan, instruments), every_step=task.every_step)
             history = flight_history(plan, record)
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)
             tables[CROSSINGS] = [named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)]
-            tables |= self.more_tables(request, plan, record)
             tables[INTERVENTIONS] = [named | stretch._asdict() for stretch in record.interventions]
             for instrument in instruments:
                 if isinstance(instrument, EvaluatedInstrument):
-                    evaluation = instrument.evaluate(record.column, record.settled_at)
-                    history[list(instrument.COLUMNS)] = evaluation.columns
+                    evaluation = instrument.evaluate(record.column, _measured_from(request, record))
+                    # Each sample stands until the next, where every step is recorded.
+                    held = np.searchsorted(record.column("time_s"), history["time_s"], side="right") - 1
+                    history[list(instrument.COLUMNS)] = evaluation.columns[held]
                     row |= evaluation.figures
                     tables |= {file: [named | of for of in rows] for file, rows in evaluation.tables.items()}
                     document = evaluation.document or document
+            if sniffer := next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None):
+                noise = sniffer.spec.known("co2").noise
+                sampled = history[:: plan.log_interval] if task.every_step else history
+                row |= finding_figures(sampled, request.scenario.flight, noise=noise, enough=record.enough)
+            tables |= self.more_tables(request, plan, record, row)
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
             row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}
@@ -141,8 +153,8 @@ class FlightWork:
             request.scenario, flight_id=request.flight_id, seed=request.noise, setup=self._setup(request), spreads=self.spreads
         )
 
-    def more_tables(self, request: FlightRequest, plan: FlightPlan, record: FlightRecord) -> dict[str, list[Row]]:  # noqa: ARG002
-        """Return rows of tables that a study of its own adds, by the file name of the table."""
+    def more_tables(self, request: FlightRequest, plan: FlightPlan, record: FlightRecord, row: Row) -> _Tables:  # noqa: ARG002
+        """Return rows of tables that a study of its own adds to a flight's row, by the file name of the table."""
         return {}
 
     def _setup(self, request: FlightRequest) -> VehicleSetup:
@@ -199,10 +211,23 @@ def _never_flown(request: FlightRequest, figures: Row) -> Row:
     return {"manoeuvres_unflown": sum(at >= figures["duration_s"] for at in begins)} if begins else {}
 
 
+def _measured_from(request: FlightRequest, record: FlightRecord) -> float:
+    """Return when instruments begin to be evaluated, from settling on if nothing else is said; not a number if never [s]."""
+    measured = request.scenario.flight.measured_s
+    return record.settled_at if measured is None else float(record.column("time_s")[-1]) - measured
+
+
 def _payload(request: FlightRequest, plan: FlightPlan) -> list[Instrument | EvaluatedInstrument]:
     """Return the flight's instruments, fresh."""
     generator = own_generator(request.noise, PAYLOAD)
     return [PAYLOADS.get(name)(request.scenario, plan.world, generator) for name in plan.payload]
+
+
+def _reader(plan: FlightPlan, instruments: list[Instrument | EvaluatedInstrument]) -> GasReader | None:
+    """Return the instrument that is read in flight, of a flight that reads one."""
+    if plan.sensing is None or not plan.sensing.smells:
+        return None
+    return next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None)
 
 
 def _plain(values: Mapping[str, object]) -> Row:

@@ -45,8 +45,8 @@ def command(
         str | None,
         typer.Option(metavar="tcp://HOST:PORT", help="Address of a running Dask scheduler; default a cluster on this machine."),
     ] = None,
-    time_limit: Annotated[float, typer.Option(help="Longest computing time of a flight [s].")] = 600.0,
-    memory_limit: Annotated[float | None, typer.Option(help="Memory limit of a process [GiB]; default none.")] = None,
+    time_limit: Annotated[float, typer.Option(help="Longest computing time of a flight, in seconds.")] = 600.0,
+    memory_limit: Annotated[float | None, typer.Option(help="Memory limit of a process, in GiB; default none.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue the unfinished run in --out.")] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
     flightgear: Annotated[
@@ -122,19 +122,29 @@ def _run(
     # Before any slow import: most mistakes in the input are found here.
     scenario = None if replayed else load_study(name, overrides)
 
+    from common.provenance import command_line
     from scenarios.engine.progress import progress_bar
 
+    given = command_line("scenarios.run", sys.argv[1:])
     with progress_bar() as progress:
         if scenario is None:
             from scenarios.engine.runner import fly_study
             from scenarios.studies.replay import Replay
 
-            result = fly_study(Replay(name, viewer), directory, executor_factory=executor_factory, resume=resume, progress=progress)
+            study = Replay(name, viewer)
+            result = fly_study(study, directory, executor_factory=executor_factory, resume=resume, progress=progress, command=given)
         else:
             from scenarios.studies.registry import run_study
 
             result = run_study(
-                scenario, stem, directory, executor_factory=executor_factory, resume=resume, progress=progress, overrides=overrides
+                scenario,
+                stem,
+                directory,
+                executor_factory=executor_factory,
+                resume=resume,
+                progress=progress,
+                overrides=overrides,
+                command=given,
             )
     for line in result.summary.lines:
         print(line)

@@ -21,6 +21,11 @@ class Mode(Enum):
     NO_PLUME = "no plume"
     GLIDING = "gliding"
     TERMINATING = "terminating"
+    SEARCHING = "searching"
+    FOUND = "found"
+    LOST_AGAIN = "lost again"
+    SENSOR_FAILED = "sensor failed"
+    DEPARTING = "departing"
 
 
 for _i, _mode in enumerate(Mode):

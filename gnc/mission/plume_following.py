@@ -8,10 +8,9 @@ from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
 from gnc.laws.steering_law import Surroundings
 from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
-from gnc.mission.axis_height import AxisHeight
 from gnc.mission.egress import Egress
 from gnc.mission.mode import Mode
-from gnc.numeric import limited
+from gnc.mission.plume_axis import AxisParameters, Situation
 from gnc.reference.mean_motion import mean_motion
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
 from gnc.reference.reference import Swing
@@ -24,10 +23,6 @@ MANOEUVRE_RANGE, REPORTED_SCATTER = 200.0, 0.03
 
 GLIDE_ALTITUDE = -1000.0
 """Altitude that a gliding vehicle is commanded [m]: so far below that the autopilot holds its airspeed by pitch, and sinks."""
-
-
-_HEIGHT_TIME, _CLIMB_GRADIENT = 20.0, 0.05
-"""Time in which the altitude follows that of the plume's axis [s], and the steepest climb on the way [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +43,7 @@ class FollowingParameters:
     reach, reach_time : how far the vessel may be, that time ahead, from where it is taken to be, while its reports come [m, s]
     drift_rate : how fast dead reckoning goes wrong [m/s]
     plan_interval : guidance steps between plans
-    height : of the plume's axis, and so of the flight
+    axis : how the plume's axis is known, and so how high is flown
     """
 
     centre: CentreParameters
@@ -64,7 +59,7 @@ class FollowingParameters:
     reach_time: float
     drift_rate: float
     plan_interval: int
-    height: AxisHeight
+    axis: AxisParameters
 
 
 class PlumeFollowing:
@@ -76,12 +71,17 @@ class PlumeFollowing:
     tracking : of the tracker of its reference
     own, target : motion of the vehicle and of the vessel, updated by whoever steps the guidance
     guard : of the keep-out area, or none
+
+    Attributes
+    ----------
+    axis : of the plume
+    departing : whether the vehicle leaves for good, though nothing is wrong with it
     """
 
     __slots__ = (
         "_approach", "_closing_in", "_egress", "_guard", "_orbit_range", "_orbit_rate", "_own", "_parameters",
-        "_plan_time", "_reference", "_speed", "_target", "_tracking", "_tracking_parameters", "airspeed", "altitude", "centre",
-        "centre_error", "leaving", "mode", "started", "tracker",
+        "_plan_time", "_reference", "_situation", "_speed", "_target", "_tracking", "_tracking_parameters", "airspeed", "altitude",
+        "axis", "centre", "centre_error", "departing", "leaving", "mode", "started", "tracker",
     )  # fmt: skip
 
     def __init__(
@@ -106,11 +106,19 @@ class PlumeFollowing:
         )
         self._egress = Egress(tracking.heading_rate_max)
         self._plan_time = 0.0
-        self._tracking = self._closing_in = self.leaving = self.started = False
+        self._tracking = self._closing_in = self.leaving = self.departing = self.started = False
         self._orbit_range = self._orbit_rate = self.centre_error = 0.0
         self.centre = MovingCentre(parameters.centre)
         self.mode = Mode.APPROACH
-        self.airspeed, self.altitude = parameters.approach.airspeed, parameters.height.source
+        self.axis = parameters.axis.begin()
+        self._situation = Situation(
+            own=own,
+            target=target,
+            centre=self.centre,
+            speed=self._speed,
+            plan_time=parameters.plan_interval * tracking.time_step,
+        )
+        self.airspeed, self.altitude = parameters.approach.airspeed, parameters.axis.altitude
         self.tracker: Tracker[SteeredReference]
         self._reference: SteeredReference
 
@@ -122,7 +130,7 @@ class PlumeFollowing:
     @property
     def overriding(self) -> bool:
         """Whether ``command`` replaces the tracker's heading rate."""
-        return self.leaving or not self._tracking
+        return self.leaving or self.departing or not self._tracking
 
     def leave(self, fault: Fault) -> None:
         """Leave the vessel for good, because of a fault of the vehicle."""
@@ -130,10 +138,14 @@ class PlumeFollowing:
         self.mode = Mode.GLIDING if fault is Fault.THRUST_LOST else Mode.TERMINATING
         self.airspeed, self.altitude = self._parameters.glide_airspeed, GLIDE_ALTITUDE
 
+    def depart(self) -> None:
+        """Leave the vessel for good at this altitude: there is no more to be done here."""
+        self.departing = True
+
     def command(self) -> float:
         """Return the heading rate that leads to the centre of oscillation, round the vessel, or away from it [rad/s]."""
         own, target, centre, last = self._own, self._target, self.centre, self.tracker.heading_rate_command
-        if self.leaving:
+        if self.leaving or self.departing:
             x, y = own.ground_north - target.north, own.ground_east - target.east
             return self._egress.command(x, y, self._approach.course_ahead(last), own.heading_rate)
         return self._approach.command(centre.x, centre.y, last, additional_range=self._orbit_range)
@@ -152,7 +164,12 @@ class PlumeFollowing:
         self._decide()
         if self.leaving:
             return
-        self._climb()
+        self.axis.plan(time, self._situation, tracking=self._tracking)
+        if self.departing:
+            self.mode = Mode.DEPARTING
+            return
+        axis = self.axis
+        self.altitude = axis.climb.step(self.altitude, axis.demanded, self._speed, self._plan_time, flown=axis.flown)
         if own.lost > 0.0:
             self.mode = Mode.DEAD_RECKONING
         elif age > p.stale:
@@ -162,14 +179,7 @@ class PlumeFollowing:
         elif not centre.plume_known:
             self.mode = Mode.NO_PLUME
         else:
-            self.mode = Mode.TRACKING if self._tracking else Mode.APPROACH
-
-    def _climb(self) -> None:
-        """Bring the altitude to that of the plume's axis at the centre: slowly, because it follows wind that is estimated."""
-        height = self._parameters.height
-        expected = height.at(self.centre.distance, self.centre.speed_ratio * self._speed)
-        climb = _CLIMB_GRADIENT * self._speed
-        self.altitude += self._plan_time * limited((expected - self.altitude) / _HEIGHT_TIME, climb)
+            self.mode = self.axis.mode if self._tracking else Mode.APPROACH
 
     def _widen_margin(self) -> None:
         """Keep farther off while the vessel may be farther from where it is taken to be than as long as its reports come."""
@@ -198,6 +208,7 @@ class PlumeFollowing:
             acceleration_east=target.acceleration_east,
             wind_north=own.wind_north,
             wind_east=own.wind_east,
+            bearing=self.axis.bearing,
             additional_range=self._orbit_range + (0.0 if self._closing_in else self._parameters.standoff) + manoeuvre_range,
             additional_rate=self._orbit_rate,
         )

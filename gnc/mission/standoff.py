@@ -15,9 +15,11 @@ from gnc.estimation.target_motion import TargetMotion
 from gnc.laws.path.lgvf import heading_for
 from gnc.laws.steering_law import Surroundings, begun
 from gnc.mission.approach import COURSE_GAIN
+from gnc.mission.axis_height import AxisHeight
 from gnc.mission.direct_tracking import CLOSING_RATE, STANDOFF, SteadyCentre
 from gnc.mission.egress import Egress
 from gnc.mission.mode import Mode
+from gnc.mission.plume_axis import Climb
 from gnc.mission.plume_following import GLIDE_ALTITUDE
 from gnc.numeric import limited, wrap
 from gnc.tracker import TrackingParameters, lag_ahead
@@ -38,7 +40,8 @@ class StandoffParameters:
     speed_ratio_max : above it the vessel outruns the vehicle [-]
     glide_airspeed : while leaving without thrust or control [m/s]
     plan_interval : guidance steps between plans
-    altitude : to hold [m]
+    height : of the plume's axis, and so of the flight
+    climb : how the altitude follows it
     """
 
     radius: float
@@ -47,7 +50,8 @@ class StandoffParameters:
     speed_ratio_max: float
     glide_airspeed: float
     plan_interval: int
-    altitude: float
+    height: AxisHeight
+    climb: Climb
 
 
 @dataclass(slots=True)
@@ -145,20 +149,21 @@ class StandoffOrbit:
     """
 
     __slots__ = (
-        "_closing", "_egress", "_lag", "_own", "_parameters", "_target", "airspeed", "altitude", "centre", "centre_error",
-        "leaving", "mode", "started", "tracker",
+        "_closing", "_egress", "_lag", "_own", "_parameters", "_plan_time", "_target", "airspeed", "altitude", "centre",
+        "centre_error", "leaving", "mode", "started", "tracker",
     )  # fmt: skip
 
     def __init__(
         self, parameters: StandoffParameters, tracking: TrackingParameters, *, own: OwnMotion, target: TargetMotion
     ) -> None:
         self._parameters, self._own, self._target, self._lag = parameters, own, target, tracking.lag
-        self._closing = CLOSING_RATE * parameters.speed * parameters.plan_interval * tracking.time_step
+        self._plan_time = parameters.plan_interval * tracking.time_step
+        self._closing = CLOSING_RATE * parameters.speed * self._plan_time
         self._egress = Egress(tracking.heading_rate_max)
         self.tracker = CircleTracker(tracking, parameters, own, target)
         self.centre = SteadyCentre(0.0, 0.0, 0.0)
         self.centre_error, self.leaving, self.started = self.tracker.radius - parameters.radius, False, False
-        self.airspeed, self.altitude, self.mode = parameters.speed, parameters.altitude, Mode.APPROACH
+        self.airspeed, self.altitude, self.mode = parameters.speed, parameters.height.source, Mode.APPROACH
 
     @property
     def in_place(self) -> bool:
@@ -181,6 +186,8 @@ class StandoffOrbit:
         self.centre, self.started = SteadyCentre(0.0, 0.0, ratio), True
         if not self.leaving:
             self.mode = Mode.OUTRUN if ratio >= p.speed_ratio_max else Mode.TRACKING
+            height = p.height.at(p.radius, ratio * p.speed)
+            self.altitude = p.climb.step(self.altitude, height, p.speed, self._plan_time)
 
     def command(self) -> float:
         """Return the heading rate that leads away from the vessel [rad/s]."""

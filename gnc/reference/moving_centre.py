@@ -104,6 +104,7 @@ class MovingCentre:
         wind_east: float,
         additional_range: float,
         additional_rate: float = 0.0,
+        bearing: float = 0.0,
     ) -> None:
         """Move on by ``time_step`` [s].
 
@@ -113,6 +114,7 @@ class MovingCentre:
         acceleration_north, acceleration_east : of the vessel [m/s^2]
         wind_north, wind_east : velocity of the air mass [m/s]
         additional_range, additional_rate : added to r_CO for now, and how fast that grows [m, m/s]
+        bearing : of the plume, to the right of where it would trail [rad]
         """
         p = self._parameters
         air_north, air_east = vessel_north - wind_north, vessel_east - wind_east
@@ -122,12 +124,12 @@ class MovingCentre:
         if p.plume_heading is None:
             self.plume_known = through_air >= p.apparent_wind_min
             if self.plume_known:
-                demanded = math.atan2(-air_east, -air_north)
+                demanded = math.atan2(-air_east, -air_north) + bearing
                 turn = (air_north * acceleration_east - air_east * acceleration_north) / through_air**2
         else:
             over_ground = math.hypot(vessel_north, vessel_east)
             if over_ground >= p.apparent_wind_min or not self._started:
-                demanded = math.atan2(vessel_east, vessel_north) + p.plume_heading
+                demanded = math.atan2(vessel_east, vessel_north) + p.plume_heading + bearing
                 turn = (vessel_north * acceleration_east - vessel_east * acceleration_north) / max(
                     over_ground, _VESSEL_SPEED_MIN
                 ) ** 2

@@ -3,8 +3,9 @@
 Limits and saturations are left out: they are part of the autopilot in JSBSim, not of its linear model.
 """
 
+import functools
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -38,29 +39,28 @@ class ControlLaw:
         # One table for all trim quantities and one for all gains: an interpolator's call costs more than its values.
         self._quantities = ["pitch", "q", "r", *schedule.controls]
         tables = np.stack([schedule.over_bank(name) for name in self._quantities], axis=-1)
-        self._over_bank = RegularGridInterpolator((schedule.banks, self._airspeeds), tables, bounds_error=False, fill_value=None)
+        self._over_bank = _table(schedule.banks, self._airspeeds, tables)
+        self._banks, self._gain_banks = (schedule.banks[0], schedule.banks[-1]), (schedule.gain_banks[0], schedule.gain_banks[-1])
         stacked = np.stack([[gain_vector(g) for g in row] for row in schedule.gains]).transpose(1, 0, 2)
-        self._gains = RegularGridInterpolator((schedule.gain_banks, self._airspeeds), stacked, bounds_error=False, fill_value=None)
+        self._gains = _table(schedule.gain_banks, self._airspeeds, stacked)
         self._slopes = bank_slopes(schedule)
         turns = schedule.turns()
-        self._bank_for_turn = RegularGridInterpolator(
-            (turns, self._airspeeds), schedule.bank_for_turn(turns), bounds_error=False, fill_value=None
-        )
+        self._bank_for_turn = _table(turns, self._airspeeds, schedule.bank_for_turn(turns))
 
     def trim_tables(self, bank: float, airspeed: float) -> dict[str, float]:
         """Return the tabled trim quantities at a bank [rad] and commanded airspeed [m/s]."""
-        bank = min(max(bank, self.schedule.banks[0]), self.schedule.banks[-1])
-        return dict(zip(self._quantities, self._over_bank([[bank, airspeed]])[0].tolist(), strict=True))
+        low, high = self._banks
+        return dict(zip(self._quantities, self._over_bank(min(max(bank, low), high), airspeed).tolist(), strict=True))
 
     def gains(self, bank: float, airspeed: float) -> Array:
         """Return the gains at a bank [rad] and commanded airspeed [m/s], as ``gain_vector`` orders them."""
-        low, high = self.schedule.gain_banks[0], self.schedule.gain_banks[-1]
-        return np.asarray(self._gains([[min(max(bank, low), high), airspeed]])[0])
+        low, high = self._gain_banks
+        return self._gains(min(max(bank, low), high), airspeed)
 
     def model_bank(self, heading_rate: float, measured_airspeed: float, airspeed: float) -> float:
         """Return the bank that turns at a heading rate [rad/s] with a measured and a commanded airspeed [m/s]."""
         turn = heading_rate * measured_airspeed / STANDARD_GRAVITY
-        return float(self._bank_for_turn([[turn, airspeed]])[0])
+        return float(self._bank_for_turn(turn, airspeed))
 
     def bank_slope(self, bank: float, measured_airspeed: float, airspeed: float) -> float:
         """Return the bank rate per rate of heading rate [s] about a bank: cos^2(bank) V/g, more if it slips."""
@@ -122,6 +122,19 @@ class ControlLaw:
         rates["model_rate"] = states["model_acceleration"]
         rates["model_acceleration"] = jerk
         return rates, controls
+
+
+def _table(rows: Sequence[float] | Array, columns: Array, values: Array) -> Callable[[float, float], Array]:
+    """Return the look-up of a table. To linearise asks for the same point again and again, and moves it in few directions."""
+    interpolate = RegularGridInterpolator((rows, columns), values, bounds_error=False, fill_value=None)
+
+    @functools.lru_cache(maxsize=32)
+    def value(row: float, column: float) -> Array:
+        found = np.asarray(interpolate([[row, column]])[0])
+        found.flags.writeable = False
+        return found
+
+    return value
 
 
 def gain_vector(gains: Gains) -> Array:

@@ -1,13 +1,18 @@
 """Figures of an arena: error against effort, crossings per minute against what is possible, and tracks."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from reports.arena.data import ALL, Arena, Entrant
-from reports.document.chart import Chart, Line, Note, Panel, circle
+from reports.arena.figures import CROSSINGS, EFFORT, ERROR, PLUME_TIME, SULPHUR, Figure
+from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.palette import Meaning
+from reports.document.ship_map import ship_panel
 from reports.run.columns import column
+from reports.run.surroundings import surroundings
 from reports.run.time_history import about_the_plume
 
 _FAMILIES = (
@@ -48,8 +53,8 @@ def effort_charts(arena: Arena) -> list[Chart]:
 
 
 def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str) -> Panel:
-    efforts = {entrant.name: arena.of("effort_rms_rad_s", entrant, condition).mean for entrant in entrants}
-    errors = {entrant.name: math.log10(max(arena.of("error_rms_m", entrant, condition).mean, 1e-3)) for entrant in entrants}
+    efforts = {entrant.name: arena.of(EFFORT, entrant, condition).mean for entrant in entrants}
+    errors = {entrant.name: math.log10(max(arena.of(ERROR, entrant, condition).mean, 1e-3)) for entrant in entrants}
     lines, notes = [], []
     for label, colour in _FAMILIES:
         members = [entrant for entrant in entrants if _family(entrant) == label]
@@ -67,7 +72,7 @@ def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str) -> 
     return Panel(
         x_label="Heading rate, rms [rad/s]",
         y_label="Tracking error, rms [m]",
-        title="All conditions" if condition == ALL else _title(condition),
+        title=_title(condition),
         lines=lines,
         notes=notes,
         x_range=(min(reach) - 0.06 * span, max(reach) + 0.1 * span),
@@ -78,7 +83,7 @@ def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str) -> 
 
 def _title(condition: str) -> str:
     """Return the name of a condition in words."""
-    return condition[:1].upper() + condition[1:].replace("_", " ")
+    return "All conditions" if condition == ALL else condition[:1].upper() + condition[1:].replace("_", " ")
 
 
 def _family(entrant: Entrant) -> str:
@@ -90,8 +95,12 @@ def _family(entrant: Entrant) -> str:
 
 def crossing_chart(arena: Arena) -> Chart:
     """Return the crossings per minute of every law, a panel for each condition, with the limit where it is known."""
-    entrants = arena.ranked("crossings_per_minute", arena.entrants, greater_first=True)
-    panels = [_crossing_panel(arena, entrants, condition, named=i == 0) for i, condition in enumerate(arena.conditions)]
+    entrants = arena.ranked(CROSSINGS, arena.entrants)
+    reach = _BEYOND * max(_most(arena, CROSSINGS, arena.conditions), *arena.limits.values(), 0.0)
+    panels = [
+        _merit_panel(arena, entrants, CROSSINGS, condition, reach=reach, named=i == 0)
+        for i, condition in enumerate(arena.conditions)
+    ]
     limit = " The dashed line is the most that any path allows at these speed ratios." if arena.limits else ""
     return Chart(
         name="crossings",
@@ -102,12 +111,32 @@ def crossing_chart(arena: Arena) -> Chart:
     )
 
 
-def _crossing_panel(arena: Arena, entrants: Sequence[Entrant], condition: str, *, named: bool) -> Panel:
+def worth_chart(arena: Arena) -> Chart:
+    """Return what a minute of every law is worth to the measurement, over all conditions."""
+    entrants = arena.ranked(SULPHUR, arena.entrants)
+    figures = (SULPHUR, PLUME_TIME, CROSSINGS)
+    reaches = [_BEYOND * _most(arena, figure, [arena.together]) for figure in figures]
+    panels = [
+        _merit_panel(arena, entrants, figure, arena.together, reach=reach, named=figure is SULPHUR)
+        for figure, reach in zip(figures, reaches, strict=True)
+    ]
+    return Chart(
+        name="worth",
+        caption="What a minute is worth, over all conditions: the standard uncertainty by noise that the fuel's sulphur content is"
+        " left with after it, the time that it has in the plume, and its crossings. A mark is a law's mean, with its 95 % interval."
+        " The best on the sulphur content come first.",
+        panels=panels,
+        columns=len(panels),
+        panel_height=0.1 + 0.025 * len(entrants),
+    )
+
+
+def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: Figure, condition: str, *, reach: float, named: bool) -> Panel:
     rows = {entrant.name: float(len(entrants) - 1 - i) for i, entrant in enumerate(entrants)}
     lines: list[Line] = []
     for tracking, label, colour in ((True, "tracks the oscillating reference", "blue"), (False, "circles the vessel", "orange")):
         members = [entrant for entrant in entrants if entrant.tracks == tracking]
-        found = [arena.of("crossings_per_minute", entrant, condition) for entrant in members]
+        found = [arena.of(figure, entrant, condition) for entrant in members]
         x = np.array([value for of in found for value in (of.low, of.high, math.nan)])
         y = np.array([rows[entrant.name] for entrant in members for _ in range(3)])
         if members:
@@ -116,37 +145,37 @@ def _crossing_panel(arena: Arena, entrants: Sequence[Entrant], condition: str, *
                 Line(x=x, y=y, label="", colour=colour),
                 Line(x=np.array([of.mean for of in found]), y=places, label=label, colour=colour, style="points"),
             ]
-    reach = np.array([-0.7, len(entrants) - 0.3])
-    if (most := arena.limits.get(condition)) is not None:
-        lines.append(Line(x=np.array([most, most]), y=reach, label="limit of any path", colour="vermillion", style="dash"))
+    ends = np.array([-0.7, len(entrants) - 0.3])
+    if figure is CROSSINGS and (most := arena.limits.get(condition)) is not None:
+        lines.append(Line(x=np.array([most, most]), y=ends, label="limit of any path", colour=Meaning.LIMIT, style="dash"))
     names = [(rows[entrant.name], f"{entrant.title} {entrant.number}" if named else "") for entrant in entrants]
     return Panel(
-        x_label="Crossings [1/min]",
-        y_label="Law [-]" if named else "",
+        x_label=figure.title,
+        y_label="Law" if named else "",
         title=_title(condition),
         lines=lines,
-        x_range=(0.0, _BEYOND * _most(arena)),
+        x_range=(0.0, reach or 1.0),
         y_names=names,
-        y_range=(float(reach[0]), float(reach[1])),
+        y_range=(float(ends[0]), float(ends[1])),
     )
 
 
-def _most(arena: Arena) -> float:
-    """Return the largest number of crossings per minute that is drawn."""
-    found = [arena.of("crossings_per_minute", entrant, name).high for entrant in arena.entrants for name in arena.conditions]
-    return max([value for value in found if math.isfinite(value)] + list(arena.limits.values()), default=0.0) or 1.0
+def _most(arena: Arena, figure: Figure, conditions: Iterable[str]) -> float:
+    """Return the largest value of a figure that is drawn."""
+    found = [arena.of(figure, entrant, condition).high for condition in conditions for entrant in arena.entrants]
+    return max((value for value in found if math.isfinite(value)), default=0.0)
 
 
 def track_chart(arena: Arena, *, tracking: bool) -> Chart:
     """Return the end of the first flight of each law in the first condition, seen from the vessel with its plume up the page."""
-    ranked = arena.ranked("error_rms_m", arena.in_task(tracking=tracking))
+    ranked = arena.ranked(ERROR, arena.in_task(tracking=tracking))
     panels = [panel for entrant in ranked if (panel := _track_panel(arena, entrant, tracking=tracking)) is not None]
     first = next(iter(arena.conditions.values()), "")
     what = "The oscillating reference tracked" if tracking else "The vessel circled"
     return Chart(
         name="tracks" if tracking else "circles",
         caption=f"{what}: the last {_SHOWN_S:g} s of one flight a law, the same start for all; condition: {first}. Seen from the"
-        " vessel, with its plume up the page. The best on the tracking error come first.",
+        " ship, to scale, with her plume up the page. The best on the tracking error come first.",
         panels=panels,
         columns=4 if tracking else 5,
         panel_height=0.27 if tracking else 0.22,
@@ -155,28 +184,26 @@ def track_chart(arena: Arena, *, tracking: bool) -> Chart:
 
 def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | None:
     first = next(iter(arena.conditions))
-    flights = [str(flight) for flight in entrant.rows.loc[entrant.rows["trial"] == first, "flight_id"]]
-    history = next((found for flight in flights if (found := arena.run.history(flight)) is not None), None)
-    if history is None:
+    flown = [row for _, row in entrant.rows.iterrows() if row["trial"] == first]
+    row = next((row for row in flown if arena.run.has_history(str(row["flight_id"]))), None)
+    history = None if row is None else arena.run.history(str(row["flight_id"]))
+    if row is None or history is None:
         return None
     time = column(history, "time_s")
     shown = history[time >= time[-1] - _SHOWN_S]
-    radius = float(arena.run.manifest["config"]["keepout"]["radius_m"])
-    right, along = circle(radius)
+    about = surroundings(arena.run.manifest["config"], row, shown)
     reference, own = about_the_plume(shown, "reference_"), about_the_plume(shown)
-    middle = 1.3 * radius if tracking else 0.0
-    half = 0.8 * radius if tracking else 1.6 * radius
-    return Panel(
-        x_label="Right [m]",
-        y_label="Along [m]",
-        title=f"{entrant.number} {entrant.title}" if tracking else str(entrant.number),
-        equal=True,
-        lines=[
-            Line(x=right, y=along, label="keep-out area", colour="vermillion", fill=True),
-            Line(x=np.zeros(2), y=np.array([0.0, 3.0 * radius]), label="plume", colour="grey", style="dash"),
-            Line(x=reference[0], y=reference[1], label="reference", colour="sky"),
-            Line(x=own[0], y=own[1], label="UAV", colour="blue"),
-        ],
-        x_range=(-half, half),
-        y_range=(middle - half, middle + half),
-    )
+    lines = [
+        Line(x=own[0], y=own[1], label="flown", colour=Meaning.FLOWN),
+        Line(x=reference[0], y=reference[1], label="reference", colour=Meaning.ASKED, style="thin"),
+    ]
+    # The same part of the plume for every law, however far from it one is.
+    middle, half = (1.3 * about.radius, 0.8 * about.radius) if tracking else (0.0, 1.6 * about.radius)
+    title = f"{entrant.number} {entrant.title}" if tracking else str(entrant.number)
+    panel = ship_panel(about, lines, title=title, shown=[_square(middle, half)])
+    return replace(panel, x_label="Right [m]", y_label="Along [m]")
+
+
+def _square(middle: float, half: float) -> Line:
+    """Return what a panel has to show: a square about a place on the plume's axis."""
+    return Line(x=np.array([-half, half]), y=np.array([middle - half, middle + half]), label="", colour=Meaning.PLUME)

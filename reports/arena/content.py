@@ -1,12 +1,14 @@
 """The report of an arena: a reader ranks the laws at a glance, and sees what each was given."""
 
-from reports.arena.charts import crossing_chart, effort_charts, track_chart
+from reports.arena.charts import crossing_chart, effort_charts, track_chart, worth_chart
 from reports.arena.data import Arena, Entrant, read_arena
+from reports.arena.figures import CROSSINGS, ERROR, PLUME_TIME, SULPHUR, Figure
 from reports.arena.tables import condition_table, given_table, plume_table, refused_table, tracking_table
 from reports.design.section import innerloop_section
-from reports.document.blocks import Block, Heading, Section, Text, Verdict
-from reports.document.tables import number, parameter_table, vehicles_flown
+from reports.document.blocks import Block, Card, Findings, Heading, Section, Text, Verdict
+from reports.document.tables import parameter_table
 from reports.flights.content import flights_content
+from reports.flights.first_page import flights_in_words
 from reports.run.columns import count, lost, measured, total, violated
 from reports.run.run_data import RunData
 
@@ -28,9 +30,17 @@ _STANDOFF = (
 )
 
 _PLUME = (
-    "Both tasks by what the mission is for: crossings of the plume's axis, time within reach of it, and the distance from the"
-    " funnel at which it was crossed. A law that tracks badly may cross as often as one that tracks well, but elsewhere and"
-    " at times that nobody can predict."
+    "Both tasks by what the mission is for: crossings of the plume's axis, time in the plume, and the distance from the funnel at"
+    " which it was crossed. A law that tracks badly may cross as often as one that tracks well, but elsewhere and at times that"
+    " nobody can predict."
+)
+
+_SULPHUR = (
+    "The plume is the one that the exhaust makes: it rises, spreads, meanders and fluctuates. In it counts where the concentration"
+    " is above exp(-2) of that on the axis. Every law carries the same sniffer. The sulphur error is the standard uncertainty by"
+    " noise of the fuel's sulphur content that a minute leaves, as the estimator states it: the inverse root of the mean"
+    " information 1/σ², which adds up over minutes and flights, and is 0 of a result that is not"
+    " admitted. Errors of the instrument that do not average out come on top, and are the same for every law."
 )
 
 _GIVEN = (
@@ -41,8 +51,8 @@ _GIVEN = (
 )
 
 
-def arena_content(run: RunData) -> tuple[Verdict, list[Section]]:
-    """Return the verdict and the sections of the report of an arena."""
+def arena_content(run: RunData) -> Findings:
+    """Return the findings of an arena."""
     arena = read_arena(run)
     if arena is None:
         # It was interrupted: there are flights, and nothing to rank.
@@ -55,7 +65,12 @@ def arena_content(run: RunData) -> tuple[Verdict, list[Section]]:
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         _section("parameters", "Parameters", "Parameters", [parameter_table(run)]),
     ]
-    return _verdict(arena), sections
+    flown = (
+        f"{len(arena.entrants)} steering laws, each flown {arena.flights} times in each of {len(arena.conditions)} conditions:"
+        f" {flights_in_words(run, measured(run.summary))}."
+    )
+    pictures = effort_charts(arena) if arena.in_task(tracking=True) else [crossing_chart(arena)]
+    return Findings(flown=flown, verdict=_verdict(arena), picture=pictures[0], sections=sections)
 
 
 def _section(anchor: str, title: str, nav_title: str, blocks: list[Block]) -> Section:
@@ -73,7 +88,7 @@ def _tracking(arena: Arena) -> list[Block]:
         Text(_BOLD),
         tracking_table(arena, tracking=True),
         Heading("Tracking error by condition, rms [m]"),
-        condition_table(arena, "error_rms_m", "{:.2f}", tracking=True),
+        condition_table(arena, ERROR, tracking=True),
         *([tracks] if tracks.panels else []),
     ]
 
@@ -86,18 +101,20 @@ def _standoff(arena: Arena) -> list[Block]:
         Text(_STANDOFF),
         tracking_table(arena, tracking=False),
         Heading("Distance to the circle by condition, rms [m]"),
-        condition_table(arena, "error_rms_m", "{:.2f}", tracking=False),
+        condition_table(arena, ERROR, tracking=False),
         *([tracks] if tracks.panels else []),
     ]
 
 
 def _plume(arena: Arena) -> list[Block]:
+    measured: list[Block] = [Text(_SULPHUR), worth_chart(arena)] if arena.has(SULPHUR) else []
+    by_condition = [figure for figure in (CROSSINGS, PLUME_TIME, SULPHUR) if arena.has(figure)]
     return [
         Text(_PLUME),
-        crossing_chart(arena),
+        *measured,
         plume_table(arena),
-        Heading("Crossings per minute by condition"),
-        condition_table(arena, "crossings_per_minute", "{:.2f}", greater_first=True),
+        crossing_chart(arena),
+        *(block for figure in by_condition for block in (Heading(f"{figure.title}, by condition"), condition_table(arena, figure))),
     ]
 
 
@@ -111,9 +128,9 @@ def _verdict(arena: Arena) -> Verdict:
     rows, flown = arena.run.summary, measured(arena.run.summary)
     planned = int(arena.run.manifest["flights_planned"])
     violations, gone = count(violated(flown)), count(lost(rows))
-    best = [(task, ranked[0]) for task in (True, False) if (ranked := arena.ranked("error_rms_m", arena.in_task(tracking=task)))]
+    best = [(task, ranked[0]) for task in (True, False) if (ranked := arena.ranked(ERROR, arena.in_task(tracking=task)))]
     headline = "; ".join(
-        f"{'tracking' if task else 'circling'}: {entrant.title} is best, {_mean(arena, entrant.name)} m rms"
+        f"{'tracking' if task else 'circling'}: {entrant.title} is best, {_mean(arena, entrant, ERROR)} m rms"
         for task, entrant in best
     )
     failures = []
@@ -123,19 +140,31 @@ def _verdict(arena: Arena) -> Verdict:
     if gone:
         laws = [entrant.title for entrant in arena.entrants if lost(entrant.rows).any()]
         failures.append(f"{gone} flights lost the aircraft: of {', '.join(laws)}")
-    crossed = arena.ranked("crossings_per_minute", arena.entrants, greater_first=True)
     figures = [
-        ("laws in a task", f"{len(arena.entrants)}", ""),
-        ("flights", f"{len(flown):,} of {planned:,}", ""),
-        ("conditions, and flights of each law in each", f"{len(arena.conditions)} × {arena.flights}", ""),
-        *((f"most crossings per minute: {entrant.title}", _mean(arena, entrant.name, "crossings_per_minute"), "")
-          for entrant in crossed[:1]),
-    ]  # fmt: skip
+        *(
+            Card(
+                f"{'Tracking' if task else 'Circling'} error, rms, of the best: {entrant.title}",
+                f"{_mean(arena, entrant, ERROR)} m",
+            )
+            for task, entrant in best
+        ),
+        *(
+            Card(f"Best on {figure.title.partition(' [')[0].lower()}: {first.title}", _mean(arena, first, figure))
+            for figure in (CROSSINGS, SULPHUR)
+            if arena.has(figure)
+            for first in arena.ranked(figure, arena.entrants)[:1]
+        ),
+        Card("Keep-out violations", f"{total(flown, 'keepout_violations'):,}", "0", not violations),
+        Card("Aircraft lost", f"{gone:,}", "0", not gone),
+        Card("Flights flown", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
+        Card("Laws in a task", f"{len(arena.entrants)}"),
+        Card("Conditions, and flights of each law in each", f"{len(arena.conditions)} × {arena.flights}"),
+    ]
     return Verdict(
         holds=not violations and not gone,
         complete=len(rows) == planned,
         headline=headline[:1].upper() + headline[1:],
-        detail=f"{vehicles_flown(arena.run)} Means over all conditions, over the end of each flight. {_alike(arena, best)}",
+        detail=f"Means over all conditions, over the end of each flight. {_alike(arena, best)}",
         failures=failures,
         figures=figures,
     )
@@ -147,14 +176,13 @@ def _alike(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
     for task, first in best:
         others = [
             entrant.title
-            for entrant in arena.ranked("error_rms_m", arena.in_task(tracking=task))
-            if entrant is not first and arena.of("error_rms_m", entrant, arena.together).as_good
+            for entrant in arena.ranked(ERROR, arena.in_task(tracking=task))
+            if entrant is not first and arena.of(ERROR, entrant, arena.together).as_good
         ]
         if others:
             words.append(f"The flights do not tell {', '.join(others)} from {first.title}.")
     return " ".join(words)
 
 
-def _mean(arena: Arena, name: str, figure: str = "error_rms_m") -> str:
-    entrant = next(entrant for entrant in arena.entrants if entrant.name == name)
-    return number(arena.of(figure, entrant, arena.together).mean, "{:.2f}")
+def _mean(arena: Arena, entrant: Entrant, figure: Figure) -> str:
+    return figure.written(arena.of(figure, entrant, arena.together).mean)

@@ -3,13 +3,14 @@
 import json
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import pandas as pd
 
 from common.files import is_file
 from common.run_layout import ARENA
+from reports.arena.figures import Figure
 from reports.run.run_data import RunData
 
 ALL = "all"
@@ -94,9 +95,15 @@ class Arena:
     limits: dict[str, float]
     _estimates: dict[tuple[str, str, str], Estimate]
 
-    def of(self, figure: str, entrant: Entrant, condition: str) -> Estimate:
-        """Return the estimate of a figure."""
-        return self._estimates.get((figure, condition, entrant.name), Estimate())
+    def of(self, figure: Figure, entrant: Entrant, condition: str) -> Estimate:
+        """Return the estimate of a figure, as it is shown."""
+        found = self._estimates.get((figure.name, condition, entrant.name), Estimate())
+        low, high = sorted((figure.shown(found.low), figure.shown(found.high)))
+        return replace(found, mean=figure.shown(found.mean), low=low, high=high)
+
+    def has(self, figure: Figure) -> bool:
+        """Return whether any law has a figure: those of the exhaust need a sniffer."""
+        return any(not math.isnan(self.of(figure, entrant, self.together).mean) for entrant in self.entrants)
 
     @property
     def together(self) -> str:
@@ -107,12 +114,12 @@ class Arena:
         """Return the entrants of a task."""
         return [entrant for entrant in self.entrants if entrant.tracks == tracking]
 
-    def ranked(self, figure: str, entrants: Iterable[Entrant], *, greater_first: bool = False) -> list[Entrant]:
+    def ranked(self, figure: Figure, entrants: Iterable[Entrant]) -> list[Entrant]:
         """Return entrants by the mean of a figure over all conditions, the best first and those without one last."""
 
         def place(entrant: Entrant) -> tuple[bool, float]:
             mean = self.of(figure, entrant, self.together).mean
-            return math.isnan(mean), -mean if greater_first else mean
+            return math.isnan(mean), -mean if figure.greater_first else mean
 
         return sorted(entrants, key=place)
 

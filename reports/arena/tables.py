@@ -2,47 +2,24 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from reports.arena.data import ALL, Arena, Entrant, Estimate
+from reports.arena.figures import CROSSINGS, ERROR, MEASURING_FIGURES, TRACKING_FIGURES, Figure
 from reports.document.blocks import Table
 from reports.document.tables import number
 from reports.run.columns import column, total
 
-_Cells = tuple[list[str], list[bool]]
-
-
-@dataclass(frozen=True, slots=True)
-class _Figure:
-    """A column of estimates."""
-
-    name: str
-    title: str
-    pattern: str
-    factor: float = 1.0
-
-
-_TRACKING = (
-    _Figure("error_rms_m", "Error rms [m]", "{:.2f}"),
-    _Figure("effort_rms_rad_s", "Effort rms [rad/s]", "{:.3f}"),
-    _Figure("excess_rms_rad_s", "Excess effort [rad/s]", "{:.3f}"),
-    _Figure("saturated_share", "Cut commands [%]", "{:.1f}", 100.0),
-)
-_PLUME = (
-    _Figure("crossings_per_minute", "Crossings [1/min]", "{:.2f}"),
-    _Figure("plume_s_per_minute", "In the plume [s/min]", "{:.2f}"),
-    _Figure("crossing_distance_mean_m", "Crossing distance [m]", "{:.0f}"),
-)
-
 
 def tracking_table(arena: Arena, *, tracking: bool) -> Table:
     """Return the figures of tracking of the laws of a task, over all conditions."""
-    entrants = arena.ranked("error_rms_m", arena.in_task(tracking=tracking))
-    head = ["No.", "Law", *(figure.title for figure in _TRACKING), "Settled", "at, median [s]", "Violations"]
+    entrants = arena.ranked(ERROR, arena.in_task(tracking=tracking))
+    head = ["No.", "Law", *(figure.title for figure in TRACKING_FIGURES), "Settled", "at, median [s]", "Violations"]
     extra = [_ending(entrant) for entrant in entrants]
-    return _table(arena, entrants, _TRACKING, head, extra, widths=[0.4, 2.1, 1.8, 1.9, 1.9, 1.4, 0.8, 0.8, 0.8])
+    what = "Tracking" if tracking else "Circling"
+    widths = [0.4, 2.1, 1.8, 1.9, 1.9, 1.4, 0.8, 0.8, 0.8]
+    return _table(arena, entrants, TRACKING_FIGURES, head, extra, widths=widths, caption=f"{what}, over all conditions.")
 
 
 def _ending(entrant: Entrant) -> list[str]:
@@ -58,11 +35,14 @@ def _ending(entrant: Entrant) -> list[str]:
 
 def plume_table(arena: Arena) -> Table:
     """Return the figures of measuring the plume of every law, over all conditions."""
-    entrants = arena.ranked("crossings_per_minute", arena.entrants, greater_first=True)
-    head = ["No.", "Law", "Task", *(figure.title for figure in _PLUME), "Closest approach [m]", "Keep-out violations"]
+    entrants = arena.ranked(CROSSINGS, arena.entrants)
+    figures = [figure for figure in MEASURING_FIGURES if arena.has(figure)]
+    head = ["No.", "Law", "Task", *(figure.title for figure in figures), "Closest approach [m]", "Keep-out violations"]
     extra = [[_closest(entrant), str(total(entrant.rows, "keepout_violations"))] for entrant in entrants]
     tasks = [["tracks" if entrant.tracks else "circles"] for entrant in entrants]
-    return _table(arena, entrants, _PLUME, head, extra, widths=[0.4, 2.4, 0.7, 1.7, 1.7, 1.6, 1.0, 0.9], before=tasks)
+    widths = [0.4, 2.4, 0.7, *(1.7 for _ in figures), 1.0, 0.9]
+    caption = "Measuring the plume, over all conditions."
+    return _table(arena, entrants, figures, head, extra, widths=widths, caption=caption, before=tasks)
 
 
 def _closest(entrant: Entrant) -> str:
@@ -73,49 +53,50 @@ def _closest(entrant: Entrant) -> str:
 def _table(
     arena: Arena,
     entrants: Sequence[Entrant],
-    figures: Sequence[_Figure],
+    figures: Sequence[Figure],
     head: list[str],
     extra: Sequence[list[str]],
     *,
     widths: list[float],
+    caption: str,
     before: Sequence[list[str]] = (),
 ) -> Table:
     rows, bold = [], []
     for i, entrant in enumerate(entrants):
-        found = [(figure, arena.of(figure.name, entrant, arena.together)) for figure in figures]
+        found = [(figure, arena.of(figure, entrant, arena.together)) for figure in figures]
         ahead = [str(entrant.number), entrant.title, *(before[i] if before else [])]
         rows.append([*ahead, *(_interval(estimate, figure) for figure, estimate in found), *extra[i]])
         bold += [(i, len(ahead) + j) for j, (_, estimate) in enumerate(found) if estimate.as_good or estimate.best]
     left = 3 if before else 2
-    return Table(head=head, rows=rows, widths=widths, left_columns=left, bold=bold, print_size_pt=6.4, breakable=True)
+    return Table(
+        head=head, rows=rows, widths=widths, left_columns=left, bold=bold, print_size_pt=6.4, breakable=True, caption=caption
+    )
 
 
-def _interval(estimate: Estimate, figure: _Figure) -> str:
-    mean, low, high = (figure.factor * value for value in (estimate.mean, estimate.low, estimate.high))
-    if math.isnan(mean):
-        return "–"
-    return f"{figure.pattern.format(mean)} ({figure.pattern.format(low)}\N{EN DASH}{figure.pattern.format(high)})"
+def _interval(estimate: Estimate, figure: Figure) -> str:
+    mean, low, high = (figure.written(value) for value in (estimate.mean, estimate.low, estimate.high))
+    return mean if math.isnan(estimate.mean) else f"{mean} ({low}\N{EN DASH}{high})"
 
 
-def condition_table(arena: Arena, figure: str, pattern: str, *, tracking: bool | None = None, greater_first: bool = False) -> Table:
+def condition_table(arena: Arena, figure: Figure, *, tracking: bool | None = None) -> Table:
     """Return a figure by condition, a row for each law: of a task, or of both.
 
     Parameters
     ----------
-    figure, pattern : the figure, and how it is written
+    figure : which
     tracking : which task; both if it is None
-    greater_first : whether more is better
     """
     members = arena.entrants if tracking is None else arena.in_task(tracking=tracking)
-    entrants = arena.ranked(figure, members, greater_first=greater_first)
+    entrants = arena.ranked(figure, members)
     conditions = [*arena.conditions, *([ALL] if len(arena.conditions) > 1 else [])]
     rows, bold = [], []
     for i, entrant in enumerate(entrants):
         found = [arena.of(figure, entrant, condition) for condition in conditions]
-        rows.append([str(entrant.number), entrant.title, *(number(estimate.mean, pattern) for estimate in found)])
+        rows.append([str(entrant.number), entrant.title, *(figure.written(estimate.mean) for estimate in found)])
         bold += [(i, 2 + j) for j, estimate in enumerate(found) if estimate.best or estimate.as_good]
-    if figure == "crossings_per_minute" and arena.limits:
-        rows.append(["", "limit of any path", *(number(arena.limits.get(condition), pattern) for condition in conditions)])
+    if figure is CROSSINGS and arena.limits:
+        most = [figure.written(arena.limits.get(condition, math.nan)) for condition in conditions]
+        rows.append(["", "limit of any path", *most])
     head = ["No.", "Law", *(condition.replace("_", " ") for condition in conditions)]
     widths = [0.4, 2.4, *(1.0 for _ in conditions)]
     return Table(head=head, rows=rows, widths=widths, left_columns=2, bold=bold, breakable=True)
@@ -131,7 +112,14 @@ def given_table(arena: Arena) -> Table:
         rows.append([str(entrant.number), entrant.title, entrant.given, parameters or "none", costs])
     head = ["No.", "Law", "What it makes use of", "Parameters: default → tuned", "Cost [m]"]
     return Table(
-        head=head, rows=rows, widths=[0.4, 1.6, 2.7, 3.4, 1.2], left_columns=5, prose=True, breakable=True, print_size_pt=6.4
+        caption="What each law was given: its way to the reference, its parameters, and what either set costs the tuner.",
+        head=head,
+        rows=rows,
+        widths=[0.4, 1.6, 2.7, 3.4, 1.2],
+        left_columns=5,
+        prose=True,
+        breakable=True,
+        print_size_pt=6.4,
     )
 
 

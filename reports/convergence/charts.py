@@ -183,7 +183,7 @@ def _distance_panel(data: ConvergenceData, law: Law) -> Panel:
             line("settling_time_s", 0.9, "90 % are faster", "sky", "solid"),
             line("settling_time_s", 0.1, "10 % are faster", "sky", "dot"),
             line("settling_time_s", 0.5, "median", "blue", "solid"),
-            line("settling_time_predicted_s", 0.5, "predicted", "vermillion", "dash"),
+            line("settling_time_predicted_s", 0.5, "predicted", "black", "dash"),
         ],
         x_range=(0.0, 1.03 * farthest),
         log_y=True,

@@ -7,13 +7,13 @@ from reports.convergence.charts import HISTORIES_PER_LAW, history_chart, settlin
 from reports.convergence.data import REFERENCES, ConvergenceData, failed, read_convergence
 from reports.convergence.tables import FAILED_ROWS, failed_table, settling_table
 from reports.convergence.verdict import convergence_verdict
-from reports.document.blocks import Block, Heading, Section, Text, Verdict
+from reports.document.blocks import Block, Findings, Heading, Section, Text
 from reports.document.tables import number, parameter_table
 from reports.run.run_data import RunData
 
 
-def convergence_content(run: RunData) -> tuple[Verdict, list[Section]]:
-    """Return the verdict and the sections of the report of a convergence study."""
+def convergence_content(run: RunData) -> Findings:
+    """Return the findings of a convergence study."""
     data = read_convergence(run)
     sections = [
         Section(anchor="question", title="What was asked", blocks=_question(data)),
@@ -22,7 +22,22 @@ def convergence_content(run: RunData) -> tuple[Verdict, list[Section]]:
         Section(anchor="counterexamples", title="What did not converge", nav_title="Counter-examples", blocks=_failed(data)),
         Section(anchor="parameters", title="Parameters", blocks=[parameter_table(run)]),
     ]
-    return convergence_verdict(data), sections
+    pictures = settling_charts(data) if len(data.rows) else []
+    return Findings(
+        flown=_flown(data),
+        verdict=convergence_verdict(data),
+        picture=pictures[0] if pictures else None,
+        sections=sections,
+    )
+
+
+def _flown(data: ConvergenceData) -> str:
+    laws = ", ".join(law.name for law in data.laws) or "none"
+    states = data.rows["trajectory"].nunique()
+    return (
+        f"{len(data.rows):,} trajectories of the paper's kinematic vehicle, from {states:,} initial states at random, under these"
+        f" laws: {laws}."
+    )
 
 
 def _question(data: ConvergenceData) -> list[Block]:

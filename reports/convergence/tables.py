@@ -34,7 +34,13 @@ def settling_table(data: ConvergenceData) -> Table:
         "Law", "Reference", "Trajectories", "Converged", *(f"{100.0 * fraction:.0f} % settled [s]" for fraction in QUANTILES),
         "Largest command [rad/s]",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[2.0, 1.5, 1.1, 1.0, *[0.9] * len(QUANTILES), 1.2], left_columns=2)
+    return Table(
+        caption="Trajectories that converged, and their settling times, by law and kind of reference.",
+        head=head,
+        rows=rows,
+        widths=[2.0, 1.5, 1.1, 1.0, *[0.9] * len(QUANTILES), 1.2],
+        left_columns=2,
+    )
 
 
 def failed_table(data: ConvergenceData, law: Law) -> Table:

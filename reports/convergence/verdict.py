@@ -7,7 +7,7 @@ import pandas as pd
 from common.run_layout import COUNTEREXAMPLES
 from reports.convergence.data import ConvergenceData, Law, failed, predicted
 from reports.convergence.tables import reason
-from reports.document.blocks import Verdict
+from reports.document.blocks import Card, Verdict
 from reports.document.tables import number
 
 FAILURES_NAMED = 10
@@ -75,19 +75,19 @@ def _detail(data: ConvergenceData) -> str:
     return detail.strip()
 
 
-def _figures(data: ConvergenceData) -> list[tuple[str, str, str]]:
+def _figures(data: ConvergenceData) -> list[Card]:
     fractions, slowest = [], []
     for law in data.laws:
         rows = data.of(law)
-        fractions.append(
-            (f"{law.name}: converged", percentage(len(rows) - len(failed(rows)), len(rows)), "100 %" if law.proven else "")
-        )
-        slowest.append((f"{law.name}: slowest to settle", number(rows["settling_time_s"].max(), "{:,.0f} s"), ""))
-    farthest = ("Farthest start", number(data.rows["start_distance_m"].max(), "{:,.0f} m"), "")
+        share = percentage(len(rows) - len(failed(rows)), len(rows))
+        limit, met = ("100 %", len(rows) > 0 and not len(failed(rows))) if law.proven else ("", None)
+        fractions.append(Card(f"{law.name}: converged", share, limit, met))
+        slowest.append(Card(f"{law.name}: slowest to settle", number(rows["settling_time_s"].max(), "{:,.0f} s")))
+    farthest = Card("Farthest start", number(data.rows["start_distance_m"].max(), "{:,.0f} m"))
     return [*fractions, farthest, *slowest, _predicted(data.proven() if data.planned else data.rows)]
 
 
-def _predicted(rows: pd.DataFrame) -> tuple[str, str, str]:
+def _predicted(rows: pd.DataFrame) -> Card:
     known = predicted(rows)
     ratio = (known["settling_time_s"] / known["settling_time_predicted_s"]).median()
-    return ("Settling over predicted, median", number(ratio, "{:.2f}"), "")
+    return Card("Settling over predicted, median", number(ratio, "{:.2f}"))

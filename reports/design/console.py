@@ -1,18 +1,10 @@
 """A design's summary on the console: equilibria, poles, margins, step responses and the verdict."""
 
-import sys
-
-from rich.console import Console
-from rich.table import Table as ConsoleTable
-from rich.text import Text
-
 from reports.design.data import Record, at_middle, complete, excess_overshoot, reversal_sentences
 from reports.design.tables import extreme_trims, pole_table, robustness_table, step_table, trim_table, worst_margin_table
 from reports.design.verdict import design_verdict
 from reports.document.blocks import Table
-
-_WIDTH = 140
-"""Characters of a line where the output is not a terminal, which would give its own width."""
+from reports.document.console import console_table, wide_console
 
 
 def print_summary(record: Record) -> None:
@@ -26,11 +18,11 @@ def print_summary(record: Record) -> None:
         *([("Margins of perturbed aircraft, the worst of loops and grid", robustness_table(design))] * bool(design["robustness"])),
         ("Step responses", step_table(design)),
     ]
-    console = Console(width=None if sys.stdout.isatty() else _WIDTH)
+    console = wide_console()
     console.print(f"[bold]{record['title']}[/bold], designed at {record['altitude_m']:g} m. {record['source']}")
     for title, table in tables:
         console.print()
-        console.print(_console_table(title, table))
+        console.print(console_table(title, table))
     console.print(f"\nThe autopilot computes {design['autopilot_rate_hz']:.3g} times a second.")
     console.print(f"The heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated flight.")
     reversals = reversal_sentences(design)
@@ -52,12 +44,3 @@ def _poles(poles: Record) -> Table:
 
 def _pole(real: float, imaginary: float) -> str:
     return f"{real:.2f}±{imaginary:.2f}j" if imaginary else f"{real:.3g}"
-
-
-def _console_table(title: str, table: Table) -> ConsoleTable:
-    printed = ConsoleTable(title=Text(title), title_justify="left", box=None, pad_edge=False)
-    for i, name in enumerate(table.head):
-        printed.add_column(Text(name), justify="left" if i < table.left_columns else "right")
-    for row in table.rows:
-        printed.add_row(*(Text(cell) for cell in row))
-    return printed

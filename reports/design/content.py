@@ -3,11 +3,11 @@
 from pathlib import Path
 
 from common.run_layout import DESIGN_RECORD, MODEL
-from reports.design.data import Record, climbing, complete, reversal_sentences
+from reports.design.data import Record, climbing, complete, reversal_sentences, speed_range
 from reports.design.loop_charts import loop_charts
 from reports.design.margin_charts import margin_charts
 from reports.design.pole_chart import pole_chart
-from reports.design.response_charts import response_charts
+from reports.design.response_charts import first_chart, response_charts
 from reports.design.tables import (
     envelope_table,
     extreme_trims,
@@ -21,13 +21,13 @@ from reports.design.tables import (
 )
 from reports.design.trim_charts import trim_charts
 from reports.design.verdict import design_verdict
-from reports.document.blocks import Block, Heading, Section, Text, Verdict
+from reports.document.blocks import Block, Findings, Heading, Section, Text
 from reports.errors import ReportError
 from reports.run.run_data import RunData
 
 
-def design_content(run: RunData) -> tuple[Verdict, list[Section]]:
-    """Return the verdict and the sections of the report of a design.
+def design_content(run: RunData) -> Findings:
+    """Return the findings of a design.
 
     Raises
     ------
@@ -48,7 +48,11 @@ def design_content(run: RunData) -> tuple[Verdict, list[Section]]:
         _weights(design),
         _elsewhere(run.path / MODEL),
     ]
-    return design_verdict(design), sections
+    flown = (
+        f"The autopilot of the {design['title']} was designed for {speed_range(design)}, and its step responses were flown in"
+        " JSBSim."
+    )
+    return Findings(flown=flown, verdict=design_verdict(design), picture=first_chart(design), sections=sections)
 
 
 def _reversals(design: Record) -> list[Block]:

@@ -64,6 +64,12 @@ def speed(airspeed: float) -> str:
     return f"{round(airspeed, 1):g} m/s"
 
 
+def speed_range(design: Record) -> str:
+    """Return the airspeeds that a design is for."""
+    airspeeds = [row["airspeed_mps"] for row in design["margins"]]
+    return f"{round(min(airspeeds), 1):g} to {speed(max(airspeeds))}" if min(airspeeds) < max(airspeeds) else speed(airspeeds[0])
+
+
 def where(row: Record) -> str:
     """Return the point of the grid that a row belongs to."""
     bank = bank_deg(row)

@@ -7,7 +7,9 @@ import numpy as np
 
 from reports.design.data import CONTROLS, Record, at_middle, loop_name, speed
 from reports.design.loop_styles import LOOP_STYLES, OTHER_LOOP
+from reports.document.axes import cut_words
 from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import Meaning
 from reports.run.columns import Array
 
 _NICHOLS_GAIN = (-30.0, 40.0)
@@ -49,14 +51,15 @@ def _bode(design: Record) -> Chart:
         ("Opened at a measurement", [loop for loop in design["loops"] if loop["loop"] not in CONTROLS]),
     ]
     groups = [group for group in groups if group[1]]
+    panels = [
+        *(_bode_panel(loops, title, "gain_db") for title, loops in groups),
+        *(_bode_panel(loops, "", "phase_deg") for _, loops in groups),
+    ]
     return Chart(
         name="bode",
         caption=f"Open loops at {speed(design['design_airspeed_mps'])} in level flight, one opened at a time and all others closed,"
-        " with servos, engine and computing delay. Dotted: gain 1 and −180 deg.",
-        panels=[
-            *(_bode_panel(loops, title, "gain_db") for title, loops in groups),
-            *(_bode_panel(loops, "", "phase_deg") for _, loops in groups),
-        ],
+        " with servos, engine and computing delay. Dotted: gain 1 and −180 deg." + cut_words(panels),
+        panels=panels,
         columns=len(groups),
         share_x=True,
         panel_height=0.32,
@@ -90,11 +93,13 @@ def _curve(loop: Record, x: Array, y: Array) -> Line:
 def _nichols(design: Record) -> Chart:
     disks = {row["loop"]: row["disk_gain_db"] for row in at_middle(design, design["margins"]) if not row["between"]}
     gain, phase = design["required"]["gain_db"], design["required"]["phase_deg"]
+    panels = [_nichols_panel(loop, disks.get(loop["loop"]), gain, phase) for loop in design["loops"]]
     return Chart(
         name="nichols",
         caption="The same loops in Nichols' plane. Each has to pass the critical point (gain 1, −180 deg) outside the tinted"
-        f" region, whose corners are the required margins of {gain:g} dB and {phase:g} deg; its own disk margin is dashed.",
-        panels=[_nichols_panel(loop, disks.get(loop["loop"]), gain, phase) for loop in design["loops"]],
+        f" region, whose corners are the required margins of {gain:g} dB and {phase:g} deg; its own disk margin is dashed."
+        + cut_words(panels),
+        panels=panels,
         # No gap after the last, where that can be.
         columns=2 if len(design["loops"]) % 3 else 3,
         panel_height=0.26,
@@ -125,7 +130,7 @@ def _regions(critical: float, disk_gain_db: float | None, gain_db: float, phase_
     """Return what a loop has to stay out of, what it does stay out of, and the critical point in both."""
     corners = np.array([(-phase_deg, 0.0), (0.0, gain_db), (phase_deg, 0.0), (0.0, -gain_db), (-phase_deg, 0.0)])
     label = f"excluded: {gain_db:g} dB, {phase_deg:g} deg"
-    lines = [Line(x=critical + corners[:, 0], y=corners[:, 1], label=label, colour="vermillion", fill=True)]
+    lines = [Line(x=critical + corners[:, 0], y=corners[:, 1], label=label, colour=Meaning.LIMIT, fill=True)]
     if disk_gain_db is not None:
         phase, gain = disk_region(disk_gain_db)
         lines.append(Line(x=phase - _CRITICAL + critical, y=gain, label="its disk margin", colour="orange", style="dash"))

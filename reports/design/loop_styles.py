@@ -4,13 +4,13 @@ from reports.document.chart import Style
 
 LOOP_STYLES: dict[str, tuple[str, Style]] = {
     "elevator": ("blue", "solid"),
-    "aileron": ("vermillion", "solid"),
+    "aileron": ("orange", "solid"),
     "throttle": ("green", "solid"),
-    "rudder": ("purple", "solid"),
+    "rudder": ("plum", "solid"),
     "altitude": ("blue", "dash"),
-    "heading_rate": ("vermillion", "dash"),
+    "heading_rate": ("orange", "dash"),
     "airspeed": ("green", "dash"),
-    "sideslip": ("purple", "dash"),
+    "sideslip": ("plum", "dash"),
     "all controls": ("black", "solid"),
 }
 """Colour and style by loop: a measurement has the colour of the control that mostly regulates it, dashed."""

@@ -7,7 +7,9 @@ import numpy as np
 
 from reports.design.data import Record, bank_deg, loop_name, loops_of, worst
 from reports.design.loop_styles import LOOP_STYLES, OTHER_LOOP
+from reports.document.axes import cut_words
 from reports.document.chart import Chart, Line, Panel, constant
+from reports.document.palette import Meaning
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,8 +45,8 @@ def margin_charts(design: Record) -> list[Chart]:
             design,
             "classicalmargins",
             classical,
-            "Classical margins: gain alone or phase alone, of one loop, all others closed. A loop without a curve has a margin"
-            " beyond the scale, or none: no change of its gain makes it unstable.",
+            "Classical margins: gain alone or phase alone, of one loop, all others closed. A loop without a curve has no such"
+            " margin: no change of its gain, or of its phase, makes it unstable.",
         ),
     ]
 
@@ -58,14 +60,14 @@ def _chart(design: Record, name: str, margins: Sequence[_Margin], caption: str) 
         caption += " Above, the worst over bank at each airspeed; below, the worst over airspeed at each bank."
     if any(row["between"] for row in rows):
         caption += " Diamonds: at points between those of the grid, for which nothing was designed."
-    return Chart(name=name, caption=caption, panels=panels, columns=2, panel_height=0.24)
+    return Chart(name=name, caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.24)
 
 
 def _panel(rows: Sequence[Record], margin: _Margin, *, over_bank: bool) -> Panel:
     at = np.array(sorted({_abscissa(row, over_bank=over_bank) for row in rows}))
     lines = []
     if margin.required is not None:
-        lines.append(Line(x=at, y=constant(at, margin.required), label="required", colour="black", style="dot"))
+        lines.append(Line(x=at, y=constant(at, margin.required), label="required", colour=Meaning.LIMIT, style="dash"))
     for loop in loops_of(rows):
         own = [row for row in rows if row["loop"] == loop]
         lines += _curve([row for row in own if not row["between"]], margin.key, over_bank=over_bank, between=False)

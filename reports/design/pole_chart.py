@@ -7,12 +7,12 @@ import numpy as np
 
 from reports.design.data import FAST, Record, speed
 from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.palette import series_colour
 
 _SLOW = 1.5
 """Size of the magnified part about the origin [rad/s]."""
 
 _DAMPING_RATIOS = (0.2, 0.4, 0.6, 0.8)
-_COLOURS = ("blue", "sky", "green", "orange", "vermillion", "purple", "black")
 
 
 def pole_chart(design: Record) -> Chart:
@@ -51,7 +51,7 @@ def _panel(design: Record, kind: str, title: str, reach: float) -> Panel:
                 x=points[:, 0],
                 y=points[:, 1],
                 label=speed(airspeed),
-                colour=_COLOURS[i % len(_COLOURS)],
+                colour=series_colour(i),
                 style="points",
             )
         )

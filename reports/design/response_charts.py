@@ -30,6 +30,14 @@ _CHANNELS: dict[str, tuple[str, float]] = {
 }
 """Axis and scale by channel, in the order of their panels."""
 
+_FIRST = (
+    ("heading_rate", "heading_rate", "Turn"),
+    ("heading_rate", "roll", "Turn"),
+    ("airspeed", "airspeed", "Airspeed step"),
+    ("altitude", "altitude", "Altitude step"),
+)
+"""Command, channel and title of each panel of page 1."""
+
 _TURN = ("heading_rate", "roll", "sideslip", "altitude", "airspeed", "aileron_position")
 _CLIMB = ("airspeed", "altitude", "pitch", "elevator", "throttle", "elevator_position")
 
@@ -38,6 +46,19 @@ def response_charts(design: Record) -> list[Chart]:
     """Return the responses to a step of heading rate, and those to steps of airspeed and altitude."""
     charts = [_turn(design), _climb(design)]
     return [chart for chart in charts if chart.panels]
+
+
+def first_chart(design: Record) -> Chart | None:
+    """Return what page 1 shows: a turn, and steps of airspeed and altitude; None of a design without step responses."""
+    steps = [(responses_of(design, command), channel, title) for command, channel, title in _FIRST]
+    panels = [_panel(responses, channel, title=title) for responses, channel, title in steps if _present([channel], responses)]
+    if not panels:
+        return None
+    caption = (
+        f"Steps of heading rate, airspeed and altitude from level flight at {speed(design['design_airspeed_mps'])}: as the linear"
+        " design predicts them, and as flown in JSBSim."
+    )
+    return Chart(name="first", caption=caption, panels=panels, columns=2)
 
 
 def _turn(design: Record) -> Chart:

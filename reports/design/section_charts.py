@@ -8,7 +8,9 @@ from reports.design.data import FAST, Record, at_middle, bank_deg, loop_name, lo
 from reports.design.loop_charts import turned
 from reports.design.loop_styles import LOOP_STYLES, OTHER_LOOP
 from reports.design.response_charts import RESPONSE_STYLES
+from reports.document.axes import cut_words
 from reports.document.chart import Chart, Line, Panel, constant
+from reports.document.palette import Meaning
 
 _COMMANDS = {
     "heading_rate": ("Heading rate [rad/s]", "heading-rate step"),
@@ -58,19 +60,20 @@ def _margins(design: Record) -> Chart:
                 colour, style = LOOP_STYLES.get(loop, OTHER_LOOP)
                 lines.append(Line(x=x, y=y, label=loop_name(rows[0]), colour=colour, style=style))
         x = np.array(design["airspeeds_mps"])
-        lines.append(Line(x=x, y=constant(x, limit), label="required", colour="black", style="dot"))
+        lines.append(Line(x=x, y=constant(x, limit), label="required", colour=Meaning.LIMIT, style="dash"))
         return Panel(x_label="Design airspeed [m/s]", y_label=label, lines=lines, y_range=(0.0, top))
 
+    panels = [
+        panel("gain_db", "Gain margin [dB]", required["gain_db"], 40.0),
+        panel("phase_deg", "Phase margin [deg]", required["phase_deg"], 95.0),
+        panel("disk_gain_db", "Disk gain margin [dB]", required["gain_db"], 25.0),
+        panel("disk_phase_deg", "Disk phase margin [deg]", required["phase_deg"], 95.0),
+    ]
     return Chart(
         name="margins",
         caption="Margins with one loop opened and all others closed, servos, engine and computing delay included; disk margins"
-        " allow for gain and phase changing together, “all controls” for every control changing independently.",
-        panels=[
-            panel("gain_db", "Gain margin [dB]", required["gain_db"], 40.0),
-            panel("phase_deg", "Phase margin [deg]", required["phase_deg"], 95.0),
-            panel("disk_gain_db", "Disk gain margin [dB]", required["gain_db"], 25.0),
-            panel("disk_phase_deg", "Disk phase margin [deg]", required["phase_deg"], 95.0),
-        ],
+        f" allow for gain and phase changing together, “all controls” for every control changing independently.{cut_words(panels)}",
+        panels=panels,
         columns=2,
         panel_height=0.3,
     )
@@ -86,13 +89,14 @@ def _loops(design: Record) -> Chart:
     x = np.array(design["loops"][0]["frequency_rad_s"])
     limits = (float(x[0]), float(x[-1]))
     gain.append(Line(x=np.array(limits), y=np.zeros(2), label="crossover", colour="black", style="dot"))
+    panels = [
+        Panel(x_label="Frequency [rad/s]", y_label="Gain [dB]", lines=gain, log_x=True, x_range=limits, y_range=(-60.0, 60.0)),
+        Panel(x_label="Frequency [rad/s]", y_label="Phase [deg]", lines=phase, log_x=True, x_range=limits),
+    ]
     return Chart(
         name="loops",
-        caption=f"Open loops at {speed(design['design_airspeed_mps'])}, one opened at a time.",
-        panels=[
-            Panel(x_label="Frequency [rad/s]", y_label="Gain [dB]", lines=gain, log_x=True, x_range=limits, y_range=(-60.0, 60.0)),
-            Panel(x_label="Frequency [rad/s]", y_label="Phase [deg]", lines=phase, log_x=True, x_range=limits),
-        ],
+        caption=f"Open loops at {speed(design['design_airspeed_mps'])}, one opened at a time.{cut_words(panels)}",
+        panels=panels,
         share_x=True,
         panel_height=0.27,
     )

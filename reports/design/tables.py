@@ -141,7 +141,12 @@ def pole_table(design: Record) -> Table:
         ]
         rows.append(cells)
     head = ["", "Largest real part [1/s]", "at", "Least damping [-]", "Frequency [rad/s]", "at"]
-    return Table(head=head, rows=rows, widths=[1.3, 1.2, 1.2, 1.1, 1.1, 1.2])
+    return Table(
+        caption="The slowest and the least damped pole, with and without the autopilot, and where they are.",
+        head=head,
+        rows=rows,
+        widths=[1.3, 1.2, 1.2, 1.1, 1.1, 1.2],
+    )
 
 
 def step_table(design: Record) -> Table:
@@ -158,7 +163,7 @@ def step_table(design: Record) -> Table:
         for response in responses_of(design, command)
     ]
     head = ["Step [rad/s, m/s, m]", "", "Rise 10–90 % [s]", "Overshoot [%]", "Altitude moves [m]", "Airspeed moves [m/s]"]
-    return Table(head=head, rows=rows, widths=[1.4, 1.1, 1.2, 1.0, 1.25, 1.5], left_columns=2)
+    return Table(caption="What the steps show.", head=head, rows=rows, widths=[1.4, 1.1, 1.2, 1.0, 1.25, 1.5], left_columns=2)
 
 
 def _moved(response: Record, key: str) -> str:
@@ -173,7 +178,9 @@ def verification_table(design: Record) -> Table:
     inputs = list(dict.fromkeys(row["input"] for row in design["verification"]))
     rows = [[_words(name), *(number(_percent(errors.get((name, output))), "{:.2f}") for output in outputs)] for name in inputs]
     head = ["Input", *(f"{_words(output)} [%]" for output in outputs)]
-    return Table(head=head, rows=rows, widths=[1.3] + [1.0] * len(outputs))
+    return Table(
+        caption="Error of the linear model, by input and output.", head=head, rows=rows, widths=[1.3] + [1.0] * len(outputs)
+    )
 
 
 def _percent(error: Any) -> float | None:
@@ -184,9 +191,18 @@ def _words(name: str) -> str:
     return name.replace("_", " ")
 
 
+_WEIGHT_UNITS = {
+    "airspeed": "m/s", "pitch": "rad", "pitch_rate": "rad/s", "altitude": "m", "airspeed_integral": "m",
+    "altitude_integral": "m s", "roll": "rad", "roll_rate": "rad/s", "sideslip": "rad", "heading_integral": "rad",
+    "sideslip_integral": "rad s", "model_frequency": "rad/s", "model_damping": "-", "altitude_error_max": "m",
+    "airspeed_error_max": "m/s", "anti_windup_rate": "1/s",
+}  # fmt: skip
+"""Of the weights of a design record, by their names."""
+
+
 def weight_table(design: Record) -> Table:
     """Return the acceptable deviations that the gains follow from, and the autopilot's rate, in two columns of pairs."""
-    pairs = [[_words(name), f"{value:.3g}"] for name, value in design["weights"].items()]
+    pairs = [[_weight(name), f"{value:.3g}"] for name, value in design["weights"].items()]
     if "model_frequency_rad_s" in design and "model_frequency" not in design["weights"]:
         pairs += [
             ["heading-rate model: frequency [rad/s]", f"{design['model_frequency_rad_s']:.3g}"],
@@ -195,7 +211,18 @@ def weight_table(design: Record) -> Table:
     pairs.append(["autopilot: computations a second [Hz]", f"{design['autopilot_rate_hz']:.3g}"])
     half = -(-len(pairs) // 2)
     rows = [[*left, *(pairs[half + i] if half + i < len(pairs) else ["", ""])] for i, left in enumerate(pairs[:half])]
-    return Table(head=["Weight", "Value", "Weight", "Value"], rows=rows, widths=[2.0, 0.7, 2.0, 0.7], left_columns=4)
+    return Table(
+        caption="Acceptable deviations, from which the gains follow, and the autopilot's rate.",
+        head=["Weight", "Value", "Weight", "Value"],
+        rows=rows,
+        widths=[2.0, 0.7, 2.0, 0.7],
+        left_columns=4,
+    )
+
+
+def _weight(name: str) -> str:
+    unit = _WEIGHT_UNITS.get(name)
+    return _words(name) + (f" [{unit}]" if unit else "")
 
 
 def envelope_table(envelope: Record) -> Table:
@@ -208,4 +235,12 @@ def envelope_table(envelope: Record) -> Table:
         ["Largest bank commanded", f"{envelope['bank_max_deg']:g}°"],
         ["Bank of the study", f"{envelope['bank_deg']:g}°"],
     ]
-    return Table(head=["", ""], rows=rows, widths=[1.6, 3.0], left_columns=2, prose=True, print_size_pt=8.0)
+    return Table(
+        caption="Where the aircraft may be flown, and where the study flies it.",
+        head=["", ""],
+        rows=rows,
+        widths=[1.6, 3.0],
+        left_columns=2,
+        prose=True,
+        print_size_pt=8.0,
+    )

@@ -8,9 +8,7 @@ import numpy as np
 
 from reports.design.data import Record, bank_deg, climb_trims, grid_trims, minus, speed
 from reports.document.chart import Chart, Line, Panel, Style
-
-_BANK_COLOURS = ("black", "blue", "orange", "green", "purple", "sky", "vermillion")
-"""By the size of the bank, level first."""
+from reports.document.palette import Meaning, series_colour
 
 _NEAR_LIMIT = 0.4
 """Fraction of a control's travel from which its limit is drawn: nearer to neutral it would only flatten the curves."""
@@ -72,10 +70,10 @@ def _map_panel(design: Record, trims: Sequence[Record], quantity: _Quantity) -> 
         rows = [t for t in trims if bank_deg(t) == bank]
         style: Style = "solid" if bank >= 0.0 else "dash"
         label = minus(f"bank {bank:+g}°") if bank else "level"
-        lines.append(_line(rows, "airspeed_mps", quantity, label, _colour(sizes.index(abs(bank))), style))
+        lines.append(_line(rows, "airspeed_mps", quantity, label, series_colour(sizes.index(abs(bank))), style))
     at_limit = [t for t in trims if t.get("limits")]
     if at_limit:
-        lines.append(_line(at_limit, "airspeed_mps", quantity, "at a limit", "vermillion", "diamonds"))
+        lines.append(_line(at_limit, "airspeed_mps", quantity, "at a limit", Meaning.LIMIT, "diamonds"))
     y_range = _limits_of(lines, quantity)
     airspeeds = [float(t["airspeed_mps"]) for t in trims]
     lines += _limit_lines(quantity, y_range, (min(airspeeds), max(airspeeds)))
@@ -90,10 +88,6 @@ def _line(rows: Sequence[Record], over: str, quantity: _Quantity, label: str, co
     x = np.array([float(row[over]) for row in rows])
     y = quantity.scale * np.array([float(row[quantity.key]) for row in rows])
     return Line(x=x, y=y, label=label, colour=colour, style=style)
-
-
-def _colour(index: int) -> str:
-    return _BANK_COLOURS[index % len(_BANK_COLOURS)]
 
 
 def _limits_of(lines: Sequence[Line], quantity: _Quantity) -> tuple[float, float]:
@@ -112,7 +106,9 @@ def _limits_of(lines: Sequence[Line], quantity: _Quantity) -> tuple[float, float
 def _limit_lines(quantity: _Quantity, y_range: tuple[float, float], x_range: tuple[float, float]) -> list[Line]:
     shown = [limit for limit in quantity.limits or () if y_range[0] < limit < y_range[1]]
     ends = np.array(x_range)
-    return [Line(x=ends, y=np.array([limit, limit]), label="limit of a control", colour="grey", style="dash") for limit in shown]
+    return [
+        Line(x=ends, y=np.array([limit, limit]), label="limit of a control", colour=Meaning.LIMIT, style="dash") for limit in shown
+    ]
 
 
 def _envelope_lines(envelope: Record | None, y_range: tuple[float, float], x_range: tuple[float, float]) -> list[Line]:
@@ -139,7 +135,7 @@ def _climb_chart(design: Record, climbs: Sequence[Record]) -> Chart:
         lines = [_line(trims, "climb_deg", quantity, "equilibria", "blue", "solid")]
         at_limit = [t for t in trims if t.get("limits")]
         if at_limit:
-            lines.append(_line(at_limit, "climb_deg", quantity, "at a limit", "vermillion", "diamonds"))
+            lines.append(_line(at_limit, "climb_deg", quantity, "at a limit", Meaning.LIMIT, "diamonds"))
         y_range = _limits_of(lines, quantity)
         lines += _limit_lines(quantity, y_range, (trims[0]["climb_deg"], trims[-1]["climb_deg"]))
         return Panel(x_label="Climb angle [deg]", y_label=quantity.label, lines=lines, y_range=y_range)

@@ -17,7 +17,7 @@ from reports.design.data import (
     where,
     worst,
 )
-from reports.document.blocks import Verdict
+from reports.document.blocks import Card, Verdict
 
 _UNSTABLE = 1e-4
 """Real part [1/s] from which a pole counts as unstable: less is what rounding makes of a pole at the origin."""
@@ -118,7 +118,7 @@ def _detail(design: Record) -> str:
     return f"{detail} Flown heading rate lags its command by {design['heading_rate_lag_s']:.2f} s."
 
 
-def _figures(design: Record) -> list[tuple[str, str, str]]:
+def _figures(design: Record) -> list[Card]:
     required = design["required"]
     margins, robustness = design["margins"], design["robustness"]
     figures = [
@@ -133,22 +133,23 @@ def _figures(design: Record) -> list[tuple[str, str, str]]:
     together = worst((row for row in margins if row["loop"] == TOGETHER), "disk_gain_db")
     if together is not None:
         value = f"{down(together['disk_gain_db'])} dB, {down(together['disk_phase_deg'])}°"
-        figures.append((f"Disk margin, all controls: {where(together)}", value, ""))
+        figures.append(Card(f"Disk margin, all controls: {where(together)}", value))
     excess = excess_overshoot(design)
     if excess is not None:
-        figures.append(("Heading-rate overshoot beyond the model's", f"{100.0 * excess:.1f} %", ""))
-    figures.append(("Flown heading rate lags by", f"{design['heading_rate_lag_s']:.2f} s", ""))
+        figures.append(Card("Heading-rate overshoot beyond the model's", f"{100.0 * excess:.1f} %"))
+    figures.append(Card("Flown heading rate lags by", f"{design['heading_rate_lag_s']:.2f} s"))
     if design["verification"]:
         # An input that moves nothing has no error to speak of; the table shows it.
         error = max((float(row["error"]) for row in design["verification"] if row["error"] is not None), default=math.nan)
-        figures.append(("Linear model against small motions, worst", f"{100.0 * error:.1f} %", ""))
+        figures.append(Card("Linear model against small motions, worst", f"{100.0 * error:.1f} %"))
     return figures
 
 
-def _margin_figure(name: str, rows: Sequence[Record], key: str, unit: str, required: float) -> tuple[str, str, str]:
+def _margin_figure(name: str, rows: Sequence[Record], key: str, unit: str, required: float) -> Card:
     space = " " if unit == "dB" else ""
     row = worst(rows, key)
     if row is None:
-        return name, "unlimited", f"≥ {required:g}{space}{unit}"
+        return Card(name, "unlimited", f"≥ {required:g}{space}{unit}", met=True)
     loop = str(row.get("loop") or row["gain_loop" if key == "gain_db" else "phase_loop"]).replace("_", " ")
-    return f"{name}: {loop}, {where(row)}", f"{down(row[key])}{space}{unit}", f"≥ {required:g}{space}{unit}"
+    met = not short_of(rows, key, required)
+    return Card(f"{name}: {loop}, {where(row)}", f"{down(row[key])}{space}{unit}", f"≥ {required:g}{space}{unit}", met)

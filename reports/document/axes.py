@@ -1,5 +1,8 @@
-"""The unit that suits an axis."""
+"""Units, limits and marks that suit an axis, the same on the screen and in print."""
 
+import itertools
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +13,15 @@ from reports.run.columns import Array
 _FAR = 10_000.0
 """Distances from which axes are in kilometres [m]."""
 
+_MANTISSAS = ((1,), (1, 3), (1, 2, 5), (1, 2, 3, 4, 5, 6, 7, 8, 9))
+"""Figures at which a logarithmic axis is marked, the fewest first."""
+
+_MARKS_MIN, _MARKS_MAX = 3, 8
+"""Marks of a logarithmic axis."""
+
+_SPARE = 0.04
+"""Room on both sides of the data, over their range."""
+
 
 def in_kilometres(panel: Panel) -> Panel:
     """Return a panel with kilometres where metres would have five digits: on both axes if they are equally long."""
@@ -19,11 +31,60 @@ def in_kilometres(panel: Panel) -> Panel:
         x = y = max(x, y)
     if x >= _FAR and panel.x_label.endswith("[m]"):
         lines = [replace(line, x=line.x / 1000.0) for line in panel.lines]
-        panel = replace(panel, lines=lines, x_label=panel.x_label.replace("[m]", "[km]"), x_range=_thousandth(panel.x_range))
+        notes = [replace(note, x=note.x / 1000.0) for note in panel.notes]
+        label, limits = panel.x_label.replace("[m]", "[km]"), _thousandth(panel.x_range)
+        panel = replace(panel, lines=lines, notes=notes, x_label=label, x_range=limits)
     if y >= _FAR and panel.y_label.endswith("[m]"):
         lines = [replace(line, y=line.y / 1000.0) for line in panel.lines]
-        panel = replace(panel, lines=lines, y_label=panel.y_label.replace("[m]", "[km]"), y_range=_thousandth(panel.y_range))
+        notes = [replace(note, y=note.y / 1000.0) for note in panel.notes]
+        label, limits = panel.y_label.replace("[m]", "[km]"), _thousandth(panel.y_range)
+        panel = replace(panel, lines=lines, notes=notes, y_label=label, y_range=limits)
     return panel
+
+
+def log_axis(limits: tuple[float, float] | None, curves: Sequence[Array]) -> tuple[tuple[float, float], list[float]]:
+    """Return limits of a logarithmic axis, by its curves if none are given, and the values at which it is marked.
+
+    Marks are powers of ten where there are three of them at least, and figures in between where there are not.
+    """
+    known = np.concatenate([curve[curve > 0.0] for curve in curves] or [np.empty(0)])
+    if limits is None:
+        low, high = (float(known.min()), float(known.max())) if len(known) else (1.0, 10.0)
+        spare = _SPARE * math.log10(high / low) or 0.1
+        limits = low / 10.0**spare, high * 10.0**spare
+    decades = range(math.floor(math.log10(limits[0]) + 1e-9), math.ceil(math.log10(limits[1])) + 1)
+    marks: list[float] = []
+    for mantissas in _MANTISSAS:
+        every = (mantissa * 10.0**decade for decade, mantissa in itertools.product(decades, mantissas))
+        marks = [mark for mark in every if limits[0] * (1.0 - 1e-9) <= mark <= limits[1] * (1.0 + 1e-9)]
+        if len(marks) >= _MARKS_MIN:
+            break
+    return limits, marks[:: -(-len(marks) // _MARKS_MAX) or 1]
+
+
+def mark_text(value: float) -> str:
+    """Return a mark of a logarithmic axis in digits, or as a power of ten where it would have many."""
+    if 1e-4 < value < 1e5:
+        return f"{value:g}"
+    mantissa, _, exponent = f"{value:.0e}".partition("e")
+    power = f"10{str(int(exponent)).translate(_RAISED)}"
+    return power if mantissa == "1" else f"{mantissa}·{power}"
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def cut_words(panels: Sequence[Panel]) -> str:
+    """Return which curves leave their panels above or below, as a sentence with a space before it; no word where none does."""
+    cut: dict[str, None] = {}
+    for panel in panels:
+        values = np.concatenate([line.y for line in panel.lines] or [np.empty(0)])
+        known, (low, high) = values[np.isfinite(values)], panel.y_range or (-math.inf, math.inf)
+        quantity, _, unit = panel.y_label.partition(" [")
+        for beyond, limit, side in ((known > high, high, "above"), (known < low, low, "below")):
+            if np.any(beyond):
+                cut[f"{quantity.lower()} {side} {limit:g} {unit.removesuffix(']')}".replace("-", "−")] = None
+    return f" Beyond the scale: {', '.join(cut)}." if cut else ""
 
 
 def _reach(curves: list[Array]) -> float:

@@ -2,9 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from reports.document.chart import Chart
 from reports.document.scene import Scene
+from reports.run.letterhead import Letterhead
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,6 +23,8 @@ class Table:
     breakable : may go on over the next page, in print
     print_size_pt : size of its letters in print
     bold : cells that stand out, each by its row and its column
+    caption : what it shows; if not given, the heading before it or the title of its section says so
+    number : "Table 3"; given when the report is put together
     """
 
     head: list[str]
@@ -31,6 +35,8 @@ class Table:
     breakable: bool = False
     print_size_pt: float = 7.0
     bold: Sequence[tuple[int, int]] = ()
+    caption: str = ""
+    number: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +82,9 @@ class FlightPicker:
     flights: list[FlightContent]
 
 
+CARDS_MAX, FAILURES_MAX = 6, 4
+"""Figures and failures on page 1, at most."""
+
 Block = Chart | Table | Heading | Text | FlightPicker
 
 
@@ -97,6 +106,25 @@ class Section:
     nav_title: str = ""
 
 
+class Card(NamedTuple):
+    """A figure that is judged or told: its name, its value, what is required of it, and whether that is met.
+
+    No limit, and None for ``met``, where nothing is required.
+    """
+
+    name: str
+    value: str
+    limit: str = ""
+    met: bool | None = None
+
+    @property
+    def judgement(self) -> str:
+        """Return what its criterion says, in words and with a sign: colour alone says nothing in grey."""
+        if self.met is None:
+            return self.limit or "no criterion"
+        return f"{'✓ met' if self.met else '✗ not met'}, required {self.limit}"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
     """The answer, and the figures it rests on.
@@ -107,7 +135,7 @@ class Verdict:
     complete : everything that was planned was done, and is as required
     headline, detail : in words
     failures : a line for each failure
-    figures : name, value and limit of what is judged; no limit where there is none
+    figures : what it rests on, the most important first: page 1 shows these
     """
 
     holds: bool
@@ -115,15 +143,67 @@ class Verdict:
     headline: str
     detail: str
     failures: list[str]
-    figures: list[tuple[str, str, str]]
+    figures: list[Card]
+
+    @property
+    def tone(self) -> str:
+        """Return the colour of the verdict, in a word: good, warn or bad."""
+        return "bad" if not self.holds else "good" if self.complete else "warn"
+
+    @property
+    def sign(self) -> str:
+        """Return the sign beside the verdict: colour alone says nothing in grey."""
+        return {"good": "✓", "warn": "!", "bad": "✗"}[self.tone]
+
+    @property
+    def cards(self) -> list[Card]:
+        """Return the figures of page 1: six, four or as few as there are; five would leave a gap."""
+        return self.figures[: CARDS_MAX if len(self.figures) >= CARDS_MAX else min(len(self.figures), 4)]
+
+    @property
+    def first_failures(self) -> list[str]:
+        """Return the failures that page 1 has room for, and how many there are more."""
+        more = len(self.failures) - FAILURES_MAX
+        return self.failures if more <= 0 else [*self.failures[:FAILURES_MAX], f"and {more:,} more, under “Key figures”"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Findings:
+    """What a study has to say.
+
+    Attributes
+    ----------
+    flown : what was flown, in a sentence
+    verdict : the answer
+    picture : what page 1 shows large, or None where nothing can be drawn
+    sections : what shows the answer
+    """
+
+    flown: str
+    verdict: Verdict
+    picture: Chart | None
+    sections: list[Section]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Content:
-    """A whole report: what was run, what was changed for it, the answer, and what shows it."""
+    """A whole report.
+
+    Attributes
+    ----------
+    title : of the report
+    letterhead : who wrote it, when the run was, and what the run is called
+    description : what the study is about, in its scenario's words
+    changes : what was changed of the scenario
+    flown, verdict, picture : as in ``Findings``; with the lines above, they are page 1
+    sections : what shows the answer, with figures and tables numbered
+    """
 
     title: str
+    letterhead: Letterhead
     description: str
     changes: str
+    flown: str
     verdict: Verdict
+    picture: Chart | None
     sections: list[Section]

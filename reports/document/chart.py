@@ -6,27 +6,11 @@ from typing import Literal
 
 import numpy as np
 
+from reports.document.palette import FILL_OPACITY
 from reports.run.columns import Array
 
-Style = Literal["solid", "dash", "dot", "points", "diamonds"]
-
-COLOURS = {
-    "blue": "#0072B2",
-    "vermillion": "#D55E00",
-    "green": "#009E73",
-    "orange": "#E69F00",
-    "sky": "#56B4E9",
-    "purple": "#CC79A7",
-    "black": "#222222",
-    "grey": "#8a8a8a",
-}
-"""Okabe and Ito's palette, which colour-blind readers can tell apart."""
-
-SCALE = "Cividis"
-"""Colour scale of values, light for the least: of even steps for all eyes. Matplotlib writes it in small letters."""
-
-FILL_OPACITY = 0.16
-"""Of what a curve encloses: the grid still shows through."""
+Style = Literal["solid", "thin", "broad", "dash", "dot", "points", "dots", "diamonds", "ring", "square", "cross"]
+"""Lines: thin ones over a track, broad ones below it. Marks: small dots, a ring where something begins, a square where it ends."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,10 +21,11 @@ class Line:
     ----------
     x, y : shape (n,) each, in the units of the panel's axes
     label : for the legend; the same label in several panels is one entry, and an empty one none
-    colour : a key of ``COLOURS``
+    colour : a key of ``palette.COLOURS``
     style : how it is drawn
     error : half-height of error bars, shape (n,), or none
     fill : tint what the curve encloses
+    opacity : of the tint
     values : of each point, shape (n,), shown by its colour on the chart's scale; or none. Points without a number are not shown
     """
 
@@ -51,6 +36,7 @@ class Line:
     style: Style = "solid"
     error: Array | None = None
     fill: bool = False
+    opacity: float = FILL_OPACITY
     values: Array | None = None
 
 
@@ -72,12 +58,29 @@ class Note:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Band:
+    """A tinted stretch of the abscissa, over the whole height of its panel.
+
+    Attributes
+    ----------
+    start, end : in the unit of the abscissa
+    label : for the legend, as of a line
+    colour : a key of ``palette.COLOURS``
+    """
+
+    start: float
+    end: float
+    label: str
+    colour: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Panel:
     """One pair of axes.
 
     Attributes
     ----------
-    x_label, y_label : "Quantity [unit]"
+    x_label, y_label : "Quantity [unit]"; of what has no unit, as of names and counts, the quantity alone
     lines : what is drawn, from back to front
     title : above the panel
     equal : one metre is as long both ways
@@ -85,6 +88,8 @@ class Panel:
     x_range, y_range : limits, or by the data
     y_names : values that the ordinate marks, each by a name; none for figures
     notes : words among the curves; on linear axes only
+    bands : tinted stretches, below the lines
+    x_whole, y_whole : marked at whole numbers alone, as counts are
     """
 
     x_label: str
@@ -98,6 +103,13 @@ class Panel:
     y_range: tuple[float, float] | None = None
     y_names: Sequence[tuple[float, str]] = ()
     notes: Sequence[Note] = ()
+    bands: Sequence[Band] = ()
+    x_whole: bool = False
+    y_whole: bool = False
+
+
+_CROWDED = 4
+"""Panels side by side whose titles would touch."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,8 +123,10 @@ class Chart:
     panels : in reading order
     columns : panels side by side
     panel_height : of each row, relative to a full text width of 1
+    last_height : of the last panel where that is alone in its row and as wide as the page, as ``panel_height``; 0 where it is not
     share_x : panels of a column share their abscissa
     scale_label : "Quantity [unit]" of the colour scale, for lines with values
+    number : "Figure 3"; given when the report is put together
     """
 
     name: str
@@ -120,13 +134,36 @@ class Chart:
     panels: Sequence[Panel]
     columns: int = 1
     panel_height: float = 0.36
+    last_height: float = 0.0
     share_x: bool = False
     scale_label: str = ""
+    number: str = ""
 
     @property
     def rows(self) -> int:
-        """Number of rows of panels."""
-        return -(-len(self.panels) // self.columns)
+        """Number of rows of panels, without that of a last one which is as wide as the page."""
+        return -(-(len(self.panels) - bool(self.last_height)) // self.columns)
+
+    @property
+    def height(self) -> float:
+        """Height of all rows, relative to a full text width of 1."""
+        return self.panel_height * self.rows + self.last_height
+
+    def is_wide(self, index: int) -> bool:
+        """Return whether a panel, by its place, is the one that is as wide as the page."""
+        return bool(self.last_height) and index == len(self.panels) - 1
+
+    @property
+    def crowded(self) -> bool:
+        """Whether so many panels stand side by side that their titles are in small letters."""
+        return self.columns >= _CROWDED
+
+    @property
+    def labels(self) -> list[str]:
+        """Entries of the legend, each once."""
+        lines = [line.label for panel in self.panels for line in panel.lines]
+        bands = [band.label for panel in self.panels for band in panel.bands]
+        return list(dict.fromkeys(label for label in (*lines, *bands) if label))
 
     @property
     def scale(self) -> tuple[float, float] | None:

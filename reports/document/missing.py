@@ -12,6 +12,7 @@ from common.run_layout import (
     ESTIMATE,
     FLIGHTS,
     INTERVENTIONS,
+    LOGO,
     SAMPLES,
     STATISTICS,
     TRAJECTORIES,
@@ -34,6 +35,7 @@ _SHOWN: Mapping[str, str] = {
     FLIGHTS: "figures of this flight over time",
     TRAJECTORIES: "figures of this trajectory over time",
     WORST: "nothing: a scenario file of one of the worst flights",
+    **{f"{LOGO}{suffix}": "the logo" for suffix in (".png", ".jpg", ".svg")},
 }
 """What a report shows of a file or, of those in a directory, of each."""
 
@@ -55,6 +57,13 @@ def missing_sections(run: RunData) -> list[Section]:
         f"{len(names)} {'files' if len(names) > 1 else 'file'} of this run cannot be shown; scenarios.run with --resume makes them"
         " again."
     )
-    table = Table(head=["File", "State", "What is not shown"], rows=rows, widths=[3.0, 1.0, 4.0], prose=True, left_columns=3)
+    table = Table(
+        caption="Files that are gone or cannot be read.",
+        head=["File", "State", "What is not shown"],
+        rows=rows,
+        widths=[3.0, 1.0, 4.0],
+        prose=True,
+        left_columns=3,
+    )
     blocks: list[Block] = [Text(text), table, *([Text(f"{more} more are missing.")] if more > 0 else [])]
     return [Section(anchor="missing", title="Missing files", nav_title="Missing", blocks=blocks)]

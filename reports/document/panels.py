@@ -7,13 +7,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from reports.document.chart import Line, Panel
+from reports.document.palette import Meaning
 from reports.run.columns import Array, Mask
 
 Group = tuple[Mask, str, str]
 """Which flights have markers of a name and a colour."""
 
-CLASS_COLOURS = ("sky", "blue", "orange", "vermillion")
-"""From the least to the most."""
+CLASS_COLOURS = ("sky", "blue", "plum", "black")
+"""From the least to the most, ever darker."""
+
+COUNTED_MIN = 5
+"""Flights that are counted at least: fewer are seen one by one in a table."""
 
 _BINS = 24
 _SPREAD = 0.32
@@ -78,7 +82,7 @@ def capped(x: Array, y: Array, groups: Sequence[Group], limit: float) -> tuple[l
     return lines, top
 
 
-def level(x: Array, value: float, label: str, colour: str = "vermillion") -> Line:
+def level(x: Array, value: float, label: str, colour: str = Meaning.LIMIT) -> Line:
     """Return a dashed line across a panel whose abscissae are ``x``."""
     return Line(x=np.array(around(x) or (0.0, 1.0)), y=np.array([value, value]), label=label, colour=colour, style="dash")
 
@@ -94,7 +98,7 @@ def around(x: Array) -> tuple[float, float] | None:
 
 
 def histogram(series: Sequence[tuple[Array, str, str]], x_label: str, upright: Sequence[tuple[float, str]] = ()) -> Panel | None:
-    """Return a panel that counts flights by a figure, or None if no flight has it.
+    """Return a panel that counts flights by a figure, or None if fewer than ``COUNTED_MIN`` have it.
 
     Parameters
     ----------
@@ -103,7 +107,7 @@ def histogram(series: Sequence[tuple[Array, str, str]], x_label: str, upright: S
     upright : values to be marked, by name
     """
     every = np.concatenate([values[np.isfinite(values)] for values, _, _ in series])
-    if not len(every):
+    if len(every) < COUNTED_MIN:
         return None
     edges = np.histogram_bin_edges(every, bins=_BINS)
     marked = np.array([value for value, _ in upright])
@@ -115,8 +119,9 @@ def histogram(series: Sequence[tuple[Array, str, str]], x_label: str, upright: S
         lines.append(Line(x=np.repeat(edges, 2), y=outline, label=label, colour=colour, fill=True))
     for value, label in upright:
         mark = np.array([value, value])
-        lines.append(Line(x=mark, y=np.array([0.0, 1.05 * most]), label=label, colour="vermillion", style="dash"))
-    return Panel(x_label=x_label, y_label="Flights [-]", lines=lines, x_range=_around([edges, marked]), y_range=(0.0, 1.08 * most))
+        lines.append(Line(x=mark, y=np.array([0.0, 1.05 * most]), label=label, colour=Meaning.LIMIT, style="dash"))
+    x_range, y_range = _around([edges, marked]), (0.0, 1.08 * most)
+    return Panel(x_label=x_label, y_label="Flights", lines=lines, x_range=x_range, y_range=y_range, y_whole=True)
 
 
 def strips(
@@ -134,7 +139,7 @@ def strips(
     Parameters
     ----------
     values, kinds : of each flight
-    x_label, y_label : of the figure, and of the kinds
+    x_label, y_label : of the figure, and of the kinds where these are named
     groups : as in ``points``
     upright : values to be marked, by name
     named : whether the rows have their names, which a panel to the right of one that has needs not
@@ -146,11 +151,13 @@ def strips(
         place[members] += np.linspace(-_SPREAD, _SPREAD, len(members)) if len(members) > 1 else 0.0
     lines = points(values, place, groups)
     reach = np.array([-0.6, len(rows) - 0.4])
-    lines += [Line(x=np.array([value, value]), y=reach, label=label, colour="vermillion", style="dash") for value, label in upright]
+    lines += [
+        Line(x=np.array([value, value]), y=reach, label=label, colour=Meaning.LIMIT, style="dash") for value, label in upright
+    ]
     names = [(len(rows) - 1.0 - i, row if named else "") for i, row in enumerate(rows)]
     return Panel(
         x_label=x_label,
-        y_label=y_label,
+        y_label=y_label if named else "",
         lines=lines,
         x_range=_around([values, np.array([value for value, _ in upright])]),
         y_range=(float(reach[0]), float(reach[1])),

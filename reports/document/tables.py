@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from reports.document.blocks import Table
+from reports.document.blocks import Table, Verdict
 from reports.run.run_data import RunData
 
 
@@ -13,6 +13,7 @@ def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
     """Return every parameter of the run with its unit and meaning, and rows for what follows from them."""
     rows = [[p["key"], parameter_value(p["value"], p["key"]), p["unit"], p["meaning"]] for p in run.manifest["parameters"]]
     return Table(
+        caption="Every parameter, with its unit and meaning.",
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
         rows=[*rows, *derived],
         widths=[3.1, 1.2, 0.7, 3.9],
@@ -22,54 +23,28 @@ def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
     )
 
 
-def provenance_table(run: RunData) -> Table:
-    """Return where the run comes from."""
-    manifest = run.manifest
-    design, measured = (manifest.get("study") == study for study in ("design", "measurement"))
-    seed = manifest["config"].get("seed")
-    seeds = "each trial's own" if seed is None else str(seed)
+def figure_table(verdict: Verdict) -> Table:
+    """Return every figure that a verdict rests on; page 1 has the most important."""
     rows = [
-        ["Design" if design else "Flight" if measured else "Scenario", f"{manifest['name']}: {manifest['title']}"],
-        *_vehicle(run),
-        # A design is made without chance, and of no more than its title says.
-        *([] if design or measured else [["Seed", seeds]]),
-        *([] if design else [["Hash of the input" if measured else "Configuration hash", manifest["config_hash"]]]),
-        ["Source revision", manifest["git_revision"]],
-        ["Python", f"{manifest['python']} on {manifest['platform']}"],
-        ["Packages", ", ".join(f"{name} {version}" for name, version in manifest["packages"].items())],
-        ["State", manifest["state"]],
+        [card.name, card.value, card.limit or "–", "–" if card.met is None else "met" if card.met else "not met"]
+        for card in verdict.figures
     ]
-    if "wall_time_s" in manifest:
-        rows.append(["Wall time", f"{manifest['wall_time_s']:.1f} s"])
-    return Table(head=["", ""], rows=rows, widths=[1.0, 4.0], left_columns=2, prose=True, print_size_pt=8.0)
+    return Table(
+        head=["Figure", "Value", "Required", ""],
+        rows=rows,
+        widths=[3.0, 1.4, 1.4, 0.6],
+        caption="Every figure that the verdict rests on, and what is required of it.",
+    )
 
 
-def _config(run: RunData) -> dict[str, Any]:
+def run_config(run: RunData) -> dict[str, Any]:
     """Return the configuration of the run, or of its first trial: the vehicle is the same in all of them."""
     return dict(next(iter(run.manifest.get("trials", {}).values()), run.manifest["config"]))
 
 
-def _vehicle(run: RunData) -> list[list[str]]:
-    """Return the rows on the vehicle."""
-    config = _config(run)
-    rows = []
-    if run.innerloop:
-        rows.append(["Aircraft", f"{run.innerloop['title']}. {run.innerloop['source']}"])
-    elif config.get("fidelity", "six_dof") == "six_dof" and run.manifest.get("study") != "measurement":
-        rows.append(["Aircraft", str(config.get("aircraft", "unknown"))])
-    if config.get("fidelity") in ("kinematic", "both"):
-        rows.append(
-            [
-                "Kinematic vehicle",
-                "Equation (1) of the paper: it has the commanded speed at once, and is steered by its heading rate.",
-            ]
-        )
-    return rows
-
-
 def kinematic(run: RunData) -> str:
     """Return what the kinematic vehicle of a run is: equation (1), with a lag if it has one."""
-    lag = float((_config(run).get("kinematic") or {}).get("heading_rate_lag_s", 0.0))
+    lag = float((run_config(run).get("kinematic") or {}).get("heading_rate_lag_s", 0.0))
     return f"eq. (1) with a heading-rate lag of {lag:g} s" if lag else "eq. (1)"
 
 
@@ -85,13 +60,14 @@ def limit(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}"
 
 
-def vehicles_flown(run: RunData) -> str:
-    """Return a sentence on the vehicle of a run."""
-    fidelity, by_equation = _config(run).get("fidelity"), f"the kinematic vehicle, {kinematic(run)}"
+def vehicle_flown(run: RunData) -> str:
+    """Return the vehicle of a run, to go on a sentence with."""
+    fidelity = run_config(run).get("fidelity")
+    name = run.innerloop["title"] if run.innerloop else run_config(run).get("aircraft", "aircraft")
+    aircraft = f"the {name} in six degrees of freedom"
     if fidelity == "kinematic":
-        return f"Flown with {by_equation}, not with an aircraft."
-    name = run.innerloop["title"] if run.innerloop else _config(run).get("aircraft", "unknown")
-    return f"Aircraft: {name}, in six degrees of freedom" + (f"; and {by_equation}." if fidelity == "both" else ".")
+        return f"the kinematic vehicle, {kinematic(run)}"
+    return f"{aircraft} and of the kinematic vehicle" if fidelity == "both" else aircraft
 
 
 def number(value: Any, pattern: str) -> str:

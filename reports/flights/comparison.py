@@ -7,6 +7,7 @@ import pandas as pd
 
 from reports.document.blocks import Block, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import SERIES, Meaning
 from reports.document.tables import number
 from reports.flights.names import flight_name
 from reports.flights.trial_tables import flight_table
@@ -27,7 +28,8 @@ _FLIGHTS_MAX = 4
 _ROWS_MAX = 60
 """Flights that are listed one by one; of more there is a row for each variant."""
 
-_COLOURS = ("vermillion", "orange", "sky", "purple", "green", "grey")
+_COLOURS = tuple(colour for colour in SERIES if colour != Meaning.FLOWN)
+"""Of the variants: not that of the study's own flight."""
 
 _STUDY = "as in the study"
 
@@ -63,7 +65,7 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
     shown = float(f"{_SHOWN_TURNS * turn:.2g}")
     band = _SHOWN_BANDS * float(trial.setting("flight.settling_band_m"))
     variants = [variant for variant in dict.fromkeys(pairs["variant"]) if variant != _STUDY]
-    colours = {variant: _COLOURS[i % len(_COLOURS)] for i, variant in enumerate(variants)} | {_STUDY: "blue"}
+    colours = {variant: _COLOURS[i % len(_COLOURS)] for i, variant in enumerate(variants)} | {_STUDY: Meaning.FLOWN}
     panels: list[Panel] = []
     for _, flights in pairs.groupby("base", sort=False):
         # The study's own flight lies over the others.
@@ -115,4 +117,9 @@ def _table(trial: Trial, pairs: pd.DataFrame) -> Table:
     head = [
         "Variant", "Flights", "Keep-out violations", "Closest beyond r_min [m]", "Tracking rms, median [m]", "largest [m]", "Met",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[2.2, 0.8, 1.0, 1.2, 1.2, 1.0, 0.8])
+    return Table(
+        caption="Flights beside the same flights with some keys set otherwise.",
+        head=head,
+        rows=rows,
+        widths=[2.2, 0.8, 1.0, 1.2, 1.2, 1.0, 0.8],
+    )

@@ -1,8 +1,10 @@
 """The report of flights: its sections are by what the run has."""
 
 from reports.design.section import innerloop_section
-from reports.document.blocks import Block, Heading, Section, Text, Verdict
+from reports.document.blocks import Block, Findings, Section, Text
+from reports.document.chart import Chart
 from reports.flights.comparison import comparison_section
+from reports.flights.first_page import closest_and_typical, flights_in_words
 from reports.flights.names import flight_name
 from reports.flights.parameter_tables import parameter_blocks
 from reports.flights.selection import flight_section
@@ -12,6 +14,7 @@ from reports.flights.verdict import flight_verdict
 from reports.measurement.flights import sulphur_sections
 from reports.monte_carlo.content import monte_carlo_sections
 from reports.monte_carlo.falsification import falsification_sections
+from reports.run.columns import measured
 from reports.run.run_data import RunData
 from reports.run.trials import Kind, Trial, read_trials
 
@@ -19,8 +22,8 @@ _LISTED_MAX = 12
 """Flights of a run's only trial that are all listed; of a sweep they are, however many."""
 
 
-def flights_content(run: RunData) -> tuple[Verdict, list[Section]]:
-    """Return the verdict and the sections of the report of flights."""
+def flights_content(run: RunData) -> Findings:
+    """Return the findings of flights."""
     trials = read_trials(run)
     sections = [
         *monte_carlo_sections(run),
@@ -34,19 +37,30 @@ def flights_content(run: RunData) -> tuple[Verdict, list[Section]]:
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
     ]
-    return flight_verdict(run, trials), sections
+    return Findings(
+        flown=f"{flights_in_words(run, measured(run.summary))}.",
+        verdict=flight_verdict(run, trials),
+        picture=closest_and_typical(trials) or _picture(sections),
+        sections=sections,
+    )
+
+
+def _picture(sections: list[Section]) -> Chart | None:
+    """Return the first figure of a report without a time history: how near flights came, if it is that of a Monte Carlo study."""
+    charts = (block for section in sections for block in section.blocks if isinstance(block, Chart))
+    return next(charts, None)
 
 
 def _overview(trials: list[Trial]) -> Section:
-    criteria: list[Block] = [Heading("Criteria beside the keep-out area, and the worst measured values"), criteria_table(trials)]
+    criteria = criteria_table(trials)
     if len(trials) == 1:
-        return Section(anchor="trials", title="Criteria and the worst measured values", nav_title="Criteria", blocks=criteria[1:])
+        return Section(anchor="trials", title="Criteria and the worst measured values", nav_title="Criteria", blocks=[criteria])
     meaning = (
         "Completed: the aircraft came through, settled, and flew the crossings that were asked for, or one at least. Met: it kept"
         " out, completed, and met every other criterion. Kept out: known to have kept out to its end. Distances are from the"
         " keep-out sphere's centre, or horizontal where the keep-out area is a cylinder."
     )
-    return Section(anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), *criteria])
+    return Section(anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), criteria])
 
 
 def _trial(trial: Trial, *, only: bool) -> Section:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from reports.document.chart import Line, Panel, Style
+from reports.document.palette import Meaning
 from reports.document.panels import Group, around, capped, level, points
 from reports.monte_carlo.names import input_label
 from reports.run.columns import clearance, column, interval_error, violated
@@ -14,11 +15,11 @@ CLEARANCE = "Distance kept beyond r_min [m]"
 
 _OSCILLATIONS: tuple[tuple[str, str, str, Style], ...] = (
     ("sinusoid", "sinusoid", "grey", "dash"),
-    ("fastest", "fastest oscillation", "green", "dash"),
+    ("fastest", "fastest oscillation", "plum", "dash"),
 )
 """Shapes whose crossing interval is shown where another one is flown: name, label, colour and style."""
 
-_LIMIT: tuple[str, str, Style] = ("limit, two crossings a period", "vermillion", "dot")
+_LIMIT: tuple[str, str, Style] = ("limit, two crossings a period", Meaning.LIMIT, "dot")
 """Label, colour and style of the shortest interval of any path."""
 
 _RATIOS = (-0.02, 1.02)
@@ -28,7 +29,7 @@ _RATIOS = (-0.02, 1.02)
 def by_violation(trial: Trial) -> list[Group]:
     """Return the flights without a keep-out violation and those with one, as groups of markers."""
     inside = violated(trial.flown)
-    return [(~inside, "flight", "blue"), (inside, "flight with a keep-out violation", "vermillion")]
+    return [(~inside, "flight", Meaning.FLOWN), (inside, "flight with a keep-out violation", Meaning.LIMIT)]
 
 
 class PanelsOver:
@@ -63,7 +64,7 @@ class PanelsOver:
 
     def interval(self) -> Panel | None:
         """Return the crossing interval, with bars of one standard deviation, its prediction, and what else could be flown."""
-        flown = self._points("crossing_interval_mean_s", "flight", "blue", error="crossing_interval_std_s")
+        flown = self._points("crossing_interval_mean_s", "flight", Meaning.FLOWN, error="crossing_interval_std_s")
         theory = self._theory("crossing_interval_predicted_s", "theory, π/ω₀", "black")
         return self._panel("Crossing interval [s]", [*self._other_intervals(), theory, flown])
 
@@ -88,31 +89,33 @@ class PanelsOver:
         lines = [
             self._limit("keepout_radius_m", f"r_min of the keep-out {self._trial.shape}"),
             self._theory("r_co_m", "centre of oscillation r_CO", "grey"),
-            self._points("crossing_distance_mean_m", "crossings, mean", "blue"),
-            self._points("crossing_distance_min_m", "crossings, closest", "sky", "diamonds"),
+            self._points("crossing_distance_mean_m", "crossings, mean", Meaning.CROSSING),
+            self._points("crossing_distance_min_m", "crossings, closest", Meaning.CROSSING, "diamonds"),
             self._points(
                 "min_distance_m",
                 closest,
-                "green",
+                Meaning.FLOWN,
             ),
         ]
         return self._panel("Distance from the funnel [m]", lines)
 
     def command(self) -> Panel | None:
         """Return the largest commanded heading rate, and its limit."""
-        command = self._points("heading_rate_command_max_rad_s", "largest command", "orange")
+        command = self._points("heading_rate_command_max_rad_s", "largest command", Meaning.ASKED)
         return self._panel("Heading rate [rad/s]", [command, self._limit("heading_rate_limit_rad_s", "ω_max")])
 
     def margin(self) -> Panel | None:
         """Return what of the planned margin was left, over the margin if flights differ in it."""
         planned, kept = column(self._rows, "keepout_margin_m"), clearance(self._rows)
         if not np.isfinite(planned).any():
-            return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), level(self._span, 0.0, "r_min", "black")])
+            return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), level(self._span, 0.0, "r_min")])
         if float(np.ptp(planned)) < 1e-6:
-            levels = [level(self._span, 0.0, "r_min", "black"), level(self._span, float(planned[0]), "planned margin", "green")]
+            margin = level(self._span, float(planned[0]), "planned margin", Meaning.ASKED)
+            levels = [level(self._span, 0.0, "r_min"), margin]
             return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), *levels])
         ends = np.array([float(planned.min()), float(planned.max())])
-        levels = [level(planned, 0.0, "r_min", "black"), Line(x=ends, y=ends, label="planned margin", colour="green", style="dash")]
+        same = Line(x=ends, y=ends, label="planned margin", colour=Meaning.ASKED, style="dash")
+        levels = [level(planned, 0.0, "r_min"), same]
         return Panel(x_label="Planned margin [m]", y_label=CLEARANCE, lines=[*points(planned, kept, self._groups), *levels])
 
     def limit(self, key: str) -> float:
@@ -136,7 +139,7 @@ class PanelsOver:
         values = column(self._rows, name)
         if len(values) and np.ptp(values) < 1e-9:
             return level(self._span, float(values[0]), label)
-        return Line(x=self._x, y=values, label=label, colour="vermillion", style="diamonds")
+        return Line(x=self._x, y=values, label=label, colour=Meaning.LIMIT, style="diamonds")
 
     def _panel(self, y_label: str, lines: list[Line], y_range: tuple[float, float] | None = None) -> Panel | None:
         known = [line for line in lines if np.isfinite(line.y).any()]

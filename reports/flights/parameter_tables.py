@@ -53,24 +53,24 @@ def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
         low, high = trial.config["speed_ratio"]
         rows.append(["speed_ratio", f"{low:g} to {high:g}", "", "", "Samples with another speed ratio ν are sampled again"])
     inputs = {key: f"swept: {parameter_value(values)}" for key, values in trial.swept.items()}
-    inputs |= {sample["key"]: _distribution(sample) for sample in trial.sampled}
+    inputs |= {sample["key"]: distribution(sample) for sample in trial.sampled}
     for key, words in inputs.items():
         about = listed.get(key, {"meaning": "Speed ratio ν of the vessel and the UAV" if key == "nu" else ""})
         rows.append([key, words, _default(about), about.get("unit", ""), about["meaning"]])
     return rows + [
-        [key, _value(p["value"], key), _default(p), p["unit"], p["meaning"]]
+        [key, value_in_words(p["value"], key), _default(p), p["unit"], p["meaning"]]
         for key, p in listed.items()
         if key not in inputs and (every or "default" not in p or p["value"] != p["default"])
     ]
 
 
-def _distribution(sample: dict[str, Any]) -> str:
+def distribution(sample: dict[str, Any]) -> str:
     """Return how a key is sampled, in words."""
     if sample["uniform"] is not None:
         low, high = sample["uniform"]
         return f"uniform from {low:g} to {high:g}"
     if sample["choice"] is not None:
-        choices = [_value(choice) for choice in sample["choice"]]
+        choices = [value_in_words(choice) for choice in sample["choice"]]
         if sample["weights"] is None:
             return "cycled: " + "; ".join(choices)
         whole = sum(sample["weights"])
@@ -85,10 +85,10 @@ def _distribution(sample: dict[str, Any]) -> str:
 
 
 def _default(parameter: Parameters) -> str:
-    return _value(parameter["default"], str(parameter["key"])) if "default" in parameter else ""
+    return value_in_words(parameter["default"], str(parameter["key"])) if "default" in parameter else ""
 
 
-def _value(value: Any, key: str = "") -> str:
+def value_in_words(value: Any, key: str = "") -> str:
     """Return a value in words; a list of sections can only be manoeuvres, one of two figures only a range."""
     if isinstance(value, list) and (isinstance(value[0], dict) if value else key.endswith("manoeuvres")):
         return manoeuvre_name(value)

@@ -1,5 +1,6 @@
 """Figures of a trial, by what it is about."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -7,11 +8,14 @@ import numpy as np
 import pandas as pd
 
 from reports.document.chart import Chart, Line, Panel, circle
-from reports.document.panels import Group, capped, classes, histogram, points, quartiles, strips
+from reports.document.map_marks import hull_line, on_map, plume_lines
+from reports.document.palette import Meaning
+from reports.document.panels import COUNTED_MIN, Group, capped, classes, histogram, points, quartiles, strips
 from reports.flights.names import fault_name, manoeuvre_name
 from reports.flights.panels_over import CLEARANCE, PanelsOver, by_violation
-from reports.monte_carlo.names import input_label
+from reports.monte_carlo.names import input_name
 from reports.run.columns import NOTICEABLE, Array, clearance, column, total
+from reports.run.ship import hull_of
 from reports.run.trials import Kind, Trial
 
 _Figure = tuple[Array, str, list[tuple[float, str]]]
@@ -55,7 +59,7 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
             (column(trial.flown, _TRACKING[0]), _TRACKING[1], []),
         ]
         caption = "Closest approach of the whole flight, and tracking error after settling."
-        return [_strips(trial, name, caption, words, input_label(key), figures)]
+        return [_strips(trial, name, caption, words, input_name(key), figures)]
     over = PanelsOver(trial, key, by_violation(trial))
     bank = "Largest commanded heading rate against ω_max, largest bank, and settling time."
     if trial.setting("fidelity") == "kinematic":
@@ -109,13 +113,17 @@ def _spread(trial: Trial) -> Panel | None:
 
 
 def _distances(trial: Trial) -> list[Chart]:
-    counted = histogram([(clearance(trial.flown), "all flights", "blue")], CLEARANCE, [_R_MIN])
+    statistics = trial.run.statistics
+    # A Monte Carlo study has the same figure among its distributions.
+    counted_there = statistics is not None and statistics.get("method") != "subset"
+    all_flights = [(clearance(trial.flown), "all flights", Meaning.FLOWN)]
+    counted = None if counted_there else histogram(all_flights, CLEARANCE, [_R_MIN])
     if trial.kind is Kind.APPROACH:
-        other = histogram([(column(trial.flown, "settling_time_s"), "", "blue")], "Settling time [s]")
+        other = histogram([(column(trial.flown, "settling_time_s"), "", Meaning.FLOWN)], "Settling time [s]")
         shown = "beyond r_min, and settling time, of those that settled."
     else:
         other = PanelsOver(trial, "nu", by_violation(trial)).margin()
-        shown = "beyond r_min: counted, and against the planned margin."
+        shown = f"beyond r_min: {'counted, and ' if counted else ''}against the planned margin."
     caption = f"Closest approach of each flight from its first second, {trial.measured_from}, {shown}"
     return [_chart(trial, "distances", caption, [counted, other], 0.36)]
 
@@ -125,7 +133,7 @@ def _errors(trial: Trial) -> list[Chart]:
     largest, typical = column(rows, "vessel_error_max_m"), column(rows, "vessel_error_rms_m")
     vessel = None
     if np.nanmax(largest, initial=0.0) > NOTICEABLE:
-        series = [(largest, "largest of the flight", "orange"), (typical, "rms after settling", "blue")]
+        series = [(largest, "largest of the flight", "plum"), (typical, "rms after settling", Meaning.FLOWN)]
         vessel = histogram(series, "Error of the vessel's position [m]")
     panels = [
         over.interval_error() if trial.criteria.get("crossing_interval_error") else None,
@@ -145,19 +153,19 @@ def _errors(trial: Trial) -> list[Chart]:
 def _starts(trial: Trial) -> list[Chart]:
     rows = trial.flown
     distance, aspect = column(rows, "start_distance_m"), np.radians(column(rows, "start_aspect_deg"))
-    if not np.isfinite(distance).any():
+    if np.count_nonzero(np.isfinite(distance)) < COUNTED_MIN:
         return []
     right, along = distance * np.sin(aspect), distance * np.cos(aspect)
     settling, guard = column(rows, "settling_time_s"), column(rows, "guard_time_s")
     never: Group = (np.isnan(settling), "never settled", "black")
     guarded: list[Group] = [
         (guard == 0.0, "no guard", "grey"),
-        ((guard > 0.0) & (guard <= 5.0), "guard for up to 5 s", "green"),
-        (guard > 5.0, "guard for longer", "purple"),
+        ((guard > 0.0) & (guard <= 5.0), "guard for up to 5 s", Meaning.GUARD),
+        (guard > 5.0, "guard for longer", "plum"),
     ]
     caption = (
-        "Where flights began, seen from the vessel with its plume up the page; coloured by how long they took to settle (left),"
-        " and by how long the keep-out guard changed commands (right)."
+        "Where flights began, seen from the ship with her plume up the page; she is to scale, and heads as in calm air. Coloured by"
+        " how long flights took to settle (left), and by how long the keep-out guard changed commands (right)."
     )
     settled = classes(settling, quartiles(settling, 10.0), "settled", "s")
     panels = [_places(trial, right, along, [*settled, never]), _places(trial, right, along, guarded)]
@@ -167,18 +175,16 @@ def _starts(trial: Trial) -> list[Chart]:
 def _places(trial: Trial, right: Array, along: Array, groups: list[Any]) -> Panel:
     x, y = circle(trial.radius)
     reach = 1.08 * float(np.nanmax(np.hypot(right, along)))
-    return Panel(
-        x_label="Right of the plume's axis [m]",
-        y_label="Along the plume's axis [m]",
-        equal=True,
-        lines=[
-            Line(x=x, y=y, label="keep-out area", colour="vermillion", fill=True),
-            Line(x=np.zeros(2), y=np.array([0.0, reach]), label="plume", colour="grey", style="dash"),
-            *points(right, along, groups),
-        ],
-        x_range=(-reach, reach),
-        y_range=(-reach, reach),
-    )
+    hull = hull_of(trial.config)
+    # Flights differ in where their ship heads, so that she is drawn as in calm air: the plume trails behind her.
+    lines = [
+        Line(x=x, y=y, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True),
+        *plume_lines(np.array([0.0, reach]), None),
+        hull_line(hull.length, hull.beam, hull.funnel, math.pi),
+        *points(right, along, groups),
+    ]
+    panel = Panel(x_label="Right of the plume's axis [m]", y_label="Along it [m]", lines=lines)
+    return on_map(panel, north=None)
 
 
 def _manoeuvres(trial: Trial) -> list[Chart]:
@@ -192,14 +198,14 @@ def _manoeuvres(trial: Trial) -> list[Chart]:
         "By what the vessel did: time from the end of its last manoeuvre to the next crossing, in periods of the oscillation, and"
         " closest approach of the whole flight."
     )
-    return [_strips(trial, "manoeuvres", caption, kinds, "Manoeuvre [-]", [resumed, kept])]
+    return [_strips(trial, "manoeuvres", caption, kinds, "Manoeuvre", [resumed, kept])]
 
 
 def _faults(trial: Trial) -> list[Chart]:
     kept = (clearance(trial.flown), CLEARANCE, [_R_MIN])
     end = (column(trial.flown, "end_distance_m"), "Distance at the end [m]", [(trial.radius, "r_min")])
     caption = "By the fault: closest approach of the whole flight, and distance from the vessel at the end."
-    return [_strips(trial, "faults", caption, [fault_name(kind) for kind in trial.flown["fault"]], "Fault [-]", [kept, end])]
+    return [_strips(trial, "faults", caption, [fault_name(kind) for kind in trial.flown["fault"]], "Fault", [kept, end])]
 
 
 def _strips(trial: Trial, name: str, caption: str, kinds: list[str], y_label: str, figures: list[_Figure]) -> Chart:

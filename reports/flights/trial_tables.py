@@ -60,7 +60,13 @@ def flight_table(
     ]
     longest = max((len(row[0]) for row in cells), default=0)
     widths = [min(2.2, max(1.0, 0.12 * longest)), *[1.05] * len(columns), 2.2]
-    return Table(head=[head, *(title for title, _, _ in columns), "Outcome"], rows=cells, widths=widths, breakable=True)
+    return Table(
+        caption="The flights, a row each, with their outcome.",
+        head=[head, *(title for title, _, _ in columns), "Outcome"],
+        rows=cells,
+        widths=widths,
+        breakable=True,
+    )
 
 
 def trial_table(trials: list[Trial]) -> Table:
@@ -87,7 +93,13 @@ def trial_table(trials: list[Trial]) -> Table:
         "Trial", "Planned", "Flown", "Completed", "Met", "Aircraft lost", "Kept out", f"Violate, at most ({percent(CONFIDENCE)})",
         "Keep-out violations", "Closest [m]", "beyond r_min [m]", "With guard", "Mode at the end",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[2.0, 0.8, 0.7, 1.0, 0.6, 0.8, 0.7, 0.9, 1.0, 0.8, 0.8, 0.7, 1.4], print_size_pt=6.0)
+    return Table(
+        caption="The trials: flights as planned, flown, completed and met, and how they ended.",
+        head=head,
+        rows=rows,
+        widths=[2.0, 0.8, 0.7, 1.0, 0.6, 0.8, 0.7, 0.9, 1.0, 0.8, 0.8, 0.7, 1.4],
+        print_size_pt=6.0,
+    )
 
 
 def criteria_table(trials: list[Trial]) -> Table:
@@ -98,8 +110,20 @@ def criteria_table(trials: list[Trial]) -> Table:
         rows += [[trial.title, c.what, c.limit, c.worst, f"{c.failed}"] for c in listed]
     head, widths = ["Trial", "Criterion", "Limit", "Worst measured", "Not met"], [1.7, 2.5, 1.2, 1.7, 0.7]
     if len(trials) == 1:
-        return Table(head=head[1:], rows=[row[1:] for row in rows], widths=widths[1:], left_columns=3)
-    return Table(head=head, rows=rows, widths=widths, left_columns=4)
+        return Table(
+            caption="Criteria beside the keep-out area, and the worst measured values.",
+            head=head[1:],
+            rows=[row[1:] for row in rows],
+            widths=widths[1:],
+            left_columns=3,
+        )
+    return Table(
+        caption="Criteria beside the keep-out area, and the worst measured values.",
+        head=head,
+        rows=rows,
+        widths=widths,
+        left_columns=4,
+    )
 
 
 def fault_table(trial: Trial) -> Table:
@@ -126,7 +150,12 @@ def fault_table(trial: Trial) -> Table:
         "Fault", "Flights", "Kept out", "Completed", "Aircraft lost", "Keep-out violations", "Closest [m]",
         "Closest after the fault [m]", "At the end [m]", "Mode at the end",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[1.5, 0.7, 0.7, 1.0, 0.8, 1.0, 0.8, 1.2, 1.1, 1.8])
+    return Table(
+        caption="The faults: how the flights ended, and how close they came from the fault on.",
+        head=head,
+        rows=rows,
+        widths=[1.5, 0.7, 0.7, 1.0, 0.8, 1.0, 0.8, 1.2, 1.1, 1.8],
+    )
 
 
 def _closest_after(trial: Trial, row: "pd.Series[Any]") -> float | None:
@@ -155,7 +184,15 @@ def failed_blocks(run: RunData) -> list[Block]:
         for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()
     ]
     head = ["Flight", "ν [-]", "Keep-out violations", "Closest [m]", "How it ended, and the criteria that are not met"]
-    table = Table(head=head, rows=rows, widths=[2.4, 0.5, 0.9, 0.8, 4.0], prose=True, left_columns=5, breakable=True)
+    table = Table(
+        caption="Flights that are not met, keep-out violations first, each with its reason.",
+        head=head,
+        rows=rows,
+        widths=[2.4, 0.5, 0.9, 0.8, 4.0],
+        prose=True,
+        left_columns=5,
+        breakable=True,
+    )
     more = len(failed) - len(rows)
     flights = "flights did" if len(failed) > 1 else "flight did"
     text = f"{len(failed)} {flights} not meet every criterion; those with keep-out violations come first."

@@ -1,14 +1,16 @@
 """What the flights of a run show, at a glance: no more than was flown."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from common.binomial import CONFIDENCE, percent, upper_bound
-from reports.document.blocks import Verdict
-from reports.document.tables import limit, number, vehicles_flown
+from reports.document.blocks import Card, Verdict
+from reports.document.tables import limit, number
 from reports.flights.criteria import MEASURED, Criterion, criteria_of
+from reports.flights.first_page import hours
 from reports.measurement.flights import sulphur_cards
 from reports.run.columns import (
     clearance,
@@ -29,6 +31,9 @@ from reports.run.trials import Trial
 
 _NAMED_MAX = 3
 """Flights of a trial that are not met and that the verdict names one by one."""
+
+ROUNDING = 1e-9
+"""What binary fractions may add to a figure that is limited by design [-]."""
 
 _QUANTILE = 0.99
 """Fraction of flights whose tracking error is no larger than the one that is shown."""
@@ -74,12 +79,6 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
     return f"{kept}; of {planned:,}, {', '.join(others)}" if others else f"{kept}; every flight met its criteria"
 
 
-def hours(flown: pd.DataFrame) -> str:
-    """Return how long all flights took together."""
-    time = total(flown, "duration_s") / 3600.0
-    return f"{time:,.0f} h" if time >= 100.0 else f"{time:.2g} h"
-
-
 def _bound(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> tuple[float, float] | None:
     """Return the bound on the probability of a keep-out violation and its confidence; none where flights are no random sample.
 
@@ -117,7 +116,6 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
             f"Of {len(alone):,} flights it is required to keep out, not to complete: {count(kept_out(alone)):,} kept out,"
             f" {count(completed(alone)):,} completed. The exit status is about the first."
         )
-    sentences.append(vehicles_flown(run))
     if run.manifest.get("state") != "complete":
         sentences.append(f"The run is {run.manifest.get('state', 'unfinished')}; continue it with --resume.")
     return " ".join(sentences)
@@ -167,50 +165,59 @@ def _noteworthy(flown: pd.DataFrame) -> list[str]:
     return lines
 
 
-def _bound_figure(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> list[tuple[str, str, str]]:
+def _bound_figure(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> list[Card]:
     bound = _bound(run, trials, flown)
     if bound is None:
         return []
     name = f"Probability of a keep-out violation in a flight, at most, with {percent(bound[1])} confidence"
-    return [(name, f"{bound[0]:.4g}", "")]
+    return [Card(name, percent(bound[0]))]
 
 
-def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[tuple[str, str, str]]:
+def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Card]:
     nearest = flown.iloc[int(np.argmin(clearance(flown)))] if len(flown) else None
     limits = column(flown, "heading_rate_limit_rad_s")
     command = largest(column(flown, "heading_rate_command_max_rad_s") / limits)
     guarded, unable = count(column(flown, "guard_interventions") > 0.0), count(column(flown, "guard_lost_s") > 0.0)
-    crossings = total(flown, "crossing_count")
+    crossings, violations = total(flown, "crossing_count"), total(flown, "keepout_violations")
+    done, apart = count(completed(flown)), np.any(passed(flown) & ~met(flown))
     worst = [_worst([criterion for trial in trials for criterion in criteria_of(trial)], key) for key in MEASURED]
     figures = [
-        ("Flights flown", f"{len(flown):,} of {planned:,}, {hours(flown)}", ""),
-        ("Flights that kept out", f"{count(kept_out(flown)):,} of {len(flown):,}", ""),
-        ("Missions completed", f"{count(completed(flown)):,} of {len(flown):,}", ""),
-        ("Aircraft lost", f"{count(lost(flown)):,}", ""),
-        ("Keep-out violations", f"{total(flown, 'keepout_violations'):,}", "0"),
-        (
-            f"Closest approach, {trials[0].measured_from}" if len({trial.shape for trial in trials}) == 1 else "Closest approach",
-            "none" if nearest is None else f"{float(nearest['min_distance_m']):.1f} m",
-            "" if nearest is None else f"≥ {limit(float(nearest['keepout_radius_m']))} m",
-        ),
-        *([("Plume crossings after settling", f"{crossings:,}", "")] if crossings else []),
+        Card("Keep-out violations", f"{violations:,}", "0", len(flown) > 0 and violations == 0),
+        _closest_figure(trials, nearest),
+        # Of some flights it may be required to keep out, and no more.
+        Card("Missions completed", f"{done:,} of {len(flown):,}", *(() if apart else ("all", done == len(flown)))),
         *(figure for figure in worst if figure),
+        Card("Flights flown", f"{len(flown):,} of {planned:,}, {hours(flown)}", "all", len(flown) == planned),
+        Card("Flights that kept out", f"{count(kept_out(flown)):,} of {len(flown):,}"),
+        Card("Aircraft lost", f"{count(lost(flown)):,}"),
+        *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
         *_tracking(flown),
-        ("Heading-rate command over ω_max, worst", "none" if command is None else f"{command:.3f}", "≤ 1"),
+        Card("Heading-rate command over ω_max, worst", "none")
+        if command is None
+        else Card("Heading-rate command over ω_max, worst", f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
     ]
     if any(trial.setting("guidance.tuning") == "bounded" for trial in trials):
         demand = largest(column(flown, "heading_rate_demand_max_rad_s") / limits)
         bound = largest(column(flown, "heading_rate_bound_rad_s") / limits)
         if demand is not None and bound is not None:
-            figures.append(("Heading-rate demand over ω_max, worst", f"{demand:.3f}", f"≤ {bound:.4f} in any state"))
+            words = f"≤ {bound:.4f} in any state"
+            figures.append(Card("Heading-rate demand over ω_max, worst", f"{demand:.3f}", words, demand <= bound + ROUNDING))
     if guarded:
-        figures.append(("Flights in which the guard intervened", f"{guarded:,} of {len(flown):,}", ""))
+        figures.append(Card("Flights in which the guard intervened", f"{guarded:,} of {len(flown):,}"))
     if unable:
-        figures.append(("Flights in which the guard could not hold its own radius for a while", f"{unable:,}", ""))
+        figures.append(Card("Flights in which the guard could not hold its own radius for a while", f"{unable:,}"))
     return figures
 
 
-def _tracking(flown: pd.DataFrame) -> list[tuple[str, str, str]]:
+def _closest_figure(trials: list[Trial], nearest: "pd.Series[Any] | None") -> Card:
+    name = f"Closest approach, {trials[0].measured_from}" if len({trial.shape for trial in trials}) == 1 else "Closest approach"
+    if nearest is None:
+        return Card(name, "none")
+    distance, radius = float(nearest["min_distance_m"]), float(nearest["keepout_radius_m"])
+    return Card(name, f"{distance:.1f} m", f"≥ {limit(radius)} m", distance >= radius)
+
+
+def _tracking(flown: pd.DataFrame) -> list[Card]:
     """Return the tracking error of nearly all flights that settled, whether or not a criterion asks for it."""
     errors = column(flown, "tracking_error_rms_m")
     known = errors[np.isfinite(errors)]
@@ -218,13 +225,13 @@ def _tracking(flown: pd.DataFrame) -> list[tuple[str, str, str]]:
         return []
     high = float(np.quantile(known, _QUANTILE))
     name = f"Tracking error, rms after settling: {percent(_QUANTILE)} quantile, largest"
-    return [(name, f"{high:.3g}, {known.max():.3g} m", "")]
+    return [Card(name, f"{high:.3g}, {known.max():.3g} m")]
 
 
-def _worst(criteria: list[Criterion], key: str) -> tuple[str, str, str] | None:
+def _worst(criteria: list[Criterion], key: str) -> Card | None:
     """Return the worst figure of a criterion among all trials: the largest fraction of its trial's limit."""
     known = [criterion for criterion in criteria if criterion.key == key and not math.isnan(criterion.fraction)]
     if not known:
         return None
     worst = max(known, key=lambda criterion: criterion.fraction)
-    return f"{worst.what}, worst", worst.worst.split(";")[0], worst.limit
+    return Card(f"{worst.what}, worst", worst.worst.split(";")[0], worst.limit, worst.fraction <= 1.0)

@@ -5,6 +5,8 @@ import pandas as pd
 
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.map_marks import on_map
+from reports.document.palette import Meaning
 from reports.document.panels import around, level
 from reports.measurement.data import Record, errors, finite, over_time, thinned, value
 from reports.run.columns import Array, column
@@ -14,14 +16,16 @@ POINTS_MAX = 2500
 
 _TIME, _FSC = "Time [s]", "FSC [% m/m]"
 
-_LIMIT_COLOURS = ("vermillion", "purple", "orange", "black")
 
 _BAR = 0.72
 """Height of a bar, over the distance between two."""
 
 _ALL = "all together"
-_BARS = {_ALL: (_ALL, "black"), "noise": ("noise: falls with further passes", "vermillion")}
+_BARS = {_ALL: (_ALL, "black"), "noise": ("noise: falls with further passes", "orange")}
 """Label and colour of bars that are no common error's."""
+
+_ASPECT = 1.8
+"""Width of a track's plan over its height."""
 
 _LONG = 4.0
 """Length of a track over its width from which on its plan is not drawn to one scale."""
@@ -36,17 +40,13 @@ def over_time_chart(record: Record) -> Chart | None:
     limits = [float(verdict["limit_percent"]) for verdict in record["estimate"]["verdicts"]]
     around_it = np.concatenate([time, time[::-1]])
     lines = [
-        Line(x=around_it, y=np.concatenate([low, high[::-1]]), label="95 % interval", colour="sky", fill=True),
-        Line(x=time, y=found, label="estimate", colour="blue"),
+        Line(x=around_it, y=np.concatenate([low, high[::-1]]), label="95 % interval", colour=Meaning.FLOWN, fill=True),
+        Line(x=time, y=found, label="estimate", colour=Meaning.FLOWN),
     ]
     top = 1.25 * max(float(np.max(found)), float(high[-1]), *(limit for limit in limits if limit < 2.0 * float(high[-1])))
-    lines += [
-        level(time, limit, f"limit {limit:.2f} %", colour)
-        for limit, colour in zip(limits, _LIMIT_COLOURS, strict=False)
-        if limit < top
-    ]
+    lines += [level(time, limit, f"limit {limit:.2f} %") for limit in limits if limit < top]
     if record.get("true_percent") is not None:
-        lines.append(level(time, value(record, "true_percent"), "a perfect instrument", "green"))
+        lines.append(level(time, value(record, "true_percent"), "a perfect instrument", "black"))
     panel = Panel(x_label="Time since the start [s]", y_label=_FSC, lines=lines, y_range=(0.0, top), x_range=(0.0, float(time[-1])))
     caption = "Fuel sulphur content from all readings up to a time, with its 95 % interval."
     return Chart(name="fsc-over-time", caption=caption, panels=[panel], panel_height=0.21)
@@ -68,7 +68,7 @@ def budget_chart(record: Record) -> Chart | None:
     widest = max(size for _, size in parts)
     panel = Panel(
         x_label="Standard uncertainty [% m/m]",
-        y_label="Part [-]",
+        y_label="Part",
         lines=lines,
         notes=notes,
         x_range=(0.0, 1.18 * widest),
@@ -90,7 +90,7 @@ def channels_chart(samples: pd.DataFrame) -> Chart:
     ]
     nox = [
         Line(x=time, y=column(rows, f"{gas}_ppb"), label=label, colour=colour)
-        for gas, label, colour in (("no", "NO", "green"), ("no2", "NO2", "purple"))
+        for gas, label, colour in (("no", "NO", "green"), ("no2", "NO2", "plum"))
         if f"{gas}_ppb" in rows
     ]
     if nox:
@@ -124,7 +124,7 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
         y_label="SO2 excess [ppb]",
         title="Samples at one response",
         lines=[
-            Line(x=co2, y=so2, label="sample", colour="sky", style="points"),
+            Line(x=co2, y=so2, label="sample", colour="blue", style="points"),
             Line(x=ends, y=slope * ends, label=f"slope {slope:.3f} ppb/ppm", colour="black"),
         ],
     )
@@ -146,10 +146,12 @@ def _groups(record: Record) -> list[Panel]:
         Line(x=number, y=percent, label="group of passes", colour="blue", style="points", error=deviation),
         level(number, value(found, "fsc_percent"), "all passes", "black"),
     ]
-    return [Panel(x_label="Group of passes [-]", y_label=_FSC, title="Groups of passes", lines=lines, x_range=around(number))]
+    return [
+        Panel(x_label="Group of passes", y_label=_FSC, title="Groups of passes", lines=lines, x_range=around(number), x_whole=True)
+    ]
 
 
-def track_chart(samples: pd.DataFrame) -> Chart | None:
+def logged_track_chart(samples: pd.DataFrame) -> Chart | None:
     """Return the CO2 reading along the track in plan, and in height over distance; None where the place is not known."""
     rows = _dense(samples)
     north, east, height, co2 = (column(rows, name) for name in ("north_m", "east_m", "height_m", "co2_ppm"))
@@ -157,8 +159,9 @@ def track_chart(samples: pd.DataFrame) -> Chart | None:
     if finite(north, east):
         lines = _coloured(east, north, co2)
         sides = sorted((float(np.nanmax(north) - np.nanmin(north)), float(np.nanmax(east) - np.nanmin(east))))
-        plan = Panel(x_label="East [m]", y_label="North [m]", title="In plan", lines=lines, equal=sides[1] < _LONG * sides[0])
-        panels.append(in_kilometres(plan))
+        plan = Panel(x_label="East [m]", y_label="North [m]", title="In plan", lines=lines)
+        # A long and narrow track is not drawn to one scale, and is no map.
+        panels.append(in_kilometres(on_map(plan, north=0.0, aspect=_ASPECT) if sides[1] < _LONG * sides[0] else plan))
         distance = np.concatenate([[0.0], np.nancumsum(np.hypot(np.diff(north), np.diff(east)))])
         if finite(height):
             lines = _coloured(distance, height, co2)

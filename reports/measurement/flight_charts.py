@@ -4,12 +4,14 @@ import numpy as np
 import pandas as pd
 
 from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.palette import Meaning, series_colour
 from reports.document.panels import level
+from reports.document.ship_map import ship_panel, ship_words
 from reports.measurement.data import Record
 from reports.run.columns import column
 from reports.run.run_data import RunData
-
-_COLOURS = ("blue", "vermillion", "green", "purple", "orange", "sky")
+from reports.run.surroundings import Surroundings
+from reports.run.time_history import about_the_plume
 
 _METHODS = {"fsc": "regression", "areas_fsc": "areas"}
 """What the columns of each method begin with."""
@@ -25,12 +27,12 @@ def error_chart(rows: pd.DataFrame) -> Chart:
     panels = []
     for prefix, title in _METHODS.items():
         lines = []
-        for (sensor, group), colour in zip(rows.groupby("sensor"), _COLOURS, strict=False):
+        for number, (sensor, group) in enumerate(rows.groupby("sensor")):
             expected, found = column(group, "fsc_expected_percent"), column(group, f"{prefix}_percent")
             # Flights of one fuel stand beside each other, in the order of their numbers.
             shown = expected * (1.0 + 0.1 * (np.linspace(-0.5, 0.5, len(group)) if len(group) > 1 else 0.0))
             error = 1.96 * column(group, f"{prefix}_uncertainty_percent") if len(group) <= 60 else None
-            lines.append(Line(x=shown, y=found, label=str(sensor), colour=colour, style="points", error=error))
+            lines.append(Line(x=shown, y=found, label=str(sensor), colour=series_colour(number), style="points", error=error))
         ends = np.array([0.8, 1.25]) * [float(rows["fsc_expected_percent"].min()), float(rows["fsc_expected_percent"].max())]
         lines.append(Line(x=ends, y=ends, label="perfect", colour="black", style="dash"))
         wide = ends[1] / ends[0] > 10.0
@@ -55,18 +57,18 @@ def operating_curve(statistics: Record) -> Chart | None:
     if not len(entries) or entries["fsc_fuel_percent"].nunique() < 3:
         return None
     lines = []
-    for (sensor, group), colour in zip(entries.groupby("sensor"), _COLOURS, strict=False):
+    for number, (sensor, group) in enumerate(entries.groupby("sensor")):
         fuel = column(group, "fsc_fuel_percent")
         bounds = np.array(group["above_interval"].tolist(), dtype=np.float64)
         around = np.concatenate([bounds[:, 0], bounds[::-1, 1]])
         lines += [
-            Line(x=np.concatenate([fuel, fuel[::-1]]), y=around, label="", colour=colour, fill=True),
-            Line(x=fuel, y=column(group, "above"), label=f"{sensor}, at the end", colour=colour),
-            Line(x=fuel, y=column(group, "above_2min"), label=f"{sensor}, after 2 min", colour=colour, style="dot"),
+            Line(x=np.concatenate([fuel, fuel[::-1]]), y=around, label="", colour=series_colour(number), fill=True),
+            Line(x=fuel, y=column(group, "above"), label=f"{sensor}, at the end", colour=series_colour(number)),
+            Line(x=fuel, y=column(group, "above_2min"), label=f"{sensor}, after 2 min", colour=series_colour(number), style="dot"),
         ]
     limit = float(entries["limit_percent"].iloc[0])
     fuels = column(entries, "fsc_fuel_percent")
-    lines.append(Line(x=np.array([limit, limit]), y=np.array([0.0, 1.0]), label="limit", colour="black", style="dash"))
+    lines.append(Line(x=np.array([limit, limit]), y=np.array([0.0, 1.0]), label="limit", colour=Meaning.LIMIT, style="dash"))
     lines.append(level(np.array([fuels.min(), fuels.max()]), 0.05, "5 %", "grey"))
     panel = Panel(
         x_label="Sulphur in the fuel [% m/m]", y_label="Called above the limit [-]", lines=lines, log_x=True, y_range=(0.0, 1.0)
@@ -99,8 +101,8 @@ def trajectory_chart(run: RunData, rows: pd.DataFrame) -> Chart | None:
 
 def _scattered(rows: pd.DataFrame, x: str, y: str, y_label: str, title: str) -> Panel:
     lines = [
-        Line(x=column(group, x), y=column(group, y), label=str(sensor), colour=colour, style="points")
-        for (sensor, group), colour in zip(rows.groupby("sensor"), _COLOURS, strict=False)
+        Line(x=column(group, x), y=column(group, y), label=str(sensor), colour=series_colour(number), style="points")
+        for number, (sensor, group) in enumerate(rows.groupby("sensor"))
     ]
     return Panel(x_label=_AXES[x], y_label=y_label, title=title, lines=lines, log_y=True)
 
@@ -113,42 +115,41 @@ def _shares(rows: pd.DataFrame, x: str) -> Panel:
             x=column(group, x),
             y=column(group, f"{of}_percent") / column(group, "fsc_expected_percent"),
             label=f"{sensor}, {method}",
-            colour=colour,
+            colour=series_colour(number),
             style=styles[of],
         )
-        for (sensor, group), colour in zip(rows.groupby("sensor"), _COLOURS, strict=False)
+        for number, (sensor, group) in enumerate(rows.groupby("sensor"))
         for of, method in _METHODS.items()
     ]
     return Panel(x_label=_AXES[x], y_label="Measured over true [-]", title="Share of the truth", lines=lines)
 
 
-def track_chart(history: pd.DataFrame) -> Chart:
+def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
     """Return the concentration along a flight by the colour of its track: seen from the ship, and in height over distance.
 
     Parameters
     ----------
     history : of the flight once it had settled
+    about : what was about it
     """
     rows = history.iloc[:: max(1, -(-len(history) // _POINTS_MAX))]
-    north, east = (column(rows, f"{axis}_m") - column(rows, f"vessel_{axis}_m") for axis in ("north", "east"))
     height, above, co2 = (column(rows, name) for name in ("altitude_m", "plume_above_m", "co2_ppm"))
-    distance = np.hypot(north, east)
+    right, along = about_the_plume(rows)
+    distance = np.hypot(right, along)
     order = np.argsort(distance)
-    axis = Line(x=distance[order], y=(height - above)[order], label="plume's axis", colour="vermillion", style="points")
+    axis = Line(x=distance[order], y=(height - above)[order], label="plume's axis", colour=Meaning.PLUME, style="dots")
+    track = Line(x=right, y=along, label="", colour=Meaning.FLOWN, style="points", values=co2)
     panels = [
-        Panel(
-            x_label="East of the ship [m]",
-            y_label="North of the ship [m]",
-            title="Seen from the ship",
-            lines=[Line(x=east, y=north, label="", colour="blue", style="points", values=co2)],
-            equal=True,
-        ),
+        ship_panel(about, [track], title="Seen from the ship", shown=[track]),
         Panel(
             x_label="Distance from the ship [m]",
             y_label="Height [m]",
             title="In height",
-            lines=[axis, Line(x=distance, y=height, label="", colour="blue", style="points", values=co2)],
+            lines=[axis, Line(x=distance, y=height, label="", colour=Meaning.FLOWN, style="points", values=co2)],
         ),
     ]
-    caption = "CO2 along the track by its colour, as it was, and the height of the plume's mean axis where it was crossed."
+    caption = (
+        "CO2 along the track by its colour, as it was, and the height of the plume's mean axis where it was crossed."
+        f" {ship_words(about)}"
+    )
     return Chart(name="sulphur-track", caption=caption, panels=panels, columns=2, panel_height=0.4, scale_label="CO2 [ppm]")

@@ -18,6 +18,7 @@ _METHODS = {"regression": "equalise and regress", "areas": "areas of passes"}
 def flight_table(rows: pd.DataFrame) -> Table:
     """Return a row per flight: result, uncertainty, verdict."""
     return Table(
+        caption="The flights, a row each: result, uncertainty and verdict.",
         head=["Flight", "Sensor", "Fuel [%]", "Perfect [%]", "Measured [%]", "± 95 % [%]", "Quality", "P(above)", "Verdict"],
         rows=[
             [
@@ -42,7 +43,7 @@ def flight_table(rows: pd.DataFrame) -> Table:
 def accuracy_table(statistics: Record) -> Table:
     """Return bias, spread and coverage by sensor and method."""
     rows = [entry for entry in statistics["accuracy"] if entry["fsc_fuel_percent"] is None]
-    return Table(
+    return Table(caption="Bias, spread and coverage, by sensor and method.",
         head=[
             "Sensor", "Method", "Flights", f"Bias [{_FSC}]", "Share read", "Predicted", f"Spread, 1σ [{_FSC}]",
             f"Stated, 1σ [{_FSC}]", f"Of it noise [{_FSC}]", "Covered", f"Interval at {percent(statistics['confidence'])}",
@@ -71,6 +72,7 @@ def accuracy_table(statistics: Record) -> Table:
 def calls_table(statistics: Record) -> Table:
     """Return how often ships of each fuel were called above the limit."""
     return Table(
+        caption="How often ships of each fuel were called above the limit.",
         head=["Sensor", "Fuel [%]", "Limit [%]", "Flights", "Called above", "Interval", "Above after 2 min", "Open at the end"],
         rows=[
             [
@@ -118,6 +120,7 @@ def best_table(rows: pd.DataFrame) -> Table:
     ranked = pd.concat([rows, noise], axis=1).sort_values("minute")
     best = pd.concat([group.head(_BEST) for _, group in ranked.groupby("sensor")])
     return Table(
+        caption="Trajectories that leave the least noise after a minute, by sensor, and what each method reads on them.",
         head=["Sensor", "ν", "Interval [s]", "Distance [m]", f"1σ in a minute [{_FSC}]", "Regression reads", "Areas read"],
         rows=[
             [

@@ -6,14 +6,16 @@ import numpy as np
 import pandas as pd
 
 from common.binomial import percent
-from reports.document.blocks import Block, Heading, Section, Text
+from reports.document.blocks import Block, Card, Heading, Section, Text
+from reports.document.chart import Chart
 from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
 from reports.measurement.data import Record
-from reports.measurement.flight_charts import error_chart, operating_curve, track_chart, trajectory_chart
+from reports.measurement.flight_charts import error_chart, operating_curve, sulphur_track_chart, trajectory_chart
 from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table
 from reports.measurement.tables import over_time_table, result_table
 from reports.run.columns import column
 from reports.run.run_data import RunData
+from reports.run.surroundings import surroundings
 
 _TRUTH = {"co2_true_ppm": "co2_ppm", "so2_true_ppb": "so2_ppb"}
 """What figures call the truth, and what a time history does."""
@@ -34,8 +36,8 @@ def sulphur_sections(run: RunData) -> list[Section]:
     return [whole, shown] if shown is not None else [whole]
 
 
-def sulphur_cards(run: RunData) -> list[tuple[str, str, str]]:
-    """Return what was measured of the fuel, for the head of the report: name, value and limit; nothing of a run without."""
+def sulphur_cards(run: RunData) -> list[Card]:
+    """Return what was measured of the fuel; nothing of a run without."""
     measured = _measured(run)
     if not len(measured):
         return []
@@ -43,18 +45,17 @@ def sulphur_cards(run: RunData) -> list[tuple[str, str, str]]:
         row = measured.iloc[0]
         result = f"{row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} %"
         return [
-            ("Sulphur in the fuel, with its 95 % interval", result, ""),
-            (
+            Card("Sulphur in the fuel, with its 95 % interval", result),
+            Card(
                 f"Verdict on {row['sulphur_limit_percent']:g} %, and probability of more",
                 f"{row['sulphur_verdict']}, {percent(row['probability_above'])}",
-                "",
             ),
         ]
     expected, found = (column(measured, name) for name in ("fsc_expected_percent", "fsc_percent"))
     inside = (column(measured, "fsc_low_percent") <= expected) & (expected <= column(measured, "fsc_high_percent"))
     return [
-        ("Bias of the sulphur content, mean of flights", f"{float(np.mean(found - expected)):+.4f} %", ""),
-        ("Flights whose 95 % interval holds the truth", percent(float(np.mean(inside))), ""),
+        Card("Bias of the sulphur content, mean of flights", f"{float(np.mean(found - expected)):+.4f} %"),
+        Card("Flights whose 95 % interval holds the truth", percent(float(np.mean(inside)))),
     ]
 
 
@@ -98,7 +99,7 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
             blocks: list[Block | None] = [
                 Text(_told(row)),
                 result_table(record),
-                track_chart(history[history["time_s"] >= row["settling_time_s"]]),
+                _track(run, row, history),
                 over_time_chart(record),
                 over_time_table(record),
                 budget_chart(record),
@@ -109,6 +110,13 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
             shown = [block for block in blocks if block is not None]
             return Section(anchor="measurement", title=title, nav_title="Measurement", blocks=shown)
     return None
+
+
+def _track(run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> Chart | None:
+    """Return the track of a flight once it had settled; None where it never had."""
+    settled = history[history["time_s"] >= row["settling_time_s"]]
+    config = run.manifest["trials"][row["trial"]]
+    return sulphur_track_chart(settled, surroundings(config, row, settled)) if len(settled) > 1 else None
 
 
 def _told(row: "pd.Series[Any]") -> str:

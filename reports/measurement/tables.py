@@ -27,7 +27,7 @@ def result_table(record: Record) -> Table:
             found["quality"],
         ])  # fmt: skip
     head = ["Method", "Sulphur content", "Noise", "Standard uncertainty", "95 % interval", "Quality"]
-    return Table(head=head, rows=rows, widths=[2.0, 1.2, 1.0, 1.5, 1.6, 0.8])
+    return Table(caption="The result by each method.", head=head, rows=rows, widths=[2.0, 1.2, 1.0, 1.5, 1.6, 0.8])
 
 
 def over_time_table(record: Record) -> Table | None:
@@ -50,7 +50,9 @@ def over_time_table(record: Record) -> Table | None:
         for row in table.to_dict("records")
     ]
     head = ["After", "Passes", "Sulphur content", "Standard uncertainty", "Quality", *(f"Limit {float(v):.2f} %" for v in limits)]
-    return Table(head=head, rows=rows, widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)])
+    return Table(
+        caption="What was known after so much time.", head=head, rows=rows, widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)]
+    )
 
 
 def record_table(record: Record) -> Table:
@@ -68,4 +70,11 @@ def record_table(record: Record) -> Table:
         ["SO2 channel", f"t90 {t90}; {delay} after CO2"],
         ["Sulphate, not corrected", f"{number(found['sulphate_percent'], '{:.4f} %')}: sulphur that does not leave as SO2"],
     ]
-    return Table(head=["", ""], rows=rows, widths=[1.0, 3.0], left_columns=2, prose=True)
+    return Table(
+        caption="The record, and what was taken of the instrument.",
+        head=["", ""],
+        rows=rows,
+        widths=[1.0, 3.0],
+        left_columns=2,
+        prose=True,
+    )

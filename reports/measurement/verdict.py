@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from reports.document.blocks import Verdict
+from reports.document.blocks import Card, Verdict
 from reports.document.tables import number
 from reports.measurement.data import Record, value
 
@@ -60,23 +60,28 @@ def _short(share: float) -> str:
     return probability(share).replace("more than", ">").replace("less than", "<")
 
 
-def _figures(record: Record) -> list[tuple[str, str, str]]:
+def _figures(record: Record) -> list[Card]:
     found = record["estimate"]
-    limits = [
-        (f"Probability above {float(verdict['limit_percent']):.2f} %", _short(value(verdict, "probability_above")), "")
+    chances = [
+        Card(
+            f"Probability above {float(verdict['limit_percent']):.2f} %",
+            _short(value(verdict, "probability_above")),
+            "" if verdict["verdict"] == "open" else "below the limit",
+            {"above": False, "below": True}.get(verdict["verdict"]),
+        )
         for verdict in found["verdicts"]
     ]
     times = [
-        (f"Time to a verdict on {float(limit):.2f} %", "open" if seconds is None else f"{float(seconds):.0f} s", "")
+        Card(f"Time to a verdict on {float(limit):.2f} %", "open" if seconds is None else f"{float(seconds):.0f} s")
         for limit, seconds in record["time_to_verdict_s"].items()
     ]
     true = record.get("true_percent")
     return [
-        ("Fuel sulphur content", number(found["fsc_percent"], "{:.3f} %"), ""),
-        ("Standard uncertainty", number(found["total_percent"], "{:.3f} %"), ""),
-        *([] if true is None else [("A perfect instrument reads", number(true, "{:.3f} %"), "")]),
-        *limits,
+        Card("Fuel sulphur content", number(found["fsc_percent"], "{:.3f} %")),
+        Card("Standard uncertainty", number(found["total_percent"], "{:.3f} %")),
+        *chances,
+        Card("Quality", str(found["quality"])),
         *times,
-        ("Quality", str(found["quality"]), ""),
-        ("CO2 signal to noise", number(found["figures"]["co2_snr"], "{:.0f}"), ""),
+        *([] if true is None else [Card("A perfect instrument reads", number(true, "{:.3f} %"))]),
+        Card("CO2 signal to noise", number(found["figures"]["co2_snr"], "{:.0f}")),
     ]

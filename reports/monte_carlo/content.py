@@ -82,7 +82,8 @@ def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
         f" what matters has an interval (at {percent(statistics['confidence'])}) above it."
     )
     return [
-        Text(text),
+        # Of indices that there are: nobody needs to know how to read others.
+        *([Text(text)] if any(found["inputs"] for found in statistics["sensitivity"].values()) else []),
         *(Text(line) for line in left_out_rows(statistics["sensitivity"])),
         *driver_charts(statistics),
         *scatter_charts(run, statistics),

@@ -1,5 +1,6 @@
 """Figures of what drives the flights of a Monte Carlo study: bars of the indices, and the clearance over the first inputs."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -7,9 +8,10 @@ import numpy.typing as npt
 import pandas as pd
 
 from reports.document.chart import Chart, Line, Panel
-from reports.document.panels import capped, level, strips
+from reports.document.palette import Meaning
+from reports.document.panels import Group, capped, level, strips
 from reports.monte_carlo.names import CLEARANCE, FIGURES, input_label, input_name
-from reports.run.columns import Array, Mask, clearance, violated
+from reports.run.columns import Array, clearance, violated
 from reports.run.run_data import RunData
 
 SCATTER_MAX = 2000
@@ -62,12 +64,12 @@ def _index_panel(inputs: list[dict[str, Any]], name: str, floor: float, x_label:
     reach = np.array([-0.6, len(inputs) - 0.4])
     lines += [
         Line(x=ends, y=np.repeat(place, 3), label="interval", colour="black"),
-        Line(x=np.full(2, floor), y=reach, label="noise floor", colour="vermillion", style="dash"),
+        Line(x=np.full(2, floor), y=reach, label="noise floor", colour=Meaning.LIMIT, style="dash"),
     ]
     low, high = min(0.0, float((value - error).min())), max(floor, float((value + error).max()))
     return Panel(
         x_label=x_label,
-        y_label="Input [-]",
+        y_label="Input",
         title=title,
         lines=lines,
         x_range=(low - 0.02 * (high - low), high + 0.05 * (high - low)),
@@ -90,7 +92,7 @@ def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     shown = measured.iloc[thinned(clearance(measured))]
     sampled = run.draws.set_index("flight_id").reindex(shown["flight_id"])
     near, inside = clearance(shown), violated(shown)
-    groups = [(~inside, "flight", "blue"), (inside, "flight with a keep-out violation", "vermillion")]
+    groups = [(~inside, "flight", Meaning.FLOWN), (inside, "flight with a keep-out violation", Meaning.LIMIT)]
     caption = "Closest approach of each flight beyond r_min, over the inputs with the largest δ."
     if len(shown) < len(measured):
         caption += f" {len(shown):,} of {len(measured):,} flights are shown, the {NEAREST} nearest among them."
@@ -104,7 +106,7 @@ def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     return [chart for chart in charts if chart.panels]
 
 
-def _scatter(values: "pd.Series[Any]", near: Array, groups: list[tuple[Mask, str, str]]) -> Panel:
+def _scatter(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> Panel:
     x = values.to_numpy(dtype=np.float64)
     lines, top = capped(x, near, groups, float("nan"))
     bottom = min(0.0, float(near.min()))
@@ -113,12 +115,12 @@ def _scatter(values: "pd.Series[Any]", near: Array, groups: list[tuple[Mask, str
     return Panel(x_label=input_label(str(values.name)), y_label=CLEARANCE, lines=lines, y_range=y_range)
 
 
-def _strips(values: "pd.Series[Any]", near: Array, groups: list[tuple[Mask, str, str]]) -> Panel:
+def _strips(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> Panel:
     """Return a row of flights for each word, those far above all others at the edge."""
     _, top = capped(near, near, groups, float("nan"))
     beyond = near > top
     shown = [*((mask & ~beyond, name, colour) for mask, name, colour in groups), (beyond, "beyond the panel", "black")]
-    words, label = [str(value).replace("_", " ") for value in values], input_label(str(values.name))
+    words, label = [str(value).replace("_", " ") for value in values], input_name(str(values.name))
     return strips(np.minimum(near, top), words, CLEARANCE, label, shown, [(0.0, "r_min")], named=True)
 
 

@@ -7,6 +7,7 @@ import pandas as pd
 
 from reports.document.blocks import Block, Heading, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import Meaning, series_colour
 from reports.run.columns import clearance, violated
 from reports.run.run_data import RunData
 
@@ -15,9 +16,6 @@ _POINTS_MAX = 4000
 
 _LISTED_MAX = 12
 """Violations that are listed by name, at most."""
-
-_COLOURS = ("sky", "orange", "green", "purple", "blue", "black")
-"""Of the methods, in the order in which they first proposed a flight."""
 
 _IN_WORDS = {
     "corners": "corner sampling",
@@ -113,20 +111,21 @@ def search_chart(flights: pd.DataFrame) -> Chart:
     for i, name in enumerate(methods):
         points = shown & (flights["search_method"] == name).to_numpy()
         label = method_name(name) or "a flight"
-        lines.append(Line(x=number[points], y=distance[points], label=label, colour=_COLOURS[i % len(_COLOURS)], style="points"))
+        lines.append(Line(x=number[points], y=distance[points], label=label, colour=series_colour(i), style="points"))
     lines += [
         Line(x=number, y=np.minimum.accumulate(distance), label="closest so far", colour="grey"),
-        Line(x=number[[0, -1]], y=np.zeros(2), label="r_min", colour="vermillion", style="dash"),
+        Line(x=number[[0, -1]], y=np.zeros(2), label="r_min", colour=Meaning.LIMIT, style="dash"),
     ]
     # Flights that stay far away say nothing of the worst.
     highest = float(np.quantile(distance, 0.9))
     least = min(0.0, float(distance.min()))
     room = 0.06 * (highest - least)
     panel = Panel(
-        x_label="Flights so far [-]",
+        x_label="Flights so far",
         y_label="Distance kept beyond r_min [m]",
         lines=lines,
         y_range=(least - room, highest + room),
+        x_whole=True,
     )
     caption = "Closest approach of each flight, in the order of the search; the tenth that stayed farthest away is left out."
     return Chart(name="search", caption=caption, panels=[panel])
@@ -142,7 +141,7 @@ def method_table(flights: pd.DataFrame) -> Table:
         least = f"{float(np.min(clearance(own))):.1f}"
         rows.append([method_name(name) or "any", f"{len(own):,}", f"{len(inside):,}", first, least])
     head = ["Method", "Flights", "Violations", "First violation", "Closest beyond r_min [m]"]
-    return Table(head=head, rows=rows, widths=[1.6, 0.8, 0.8, 1.4, 1.4], left_columns=1)
+    return Table(caption="What each method has found.", head=head, rows=rows, widths=[1.6, 0.8, 0.8, 1.4, 1.4], left_columns=1)
 
 
 def worst_table(flights: pd.DataFrame, worst: list[dict[str, Any]]) -> Table:

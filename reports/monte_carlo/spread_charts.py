@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import Meaning
 from reports.document.panels import histogram
 from reports.monte_carlo.names import CLEARANCE, FIGURES
 from reports.run.columns import Array, clearance, column, interval_error
@@ -24,7 +25,7 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     """Return how the clearance and the other figures of the flights are spread."""
     rows = run.summary
     near = clearance(rows)
-    counted_near = histogram([(_within(near, lowest=0.0), "flights", "blue")], CLEARANCE, [(0.0, "r_min")])
+    counted_near = histogram([(_within(near, lowest=0.0), "flights", Meaning.FLOWN)], CLEARANCE, [(0.0, "r_min")])
     if counted_near is None:
         return []
     kept = Chart(
@@ -67,7 +68,7 @@ def _counted(key: str, values: Array, quantiles: list[dict[str, Any]]) -> Panel 
     marks = [
         (figure.scale * q["value"], label) for q in quantiles if q["probability"] in (0.05, 0.5, 0.95) and q["value"] is not None
     ]
-    return histogram([(figure.scale * _within(values), "flights", "blue")], figure.label, marks)
+    return histogram([(figure.scale * _within(values), "flights", Meaning.FLOWN)], figure.label, marks)
 
 
 def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
@@ -84,9 +85,9 @@ def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
         x_label=CLEARANCE,
         y_label="Flights as near or nearer [%]",
         lines=[
-            Line(x=x, y=100.0 * fraction, label="flights", colour="blue"),
+            Line(x=x, y=100.0 * fraction, label="flights", colour=Meaning.FLOWN),
             Line(x=ends, y=heights, label="interval of a quantile", colour="black"),
-            Line(x=np.zeros(2), y=np.array([0.7 * least, 100.0]), label="r_min", colour="vermillion", style="dash"),
+            Line(x=np.zeros(2), y=np.array([0.7 * least, 100.0]), label="r_min", colour=Meaning.LIMIT, style="dash"),
         ],
         log_y=True,
         x_range=(nearest - 0.04 * (far - nearest), far),

@@ -69,6 +69,7 @@ def _probability_table(statistics: Record) -> Table:
     found, plain = statistics["violation"], statistics["violation"]["first_levels"]
     level = percent(statistics["confidence"])
     return Table(
+        caption="The probability of a keep-out violation, by subset simulation and by its first levels alone.",
         head=["By", "Flights", "Violations", "Probability", f"Two-sided at {level}", f"At most, one-sided at {level}"],
         rows=[
             [
@@ -109,7 +110,12 @@ def _levels(statistics: Record) -> list[Block]:
     ]  # fmt: skip
     return [
         Text(text),
-        Table(head=head, rows=rows, widths=[0.5, 0.8, 1.2, 1.3, 0.7, 1.1, 0.6, 0.6, 0.6]),
+        Table(
+            caption="The levels of the subset simulations.",
+            head=head,
+            rows=rows,
+            widths=[0.5, 0.8, 1.2, 1.3, 0.7, 1.1, 0.6, 0.6, 0.6],
+        ),
         *(Text(line) for line in _warnings(simulations)),
     ]
 
@@ -174,7 +180,11 @@ def input_table(statistics: Record) -> Table:
     """Return the inputs with their distances, and how their values differ."""
     rows = [[_named(entry), f"{entry['distance']:.2f}", *_values(entry)] for entry in statistics["inputs"]]
     return Table(
-        head=["Input", "Distance [-]", "As declared", "Near the event"], rows=rows, widths=[2.0, 0.8, 2.0, 2.0], prose=True
+        caption="Inputs by how much their values near a violation differ from the others.",
+        head=["Input", "Distance [-]", "As declared", "Near the event"],
+        rows=rows,
+        widths=[2.0, 0.8, 2.0, 2.0],
+        prose=True,
     )
 
 

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import Meaning
 from reports.monte_carlo.driver_charts import INPUTS_MAX, bar_line
 from reports.monte_carlo.names import FIGURES, input_label, input_name
 from reports.run.columns import Array
@@ -32,7 +33,7 @@ def curve_chart(statistics: dict[str, Any]) -> list[Chart]:
                 fill=True,
             ),
             Line(x=x, y=estimate, label="estimate", colour="blue"),
-            Line(x=np.zeros(2), y=np.array([floor, 1.5]), label="r_min", colour="vermillion", style="dash"),
+            Line(x=np.zeros(2), y=np.array([floor, 1.5]), label="r_min", colour=Meaning.LIMIT, style="dash"),
         ],
         log_y=True,
         y_range=(floor, 1.5),
@@ -58,10 +59,10 @@ def distance_chart(statistics: dict[str, Any]) -> list[Chart]:
         for mask, label, colour in ((above, "above the noise floor", "blue"), (~above, "not above it", "grey"))
         if mask.any()
     ]
-    lines.append(Line(x=np.full(2, floor), y=reach, label="noise floor", colour="vermillion", style="dash"))
+    lines.append(Line(x=np.full(2, floor), y=reach, label="noise floor", colour=Meaning.LIMIT, style="dash"))
     panel = Panel(
         x_label="Distance of the distributions [-]",
-        y_label="Input [-]",
+        y_label="Input",
         lines=lines,
         x_range=(0.0, 1.05 * max(floor, float(value.max()))),
         y_range=(float(reach[0]), float(reach[1])),
@@ -90,7 +91,7 @@ def _distribution(entry: dict[str, Any], near: str) -> Panel:
     }
     lines = [
         Line(x=edges, y=outlines["declared"], label="as declared", colour="grey", fill=True),
-        Line(x=edges, y=outlines["near"], label=near, colour="vermillion", fill=True),
+        Line(x=edges, y=outlines["near"], label=near, colour="plum", fill=True),
     ]
     most = 100.0 * max(*entry["declared"], *entry["near"])
     return Panel(x_label=input_label(entry["key"]), y_label="Fraction [%]", lines=lines, y_range=(0.0, 1.08 * most))

@@ -15,6 +15,7 @@ def violation_table(statistics: Record) -> Table:
     level = percent(statistics["interval_confidence"])
     counted = [("Flights with a measurement", "measured"), ("All, those of unknown end counted as violations", "pessimistic")]
     return Table(
+        caption="Flights that violated the keep-out area, and the interval of that probability.",
         head=[
             "Counted",
             "Flights",
@@ -71,7 +72,13 @@ def quantile_table(statistics: Record) -> Table:
         cells = [_quantile(figure, quantiles.get(probability)) for probability in every]
         rows.append([figure.label, f"{found['known']:,}{missing}", *cells])
     head = ["Figure", "Flights", *(percent(probability) for probability in every)]
-    return Table(head=head, rows=rows, widths=[1.5, 0.9, *([1.1] * len(every))], print_size_pt=6.5)
+    return Table(
+        caption="Quantiles of each figure, each with its interval.",
+        head=head,
+        rows=rows,
+        widths=[1.5, 0.9, *([1.1] * len(every))],
+        print_size_pt=6.5,
+    )
 
 
 def _quantile(figure: Figure, quantile: Record | None) -> str:
@@ -82,6 +89,14 @@ def _quantile(figure: Figure, quantile: Record | None) -> str:
 
 def left_out_rows(sensitivity: Record) -> list[str]:
     """Return, in sentences, which figures have no indices and which inputs have none."""
-    lines = [f"{FIGURES[key].name}: {found['message']}." for key, found in sensitivity.items() if found["message"]]
+    without: dict[str, list[str]] = {}
+    for key, found in sensitivity.items():
+        if found["message"]:
+            # One reason for figures of which other numbers of flights are known: only its end is the same.
+            reason = str(found["message"]).rpartition("; ")[2]
+            without.setdefault(reason, []).append(f"{FIGURES[key].name} ({found['flights']:,} flights)")
+    lines = [
+        f"{reason[0].upper()}{reason[1:]}, so that there are none of: {'; '.join(names)}." for reason, names in without.items()
+    ]
     reasons = {(key, why) for found in sensitivity.values() if not found["message"] for key, why in found["left_out"].items()}
     return [*lines, *(f"{input_name(key)} has no index: {why}." for key, why in sorted(reasons))]

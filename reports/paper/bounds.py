@@ -70,7 +70,13 @@ def _tightness_table(rows: list[dict[str, Any]]) -> Table:
         "Flights", "Parameters", "Speed [m/s]", "ε [1/m]", "R [m]", "|h| max [rad/s]", "|ω_r| max [rad/s]", "Bound [rad/s]",
         "Largest found [rad/s]", "Ratio [-]", "ω_max [rad/s]",
     ]  # fmt: skip
-    return Table(head=head, rows=cells, widths=[2.2, 1.0, 0.8, 0.8, 0.8, 0.9, 0.9, 0.9, 1.0, 0.8, 0.9], left_columns=2)
+    return Table(
+        caption="The largest demand of the law: its bound, and the largest that was found.",
+        head=head,
+        rows=cells,
+        widths=[2.2, 1.0, 0.8, 0.8, 0.8, 0.9, 0.9, 0.9, 1.0, 0.8, 0.9],
+        left_columns=2,
+    )
 
 
 def _cost_table(rows: list[dict[str, Any]]) -> Table:
@@ -90,7 +96,13 @@ def _cost_table(rows: list[dict[str, Any]]) -> Table:
         "Reserve [% of ω_max]", "Crossing interval [s]", "ε [1/m]", "R [m]", "|h| max [rad/s]", "Bound [rad/s]",
         "Estimated time to settle [s]",
     ]  # fmt: skip
-    return Table(head=head, rows=cells, widths=[1.0] * 7, left_columns=0)
+    return Table(
+        caption="What it costs that the demand of the law stays within ω_max.",
+        head=head,
+        rows=cells,
+        widths=[1.0] * 7,
+        left_columns=0,
+    )
 
 
 def _cost_chart(rows: list[dict[str, Any]]) -> Chart:

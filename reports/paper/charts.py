@@ -2,15 +2,19 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
-from reports.document.chart import Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.map_marks import on_map
+from reports.document.palette import Meaning
+from reports.document.ship_map import ship_lines
 from reports.document.tables import kinematic
 from reports.run.columns import Array
 from reports.run.run_data import RunData
+from reports.run.surroundings import surroundings
 from reports.run.time_history import keepout_distance, thinned, tracking_error
 
 VEHICLES = ("kinematic", "six_dof")
@@ -66,17 +70,19 @@ def sim_1_charts(run: RunData) -> list[Chart]:
     """Return figures 3, 4 and 5: a circular reference, opposite initial headings."""
     return [
         _side_by_side(
-            run, ["sim1"], _figure_3, name="fig3", equal=True, panel_height=0.55, labels=("East [m]", "North [m]"),
-            caption="To put beside the paper's figure 3: the circular reference and the UAV. Diamonds: where each is at the start.",
+            run, ["sim1"], _figure_3, name="fig3", aspect=0.9, panel_height=0.55, labels=("East [m]", "North [m]"),
+            caption="To put beside the paper's figure 3: the circular reference and the UAV. Rings: where each is at the start.",
         ),
         _side_by_side(
             run, ["sim1"], _figure_4, name="fig4", labels=("Time [s]", "Angle [rad]"),
-            caption="Figure 4: φ, course of the UAV against that of z, goes to zero first; then φ_r follows as the unforced system"
+            caption="The paper's figure 4: "
+            "φ, course of the UAV against that of z, goes to zero first; then φ_r follows as the unforced system"
             " does.",
         ),
         _side_by_side(
             run, ["sim1"], _figure_5, name="fig5", labels=("Time [s]", "Distance to the reference [m]"),
-            caption="Figure 5: while |φ| ≤ |φ_r| the distance does not rise. Where φ_r = φ the rate of V₁ vanishes, eq. (35): a"
+            caption="The paper's figure 5: "
+            "while |φ| ≤ |φ_r| the distance does not rise. Where φ_r = φ the rate of V₁ vanishes, eq. (35): a"
             " peak or a trough of the distance while φ is not zero, a saddle point once it is. The aircraft closes in there too,"
             " for it trims its airspeed.",
         ),
@@ -88,13 +94,14 @@ def sim_2_charts(run: RunData) -> list[Chart]:
     cases = ["sim2_los", "sim2_delta"]
     return [
         _side_by_side(
-            run, cases, _figure_6, name="fig6", equal=True, panel_height=0.42, labels=("East [m]", "North [m]"),
-            caption="Figure 6: both UAVs start in front of the reference and fly the other way. UAV 1 steers by the line of sight,"
-            " UAV 2 by the δ formulation. Diamonds: starts.",
+            run, cases, _figure_6, name="fig6", aspect=1.2, panel_height=0.42, labels=("East [m]", "North [m]"),
+            caption="The paper's figure 6: both UAVs start in front of the reference and fly the other way. UAV 1 steers by the"
+            " line of sight, UAV 2 by the δ formulation. Rings: starts.",
         ),
         _side_by_side(
             run, cases, _figure_7, name="fig7", labels=("Time [s]", "Heading-rate demand [rad/s]"),
-            caption="Figure 7: the heading-rate demand of each law. Dashed: ±ω_max. The kinematic UAV 1 flies its demand, as in the"
+            caption="The paper's figure 7: "
+            "the heading-rate demand of each law. Dashed: ±ω_max. The kinematic UAV 1 flies its demand, as in the"
             " paper; the aircraft's commands are cut at ω_max.",
         ),
         _side_by_side(
@@ -117,11 +124,14 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         times = run.crossings_of(str(flown.row["flight_id"]))["time_s"].to_numpy(dtype=np.float64)
         times = times[times <= flown.time[-1]]
         east, north = (np.interp(times, flown.time, flown.column(name)) for name in ("east_m", "north_m"))
+        about = surroundings(run.manifest["config"], flown.row, flown.history)
+        place = (float(flown.column(name)[-1]) for name in ("vessel_east_m", "vessel_north_m"))
         return [
-            Line(x=flown.column("vessel_east_m"), y=flown.column("vessel_north_m"), label="vessel", colour="black"),
-            Line(x=flown.column("reference_east_m"), y=flown.column("reference_north_m"), label="reference", colour="orange"),
-            Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour="blue"),
-            _diamonds(east, north, "plume crossing"),
+            *ship_lines(about, 0.0, *place),
+            _path(flown, "vessel_", "ship's track", Meaning.SHIP, "thin"),
+            _path(flown, "", "UAV"),
+            _path(flown, "reference_", "reference", Meaning.ASKED, "thin"),
+            _crossings(east, north),
         ]
 
     def figure_9(flights: dict[str, Flown]) -> list[Line]:
@@ -129,22 +139,22 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         crossings = run.crossings_of(str(flown.row["flight_id"]))
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
-            Line(x=flown.time, y=keepout_distance(flown.history, source_height, "sphere"), label="UAV", colour="blue"),
-            _diamonds(
-                crossings["time_s"].to_numpy(dtype=np.float64), crossings["distance_m"].to_numpy(dtype=np.float64), "plume crossing"
-            ),
+            Line(x=flown.time, y=keepout_distance(flown.history, source_height, "sphere"), label="UAV", colour=Meaning.FLOWN),
+            _crossings(crossings["time_s"].to_numpy(dtype=np.float64), crossings["distance_m"].to_numpy(dtype=np.float64)),
         ]
 
     return [
         _side_by_side(
-            run, ["sim3"], figure_8, name="fig8", equal=True, labels=("East [m]", "North [m]"), shown_after=100.0, columns=1,
+            run, ["sim3"], figure_8, name="fig8", aspect=4.6, labels=("East [m]", "North [m]"), shown_after=100.0, columns=1,
             panel_height=0.2,
-            caption="Figure 8: over the ground. The UAV starts at a random place behind the vessel. Diamonds: plume crossings"
-            " after settling, of which the first hundred seconds are shown.",
+            caption="The paper's figure 8: over the ground. The UAV starts at a random place behind the vessel. Diamonds: plume"
+            " crossings after settling, of which the first hundred seconds are shown; ship, plume and keep-out area at the end of"
+            " them.",
         ),
         _side_by_side(
             run, ["sim3"], figure_9, name="fig9", labels=("Time [s]", "Distance to the vessel [m]"), shown_after=math.inf,
-            caption="Figure 9: distance between the vessel, at its funnel, and the UAV; dashed the radius of the keep-out area.",
+            caption="The paper's figure 9: "
+            "distance between the vessel, at its funnel, and the UAV; dashed the radius of the keep-out area.",
         ),
     ]  # fmt: skip
 
@@ -168,12 +178,15 @@ def _side_by_side(
     name: str,
     caption: str,
     labels: tuple[str, str],
-    equal: bool = False,
+    aspect: float = 0.0,
     shown_after: float = 20.0,
     columns: int = 2,
     panel_height: float = 0.4,
 ) -> Chart:
-    """Return a panel for each vehicle that has flown every case, up to ``shown_after`` [s] after the last of them has settled."""
+    """Return a panel for each vehicle that has flown every case, up to ``shown_after`` [s] after the last of them has settled.
+
+    With an ``aspect``, width over height, they are maps.
+    """
     found = {fidelity: {case: find_flight(run, f"{case}_{fidelity}") for case in cases} for fidelity in VEHICLES}
     pairs = {fidelity: {c: f for c, f in flights.items() if f is not None} for fidelity, flights in found.items()}
     pairs = {fidelity: flights for fidelity, flights in pairs.items() if len(flights) == len(cases)}
@@ -182,14 +195,16 @@ def _side_by_side(
     drawn = {
         vehicle_name(run, key): lines({c: flown.until(until) for c, flown in flights.items()}) for key, flights in pairs.items()
     }
-    x_range, y_range = _common_ranges([line for curves in drawn.values() for line in curves]) if drawn else (None, None)
+    every = [line for curves in drawn.values() for line in curves]
     panels = [
-        Panel(
-            x_label=labels[0], y_label=labels[1], title=title[0].upper() + title[1:], equal=equal, lines=curves,
-            x_range=x_range, y_range=y_range,
-        )
+        Panel(x_label=labels[0], y_label=labels[1], title=title[0].upper() + title[1:], lines=curves)
         for title, curves in drawn.items()
-    ]  # fmt: skip
+    ]
+    if aspect:
+        panels = [on_map(panel, north=0.0, shown=every, aspect=aspect) for panel in panels]
+    elif drawn:
+        x_range, y_range = _common_ranges(every)
+        panels = [replace(panel, x_range=x_range, y_range=y_range) for panel in panels]
     return Chart(name=name, caption=caption, panels=panels, columns=columns, panel_height=panel_height)
 
 
@@ -202,25 +217,24 @@ def _common_ranges(lines: list[Line]) -> tuple[tuple[float, float], tuple[float,
 
 def _figure_3(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
-    return [
-        Line(x=flown.column("east_m"), y=flown.column("north_m"), label="UAV", colour="blue"),
-        _reference(flown),
-        _starts([flown]),
-    ]
+    return [_path(flown, "", "UAV"), _reference(flown), _starts([flown])]
 
 
 def _figure_4(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
     return [
-        Line(x=flown.time, y=flown.column("phi_rad"), label="φ", colour="blue"),
-        Line(x=flown.time, y=flown.column("phi_r_rad"), label="φ_r", colour="orange"),
+        Line(x=flown.time, y=flown.column("phi_rad"), label="φ", colour=Meaning.FLOWN),
+        Line(x=flown.time, y=flown.column("phi_r_rad"), label="φ_r", colour=Meaning.ASKED),
         *_coincidence_marks(flown, flown.column("phi_r_rad")),
     ]
 
 
 def _figure_5(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
-    return [Line(x=flown.time, y=flown.distance, label="distance d", colour="blue"), *_coincidence_marks(flown, flown.distance)]
+    return [
+        Line(x=flown.time, y=flown.distance, label="distance d", colour=Meaning.FLOWN),
+        *_coincidence_marks(flown, flown.distance),
+    ]
 
 
 def _coincidence_marks(flown: Flown, curve: Array) -> list[Line]:
@@ -228,8 +242,8 @@ def _coincidence_marks(flown: Flown, curve: Array) -> list[Line]:
     times = coincidences(flown)
     saddle = np.abs(np.interp(times, flown.time, flown.column("phi_rad"))) < _PHI_GONE
     marks = (
-        (saddle, "φ_r = φ = 0, a saddle point of d", "vermillion"),
-        (~saddle, "φ_r = φ ≠ 0, a peak or trough of d", "green"),
+        (saddle, "φ_r = φ = 0, a saddle point of d", "plum"),
+        (~saddle, "φ_r = φ ≠ 0, a peak or trough of d", "black"),
     )
     return [
         Line(x=times[which], y=np.interp(times[which], flown.time, curve), label=label, colour=colour, style="diamonds")
@@ -238,15 +252,12 @@ def _coincidence_marks(flown: Flown, curve: Array) -> list[Line]:
     ]
 
 
-_UAVS = {"sim2_los": ("UAV 1, line of sight", "vermillion"), "sim2_delta": ("UAV 2, δ formulation", "blue")}
+_UAVS = {"sim2_los": ("UAV 1, line of sight", "plum"), "sim2_delta": ("UAV 2, δ formulation", Meaning.FLOWN)}
 
 
 def _figure_6(flights: dict[str, Flown]) -> list[Line]:
     first = next(iter(flights.values()))
-    tracks = [
-        Line(x=flown.column("east_m"), y=flown.column("north_m"), label=_UAVS[case][0], colour=_UAVS[case][1])
-        for case, flown in flights.items()
-    ]
+    tracks = [_path(flown, "", *_UAVS[case]) for case, flown in flights.items()]
     return [*tracks, _reference(first), _starts(list(flights.values()))]
 
 
@@ -257,17 +268,21 @@ def _figure_7(flights: dict[str, Flown]) -> list[Line]:
     ]
     first = next(iter(flights.values()))
     limit = float(first.row["heading_rate_limit_rad_s"])
-    return [*commands, *(_level(first.time, value, "±ω_max", "black") for value in (limit, -limit))]
+    return [*commands, *(_level(first.time, value, "±ω_max") for value in (limit, -limit))]
 
 
 def _distances(flights: dict[str, Flown]) -> list[Line]:
     return [Line(x=flown.time, y=flown.distance, label=_UAVS[case][0], colour=_UAVS[case][1]) for case, flown in flights.items()]
 
 
+def _path(flown: Flown, prefix: str, label: str, colour: str = Meaning.FLOWN, style: Style = "solid") -> Line:
+    """Return where the UAV, or what a prefix names, went over the ground."""
+    return Line(x=flown.column(f"{prefix}east_m"), y=flown.column(f"{prefix}north_m"), label=label, colour=colour, style=style)
+
+
 def _reference(flown: Flown) -> Line:
     """Return the circle of the reference, to be drawn over the tracks that come to lie on it."""
-    east, north = flown.column("reference_east_m"), flown.column("reference_north_m")
-    return Line(x=east, y=north, label="reference", colour="orange", style="dash")
+    return _path(flown, "reference_", "reference", Meaning.ASKED, "dash")
 
 
 def _starts(flights: list[Flown]) -> Line:
@@ -277,12 +292,12 @@ def _starts(flights: list[Flown]) -> Line:
         for east, north in (("east_m", "north_m"), ("reference_east_m", "reference_north_m"))
     ]
     x, y = np.array(places).T
-    return _diamonds(x, y, "start")
+    return Line(x=x, y=y, label="start", colour=Meaning.SHIP, style="ring")
 
 
-def _diamonds(x: Array, y: Array, label: str) -> Line:
-    return Line(x=x, y=y, label=label, colour="green" if label == "start" else "vermillion", style="diamonds")
+def _crossings(x: Array, y: Array) -> Line:
+    return Line(x=x, y=y, label="plume crossing", colour=Meaning.CROSSING, style="diamonds")
 
 
-def _level(time: Array, value: float, label: str, colour: str = "vermillion") -> Line:
+def _level(time: Array, value: float, label: str, colour: str = Meaning.LIMIT) -> Line:
     return Line(x=time[[0, -1]], y=np.array([value, value]), label=label, colour=colour, style="dash")

@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from reports.document.blocks import Verdict
+from reports.document.blocks import Card, Verdict
 from reports.document.tables import length, number
 from reports.paper.charts import VEHICLES, vehicle_name
 from reports.run.run_data import RunData
@@ -129,7 +129,7 @@ def paper_verdict(run: RunData) -> Verdict:
             *(f"{check.name}: {check.value}, required {check.required}" for check in wrong),
             *(f"{row['flight_id']}: {str(row['outcome']).replace('_', ' ')}, {row['message']}" for _, row in failed.iterrows()),
         ],
-        figures=[(check.name, check.value, check.required) for check in checks if check.met is not None],
+        figures=[Card(check.name, check.value, check.required, check.met) for check in checks if check.met is not None],
     )
 
 

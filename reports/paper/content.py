@@ -9,19 +9,21 @@ import pandas as pd
 
 from common.run_layout import BOUNDS
 from reports.design.section import innerloop_section
-from reports.document.blocks import Block, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
+from reports.document.blocks import Block, Findings, FlightContent, FlightPicker, Heading, Section, Table, Text
+from reports.document.chart import Chart
 from reports.document.tables import length, number, outcome, parameter_table
+from reports.flights.first_page import track_picture
 from reports.flights.single_flight import flight_charts
 from reports.paper.bounds import bounds_section
 from reports.paper.charts import VEHICLES, find_flight, sim_1_charts, sim_2_charts, sim_3_charts, vehicle_name
-from reports.paper.checks import DISTANCE_PRINTED, INTERVAL_PRINTED, paper_verdict, rows_by_id
+from reports.paper.checks import DISTANCE_PRINTED, INTERVAL_PRINTED, paper_verdict, rows_by_id, vehicles
 from reports.replay.flight_scene import flight_scene
 from reports.run.run_data import RunData
 from reports.run.trials import read_trials
 
 
-def paper_content(run: RunData) -> tuple[Verdict, list[Section]]:
-    """Return the verdict and the sections of the report of the paper's simulations."""
+def paper_content(run: RunData) -> Findings:
+    """Return the findings of the paper's simulations."""
     bounds = run.path / BOUNDS
     sections = [
         Section(
@@ -44,12 +46,25 @@ def paper_content(run: RunData) -> tuple[Verdict, list[Section]]:
             blocks=[
                 Heading("What each simulation sets"),
                 _case_table(run),
-                Heading("Every other parameter"),
                 parameter_table(run),
             ],
         ),
     ]  # fmt: skip
-    return paper_verdict(run), sections
+    return Findings(flown=_flown(run), verdict=paper_verdict(run), picture=_picture(run), sections=sections)
+
+
+def _flown(run: RunData) -> str:
+    flown = " and ".join(f"the {vehicle_name(run, fidelity)}" for fidelity in vehicles(run))
+    return f"Simulations 1 to 3 of the paper, {len(run.summary)} flights with {flown}."
+
+
+def _picture(run: RunData) -> Chart | None:
+    """Return Simulation 3 on each vehicle, or the first figure that there is."""
+    (trial,) = read_trials(run)
+    rows = {fidelity: row for fidelity in VEHICLES if (row := rows_by_id(run).get(f"sim3_{fidelity}")) is not None}
+    shown = [(trial, row, f"Simulation 3: {vehicle_name(run, fidelity)}") for fidelity, row in rows.items()]
+    charts = (chart for figures in (sim_1_charts, sim_2_charts) for chart in figures(run) if chart.panels)
+    return track_picture(shown) or next(charts, None)
 
 
 _NUMBERS = (
@@ -108,7 +123,12 @@ def _flight_table(run: RunData) -> Table:
         "Flight", "Settled [s]", "Distance at the end", "Demand [rad/s]", "Interval [s]", "Crossing [m]", "Closest [m]",
         "Outcome",
     ]  # fmt: skip
-    return Table(head=head, rows=rows, widths=[1.9, 0.9, 1.1, 1.1, 0.9, 1.0, 1.0, 1.6])
+    return Table(
+        caption="The flights, a row each, with their outcome.",
+        head=head,
+        rows=rows,
+        widths=[1.9, 0.9, 1.1, 1.1, 0.9, 1.0, 1.0, 1.6],
+    )
 
 
 def _number_table(run: RunData) -> Table:
@@ -154,7 +174,13 @@ def _number_table(run: RunData) -> Table:
         ["Sim. 2", "line of sight: distance at the end", "not printed", *both("sim2_los", end, _END)],
     ]  # fmt: skip
     head = ["", "What section V says", "Printed", "Kinematic", "Six degrees of freedom"]
-    return Table(head=head, rows=table, widths=[0.6, 2.6, 0.9, 1.7, 1.7], left_columns=2)
+    return Table(
+        caption="What section V of the paper prints, and what both vehicles show.",
+        head=head,
+        rows=table,
+        widths=[0.6, 2.6, 0.9, 1.7, 1.7],
+        left_columns=2,
+    )
 
 
 def _rise_once_inside(run: RunData, flight_id: str) -> str:

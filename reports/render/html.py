@@ -1,18 +1,23 @@
 """The report as one self-contained HTML file."""
 
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from jinja2.utils import htmlsafe_json_dumps
 
 from reports.document.blocks import Content, FlightPicker
+from reports.document.chart import Chart
 from reports.render import replay
 from reports.render.plotly_charts import draw
+from reports.render.script_data import for_script
 
 PLOTLY = Path(__file__).parent / "bundle" / "plotly-cartesian.min.js"
 """Library that draws the charts of every page; ``bundle/README.md`` says where it comes from."""
+
+
+_PANEL_HEIGHT = 0.42
+"""Height of panels of page 1 that stand beside each other, all rows together, over the width of the page [-]."""
 
 
 def write_html(report: Content, path: Path) -> None:
@@ -24,12 +29,23 @@ def write_html(report: Content, path: Path) -> None:
         report=report,
         plotly=PLOTLY.read_text(encoding="utf-8"),
         kind=lambda block: type(block).__name__,
-        figure=lambda chart: _for_script(draw(chart)),
+        figure=lambda chart: for_script(draw(chart)),
+        panels=_panels,
         flights=_flights,
         replay=replay,
-        replay_data=lambda picker: _for_script(replay.data(picker)),
+        cards=report.verdict.cards,
+        failures=report.verdict.first_failures,
     )
     path.write_text(page, encoding="utf-8")
+
+
+def _panels(picture: Chart) -> list[Chart]:
+    """Return a chart for each panel of page 1's picture: beside each other in a wide window, below each other in a narrow one."""
+    height = picture.panel_height if picture.columns == 1 else _PANEL_HEIGHT / picture.rows
+    return [
+        replace(picture, name=f"{picture.name}{i}", panels=[panel], columns=1, panel_height=height)
+        for i, panel in enumerate(picture.panels)
+    ]
 
 
 def _flights(picker: FlightPicker) -> tuple[str, str]:
@@ -39,9 +55,4 @@ def _flights(picker: FlightPicker) -> tuple[str, str]:
     for trace, axis in product((trace for drawn in figures.values() for figure in drawn for trace in figure["data"]), ("x", "y")):
         if trace[axis]:
             trace[axis] = curves.setdefault(trace[axis]["bdata"], len(curves))
-    return _for_script(figures), _for_script(list(curves))
-
-
-def _for_script(value: Any) -> str:
-    """Return JSON for a script element: no text in it can end the element, nor begin a comment that hides its end."""
-    return htmlsafe_json_dumps(value, separators=(",", ":"))
+    return for_script(figures), for_script(list(curves))

@@ -5,24 +5,32 @@ from typing import Any
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
+from matplotlib.ticker import MaxNLocator, NullLocator
 
-from reports.document.chart import COLOURS, FILL_OPACITY, SCALE, Chart, Line, Panel
+from reports.document.axes import log_axis, mark_text
+from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import BAND_OPACITY, COLOURS, INK, SCALE
 from reports.run.columns import Array
 
 WIDTH_INCHES = 7.0
 """Width of a figure: the text width of an A4 page."""
 
-_LEGEND_CHARACTERS = 105
+_LEGEND_CHARACTERS = 118
 """What fits beside each other in a legend line of the figure's width."""
 
-_DECADES = 1e3
-"""Ratio of the ends of a logarithmic axis from which it marks powers of ten alone."""
+_TITLE_SIZE, _SMALL_TITLE_SIZE = 8.5, 7.0
+"""Letters of the titles above panels, and above many side by side [pt]."""
+
+_LEGEND_ROW = 0.16
+"""Height of a row of a legend [inches]."""
+
+_DEPTH = 2.0
+"""At which matplotlib draws lines: tints are drawn there, too, so that a panel's lines lie in their order."""
 
 _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 8.0,
-    "axes.titlesize": 8.5,
+    "axes.axisbelow": True,
     "axes.grid": True,
     "grid.color": "#dddddd",
     "grid.linewidth": 0.6,
@@ -36,54 +44,88 @@ _STYLE: dict[Any, Any] = {
 
 _LINE_STYLES: dict[str, dict[str, Any]] = {
     "solid": {"linestyle": "-", "linewidth": 1.1},
+    "thin": {"linestyle": "-", "linewidth": 0.6},
+    "broad": {"linestyle": "-", "linewidth": 4.0, "solid_capstyle": "butt"},
     "dash": {"linestyle": "--", "linewidth": 1.1},
     "dot": {"linestyle": ":", "linewidth": 1.3},
     "points": {"linestyle": "none", "marker": "o", "markersize": 3.6},
+    "dots": {"linestyle": "none", "marker": "o", "markersize": 1.8},
     "diamonds": {"linestyle": "none", "marker": "D", "markersize": 3.2},
+    "ring": {"linestyle": "none", "marker": "o", "markersize": 6.0, "markerfacecolor": "none", "markeredgewidth": 1.2},
+    "square": {"linestyle": "none", "marker": "s", "markersize": 4.6},
+    "cross": {"linestyle": "none", "marker": "X", "markersize": 6.0, "markeredgecolor": "white", "markeredgewidth": 0.5},
 }
+
+
+Limits = tuple[float, float] | None
 
 
 def draw(chart: Chart) -> Figure:
     """Return the chart as a matplotlib figure."""
     with rc_context(_STYLE):
-        height = WIDTH_INCHES * chart.panel_height * chart.rows + 0.35
+        height = WIDTH_INCHES * chart.height + 0.35 + _LEGEND_ROW * _legend_rows(chart)
         figure = Figure(figsize=(WIDTH_INCHES, height), layout="constrained")
-        axes = figure.subplots(
-            chart.rows,
-            chart.columns,
-            squeeze=False,
-            sharex="col" if chart.share_x else "none",
-        )
+        axes = _axes(figure, chart)
         handles: dict[str, Any] = {}
-        scale, shaded = chart.scale, None
+        shaded = None
         for i, panel in enumerate(chart.panels):
-            ax = axes[i // chart.columns][i % chart.columns]
-            for line in panel.lines:
-                if line.values is not None and scale:
-                    shaded = _draw_shaded(ax, line, line.values, scale)
-                    continue
-                handle = _draw_line(ax, line)
-                if line.label:
-                    handles.setdefault(line.label, handle)
-            _dress(ax, panel, last_row=i + chart.columns >= len(chart.panels) or not chart.share_x)
-        for ax in axes.flat[len(chart.panels) :]:
+            shaded = _draw_marks(axes[i], panel, handles, chart.scale) or shaded
+            title_size = _SMALL_TITLE_SIZE if chart.crowded else _TITLE_SIZE
+            _dress(axes[i], panel, title_size=title_size, last_row=i + chart.columns >= len(chart.panels) or not chart.share_x)
+        for ax in axes[len(chart.panels) :]:
             ax.set_axis_off()
-        for ax in axes.flat[max(0, len(chart.panels) - chart.columns) : len(chart.panels)]:
+        for ax in axes[max(0, len(chart.panels) - chart.columns) : len(chart.panels)]:
             # The last of a column may not be in the last row, where figures are written beside a shared axis.
             ax.tick_params(labelbottom=True)
         if shaded is not None:
-            figure.colorbar(shaded, ax=list(axes.flat), label=chart.scale_label, shrink=0.85, pad=0.015)
+            figure.colorbar(shaded, ax=axes, label=chart.scale_label, shrink=0.85, pad=0.015)
         if len(handles) > 1:
-            columns = max(1, min(len(handles), _LEGEND_CHARACTERS // (max(len(label) for label in handles) + 6)))
+            columns = _legend_columns(list(handles))
             figure.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=columns, fontsize=7.5)
         return figure
+
+
+def _axes(figure: Figure, chart: Chart) -> list[Any]:
+    """Return the axes of the panels in their order, and those that no panel needs."""
+    if not chart.last_height:
+        axes = figure.subplots(chart.rows, chart.columns, squeeze=False, sharex="col" if chart.share_x else "none")
+        return list(axes.flat)
+    ratios = [*([chart.panel_height] * chart.rows), chart.last_height]
+    grid = figure.add_gridspec(chart.rows + 1, chart.columns, height_ratios=ratios)
+    places = [grid[i // chart.columns, i % chart.columns] for i in range(len(chart.panels) - 1)]
+    return [figure.add_subplot(place) for place in (*places, grid[-1, :])]
+
+
+def _draw_marks(ax: Any, panel: Panel, handles: dict[str, Any], scale: Limits) -> Any:
+    """Draw lines and bands, add what the legend has of them, and return what a colour scale is made for, if there is anything."""
+    shaded = None
+    for line in panel.lines:
+        if line.values is not None and scale:
+            shaded = _draw_shaded(ax, line, line.values, scale)
+            continue
+        handle = _draw_line(ax, line)
+        if line.label:
+            handles.setdefault(line.label, handle)
+    for band in panel.bands:
+        tint = {"color": COLOURS[band.colour], "alpha": BAND_OPACITY, "linewidth": 0.0}
+        handles.setdefault(band.label, ax.axvspan(band.start, band.end, **tint))
+    return shaded
+
+
+def _legend_columns(labels: list[str]) -> int:
+    return max(1, min(len(labels), _LEGEND_CHARACTERS // (max(len(label) for label in labels) + 6)))
+
+
+def _legend_rows(chart: Chart) -> int:
+    """Return how many rows a legend has beyond the first."""
+    return -(-len(chart.labels) // _legend_columns(chart.labels)) - 1 if chart.labels else 0
 
 
 def _draw_line(ax: Any, line: Line) -> Any:
     style = _LINE_STYLES[line.style]
     colour = COLOURS[line.colour]
     if line.fill:
-        ax.fill(line.x, line.y, color=colour, alpha=FILL_OPACITY, linewidth=0.0)
+        ax.fill(line.x, line.y, color=colour, alpha=line.opacity, linewidth=0.0, zorder=_DEPTH)
     if line.error is not None:
         return ax.errorbar(line.x, line.y, yerr=line.error, color=colour, capsize=2, elinewidth=0.8, **style)
     return ax.plot(line.x, line.y, color=colour, rasterized=len(line.x) > 4000, **style)[0]
@@ -97,26 +139,35 @@ def _draw_shaded(ax: Any, line: Line, values: Array, scale: tuple[float, float])
     return ax.scatter(line.x[order], line.y[order], s=4.0, linewidths=0.0, **colours)
 
 
-def _dress(ax: Any, panel: Panel, *, last_row: bool) -> None:
+def _dress(ax: Any, panel: Panel, *, title_size: float, last_row: bool) -> None:
     if last_row:
         ax.set_xlabel(panel.x_label)
     ax.set_ylabel(panel.y_label)
     if panel.title:
-        ax.set_title(panel.title)
-    if panel.log_x:
-        ax.set_xscale("log")
-    if panel.log_y:
-        ax.set_yscale("log")
-        if panel.y_range and panel.y_range[1] > _DECADES * panel.y_range[0]:
-            # Ticks between powers of ten would crowd the axis, and take most of the time to draw it.
-            ax.yaxis.set_minor_locator(NullLocator())
+        ax.set_title(panel.title, fontsize=title_size)
+    x_range = _mark(ax, "x", [line.x for line in panel.lines], panel.x_range, log=panel.log_x, whole=panel.x_whole)
+    y_range = _mark(ax, "y", [line.y for line in panel.lines], panel.y_range, log=panel.log_y, whole=panel.y_whole)
     for note in panel.notes:
-        ax.text(note.x, note.y, note.text, color=COLOURS["grey"], fontsize=7.0, ha=note.align, va="center", clip_on=True)
+        ax.text(note.x, note.y, note.text, color=INK, fontsize=7.0, ha=note.align, va="center", clip_on=True)
     if panel.y_names:
         ax.set_yticks([value for value, _ in panel.y_names], [name for _, name in panel.y_names])
-    if panel.x_range:
-        ax.set_xlim(*panel.x_range)
-    if panel.y_range:
-        ax.set_ylim(*panel.y_range)
+    if x_range:
+        ax.set_xlim(*x_range)
+    if y_range:
+        ax.set_ylim(*y_range)
     if panel.equal:
         ax.set_aspect("equal", adjustable="box" if panel.x_range and panel.y_range else "datalim")
+
+
+def _mark(ax: Any, name: str, curves: list[Array], limits: Limits, *, log: bool, whole: bool) -> Limits:
+    """Set scale and marks of an axis, "x" or "y", and return its limits."""
+    axis = ax.xaxis if name == "x" else ax.yaxis
+    if log:
+        limits, marks = log_axis(limits, curves)
+        ax.set(**{f"{name}scale": "log"})
+        axis.set_ticks(marks, [mark_text(mark) for mark in marks])
+        # Ticks between those would crowd the axis, and take most of the time to draw it.
+        axis.set_minor_locator(NullLocator())
+    if whole:
+        axis.set_major_locator(MaxNLocator(nbins=6, integer=True))
+    return limits

@@ -2,7 +2,9 @@
 
 import json
 import tempfile
-from dataclasses import asdict
+from collections.abc import Iterator
+from dataclasses import asdict, replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,7 @@ import typst
 
 from reports.document.blocks import Block, Content, FlightContent, FlightPicker, Section
 from reports.document.chart import Chart
+from reports.document.numbering import figures_in
 from reports.render.matplotlib_charts import draw
 
 TEMPLATE = Path(__file__).parent / "templates" / "report.typ"
@@ -30,13 +33,28 @@ def write_pdf(report: Content, path: Path, *, all_flights: bool = False) -> None
 def _data(report: Content, directory: Path, *, all_flights: bool) -> Data:
     pickers = [block for section in report.sections for block in section.blocks if isinstance(block, FlightPicker)]
     sections = [_section(section, directory) for section in report.sections]
+    # Flights have pages of their own before the provenance, and their figures the numbers after all others.
+    numbers = count(figures_in(report.picture, report.sections) + 1)
+    flights = [flight for picker in pickers for flight in picker.flights if all_flights or flight.printed]
+    head, verdict = report.letterhead, report.verdict
+    if head.logo:
+        (directory / f"logo{head.logo.suffix}").write_bytes(head.logo.content)
     return {
         "title": report.title,
+        "run": head.run,
+        "when": head.when,
+        "author": head.author,
+        "signature": head.signature,
+        "logo": f"logo{head.logo.suffix}" if head.logo else "",
         "description": report.description,
         "changes": report.changes,
-        "verdict": asdict(report.verdict),
+        "flown": report.flown,
+        "verdict": {"tone": verdict.tone, "sign": verdict.sign, "headline": verdict.headline, "detail": verdict.detail},
+        "failures": verdict.first_failures,
+        "cards": [{**card._asdict(), "judgement": card.judgement} for card in verdict.cards],
+        "picture": _image(report.picture, directory) if report.picture else None,
         "sections": [section for section in sections if section["blocks"]],
-        "flights": [_flight(flight, directory) for picker in pickers for flight in picker.flights if all_flights or flight.printed],
+        "flights": [_flight(flight, directory, numbers) for flight in flights],
     }
 
 
@@ -50,11 +68,12 @@ def _block(block: Block, directory: Path) -> Data:
     return {"kind": type(block).__name__, **(_image(block, directory) if isinstance(block, Chart) else asdict(block))}
 
 
-def _flight(flight: FlightContent, directory: Path) -> Data:
-    return {"title": flight.title, "charts": [_image(chart, directory, f"{flight.flight_id}-") for chart in flight.charts]}
+def _flight(flight: FlightContent, directory: Path, numbers: Iterator[int]) -> Data:
+    charts = [replace(chart, number=f"Figure {next(numbers)}") for chart in flight.charts]
+    return {"title": flight.title, "charts": [_image(chart, directory, f"{flight.flight_id}-") for chart in charts]}
 
 
 def _image(chart: Chart, directory: Path, prefix: str = "") -> Data:
     file = f"{prefix}{chart.name}.svg"
     draw(chart).savefig(directory / file, dpi=200)
-    return {"file": file, "caption": chart.caption}
+    return {"file": file, "number": chart.number, "caption": chart.caption}

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from reports.document.blocks import FlightPicker
 from reports.document.palette import COLOURS, Meaning
 from reports.document.scene import Scene
+from reports.render.script_data import for_script
 from reports.run.columns import Array
 
 THREE = Path(__file__).parent / "bundle" / "three.min.js"
@@ -66,10 +67,10 @@ def scripts() -> str:
     return "\n".join(path.read_text(encoding="utf-8") for path in SCRIPTS)
 
 
-def data(picker: FlightPicker) -> Data:
+def data(picker: FlightPicker) -> str:
     """Return what the scripts of the replay read: the scenes of the flights that have one, and their colours."""
     scenes = {flight.flight_id: draw_scene(flight.scene) for flight in picker.flights if flight.scene}
-    return {"flights": scenes, "colours": colours()}
+    return for_script({"flights": scenes, "colours": colours()})
 
 
 def draw_scene(scene: Scene) -> Data:

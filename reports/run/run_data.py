@@ -1,6 +1,8 @@
 """A run directory as read from disk."""
 
 import json
+import sqlite3
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -16,6 +18,8 @@ from common.run_layout import (
     DESIGN_RECORD,
     DRAWS,
     FILES,
+    FORMAT,
+    JOURNAL,
     MANIFEST,
     STATISTICS,
     SULPHUR,
@@ -26,6 +30,7 @@ from common.run_layout import (
     trajectory_path,
 )
 from reports.errors import ReportError
+from reports.run.files import refuse_running
 
 WITHOUT_SUMMARY = ("design", "measurement")
 """Studies that have nothing to count."""
@@ -118,8 +123,9 @@ def read_run(path: Path) -> RunData:
 
     Raises
     ------
-    ReportError : it is not one, is damaged, or holds nothing finished
+    ReportError : it is not one, is of another version or damaged, holds nothing finished, or another program is writing to it
     """
+    refuse_running(path)
     try:
         manifest = json.loads((path / MANIFEST).read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -128,6 +134,10 @@ def read_run(path: Path) -> RunData:
         raise ReportError(f"'{path}': {MANIFEST} cannot be read: {error}; run the scenario again") from None
     if not (isinstance(manifest, dict) and isinstance(manifest.get("config"), dict)):
         raise ReportError(f"'{path}': {MANIFEST} is not that of a run; run the scenario again in another --out")
+    if (version := manifest.get("format", FORMAT)) != FORMAT:
+        raise ReportError(f"'{path}' is a run of format {version!r}, and this version reads {FORMAT}; use the version that made it")
+    if manifest.get("state") == "running" and _is_locked(path / JOURNAL):
+        raise ReportError(f"another program is writing to '{path}'; wait until it has ended")
     if manifest.get("study") not in WITHOUT_SUMMARY and not (path / SUMMARY).is_file():
         raise ReportError(f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume")
     unread: set[str] = set()
@@ -145,6 +155,18 @@ def read_run(path: Path) -> RunData:
         )
     except (ValueError, OSError) as error:
         raise ReportError(f"'{path}': a table cannot be read: {error}; run the scenario again") from None
+
+
+def _is_locked(journal: Path) -> bool:
+    """Return whether another program holds the journal of a run, as one that flies it does; one that was killed does not."""
+    if not is_file(journal):
+        return False
+    try:
+        with closing(sqlite3.connect(f"{journal.absolute().as_uri()}?mode=ro", uri=True, timeout=0.0)) as database:
+            database.execute("SELECT count(*) FROM sqlite_master")
+    except sqlite3.Error as error:
+        return error.sqlite_errorcode in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_PROTOCOL)
+    return False
 
 
 def _record(path: Path, unread: set[str]) -> dict[str, Any] | None:

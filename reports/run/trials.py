@@ -113,7 +113,7 @@ class Trial:
     def swept(self) -> dict[str, list[Any]]:
         """Return the values of every key that the trial sweeps, in their order."""
         sweep = self.setting("sweep", {})
-        return {key: list(values) for key, values in _leaves(sweep).items() if isinstance(values, list)}
+        return {key: list(values) for key, values in leaves(sweep).items() if isinstance(values, list)}
 
     @property
     def sampled(self) -> list[dict[str, Any]]:
@@ -153,12 +153,12 @@ class Trial:
         return [choices[int(flight_id.rsplit("_", 1)[1]) % len(choices)] for flight_id in self.rows["flight_id"]]
 
 
-def _leaves(tree: Mapping[str, Any], before: str = "") -> dict[str, Any]:
+def leaves(tree: Mapping[str, Any], before: str = "") -> dict[str, Any]:
     """Return the values of nested mappings by their dotted keys."""
-    leaves: dict[str, Any] = {}
+    found: dict[str, Any] = {}
     for key, value in tree.items():
-        leaves |= _leaves(value, f"{before}{key}.") if isinstance(value, Mapping) else {f"{before}{key}": value}
-    return leaves
+        found |= leaves(value, f"{before}{key}.") if isinstance(value, Mapping) else {f"{before}{key}": value}
+    return found
 
 
 def read_trials(run: RunData) -> list[Trial]:

@@ -5,13 +5,13 @@ import sqlite3
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Protocol
 
 from common.files import remove_reports, write_whole
 from common.run_layout import FILES
 from scenarios.engine.executor import Executor
-from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.journal import Journal, damaged, is_damaged, is_full
 from scenarios.engine.memory import peak_memory
 from scenarios.engine.run_directory import RunDirectory
@@ -110,7 +110,15 @@ class RunResult:
         return self.summary.met and not self.interrupted
 
 
-def fly_study(study: Study, directory: Path, *, executor_factory: ExecutorFactory, resume: bool, progress: Progress) -> RunResult:
+def fly_study(
+    study: Study,
+    directory: Path,
+    *,
+    executor_factory: Callable[[Work], Executor],
+    resume: bool,
+    progress: Progress,
+    command: str = "",
+) -> RunResult:
     """Fly a study, or the unfinished part of it, into a run directory.
 
     Parameters
@@ -120,6 +128,7 @@ def fly_study(study: Study, directory: Path, *, executor_factory: ExecutorFactor
     executor_factory : makes the executor
     resume : continue the unfinished run in ``directory``
     progress : called as the study advances
+    command : the command line, for the manifest; none if a program flies the study
 
     Raises
     ------
@@ -133,7 +142,7 @@ def fly_study(study: Study, directory: Path, *, executor_factory: ExecutorFactor
             if not before and not journal.is_empty():
                 raise InputError(f"'{run.path}' has results without a {run.manifest.name}; choose another --out")
             run.sweep()
-            return _Execution(study, run, journal, before, progress).fly(executor_factory)
+            return _Execution(study, run, journal, before, progress, command).fly(executor_factory)
         finally:
             journal.close()
     except (OSError, sqlite3.DatabaseError) as error:
@@ -155,14 +164,20 @@ class _Execution:
     study, run, journal : of the run
     before : manifest of the run that is resumed, empty for a new one
     progress : called as the study advances
+    command : the command line
     """
 
-    def __init__(self, study: Study, run: RunDirectory, journal: Journal, before: Mapping[str, Any], progress: Progress) -> None:
+    def __init__(
+        self, study: Study, run: RunDirectory, journal: Journal, before: Mapping[str, Any], progress: Progress, command: str
+    ) -> None:
         self._study, self._run, self._journal, self._before, self._progress = study, run, journal, before, progress
-        self._manifest = study.initial_manifest()
+        # A run that is resumed is as old as its first flight.
+        began = before.get("begun_utc") or f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
+        first = {"command": before.get("command") or command, "begun_utc": began}
+        self._manifest = study.initial_manifest() | first
         self._begun = False
 
-    def fly(self, executor_factory: ExecutorFactory) -> RunResult:
+    def fly(self, executor_factory: Callable[[Work], Executor]) -> RunResult:
         study, run, journal = self._study, self._run, self._journal
         began = time.perf_counter()
         interrupted = False
@@ -189,6 +204,11 @@ class _Execution:
                 FILES: sorted({*run.files(), *run.gone}),
             }
             run.write_json(run.manifest, self._manifest | closing | summary.manifest)
+        elif self._before.get("report") != self._manifest.get("report"):
+            # Nothing was flown, but the reports are to say something else of themselves.
+            changed = True
+            report = {"report": self._manifest.get("report"), FILES: sorted({*run.files(), *run.gone})}
+            run.write_json(run.manifest, {**self._before, **report})
         return RunResult(
             directory=run.path,
             what=study.what,

@@ -26,6 +26,7 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
         "draws",
         "laws",
         "arena",
+        "report",
     ):
         document.pop(experiment)
     # The random variables have their values, and nothing is sampled again.

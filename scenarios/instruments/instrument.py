@@ -8,6 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gnc.estimation.own_motion import Motion
+from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import SnifferSpec
 from scenarios.schema.extension_points import PAYLOADS
 from scenarios.schema.scenario import Scenario
 
@@ -72,14 +74,40 @@ class EvaluatedInstrument(Protocol):
     FIGURES: tuple[str, ...]
     TABLES: Mapping[str, tuple[str, ...]]
 
-    def evaluate(self, column: Callable[[str], Array], settled_at: float, /) -> Evaluation:
+    def evaluate(self, column: Callable[[str], Array], since: float, /) -> Evaluation:
         """Return what it makes of the flight.
 
         Parameters
         ----------
         column : returns a column of the flight's record by name, shape (samples,)
-        settled_at : when the flight had settled, not a number if it never had [s]
+        since : when the measurement begins: where the flight has settled; not a number if it never does [s]
         """
+
+
+@runtime_checkable
+class GasReader(Protocol):
+    """An instrument that says in flight what it reads of CO2; otherwise as ``EvaluatedInstrument``.
+
+    Attributes
+    ----------
+    spec : as its data sheet says
+    limit_percent : sulphur content that a verdict is on [% m/m]
+    """
+
+    spec: SnifferSpec
+
+    @property
+    def limit_percent(self) -> float:
+        """Limit of the verdict [% m/m]."""
+
+    def follow(self, time: float, motion: Motion, sample: tuple[float, ...], /) -> Sequence[tuple[float, float]]:
+        """Return times [s] and CO2 [ppm] of the readings that have come; called for each row of the flight's record.
+
+        Parameters are those of ``Instrument.read``.
+        """
+
+    def readings(self, since: float, /) -> Readings:
+        """Return what has been read since a time [s]."""
 
 
 def evaluated_instruments(scenarios: Iterable[Scenario]) -> list[Any]:

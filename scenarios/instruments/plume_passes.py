@@ -56,15 +56,15 @@ def pass_figures(across: Array, above: Array, fraction: Array, excess_co2: Array
     time_step : between samples [s]
     """
     found = list(passes(across))
+    inside = float(time_step * np.count_nonzero(fraction > INSIDE))
     if not found:
-        return {"plume_passes": 0}
+        return {"plume_passes": 0, "seconds_in_plume_s": inside}
     peaks = np.array([np.max(fraction[at]) for at in found])
     error = above[[at.start + int(np.nanargmin(np.abs(across[at]))) for at in found]]
-    inside = time_step * np.count_nonzero(fraction > INSIDE)
     return {
         "plume_passes": len(found),
         "hit_rate": float(np.mean(peaks > HIT)),
-        "seconds_in_plume_s": float(inside),
+        "seconds_in_plume_s": inside,
         "dose_per_pass_ppm_s": float(time_step * np.sum(excess_co2) / len(found)),
         "axis_height_error_mean_m": float(np.mean(error)),
         "axis_height_error_rms_m": float(np.sqrt(np.mean(error**2))),

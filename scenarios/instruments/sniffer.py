@@ -1,39 +1,34 @@
-"""A sniffer on board: what it reads of the exhaust, and what that says of the fuel."""
+"""A sniffer on board: what it reads of the exhaust, in flight or after it, and what that says of the fuel."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicHermiteSpline
 
 from common.run_layout import SULPHUR_TABLE
 from gnc.errors import InfeasibleError
-from measurement.emission.emission import GRAVITY
+from gnc.estimation.own_motion import Motion
 from measurement.emission.fuel import expected_fsc
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.sniffer import Readings, Sniffer
+from scenarios.instruments.air_samples import PLACE_COLUMNS, RATE_COLUMNS, TIME_STEP, AirSampler, AirSamples
 from scenarios.instruments.fuel_estimate import FIGURES, TABLES, fuel_estimate
 from scenarios.instruments.instrument import Evaluation, payload
 from scenarios.instruments.plume_passes import PASS_FIGURES, fraction_of_axis, pass_figures
 from scenarios.schema.scenario import Scenario
+from scenarios.world.faults import SNIFFER_DEAD, SNIFFER_SATURATED
 from scenarios.world.world import World
 
 Array = npt.NDArray[np.float64]
 
-TIME_STEP = 0.05
-"""Between the places at which the air is sampled [s]: a metre at 20 m/s, a tenth of the narrowest plume."""
-
-CLEAN_AIR = {"so2": 0.2, "co2": 420.0, "no": 0.1, "no2": 1.0}
-"""Gases in clean air over the sea, in the units of readings; assumptions. They are far below the noise, but for CO2."""
-
 CO2 = GASES.index("co2")
 """Its column."""
 
-_AIR_DENSITY = 1.225
-"""Of the standard atmosphere at sea level [kg/m^3]."""
+_PASSED_ON = 0.45
+"""Time between readings that are passed on in flight, at least [s]: those of a faster sniffer come together."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,44 +77,92 @@ class SnifferOnBoard:
     def __init__(self, scenario: Scenario, world: World, generator: np.random.Generator) -> None:
         if world.exhaust is None:
             raise InfeasibleError("payload.instruments has a sniffer, and there is no exhaust: set emission.ship")
-        self._exhaust, self._settings = world.exhaust, scenario.payload.settings(type(self))
-        self._spec = sensor_preset(self._settings.sensor)
-        actual = self._spec if self._settings.exact else self._spec.drawn(generator)
+        self._exhaust, self._settings, self._fault = world.exhaust, scenario.payload.settings(type(self)), world.fault
+        self.spec = sensor_preset(self._settings.sensor)
+        actual = self.spec if self._settings.exact else self.spec.drawn(generator)
         self._sniffer = Sniffer(actual, generator=generator, time_step=TIME_STEP)
-        self._background = np.array([CLEAN_AIR[gas] for gas in GASES])
+        self._sampler = AirSampler(self._exhaust, dynamic_pressure_fraction=self._settings.dynamic_pressure_fraction)
+        self._air: list[AirSamples] = []
+        self._read: list[Readings] = []
+        ends = {channel.gas: channel.range_high for channel in actual.channels}
+        self._full, self._stuck = (np.array([value.get(gas, np.nan) for gas in GASES]) for value in (ends, {}))
+        # What is known of the flight since the air was last sampled: time, place, rates and airspeed.
+        self._path: list[tuple[float, ...]] = []
+        self._count = 0
 
-    def evaluate(self, column: Callable[[str], Array], settled_at: float) -> Evaluation:
+    @property
+    def limit_percent(self) -> float:
+        """Sulphur content that the verdict is on [% m/m]."""
+        limit: float = self._settings.limit_percent
+        return limit
+
+    def readings(self, since: float) -> Readings:
+        """Return what has been read since a time [s]."""
+        read = _joined(self._read)
+        late = read.time >= since
+        return Readings(read.time[late], read.values[late])
+
+    def follow(self, time: float, motion: Motion, sample: tuple[float, ...]) -> Sequence[tuple[float, float]]:
+        """Return the times [s] and the CO2 [ppm] of the readings that have come; called for each row of the flight's record.
+
+        Parameters are those of ``scenarios.instruments.instrument.Instrument.read``.
+        """
+        north, east, v_north, v_east, _ = motion
+        altitude, airspeed, _, climb_rate, *_ = sample
+        self._path.append((time, north, east, altitude, v_north, v_east, climb_rate, airspeed))
+        if time <= self._count / self.spec.rate_hz or time - self._path[0][0] < _PASSED_ON:
+            return ()
+        path = np.array(self._path)
+        del self._path[:-1]
+        new = self._advance(path[:, 0], path[:, 1:4], path[:, 4:7], path[:, 7])
+        return list(zip(new.time.tolist(), new.values[:, CO2].tolist(), strict=True))
+
+    def _advance(self, time: Array, place: Array, rate: Array, airspeed: Array) -> Readings:
+        """Go on along a path; return what is read of it."""
+        air = self._sampler.advance(time, place, rate, airspeed)
+        new = self._failed(self._sniffer.advance(air.air, air.pressure))
+        self._air.append(air)
+        self._read.append(new)
+        self._count += len(new)
+        return new
+
+    def _failed(self, read: Readings) -> Readings:
+        """Return readings as a fault leaves them: a dead sniffer repeats its last one, a saturated one reads its range's end."""
+        kind, values = self._fault.kind, read.values
+        good = read.time < self._fault.begins
+        if kind == SNIFFER_SATURATED:
+            values[~good] = self._full
+        elif kind == SNIFFER_DEAD:
+            if good.any():
+                self._stuck = values[good][-1].copy()
+            values[~good] = self._stuck
+        return read
+
+    def evaluate(self, column: Callable[[str], Array], since: float) -> Evaluation:
         """Return readings, and figures of the passes through the plume."""
         time = column("time_s")
-        at = np.arange(0.0, time[-1], TIME_STEP)
-        north, east, up = (
-            CubicHermiteSpline(time, column(place), column(rate))(at)
-            for place, rate in (
-                ("north_m", "velocity_north_mps"), ("east_m", "velocity_east_mps"), ("altitude_m", "climb_rate_mps"),
-            )
-        )  # fmt: skip
-        plume = self._exhaust.sample(at, north, east, up)
-        air = self._background + self._exhaust.excess(plume.dilution)
-        airspeed = np.interp(at, time, column("airspeed_mps"))
-        pressure = _AIR_DENSITY * (0.5 * self._settings.dynamic_pressure_fraction * airspeed**2 - GRAVITY * up) / 100.0
-        readings = self._sniffer.advance(air, pressure)
+        left = time >= self._path[0][0] if self._path else np.ones(len(time), bool)
+        if np.count_nonzero(left) > 1:
+            place, rate = (np.column_stack([column(name)[left] for name in names]) for names in (PLACE_COLUMNS, RATE_COLUMNS))
+            self._advance(time[left], place, rate, column("airspeed_mps")[left])
+        samples, readings = AirSamples.joined(self._air), _joined(self._read)
+        at, air, above, plume = samples.time, samples.air, samples.above, samples.plume
         held = np.clip(np.searchsorted(readings.time, time, side="right") - 1, 0, len(readings) - 1)
-        above, fraction = up - plume.axis_height, fraction_of_axis(plume)
+        fraction = fraction_of_axis(plume)
         along = [np.interp(time, at, values) for values in (*air.T, plume.across, above, fraction)]
         columns = np.column_stack([*along[: len(GASES)], readings.values[held], *along[len(GASES) :]])
-        if not settled_at < at[-1]:
+        if not since < at[-1]:
             return Evaluation(columns=columns)
-        settled, flown = readings.time >= settled_at, at >= settled_at
+        flown = at >= since
         limit, fuel, expected = self._settings.limit_percent, self._exhaust.fuel, expected_fsc(self._exhaust.fuel)
-        measured = Readings(readings.time[settled], readings.values[settled])
-        known = fuel_estimate(measured, self._spec, limit=limit, expected=expected)
+        known = fuel_estimate(self.readings(since), self.spec, limit=limit, expected=expected)
         figures = {
             "sensor": self._settings.sensor,
             "fsc_fuel_percent": fuel.sulphur_percent,
             "fsc_expected_percent": expected,
             "sulphur_limit_percent": limit,
         }
-        excess = air[:, CO2] - self._background[CO2]
+        excess = air[:, CO2] - self._sampler.background[CO2]
         passed = pass_figures(plume.across[flown], above[flown], fraction[flown], excess[flown], time_step=TIME_STEP)
         return Evaluation(
             columns=columns,
@@ -127,3 +170,10 @@ class SnifferOnBoard:
             tables={SULPHUR_TABLE: known.over_time},
             document=known.document,
         )
+
+
+def _joined(parts: list[Readings]) -> Readings:
+    """Return readings that follow each other as one, and keep them so."""
+    if len(parts) > 1:
+        parts[:] = [Readings(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "values")))]
+    return parts[0] if parts else Readings(np.empty(0), np.empty((0, len(GASES))))

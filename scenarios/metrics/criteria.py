@@ -5,7 +5,7 @@ import math
 from scenarios.engine.task import Row
 from scenarios.schema.flight import CriteriaConfig
 from scenarios.simulation.outcome import Outcome
-from scenarios.world.faults import SATELLITES, VESSEL_DATA
+from scenarios.world.faults import NOT_OF_AIRCRAFT
 
 _ROUNDING = 1.0 + 1e-12
 """By what a command may exceed its limit: rounding alone [-]."""
@@ -108,7 +108,7 @@ def _mission_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
 
 def _part_failed(row: Row) -> bool:
     """Return whether a part of the aircraft had failed; otherwise it was given up on a false alarm."""
-    return row["fault"] not in ("none", VESSEL_DATA, SATELLITES) and bool(row["duration_s"] >= row["fault_time_s"])
+    return row["fault"] not in NOT_OF_AIRCRAFT and bool(row["duration_s"] >= row["fault_time_s"])
 
 
 def _at_most(name: str, value: float, limit: float, unit: str) -> Check:

@@ -1,5 +1,7 @@
 """Figures of the end of a flight, whether it has settled or not: by them laws are compared that may never settle."""
 
+import math
+
 import numpy as np
 
 from common.numeric import rms
@@ -10,19 +12,21 @@ from scenarios.simulation.record import FlightRecord
 
 WINDOW_COLUMNS = (
     "window_s", "error_rms_m", "error_mean_m", "error_max_m", "effort_rms_rad_s", "excess_rms_rad_s", "saturated_share",
-    "guard_share", "crossings_per_minute", "plume_s_per_minute", "crossing_distance_mean_m", "window_distance_min_m",
-    "speed_ratio_mean",
+    "guard_share", "crossings_per_minute", "crossing_distance_mean_m", "window_distance_min_m", "speed_ratio_mean",
 )  # fmt: skip
 """Of ``window_figures``, in order."""
+
+MEASURED_COLUMNS = ("plume_s_per_minute", "sulphur_information_per_minute")
+"""Of ``measured_figures``, in order."""
 
 _SECONDS_PER_MINUTE = 60.0
 
 
-def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float, plume_half_width: float) -> Row:
+def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float) -> Row:
     """Measure the last ``window`` [s] of a flight beside a vessel.
 
     Errors are distances to the reference; the effort is the heading rate that was commanded, and its excess is what it differs from
-    the reference's own. A flight is in the plume within ``plume_half_width`` [m] of the axis, on the plume's side.
+    the reference's own.
     """
     column = record.column
     time = column("time_s")
@@ -41,9 +45,6 @@ def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float, plu
     )
     position, velocity = in_vessel_frame(record, plan.source_height)
     crossings = crossings_of(plan, record, last, position, velocity)
-    axis = column("plume_axis_rad")[last]
-    north, east = position[last, 0], position[last, 1]
-    along, across = north * np.cos(axis) + east * np.sin(axis), east * np.cos(axis) - north * np.sin(axis)
     minutes = float(time[-1] - time[last][0]) / _SECONDS_PER_MINUTE
     row: Row = {
         "window_s": minutes * _SECONDS_PER_MINUTE,
@@ -55,10 +56,25 @@ def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float, plu
         "saturated_share": float(np.mean(column("command_saturated")[last])),
         "guard_share": float(np.mean(column("guard")[last] > 0.0)),
         "crossings_per_minute": len(crossings) / minutes,
-        "plume_s_per_minute": _SECONDS_PER_MINUTE * float(np.mean((np.abs(across) < plume_half_width) & (along > 0.0))),
         "window_distance_min_m": float(np.min(np.linalg.norm(position[last], axis=1))),
         "speed_ratio_mean": float(np.mean(np.hypot(vessel_north - wind_north, vessel_east - wind_east))) / plan.guidance.speed,
     }
     if crossings:
         row["crossing_distance_mean_m"] = float(np.mean([crossing.distance for crossing in crossings]))
     return row
+
+
+def measured_figures(row: Row, *, window: float) -> Row:
+    """Return what a minute in the air was worth to the measurement, of what a sniffer has made of ``window`` [s].
+
+    The plume's is the time in which the concentration is above exp(-2) of that on its axis. Of the fuel's sulphur content it is the
+    information, 1/sigma^2 by noise, the part of the standard uncertainty that more time takes away; the gains and zeros of the
+    instrument are the same for everyone. Information adds up over time and over flights, and is 0 where a result is not admitted
+    (quality C); its mean over flights, to the power of -1/2, is the standard uncertainty by noise of a minute.
+    """
+    if "seconds_in_plume_s" not in row:
+        return {}
+    minutes, noise = window / _SECONDS_PER_MINUTE, float(row.get("fsc_noise_percent", math.nan))
+    admitted = row["sulphur_quality"] != "C" and noise > 0.0
+    information = 1.0 / (noise**2 * minutes) if admitted else 0.0
+    return {"plume_s_per_minute": row["seconds_in_plume_s"] / minutes, "sulphur_information_per_minute": information}

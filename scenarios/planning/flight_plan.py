@@ -24,10 +24,13 @@ class Sensing:
     ----------
     received : reports of the vessel and when each is received [s]; none where the vessel is known exactly
     errors : of the sensors
+    smells, told : whether a sniffer is read in flight, and whether the flight is told where the plume is
     """
 
     received: list[tuple[float, VesselReport]] | None
     errors: SensorErrors
+    smells: bool = False
+    told: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,6 +66,7 @@ class FlightPlan:
     settling_band, settling_period : distance from the reference to stay within, and for how long, to be settled [m, s]
     log_interval : of the record, in guidance steps
     payload : instruments on board
+    until_verdict : whether it leaves as soon as a sniffer has enough
     nu : speed ratio at the start; not a number without a vessel [-]
     world : vessel, plume, air, faults; none where the reference circles without a vessel
     sensing : sensors and reports; none where everything is known exactly
@@ -88,6 +92,7 @@ class FlightPlan:
     settling_period: float
     log_interval: int
     payload: tuple[str, ...]
+    until_verdict: bool = False
     nu: float = math.nan
     world: World | None = None
     sensing: Sensing | None = None
@@ -127,6 +132,7 @@ class FlightPlan:
             settling_period=period,
             log_interval=round(g.rate_hz / flight.log_rate_hz),
             payload=scenario.payload.instruments,
+            until_verdict=flight.until == "verdict",
             **parts,
         )
 

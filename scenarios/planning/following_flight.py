@@ -8,6 +8,7 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.reachable_set import VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
+from gnc.mission.plume_axis import AxisParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuardParameters, GuidanceParameters, ReportedVessel
@@ -19,7 +20,6 @@ from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
     THRUST_LOST_FRACTION,
-    axis_height,
     following_parameters,
     guard_parameters,
     navigation_parameters,
@@ -28,6 +28,8 @@ from scenarios.planning.guidance import (
     turn_time,
 )
 from scenarios.planning.limits import PLAN_PERIOD, omega_max
+from scenarios.planning.plume.axis import axis_height, plume_axis
+from scenarios.planning.plume.distance import additional_distance
 from scenarios.planning.reference import orbits, oscillation_at
 from scenarios.planning.standoff import standoff_parameters, vessel_circle
 from scenarios.planning.start import check_start, sampled_start
@@ -93,10 +95,11 @@ def following_flight(
     if scenario.stands_off:
         orbit = circle = vessel_circle(scenario, nu, farthest)
         periods = circle.periods(f.speed_ratio_max)
-        mission = standoff_parameters(scenario, setup, circle.radius)
+        mission = standoff_parameters(scenario, setup, circle.radius, axis_height(scenario, vessel))
     else:
-        periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
-        orbit, mission = oscillation, following_parameters(scenario, setup, margin, widths, axis_height(scenario, vessel))
+        nearest, orbit = radius + margin.total + oscillation.half_widths()[0], oscillation
+        further = additional_distance(scenario, vessel, nearest, wind.at_start)
+        periods, mission = _following(scenario, setup, margin, plume_axis(scenario, vessel, setup.altitude_reach), further)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, mean_wind(scenario, vessel), generators.world)
@@ -135,12 +138,22 @@ def following_flight(
         sensing=Sensing(
             received=received,
             errors=SensorErrors(scenario.sensors, steps=steps, time_step=1.0 / g.rate_hz, generator=generators.sensors),
+            smells=f.plume == "estimated" or flight.until == "verdict",
+            told=f.plume == "told",
         ),
         oscillation=orbit,
         periods=periods,
         margin=margin,
         apparent_wind=wind,
     )
+
+
+def _following(
+    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, axis: AxisParameters, further: float
+) -> tuple[tuple[float, ...], FollowingParameters]:
+    """Return the periods of the orbit over nu [s], and how the plume is followed, farther off than need be by a distance [m]."""
+    periods, widths = orbits(scenario.guidance, scenario.reference, scenario.following.speed_ratio_max)
+    return periods, following_parameters(scenario, setup, margin, widths, axis, additional_distance=further)
 
 
 def _guidance(
@@ -154,7 +167,7 @@ def _guidance(
     tracking, hold = tracking_parameters(scenario, setup), speed_hold(scenario, setup)
     return GuidanceParameters(
         speed=g.airspeed_mps,
-        altitude=scenario.plume.source_height_m,
+        altitude=scenario.altitude,
         tracking=tracking,
         airspeed_law=PaceHold(speed=g.airspeed_mps, hold=hold, turn_speed=setup.turning_airspeed(omega_max(g))),
         navigation=navigation_parameters(scenario, setup),

@@ -7,7 +7,7 @@ from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_length
 from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
 from gnc.estimation.navigation import NavigationParameters
 from gnc.mission.approach import ApproachParameters
-from gnc.mission.axis_height import AxisHeight
+from gnc.mission.plume_axis import AxisParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.parameters import GuardParameters
 from gnc.reference.moving_centre import CentreParameters
@@ -19,9 +19,7 @@ from scenarios.planning.limits import PLAN_PERIOD, omega_max
 from scenarios.planning.reference import shape_of, swing_of
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
-from scenarios.world.exhaust import emission
 from scenarios.world.faults import SATELLITES
-from scenarios.world.vessel import VesselTruth
 
 STALE_MIN = 2.0
 """Shortest age at which vessel data count as stale [s]."""
@@ -133,7 +131,13 @@ def approach_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) 
 
 
 def following_parameters(
-    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, widths: Sequence[tuple[float, float]], height: AxisHeight
+    scenario: Scenario,
+    setup: VehicleSetup,
+    margin: KeepoutMargin,
+    widths: Sequence[tuple[float, float]],
+    axis: AxisParameters,
+    *,
+    additional_distance: float,
 ) -> FollowingParameters:
     """Return how the plume of a moving vessel is followed.
 
@@ -142,13 +146,14 @@ def following_parameters(
     scenario, setup : the flight, and its vehicle
     margin : of the keep-out area
     widths : half-widths of the orbit along and across its course, at equal steps of nu from 0 [m]
-    height : of the plume's axis
+    axis : how the plume's axis is known
+    additional_distance : from the vessel, beyond what keeps out [m]
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports
     fastest, radius = omega_max(g), scenario.keepout.radius_m
     hold = speed_hold(scenario, setup)
     centre = CentreParameters(
-        distance_min=radius + margin.total,
+        distance_min=radius + margin.total + additional_distance,
         speed_ratio_max=f.speed_ratio_max,
         along=tuple(along for along, _ in widths),
         across=tuple(across for _, across in widths),
@@ -171,27 +176,5 @@ def following_parameters(
         reach_time=turn_time(scenario, setup.reversal),
         drift_rate=f.drift_rate_mps,
         plan_interval=plan_interval(scenario),
-        height=height,
-    )
-
-
-def axis_height(scenario: Scenario, vessel: VesselTruth) -> AxisHeight:
-    """Return the height that the guidance expects: of exhaust at the load that the vessel's speed takes.
-
-    Raises
-    ------
-    MeasurementError : the ship has no such speed
-    """
-    source, climb = scenario.plume.source_height_m, math.tan(math.radians(scenario.plume.elevation_deg))
-    if scenario.emission.ship is None:
-        return AxisHeight(source=source, climb=climb)
-    _, _, v_north, v_east = vessel.motion(0.0)
-    expected = emission(scenario, speed=math.hypot(v_north, v_east))
-    return AxisHeight(
-        source=source,
-        climb=climb,
-        momentum_flux=expected.momentum_flux,
-        buoyancy_flux=expected.buoyancy_flux,
-        lowest=scenario.flight.altitude_min_m,
-        highest=scenario.flight.altitude_max_m,
+        axis=axis,
     )

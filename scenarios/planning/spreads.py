@@ -84,7 +84,7 @@ def _planned_for(scenario: Scenario) -> Scenario:
 def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> SpreadTable:
     scenario = _planned_for(scenario)
     schedule = found.design.schedule
-    air = low_altitude_turbulence(scenario.plume.source_height_m, TURBULENCE[scenario.turbulence.level].wind_at_20ft)
+    air = low_altitude_turbulence(scenario.altitude, TURBULENCE[scenario.turbulence.level].wind_at_20ft)
     tracking, hold, span = tracking_parameters(scenario, setup), speed_hold(scenario, setup), _wing_span(schedule.spec)
     orbits = [oscillation_at(scenario.guidance, scenario.reference, nu) for nu in SPREAD_RATIOS]
     spreads = [tracking_spread(schedule, air, orbit, tracking, hold, span=span) for orbit in orbits]

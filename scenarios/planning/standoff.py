@@ -8,9 +8,12 @@ import numpy.typing as npt
 from scipy.special import ellipe
 
 from gnc.errors import InfeasibleError
+from gnc.mission.axis_height import AxisHeight
+from gnc.mission.plume_axis import Climb
 from gnc.mission.standoff import StandoffParameters
 from scenarios.planning.guidance import plan_interval, speed_hold
 from scenarios.planning.limits import omega_max
+from scenarios.planning.plume.axis import PREDICTED_TIME
 from scenarios.planning.reference import RATIO_STEPS
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -97,8 +100,8 @@ def vessel_circle(scenario: Scenario, nu: float, least: float) -> VesselCircle:
     return circle
 
 
-def standoff_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) -> StandoffParameters:
-    """Return how a vessel is circled at a radius [m]."""
+def standoff_parameters(scenario: Scenario, setup: VehicleSetup, radius: float, height: AxisHeight) -> StandoffParameters:
+    """Return how a vessel is circled at a radius [m], at the height of the plume's axis there."""
     g = scenario.guidance
     return StandoffParameters(
         radius=radius,
@@ -107,5 +110,6 @@ def standoff_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) 
         speed_ratio_max=scenario.following.speed_ratio_max,
         glide_airspeed=0.5 * (g.airspeed_mps + speed_hold(scenario, setup).airspeed_min),
         plan_interval=plan_interval(scenario),
-        altitude=scenario.plume.source_height_m + math.tan(math.radians(scenario.plume.elevation_deg)) * radius,
+        height=height,
+        climb=Climb(time=PREDICTED_TIME, gradient=scenario.following.climb_gradient),
     )

@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from scenarios.schema.report import ReportConfig
 from scenarios.schema.section import Positive, Section
 
 LawName = Literal["lyapunov", "cascade", "cascade_cut"]
@@ -63,3 +64,4 @@ class ConvergenceScenario(Section):
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1
     ensemble: Ensemble = Ensemble()
     guidance: EnsembleGuidance = EnsembleGuidance()
+    report: ReportConfig = ReportConfig()

@@ -58,7 +58,8 @@ class FaultConfig(Section):
     """A fault in flight."""
 
     kind: Annotated[str, Field(pattern=r"^[a-z_0-9]+$")] = "none"
-    """none, vessel_data, satellite_navigation, engine, or the name of an actuator of the aircraft (the error lists them)."""
+    """none, vessel_data, satellite_navigation, sniffer_dead, sniffer_saturated, engine, or the name of an actuator of the aircraft
+    (the error lists them)."""
     at_s: tuple[NonNegative, NonNegative] = (100.0, 250.0)
     """Earliest and latest time, sampled in between; or one number, the time [s]."""
     vessel_data_s: Positive = 60.0

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, RootModel, field_validator, model_validator
 
 from common.registry import PluginError
+from scenarios.schema.report import ReportConfig
 from scenarios.schema.section import Fraction, NonNegative, Positive, Range, Section, Seed, check_ordered
 from scenarios.search.method import SEARCH_METHODS
 
@@ -251,8 +252,6 @@ class ArenaConfig(Section):
     """Error beyond which a setting is no worse to the tuner [m]."""
     window_s: Positive = 150.0
     """End of each flight on which it is measured, settled or not [s]."""
-    plume_half_width_m: Positive = 10.0
-    """Distance from the plume's axis that counts as in the plume [m]."""
     resamples: Annotated[int, Field(ge=100, le=1_000_000)] = 2000
     """Resamples of the paired bootstrap [-]."""
     limits: tuple[tuple[float, float], ...] = ()
@@ -275,3 +274,4 @@ class TrialList(Section):
     """Number of time histories to be kept."""
     set: tuple[str, ...] = ()
     """Keys to set in every trial, as key=value; overrides of the command line that are not keys of this list come here."""
+    report: ReportConfig = ReportConfig()

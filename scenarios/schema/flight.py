@@ -38,8 +38,14 @@ class FlightConfig(Section):
     """Crossings to fly after settling; 0 to fly for the whole duration [-]."""
     after_settling_s: Positive | None = None
     """How long to fly after settling, with crossings at least as many; only crossings count if not given [s]."""
+    measured_s: Positive | None = None
+    """End of the flight over which instruments are evaluated, settled or not; from settling on if not given [s]."""
     duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 1500.0
     """Longest flight [s]."""
+    until: Literal["flown", "verdict"] = "flown"
+    """End when what is asked for is flown, or also when a sniffer's readings allow a verdict on the fuel, or never will."""
+    altitude_m: Positive | None = None
+    """Altitude at the start, for which the autopilot is designed; that of the funnel's mouth if not given [m]."""
     altitude_min_m: NonNegative = 20.0
     """Lowest altitude at which rising exhaust is crossed [m]."""
     altitude_max_m: Positive = 120.0

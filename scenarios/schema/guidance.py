@@ -9,7 +9,9 @@ from pydantic import ConfigDict, Field, field_validator, model_validator
 from common.registry import PluginError
 from common.spelling import did_you_mean
 from gnc.laws.steering_law import STEERING_LAWS
-from scenarios.schema.section import Angle, NonNegative, Positive, Section, check_divides
+from scenarios.schema.section import Angle, NonNegative, Positive, Section, check_divides, check_ordered
+
+Share = Annotated[float, Field(gt=0.0, le=1.0)]
 
 
 def known_law(law: str) -> str:
@@ -184,3 +186,22 @@ class FollowingConfig(Section):
     own."""
     drift_rate_mps: NonNegative = 1.0
     """How fast dead reckoning may go wrong without satellite navigation [m/s]."""
+    plume: Literal["predicted", "estimated", "told"] = "predicted"
+    """How the axis of exhaust is known: predicted from load, wind and vessel, estimated from what a sniffer reads, or told."""
+    search: Literal["information", "ladder"] = "information"
+    """How exhaust is searched for: where most is learnt of it, or up and down a ladder of heights."""
+    distance: Literal["closest", "best_measurement"] = "closest"
+    """Where exhaust is crossed: as near as the keep-out area allows, or where the sulphur is known best after a minute."""
+    source_height_m: tuple[Positive, Positive] | None = None
+    """Lowest and highest that the funnel's mouth may be for all that is known [m]; known exactly if not given."""
+    load: tuple[Share, Share] | None = None
+    """Least and largest load that the engine may have for all that is known; what the speed takes if not given [-]."""
+    climb_gradient: Annotated[float, Field(gt=0.0, le=0.3)] = 0.05
+    """Steepest climb and descent on the way to another height of the plume [-]."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "FollowingConfig":
+        for name in ("source_height_m", "load"):
+            if (values := getattr(self, name)) is not None:
+                check_ordered(name, values)
+        return self

@@ -1,5 +1,6 @@
 """Find a scenario file, apply overrides and check it; everything that is wrong with it is one line."""
 
+import copy
 import json
 import re
 import tomllib
@@ -20,6 +21,7 @@ from scenarios.schema.experiment import TrialList
 from scenarios.schema.keys import suggestion
 from scenarios.schema.overrides import Document, apply_override, given_keys, merged, parse_override, set_value
 from scenarios.schema.parts import with_absolute_files
+from scenarios.schema.report import read_logo
 from scenarios.schema.scenario import Scenario
 
 Study = TypeVar("Study", Scenario, ConvergenceScenario, TrialList)
@@ -59,40 +61,43 @@ def is_flight(name: str) -> bool:
     return path.parent.name == FLIGHTS and is_file(path.parents[1] / MANIFEST)
 
 
-def load_study(name: str, overrides: Sequence[str] = (), *, refusing: bool = True) -> AnyStudy:
-    """Read a study by catalog name or file path.
+def load_study(name: str | Document, overrides: Sequence[str] = (), *, refusing: bool = True) -> AnyStudy:
+    """Read a study by catalog name or file path, or take it from a document.
 
     Parameters
     ----------
-    name : name in the catalog, or path of a TOML file
+    name : name in the catalog, path of a TOML file, or what such a file would hold; files in it are then relative to the current
+        directory
     overrides : ``key=value`` with dotted keys and TOML values, e.g. ``guidance.preview=false``; a part's file, FILE.py:NAME, is
         relative to the current directory, in a scenario file to that file
     refusing : whether keys of the file and of overrides are refused where no part of the flights uses them
 
     Raises
     ------
-    InputError : no such scenario, unreadable TOML, an unknown key, a value out of range, or a key without effect
+    InputError : no such scenario, unreadable TOML, an unknown key, a value out of range, a key without effect, or a logo that is no
+        picture
     """
     document = load_document(name, overrides)
     scenario: AnyStudy = checked(document, _kind(document))
     if refusing and isinstance(scenario, Scenario):
         # Keys of the file have to act in what the file alone says: an override may well put one of them aside.
-        path = scenario_path(name)
-        refuse_unused(checked(_read(path), Scenario), given_keys(_own(path)[0]))
+        own, whole = _given(name)
+        refuse_unused(checked(whole, Scenario), given_keys(own))
         refuse_unused(scenario, {parse_override(override)[0] for override in overrides})
+    read_logo(scenario.report)
     return scenario
 
 
-def load_document(name: str, overrides: Sequence[str] = ()) -> Document:
-    """Return what ``load_study`` checks: the file, what it extends, and the overrides.
+def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Document:
+    """Return what ``load_study`` checks: the scenario, what it extends, and the overrides.
 
     Raises
     ------
     InputError : no such scenario, unreadable TOML, or an override that cannot be applied
     """
-    document = _read(scenario_path(name))
+    _, document = _given(name)
     if document.get("study") == "trials":
-        own = [override for override in overrides if override.partition("=")[0].strip() in TrialList.model_fields]
+        own = [override for override in overrides if _section(override) in TrialList.model_fields]
         for_trials = [override for override in overrides if override not in own]
         given = document.get("set", [])
         if for_trials and isinstance(given, list):
@@ -103,6 +108,11 @@ def load_document(name: str, overrides: Sequence[str] = ()) -> Document:
     for key, value in parsed:
         apply_override(document, key, value, kind)
     return document
+
+
+def _section(override: str) -> str:
+    """Return the first part of the key of an override."""
+    return override.partition("=")[0].strip().partition(".")[0]
 
 
 def bases() -> dict[str, Path]:
@@ -131,38 +141,55 @@ def scenario_path(name: str, folder: Path | None = None) -> Path:
     raise InputError(f"{what}{guess or ';'} give the path of a TOML file or one of: {', '.join(known)}")
 
 
+def _given(scenario: str | Document) -> tuple[Document, Document]:
+    """Return what a scenario itself says, and the same with what it extends."""
+    if isinstance(scenario, str):
+        path = scenario_path(scenario)
+        return _own(path)[0], _read(path)
+    own, base = _resolved(copy.deepcopy(scenario), Path(), "scenario")
+    return own, own if base is None else merged(_base(base, Path(), "scenario", ()), own)
+
+
 def _read(path: Path, extended_by: tuple[Path, ...] = ()) -> Document:
     """Return the document in a file, with that of the scenario that it extends."""
     if path.resolve() in [other.resolve() for other in extended_by]:
         circle = " -> ".join(other.name for other in (*extended_by, path))
         raise InputError(f"{extended_by[-1]}: extends goes in a circle: {circle}; remove one of them")
     document, base = _own(path)
-    if base is None:
-        return document
+    return document if base is None else merged(_base(base, path.parent, path, (*extended_by, path)), document)
+
+
+def _base(base: str, folder: Path, where: object, extended_by: tuple[Path, ...]) -> Document:
+    """Return the document that a scenario of ``folder``, called ``where`` in errors, extends."""
     try:
-        base_path = bases().get(base) or scenario_path(base, path.parent)
+        path = bases().get(base) or scenario_path(base, folder)
     except InputError as error:
-        raise InputError(f"{path}: extends: {error}") from None
-    return merged(_read(base_path, (*extended_by, path)), document)
+        raise InputError(f"{where}: extends: {error}") from None
+    return _read(path, extended_by)
 
 
 def _own(path: Path) -> tuple[Document, str | None]:
     """Return the document in a file alone, and the name of the scenario that it extends, if any."""
     try:
         # An editor may have put a byte order mark before the text.
-        document: Document = with_absolute_files(tomllib.loads(path.read_text(encoding="utf-8-sig")), path.parent)
+        return _resolved(tomllib.loads(path.read_text(encoding="utf-8-sig")), path.parent, path)
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: not valid TOML: {error}; fix the file") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}; check the path and its permissions") from None
-    if isinstance(given := document.get("set"), list):
-        document["set"] = [_with_absolute_file(override, path.parent) for override in given]
+
+
+def _resolved(given: Document, folder: Path, where: object) -> tuple[Document, str | None]:
+    """Return a document with absolute files and the present words, and the name of the scenario that it extends, if any."""
+    document: Document = with_absolute_files(given, folder)
+    if isinstance(listed := document.get("set"), list):
+        document["set"] = [_with_absolute_file(override, folder) for override in listed]
     study = document.get("study")
     base = document.pop("extends", OPERATIONAL if study in _OPERATIONAL_STUDIES else None)
     if isinstance(study, str):
         document["study"] = FORMER_WORDS.get(study, study)
     if not (base is None or isinstance(base, str)):
-        raise InputError(f"{path}: extends is {base!r}; give one catalog name or one path of a TOML file")
+        raise InputError(f"{where}: extends is {base!r}; give one catalog name or one path of a TOML file")
     return document, base
 
 
@@ -202,6 +229,8 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
     """Return the scenario with dotted keys set to new values, checked again."""
     if not values:
         return scenario
+    if own := [key for key in values if key.partition(".")[0] == "report"]:
+        raise InputError(f"'{own[0]}' varies from flight to flight; a report is of all flights: set it once, for the scenario")
     document = scenario.model_dump()
     if "guidance.law" in values:
         # Keys that only the other law has, such as those of a steering law that is added, go with it.

@@ -1,7 +1,10 @@
 """Changes to a scenario document: ``--set key=value`` with dotted keys, and which keys a document sets."""
 
+import json
+import re
 import tomllib
 from collections.abc import Mapping
+from datetime import datetime
 from typing import Any
 
 from pydantic import BaseModel
@@ -112,12 +115,35 @@ def _index(entries: list[Any], parts: list[str], depth: int, value: object, kind
         raise InputError(f"{message}has {len(entries)} {entry}, numbered from 0, and '{name}' is not one of them")
     given = {".".join(parts[depth + 1 :]): value} if depth + 1 < len(parts) else {}
     needed = {key: example_value(field) for key, field in model.model_fields.items() if field.is_required() and key not in given}
-    items = ", ".join(f"{key}={_toml(item)}" for key, item in (needed | given).items())
+    items = ", ".join(f"{key}={as_toml(item)}" for key, item in (needed | given).items())
     raise InputError(f"{message}has no entries; add one with --set '{'.'.join(parents)}=[{{{items}}}]'")
 
 
-def _toml(value: object) -> str:
-    return str(value).lower() if isinstance(value, bool) else f'"{value}"' if isinstance(value, str) else str(value)
+def as_toml(value: object) -> str:
+    """Return a value as ``key=value`` has it: on one line.
+
+    Raises
+    ------
+    InputError : a value that TOML has no word for
+    """
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, datetime):
+        return value.isoformat()
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(as_toml, value))}]"
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{_toml_key(str(key))}={as_toml(item)}' for key, item in value.items())}}}"
+    raise InputError(f"value is {value!r}; a scenario has numbers, words, truth values, times, lists and tables alone")
+
+
+def _toml_key(key: str) -> str:
+    """Return a key as it stands in a table; one with a dot in quotation marks."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key, ensure_ascii=False)
 
 
 def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> Document:

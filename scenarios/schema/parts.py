@@ -9,11 +9,14 @@ from common.files import is_data_file
 from common.registry import is_file_part
 from scenarios.schema.scenario import Scenario
 
-_WORDS = ("title", "description")
+_WORDS = ("title", "description", "author", "organisation")
 """Keys whose values are no names."""
 
 _DATA = ("track", "table")
 """Last words of keys whose values may be files of data."""
+
+_PICTURE = "logo"
+"""Last word of the key whose value is the file of a picture."""
 
 
 def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
@@ -42,18 +45,20 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
     ----------
     value : the document, a table, a list or a single value
     folder : directory that the files are relative to
-    key : whose value it is; files of data are those of ``_DATA`` alone
+    key : whose value it is; files of data are those of ``_DATA`` alone, and of pictures that of ``_PICTURE``
     """
+    last = key.rpartition(".")[2]
+    if last in _WORDS:
+        return value
     if isinstance(value, dict):
         # A random variable has its key beside its choices.
         named = str(value.get("key", ""))
-        return {
-            name: below if name in _WORDS else with_absolute_files(below, folder, named if name == "choice" else name)
-            for name, below in value.items()
-        }
+        return {name: with_absolute_files(below, folder, named if name == "choice" else name) for name, below in value.items()}
     if isinstance(value, list):
         return [with_absolute_files(below, folder, key) for below in value]
-    if isinstance(value, str) and "=" not in value and (is_file_part(value) or (_is_data_key(key) and is_data_file(value))):
+    if isinstance(value, str) and value and last == _PICTURE:
+        return os.path.normpath(folder.absolute() / value)
+    if isinstance(value, str) and "=" not in value and (is_file_part(value) or (last in _DATA and is_data_file(value))):
         return os.path.normpath(folder.absolute() / value)
     return value
 
@@ -61,7 +66,3 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
 def names_file(name: str) -> bool:
     """Return whether the name of a part is that of a file: FILE.py:NAME, or a file of data."""
     return is_file_part(name) or is_data_file(name)
-
-
-def _is_data_key(key: str) -> bool:
-    return key.rpartition(".")[2] in _DATA

@@ -21,6 +21,7 @@ from scenarios.schema.experiment import (
 )
 from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
 from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
+from scenarios.schema.report import ReportConfig
 from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
 from scenarios.schema.world import (
     EmissionConfig,
@@ -34,8 +35,11 @@ from scenarios.schema.world import (
 
 DEFAULT_AIRCRAFT = "x8"
 
-DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "plume.source_height_m")
-"""Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept."""
+DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "flight.altitude_m", "plume.source_height_m")
+"""Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept.
+
+The last one can be where ``flight.altitude_m`` is given.
+"""
 
 POINTS_MAX = 10_000
 """Most points of an experiment: all are checked before the first flight, in a millisecond and 20 kB each."""
@@ -95,6 +99,7 @@ class Scenario(Section):
     start: StartConfig = StartConfig()
     flight: FlightConfig = FlightConfig()
     criteria: CriteriaConfig = CriteriaConfig()
+    report: ReportConfig = ReportConfig()
 
     @property
     def circles(self) -> bool:
@@ -128,6 +133,16 @@ class Scenario(Section):
     def stands_off(self) -> bool:
         """Return whether the vessel is circled, without an oscillation."""
         return self.guidance.mission == "standoff"
+
+    @property
+    def finds(self) -> bool:
+        """Return whether a plume is searched for, told, or measured until there is a verdict."""
+        return self.following.plume != "predicted" or self.flight.until == "verdict"
+
+    @property
+    def altitude(self) -> float:
+        """Return the altitude at the start, for which the autopilot is designed [m]."""
+        return self.plume.source_height_m if self.flight.altitude_m is None else self.flight.altitude_m
 
     @property
     def declared_faults(self) -> frozenset[str]:
@@ -293,7 +308,7 @@ class Scenario(Section):
             if key in self.sweep.root:
                 raise ValueError(f"'{key}' is in sweep and in draws; give it in one of them")
         for key in [*keys, *self.sweep.root]:
-            if key.startswith(DESIGNED_FOR):
+            if key.startswith(DESIGNED_FOR if self.flight.altitude_m is None else DESIGNED_FOR[:-1]):
                 raise ValueError(
                     f"'{key}' varies from flight to flight; autopilot and margins are worked out once for it: give each value a run"
                     " of its own"

@@ -5,33 +5,46 @@ from collections.abc import Sequence
 
 from gnc.compose import compose
 from gnc.guidance import Guidance
-from scenarios.instruments.instrument import Instrument
+from gnc.mission.plume_following import PlumeFollowing
+from gnc.mission.searched_axis import SearchedAxis
+from scenarios.instruments.instrument import GasReader, Instrument
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.ending import Ending
 from scenarios.simulation.interventions import interventions
+from scenarios.simulation.judge import Judge
 from scenarios.simulation.onboard import OnboardSensing
 from scenarios.simulation.record import FlightRecord
 from scenarios.simulation.recorder import Recorder
 from scenarios.simulation.settling import Settling
+from scenarios.simulation.smelling import PlumeBelief, Smelling, axis_of
 from scenarios.vehicles.vehicle import Vehicle
 
 
-def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), *, every_step: bool = False) -> FlightRecord:
-    """Fly ``plan`` with a vehicle that stands at its start.
+def fly(
+    plan: FlightPlan,
+    vehicle: Vehicle,
+    payload: Sequence[Instrument] = (),
+    *,
+    reader: GasReader | None = None,
+    every_step: bool = False,
+) -> FlightRecord:
+    """Fly ``plan`` with a vehicle that stands at its start, and with a sniffer as ``reader`` where it is read in flight.
 
     The flight ends one sample after the last crossing that it is to fly, so that every crossing lies inside the record; when its
-    time is up; on the water; or out of control. To record ``every_step`` of the guidance, beside the samples, changes nothing of
-    the flight.
+    time is up; when it has left with a verdict; on the water; or out of control. To record ``every_step`` of the guidance, beside
+    the samples, changes nothing of the flight.
     """
     guidance = compose(plan.guidance)
     settling = Settling(band=plan.settling_band, period=plan.settling_period, crossings=plan.crossings, after=plan.after_settling)
-    recorder = Recorder(guidance, vehicle, plan.world, payload, settling)
-    sensing = _sensing(plan, vehicle, guidance)
+    axis = axis_of(guidance)
+    beliefs = (PlumeBelief(axis),) if isinstance(axis, SearchedAxis) else ()
+    recorder = Recorder(guidance, vehicle, plan.world, (*payload, *beliefs), settling)
+    sensing = _sensing(plan, vehicle, guidance, reader)
     mission, target, guard = guidance.mission, guidance.target, guidance.guard
     guide, motion_of, advance, reference_of = guidance.step, vehicle.motion, vehicle.advance, recorder.reference
     time_step, log_interval = plan.time_step, plan.log_interval
     record_interval = 1 if every_step else log_interval
-    ending = Ending(plan, vehicle, guidance, settling)
+    ending = Ending(plan, vehicle, guidance, settling, _judge(plan, guidance, reader, settling))
     demand_max = command_max = airspeed_error = 0.0
     saturated = step = 0
     guarding: list[tuple[int, float, bool]] = []
@@ -44,7 +57,7 @@ def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), 
             guide(time, motion)
         else:
             guide(time, sensing.read(step, time, motion))
-            sensing.act()
+            sensing.act(step, time, motion)
             airspeed_error = sensing.airspeed_error
         tracker = mission.tracker
         demand, command = abs(tracker.heading_rate_demand), guidance.heading_rate_command
@@ -57,7 +70,7 @@ def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), 
         if recorded:
             sampled = step % log_interval == 0
             sample, complete = recorder.record(time, motion, reference or reference_of() or (math.nan,) * 4, judged=sampled)
-            if sampled and ending.reached(time, sample, complete=complete):
+            if sampled and ending.reached(time, motion, sample, complete=complete):
                 break
         advance(command, guidance.airspeed_command - airspeed_error)
     rows = recorder.rows()
@@ -65,6 +78,7 @@ def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), 
         outcome=ending.outcome,
         message=ending.message,
         mode=ending.mode,
+        enough=ending.enough,
         settled_at=settling.at,
         interventions=interventions(guarding, time_step),
         columns=recorder.columns,
@@ -77,8 +91,20 @@ def fly(plan: FlightPlan, vehicle: Vehicle, payload: Sequence[Instrument] = (), 
     )
 
 
-def _sensing(plan: FlightPlan, vehicle: Vehicle, guidance: Guidance) -> OnboardSensing | None:
+def _sensing(plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, reader: GasReader | None) -> OnboardSensing | None:
     """Return the sensing of a flight; none where everything is known exactly."""
-    if plan.sensing is None or plan.world is None:
+    sensing, world, axis = plan.sensing, plan.world, axis_of(guidance)
+    if sensing is None or world is None:
         return None
-    return OnboardSensing(plan.sensing, plan.world, vehicle, guidance, altitude=plan.altitude)
+    smelling = None
+    if axis is not None and (reader is not None or sensing.told):
+        smelling = Smelling(reader, world, vehicle, axis, interval=plan.log_interval, told=sensing.told)
+    return OnboardSensing(sensing, world, vehicle, guidance, altitude=plan.altitude, smelling=smelling)
+
+
+def _judge(plan: FlightPlan, guidance: Guidance, reader: GasReader | None, settling: Settling) -> Judge | None:
+    """Return what ends a flight when it has enough, of one that is to."""
+    mission = guidance.mission
+    if not plan.until_verdict or reader is None or not isinstance(mission, PlumeFollowing):
+        return None
+    return Judge(reader, mission, settling)

@@ -3,9 +3,11 @@
 import math
 
 from gnc.estimation.health import Fault
+from gnc.estimation.own_motion import Motion
 from gnc.guidance import Guidance
 from gnc.mission.mode import Mode
 from scenarios.planning.flight_plan import FlightPlan
+from scenarios.simulation.judge import Judge
 from scenarios.simulation.outcome import DITCHED, Outcome
 from scenarios.simulation.settling import Settling
 from scenarios.vehicles.vehicle import Vehicle
@@ -26,22 +28,35 @@ class Ending:
     Parameters
     ----------
     plan, vehicle, guidance, settling : of the flight
+    judge : says when it has enough, or none
 
     Attributes
     ----------
     outcome, message : in a word, and why in a sentence; nothing to say where it completed
     """
 
-    def __init__(self, plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, settling: Settling) -> None:
-        self._plan, self._vehicle, self._guidance, self._settling = plan, vehicle, guidance, settling
+    def __init__(
+        self, plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, settling: Settling, judge: Judge | None = None
+    ) -> None:
+        self._plan, self._vehicle, self._guidance, self._settling, self._judge = plan, vehicle, guidance, settling, judge
         self._ditched, self._fault, self._end = False, "", 0.0
 
-    def reached(self, time: float, sample: tuple[float, ...], *, complete: bool) -> bool:
+    def reached(self, time: float, motion: Motion, sample: tuple[float, ...], *, complete: bool) -> bool:
         """Return whether the flight is over at a sample; ``complete`` says whether it has all crossings that are asked for."""
         monitor, self._end = self._guidance.monitor, time
         self._ditched = monitor is not None and monitor.fault is not Fault.NONE and sample[0] < _ON_THE_WATER
         self._fault = "" if self._ditched else self._vehicle.fault(sample)
-        return bool(self._fault) or self._ditched or complete
+        over = complete
+        if self._judge is not None:
+            target = self._guidance.target
+            over = self._judge.over(time, math.hypot(motion[0] - target.north, motion[1] - target.east))
+            over = over or (complete and self._judge.enough is None)
+        return bool(self._fault) or self._ditched or over
+
+    @property
+    def enough(self) -> str:
+        """Return why the flight left before its time, or nothing."""
+        return self._judge.enough.value if self._judge is not None and self._judge.enough is not None else ""
 
     @property
     def mode(self) -> str:
@@ -56,8 +71,10 @@ class Ending:
             return Outcome.DIVERGED
         if self._ditched or mode in _LOST:
             return Outcome.AIRCRAFT_LOST
-        if self._plan.world is None:
+        if self._plan.world is None or self.enough.startswith("verdict"):
             return Outcome.COMPLETED
+        if self.enough:
+            return Outcome.INCOMPLETE
         if math.isnan(self._settling.at):
             return Outcome.NOT_SETTLED
         flown = self._settling.crossings >= max(1, self._plan.crossings) and not self._missing
@@ -92,6 +109,8 @@ class Ending:
 
     def _shortfall(self) -> str:
         settling, plan, mode = self._settling, self._plan, self._guidance.mission.mode
+        if self._judge is not None and self._judge.enough is not None:
+            return self._judge.words
         if math.isnan(settling.at):
             flown = "did not settle"
         elif self._missing:

@@ -82,6 +82,7 @@ class FlightRecord:
     ----------
     outcome, message : how it ended, in a word and in a sentence
     mode : of the guidance at the end, or ``DITCHED``
+    enough : why it left before its time, or nothing
     settled_at : when it had settled, not a number if it never had [s]
     interventions : each time that the keep-out guard changed commands
     columns : of the histories: ``COLUMNS``, and those of the payload
@@ -96,6 +97,7 @@ class FlightRecord:
     outcome: Outcome
     message: str
     mode: str
+    enough: str
     settled_at: float
     interventions: list[Intervention]
     columns: tuple[str, ...]
@@ -112,8 +114,8 @@ class FlightRecord:
 
 
 _UNITS = (
-    ("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"), ("_deg", "deg"), ("_utc", "UTC"),
-    ("_ppb", "ppb"), ("_ppm", "ppm"),
+    ("_per_m", "1/m"), ("_per_s", "1/s"), ("_percent", "%"), ("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"),
+    ("_s", "s"), ("_deg", "deg"), ("_utc", "UTC"), ("_ppb", "ppb"), ("_ppm", "ppm"),
 )  # fmt: skip
 """Ends of columns' names, and the units that they stand for."""
 

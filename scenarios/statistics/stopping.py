@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from common.binomial import upper_bound
-from scenarios.statistics.intervals import quantile_interval
+from common.intervals import quantile_interval
 from scenarios.statistics.violations import count_violations
 
 FIRST_LOOK = 256

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from scenarios.statistics.intervals import clopper_pearson
+from common.intervals import clopper_pearson
 
 METHODS = {"regression": "fsc", "areas": "areas_fsc"}
 """Methods, and what the columns of their figures begin with."""

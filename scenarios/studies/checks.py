@@ -21,11 +21,11 @@ from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRA
 from scenarios.schema.parts import names_file, part_names
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation.failure import failure
-from scenarios.world.faults import SATELLITES, VESSEL_DATA
+from scenarios.world.faults import NOT_OF_AIRCRAFT
 from scenarios.world.vessel import check_manoeuvres
 from scenarios.world.world import mean_wind, vessel_of
 
-_REGISTRIES: dict[str, Registry[Any]] = {
+PART_REGISTRIES: dict[str, Registry[Any]] = {
     "reference.shape": REFERENCE_SHAPES,
     "vessel.track": VESSEL_TRACKS,
     "plume.model": PLUME_MODELS,
@@ -50,8 +50,11 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
     for experiment in experiments:
         _check_names(experiment)
     points = [point.scenario for experiment in experiments for point in experiment.points]
-    if len({(s.aircraft, s.guidance.airspeed_mps, s.plume.source_height_m) for s in points}) > 1:
-        raise InputError("flights differ in aircraft, guidance.airspeed_mps or plume.source_height_m; give each a run of its own")
+    if len({(s.aircraft, s.guidance.airspeed_mps, s.altitude) for s in points}) > 1:
+        raise InputError(
+            "flights differ in aircraft, guidance.airspeed_mps or the altitude at the start (flight.altitude_m, else"
+            " plume.source_height_m); give each a run of its own"
+        )
     for scenario in points:
         _check_parts(scenario)
         if envelope is not None and scenario.fidelity == "six_dof":
@@ -92,7 +95,7 @@ def _check_fault(scenario: Scenario) -> None:
     kinds = {scenario.fault.kind}
     for draw in scenario.draws:
         kinds |= {str(kind) for kind in draw.choice or ()} if draw.key == "fault.kind" else set()
-    known = {"none", VESSEL_DATA, SATELLITES}
+    known = set(NOT_OF_AIRCRAFT)
     if scenario.fidelity == "six_dof" and kinds - known:
         known |= set(fault_names(find_spec(scenario.aircraft)))
     for kind in sorted(kinds - known):
@@ -118,7 +121,7 @@ def _check_vessel(scenario: Scenario) -> None:
 def _check_parts(scenario: Scenario) -> None:
     for key, name in part_names(scenario):
         try:
-            if key in _REGISTRIES and not is_data_file(name):
-                _REGISTRIES[key].get(name)
+            if key in PART_REGISTRIES and not is_data_file(name):
+                PART_REGISTRIES[key].get(name)
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None

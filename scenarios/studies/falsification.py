@@ -54,6 +54,8 @@ class FalsificationStudy(FlightStudy):
     InputError : as of ``FlightStudy``
     """
 
+    chooses_flights = True
+
     def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
         self._search, self._seed = scenario.search, scenario.seed
         numbers = self._search.flights_max * (1 + self._search.confirmations)

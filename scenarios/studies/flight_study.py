@@ -34,6 +34,7 @@ from scenarios.metrics.columns import (
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
 )
+from scenarios.metrics.finding import FINDING_FIGURES
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
@@ -44,7 +45,7 @@ from scenarios.simulation.time_history import UNFINISHED
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
 from scenarios.statistics.sulphur import sulphur_statistics
 from scenarios.studies.checks import check_flights, plugins_explained
-from scenarios.studies.manifest import config_hash, initial_manifest, parameters, plugins, vessel_files
+from scenarios.studies.manifest import config_hash, flown_config, initial_manifest, parameters, plugins, vessel_files, write_logo
 from scenarios.studies.rows import frame
 from scenarios.studies.study import study
 from scenarios.studies.summary import FlightCounts
@@ -68,12 +69,15 @@ class FlightStudy:
 
     what = "flights"
 
+    chooses_flights = False
+    """Whether what is flown depends on what was flown before, so that no flight can be flown without the others."""
+
     def __init__(
         self, scenario: Scenario | TrialList, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()
     ) -> None:
         first = next(iter(trials.values()))
         spec = spec_of(first)
-        self._design, self._refusal = design_of(spec, first.plume.source_height_m) if spec else (None, "")
+        self._design, self._refusal = design_of(spec, first.altitude) if spec else (None, "")
         envelope = self._design.design.schedule.envelope if self._design else spec.envelope if spec else None
         if envelope is not None:
             trials = {trial: scaled(of, envelope) for trial, of in trials.items()}
@@ -84,11 +88,14 @@ class FlightStudy:
         self.experiments = {trial: Experiment(trial, of, alone=len(self.trials) == 1) for trial, of in self.trials.items()}
         check_flights(self.experiments.values(), self._design.design.schedule.envelope if self._design else None)
         self.histories = scenario.histories
+        self._report = scenario.report
         self.flights = {trial: experiment.counted for trial, experiment in self.experiments.items()}
         keys = dict.fromkeys(key for experiment in self.experiments.values() for key in experiment.keys)
         points = [point.scenario for experiment in self.experiments.values() for point in experiment.points]
         instruments = evaluated_instruments(points)
         figures = (*SUMMARY_COLUMNS, *dict.fromkeys(name for instrument in instruments for name in instrument.FIGURES))
+        if any(point.finds for point in points):
+            figures += FINDING_FIGURES
         self.tables = {
             SUMMARY: figures,
             CROSSINGS: CROSSING_COLUMNS,
@@ -149,11 +156,12 @@ class FlightStudy:
 
     def _sizes(self) -> dict[str, Any]:
         """Return the entries of the manifest on how many flights there are, which a study may find out as it goes."""
-        trials = {trial: scenario.model_dump(mode="json") for trial, scenario in self.trials.items()}
+        trials = {trial: flown_config(scenario) for trial, scenario in self.trials.items()}
         return {"trials": trials, "trial_flights": self.flights, "flights_planned": self.planned}
 
     def work(self, run: RunDirectory) -> FlightWork:
-        """Return the work on its flights, after writing the aircraft's autopilot into the run directory."""
+        """Return the work on its flights, after writing the logo and the aircraft's autopilot into the run directory."""
+        write_logo(self._report, run)
         # Of a trial that has been scaled to the aircraft: its airspeed is where flights start.
         first = next(iter(self.trials.values()))
         flown = self._design if first.fidelity != "kinematic" else None

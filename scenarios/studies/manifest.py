@@ -11,25 +11,34 @@ from pydantic_core import to_jsonable_python
 
 from common.provenance import provenance
 from common.registry import file_hash
+from common.run_layout import FORMAT, LOGO
 from scenarios.engine.fingerprint import fingerprint
+from scenarios.engine.run_directory import RunDirectory
 from scenarios.schema.effect import unused
+from scenarios.schema.load import AnyStudy
 from scenarios.schema.parts import names_file, part_names
+from scenarios.schema.report import ReportConfig, read_logo, report_entry
 from scenarios.schema.scenario import Scenario
 from scenarios.world.ais.reports import AisReports
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.world import vessel_of
 
 
-def initial_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -> dict[str, Any]:
+def initial_manifest(scenario: AnyStudy, name: str, overrides: Sequence[str]) -> dict[str, Any]:
     """Return the manifest as written before the first flight.
 
     Parameters
     ----------
     scenario, name : the scenario and its name
     overrides : overrides that were applied to the scenario
+
+    Raises
+    ------
+    InputError : the logo of the reports is no picture
     """
-    config = scenario.model_dump(mode="json")
+    config = flown_config(scenario)
     return {
+        "format": FORMAT,
         "study": config["study"],
         "name": name,
         "title": config["title"],
@@ -38,8 +47,25 @@ def initial_manifest(scenario: BaseModel, name: str, overrides: Sequence[str]) -
         "config_hash": config_hash(scenario),
         "fingerprint": fingerprint(),
         "parameters": parameters(scenario),
+        "report": report_entry(scenario.report),
         **provenance(),
     }
+
+
+def flown_config(scenario: BaseModel) -> dict[str, Any]:
+    """Return the configuration of what is flown, to which its reports have nothing to add."""
+    return scenario.model_dump(mode="json", exclude={"report"})
+
+
+def write_logo(report: ReportConfig, run: RunDirectory) -> None:
+    """Write the logo of the reports into the run directory, where they find it again.
+
+    Raises
+    ------
+    InputError : it is no picture
+    """
+    if logo := read_logo(report):
+        run.write_bytes(f"{LOGO}{logo.suffix}", logo.content)
 
 
 def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
@@ -56,7 +82,7 @@ def vessel_files(scenarios: Iterable[Scenario]) -> dict[str, AisReports]:
 
 def config_hash(*scenarios: BaseModel, files: Mapping[str, str] | None = None, names: Sequence[str] = ()) -> str:
     """Return a hash of scenarios, of their names where seeds depend on them, and of the files that they take parts from."""
-    documents: list[object] = [scenario.model_dump(mode="json") for scenario in scenarios]
+    documents: list[object] = [flown_config(scenario) for scenario in scenarios]
     text = "\n".join(json.dumps(document, sort_keys=True) for document in [*documents, *([files] if files else []), *names])
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -66,7 +92,7 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
     listed = []
     for section_name in type(scenario).model_fields:
         section = getattr(scenario, section_name)
-        if not isinstance(section, BaseModel) or section_name in ("comparison", "sweep"):
+        if not isinstance(section, BaseModel) or section_name in ("comparison", "sweep", "report"):
             continue
         values = section.model_dump(mode="json")
         for key, field in type(section).model_fields.items():

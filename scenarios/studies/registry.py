@@ -1,12 +1,14 @@
 """Choice of the study that a scenario describes, and its execution."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from common.registry import PluginError
+from scenarios.engine.executor import Executor
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Progress, RunResult, Study, fly_study
+from scenarios.engine.task import Work
 from scenarios.errors import InputError
 from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.experiment import TrialList
@@ -46,10 +48,11 @@ def run_study(
     name: str,
     directory: Path,
     *,
-    executor_factory: ExecutorFactory | None = None,
+    executor_factory: Callable[[Work], Executor] | None = None,
     resume: bool = False,
     progress: Progress = lambda *_: None,
     overrides: Sequence[str] = (),
+    command: str = "",
 ) -> RunResult:
     """Fly a study into ``directory``.
 
@@ -61,6 +64,7 @@ def run_study(
     resume : continue the unfinished run in ``directory``
     progress : called as the study advances
     overrides : overrides that were applied to the scenario, recorded in the manifest
+    command : the command line, for the manifest; none if a program runs the study
 
     Raises
     ------
@@ -70,4 +74,5 @@ def run_study(
         RunDirectory(directory).refuse_taken()
     progress("preparing", 0, 1)
     study = study_of(scenario, name, overrides)
-    return fly_study(study, directory, executor_factory=executor_factory or ExecutorFactory(), resume=resume, progress=progress)
+    factory = executor_factory or ExecutorFactory()
+    return fly_study(study, directory, executor_factory=factory, resume=resume, progress=progress, command=command)

@@ -10,7 +10,7 @@ from common.run_layout import COMPARISON, HISTORY_SUFFIX, JOURNAL, MANIFEST, SUM
 from scenarios.engine.fingerprint import differences
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, Study, StudySummary
+from scenarios.engine.runner import Study, StudySummary
 from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
@@ -19,6 +19,7 @@ from scenarios.schema.load import checked
 from scenarios.schema.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.registry import study_of
+from scenarios.studies.single_flight import SingleFlight
 
 _TABLES = (SUMMARY, COMPARISON)
 """Tables that may have the row of a flight."""
@@ -27,7 +28,7 @@ NOT_COMPARED = ("wall_time_s",)
 """Columns that differ between repetitions of the same flight."""
 
 
-class Replay:
+class Replay(SingleFlight):
     """The replay of one flight, as a study.
 
     Parameters
@@ -40,9 +41,6 @@ class Replay:
     InputError : there is no such flight, or the run cannot be read
     """
 
-    what = "flights"
-    planned = 1
-
     def __init__(self, name: str, viewer: tuple[str, int] | None = None) -> None:
         self._viewer = viewer
         self._flight_id = Path(name).name.removesuffix(HISTORY_SUFFIX)
@@ -54,13 +52,14 @@ class Replay:
         if viewer and self._row.get("fidelity") != "six_dof":
             raise InputError(f"--flightgear shows aircraft in six degrees of freedom; '{self._flight_id}' is a kinematic flight")
         try:
-            self._study = self._restored(manifest)
+            study = self._restored(manifest)
         except (LookupError, TypeError, AttributeError, ValueError) as error:
             if isinstance(error, InputError):
                 raise
             raise InputError(f"'{self._from}': {MANIFEST} is not that of a run ({type(error).__name__}: {error})") from None
         self._original_fingerprint = manifest.get("fingerprint", {})
-        self.config_hash = f"{self._study.config_hash} {self._flight_id}"
+        task, trial = replace(self._task, every_step=True), self._row["trial"]
+        super().__init__(study, task, flight_id=self._flight_id, trial=trial, table=self._table)
 
     def _manifest(self) -> dict[str, Any]:
         try:
@@ -113,30 +112,13 @@ class Replay:
 
     def initial_manifest(self) -> dict[str, Any]:
         """Return the manifest as written before the flight."""
-        manifest = self._study.initial_manifest()
-        replayed: dict[str, Any] = {"title": f"{manifest['title']}: replay of {self._flight_id}", "replayed": self._flight_id}
-        # A flight that was chosen is no random sample.
-        trial = self._row["trial"]
-        one = {"trial_flights": {trial: 1}, "flights_planned": 1, "sampled_at_random": {trial: False}}
-        return manifest | replayed | one | {"config_hash": self.config_hash}
+        manifest = super().initial_manifest()
+        return manifest | {"title": f"{manifest['title']}: replay of {self._flight_id}", "replayed": self._flight_id}
 
     def work(self, run: RunDirectory) -> Work:
-        """Return the work of the original study."""
-        work = self._study.work(run)
+        """Return the work of the original study, shown where that is asked for."""
+        work = super().work(run)
         return replace(work, viewer=self._viewer) if self._viewer and isinstance(work, FlightWork) else work
-
-    def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
-        """Fly the flight."""
-        fly([replace(self._task, every_step=True)])
-
-    def postprocess(self, _run: RunDirectory, _journal: Journal, _progress: Progress) -> None:
-        """Do nothing: a replay has only tables and its time history."""
-
-    def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write the tables; the row is in ``summary.csv`` even if the flight was a comparison."""
-        self._study.export(run, journal)
-        if self._table != SUMMARY:
-            (run.path / self._table).replace(run.path / SUMMARY)
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return whether the row is identical to that of the original flight."""

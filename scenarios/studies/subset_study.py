@@ -39,6 +39,8 @@ class SubsetStudy(FlightStudy):
     InputError : as of ``FlightStudy``
     """
 
+    chooses_flights = True
+
     def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
         flights = scenario.subset.flights_max
         sampled = {trial: of.model_copy(update={"flights": flights}) for trial, of in trials.items()}

@@ -63,6 +63,7 @@ class VehicleSetup:
     reversal : how the heading rate follows a reversal of the turn
     response_error : how much nearer a full reversal may come than with that response [m]
     airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
+    altitude_reach : difference of the altitude from its command within which the autopilot removes it for certain [m]
     turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed; empty without a limit [m/s, rad/s]
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
     aircraft : in six degrees of freedom, or none for the kinematic vehicle
@@ -74,6 +75,7 @@ class VehicleSetup:
     airspeed_bandwidth: float
     airspeed_min: float
     airspeed_max: float
+    altitude_reach: float = math.inf
     turn_airspeeds: tuple[float, ...] = ()
     turn_rates: tuple[float, ...] = ()
     crab_banks: tuple[float, ...] = (-1.0, 1.0)
@@ -139,9 +141,7 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
     with tempfile.TemporaryDirectory() as folder:
         write_tree(write_root(schedule, Path(folder)), run.model)
     run.write_json(run.innerloop, found.record)
-    start = level_trim(
-        schedule.spec, scenario.guidance.airspeed_mps, scenario.plume.source_height_m, schedule.level(schedule.middle)
-    )
+    start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.altitude, schedule.level(schedule.middle))
     turns = schedule.trims[schedule.middle]
     reversal = found.record["turn_reversal"]
     slower_or_faster = abs(start.airspeed / reversal["airspeed_mps"] - 1.0)
@@ -155,6 +155,7 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
         airspeed_bandwidth=found.design.bandwidths.airspeed,
         airspeed_min=schedule.envelope.airspeed_min,
         airspeed_max=schedule.envelope.airspeed_max,
+        altitude_reach=schedule.weights.altitude_error_max,
         turn_airspeeds=tuple(schedule.airspeeds),
         turn_rates=_slower_turns(schedule),
         crab_banks=tuple(turn.roll for turn in turns),

@@ -8,7 +8,13 @@ import numpy as np
 from scenarios.schema.equipment import FaultConfig
 
 VESSEL_DATA, SATELLITES = "vessel_data", "satellite_navigation"
-"""Faults that are not the aircraft's."""
+"""Losses of what is received."""
+
+SNIFFER_DEAD, SNIFFER_SATURATED = "sniffer_dead", "sniffer_saturated"
+"""Faults of a sniffer on board: it repeats its last reading, or reads the end of its range."""
+
+NOT_OF_AIRCRAFT = frozenset({"none", VESSEL_DATA, SATELLITES, SNIFFER_DEAD, SNIFFER_SATURATED})
+"""Kinds that are not the aircraft's."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,7 +37,7 @@ class TimedFault:
 
     def of_aircraft(self) -> bool:
         """Return whether it is a part of the aircraft that fails."""
-        return self.kind not in ("none", VESSEL_DATA, SATELLITES)
+        return self.kind not in NOT_OF_AIRCRAFT
 
 
 NO_FAULT = TimedFault(kind="none", begins=math.inf, ends=math.inf)

@@ -29,6 +29,7 @@ from gnc.mission.approach import ApproachParameters
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.direct_tracking import DirectTracking
 from gnc.mission.mode import Mode
+from gnc.mission.plume_axis import PredictedPlume
 from gnc.mission.plume_following import GLIDE_ALTITUDE, FollowingParameters, PlumeFollowing
 from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters, ReportedVessel
 from gnc.reference.moving_centre import CentreParameters
@@ -73,7 +74,7 @@ def following(*, guard=GUARD, climb=0.0):
         reach_time=9.0,
         drift_rate=1.0,
         plan_interval=PLAN_INTERVAL,
-        height=AxisHeight(source=60.0, climb=climb),
+        axis=PredictedPlume(height=AxisHeight(source=60.0, climb=climb), altitude=60.0),
     )
     return GuidanceParameters(
         speed=SPEED,

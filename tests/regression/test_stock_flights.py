@@ -58,7 +58,7 @@ def test_its_airspeeds_are_named_where_the_scenario_leaves_them(t37, tmp_path):
 def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(t37):
     html, pdf = build_reports(t37.path)
     assert pdf.read_bytes().startswith(b"%PDF")
-    assert "Aircraft: T37, in six degrees of freedom" in html.read_text(encoding="utf-8")
+    assert "of the T37 in six degrees of freedom" in html.read_text(encoding="utf-8")
     report = content(read_run(t37.path))
     blocks = [block for section in report.sections for block in section.blocks]
     charts = {block.name: block for block in blocks if isinstance(block, Chart)}

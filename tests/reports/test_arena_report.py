@@ -5,10 +5,11 @@ import re
 
 import pytest
 
-from reports.arena.charts import crossing_chart, effort_charts, track_chart
+from reports.arena.charts import crossing_chart, effort_charts, track_chart, worth_chart
 from reports.arena.content import arena_content
 from reports.arena.data import read_arena
-from reports.arena.tables import condition_table, tracking_table
+from reports.arena.figures import CROSSINGS, ERROR, PLUME_TIME, SULPHUR
+from reports.arena.tables import condition_table, plume_table, tracking_table
 from reports.document.blocks import Table
 from reports.registry import content
 from reports.run.run_data import read_run
@@ -64,7 +65,7 @@ def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
     assert {note.text for note in panel.notes} == {"1", "2"}
     assert len(each.panels) == 2
     # The ordinate is logarithmic: its marks are powers of ten.
-    error = arena.of("error_rms_m", arena.entrants[0], "all").mean
+    error = arena.of(ERROR, arena.entrants[0], "all").mean
     assert any(math.isclose(float(y), math.log10(error)) for line in panel.lines for y in line.y)
 
 
@@ -73,8 +74,27 @@ def test_the_limit_of_any_path_is_drawn_and_listed_where_it_is_known(arena):
     limits = [line for panel in chart.panels for line in panel.lines if line.label == "limit of any path"]
     # 5 + 4 nu at nu = 0.5 in calm air.
     assert limits[0].x == pytest.approx([7.0, 7.0], abs=1e-3)
-    table = condition_table(arena, "crossings_per_minute", "{:.2f}", greater_first=True)
+    table = condition_table(arena, CROSSINGS)
     assert table.rows[-1][1:3] == ["limit of any path", "7.00"]
+
+
+def test_what_a_minute_is_worth_to_the_measurement_is_drawn_and_listed(arena):
+    sulphur, inside, crossings = worth_chart(arena).panels
+    assert [panel.x_label for panel in (sulphur, inside, crossings)] == [
+        "Sulphur error of a minute [% m/m]", "In the plume [s/min]", "Crossings [1/min]"
+    ]  # fmt: skip
+    assert {len(panel.y_names) for panel in (sulphur, inside, crossings)} == {3}
+    table = plume_table(arena)
+    column = table.head.index("Sulphur error of a minute [% m/m]")
+    for row in table.rows:
+        mean, low, high = re.fullmatch(r"([\d.]+|∞) \(([\d.]+|∞)–([\d.]+|∞)\)", row[column]).groups()
+        # Flights of 40 s about the vessel may not meet the plume at all, and then leave it unknown.
+        assert float(low.replace("∞", "inf")) <= float(mean.replace("∞", "inf")) <= float(high.replace("∞", "inf"))
+    # Information adds up: what is shown is the inverse root of the mean, and less of it is better.
+    shown = {entrant.name: arena.of(SULPHUR, entrant, "all") for entrant in arena.entrants}
+    best = min(shown.values(), key=lambda estimate: estimate.mean)
+    assert best.best
+    assert not math.isnan(arena.of(PLUME_TIME, arena.entrants[0], "wind").mean)
 
 
 def test_tracks_are_shown_of_each_law_from_the_same_start(arena):
@@ -90,14 +110,13 @@ def test_what_each_law_was_given_and_what_it_cannot_do_is_said(run):
 
 
 def test_the_headline_names_the_best_of_each_task(run):
-    verdict, _ = arena_content(run)
+    verdict = arena_content(run).verdict
     assert re.match(r"Tracking: npfg is best, \d+\.\d\d m rms; circling: npfg \(circle\) is best", verdict.headline)
 
 
 def test_an_arena_that_was_not_evaluated_is_reported_as_flights(path, run):
     (path / "arena.json").rename(path / "gone")
     try:
-        _, sections = arena_content(run)
-        assert "plume" not in {section.anchor for section in sections}
+        assert "plume" not in {section.anchor for section in arena_content(run).sections}
     finally:
         (path / "gone").rename(path / "arena.json")

@@ -5,10 +5,11 @@ import re
 import numpy as np
 import pytest
 
-from reports.document.blocks import Content, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
+from reports.document.blocks import Card, Content, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
 from reports.document.chart import Chart, Line, Panel
 from reports.render.html import write_html
 from reports.render.pdf import write_pdf
+from reports.run.letterhead import Letterhead
 
 
 def a_chart(name):
@@ -20,9 +21,12 @@ def a_chart(name):
 def a_report(blocks):
     return Content(
         title="Title",
+        letterhead=Letterhead(run="run", when="2026-11-22 08:35 UTC"),
         description="Description.",
         changes="",
-        verdict=Verdict(holds=True, complete=True, headline="Good", detail="", failures=[], figures=[("Tile", "1", "")]),
+        flown="One flight.",
+        picture=None,
+        verdict=Verdict(holds=True, complete=True, headline="Good", detail="", failures=[], figures=[Card("Card", "1")]),
         sections=[
             Section(anchor="first", title="The first section", nav_title="First", blocks=blocks),
             Section(anchor="second", title="Second section", blocks=[Text("Second text.")]),
@@ -33,7 +37,8 @@ def a_report(blocks):
 def html_of(blocks, tmp_path):
     write_html(a_report(blocks), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text(encoding="utf-8")
-    return text[text.index("<h1>") :]
+    # Page 1 and the contents are what page 1's own tests are about.
+    return text[text.index("<nav>") :]
 
 
 def test_the_navigation_names_every_section_once(tmp_path):
@@ -42,7 +47,7 @@ def test_the_navigation_names_every_section_once(tmp_path):
     assert re.findall(r'<a href="#(\w+)">(.*?)</a>', nav) == [
         ("summary", "Summary"), ("first", "First"), ("second", "Second section"),
     ]  # fmt: skip
-    assert re.findall(r'<section id="(\w+)">', text) == ["summary", "first", "second"]
+    assert re.findall(r'<section id="(\w+)">', text) == ["contents", "first", "second"]
 
 
 def test_blocks_appear_in_their_order_with_their_text_escaped(tmp_path):
@@ -82,10 +87,13 @@ def test_every_block_is_printed_and_each_flight_has_a_page(tmp_path):
     )
     write_pdf(a_report([Text("Text.")]), tmp_path / "text.pdf")
     write_pdf(a_report([table]), tmp_path / "table.pdf")
-    assert pages(tmp_path / "text.pdf") == 1
-    assert pages(tmp_path / "flights.pdf") == 3
-    assert headings(tmp_path / "flights.pdf") == {"The first section", "Heading", "Second section", "Page a", "Page b"}
-    assert pages(tmp_path / "table.pdf") > 3
+    # Page 1, and one for the sections.
+    assert pages(tmp_path / "text.pdf") == 2
+    assert pages(tmp_path / "flights.pdf") == 4
+    assert headings(tmp_path / "flights.pdf") == {
+        "About this run", "The first section", "Heading", "Second section", "Page a", "Page b",
+    }  # fmt: skip
+    assert pages(tmp_path / "table.pdf") > 4
 
 
 def pages(path):

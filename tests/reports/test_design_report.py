@@ -56,6 +56,7 @@ def test_both_reports_are_built_from_disk_alone(path):
 def test_everything_is_in_its_place(report):
     shown = {section.anchor: [chart.name for chart in blocks_of(report, Chart, section.anchor)] for section in report.sections}
     assert shown == {
+        "figures": [],
         "margins": ["diskmargins", "classicalmargins"],
         "loops": ["bode", "nichols"],
         "responses": ["turnresponse", "climbresponse"],
@@ -85,7 +86,7 @@ def test_a_design_with_every_margin_is_called_good(report):
     assert "45 points of the grid over airspeed and bank and at 20 points between them" in verdict.detail
     assert "1 of 45 equilibria are at a limit" in verdict.detail
     # At the corner of the grid: 11 dB less 2.2 dB for each of airspeed and bank.
-    assert verdict.figures[0] == ("Worst gain margin: elevator, 45 m/s, −33°", "6.6 dB", "≥ 6 dB")
+    assert verdict.figures[0] == ("Worst gain margin: elevator, 45 m/s, −33°", "6.6 dB", "≥ 6 dB", True)
 
 
 def test_the_margin_table_has_the_worst_of_each_loop_and_where(report):

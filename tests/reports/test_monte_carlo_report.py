@@ -83,7 +83,7 @@ def lines_of(panel):
 
 def test_a_study_comes_first_in_the_report_and_a_run_without_statistics_has_no_such_sections(run):
     anchors = [section.anchor for section in content(run).sections]
-    assert anchors[:4] == ["study", "spread", "drivers", "trials"]
+    assert anchors[:5] == ["figures", "study", "spread", "drivers", "trials"]
     assert monte_carlo_sections(replace(run, statistics=None)) == []
 
 
@@ -190,7 +190,9 @@ def test_why_there_are_no_indices_is_said():
     rows, inputs = study_rows(50)
     section = monte_carlo_sections(run_of(rows, inputs))[2]
     texts = [block.text for block in section.blocks if isinstance(block, Text)]
-    assert "Settling time: 50 flights have this figure; indices take 200 at least." in texts
+    # Two figures have indices at all here, each of 50 flights: one sentence, and not a word on how to read indices.
+    without = "Distance kept beyond r_min (50 flights); Settling time (50 flights)"
+    assert texts == [f"Indices take 200 at least, so that there are none of: {without}."]
     assert charts_of(section) == {}
 
 

@@ -1,12 +1,14 @@
 """Charts as data for the library in the page, and that library itself."""
 
 import base64
+import itertools
 import re
 
 import numpy as np
 import pytest
 
-from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.chart import Band, Chart, Line, Note, Panel
+from reports.render import matplotlib_charts
 from reports.render.html import PLOTLY
 from reports.render.plotly_charts import draw
 
@@ -97,3 +99,52 @@ def test_axes_are_logarithmic_and_equally_long_where_a_panel_asks_for_it():
     assert (layout["yaxis2"]["scaleanchor"], layout["yaxis2"]["scaleratio"]) == ("x2", 1)
     low, high = layout["xaxis2"]["range"]
     assert (low < 1.0, high > 10.0) == (True, True)  # every curve, with a little to spare
+
+
+@pytest.mark.parametrize(("columns", "narrow"), [(1, 1), (2, 1), (3, 1), (4, 2), (5, 2)])
+@pytest.mark.parametrize("share_x", [False, True])
+def test_on_a_narrow_screen_panels_stand_below_each_other_with_room_for_labels(columns, narrow, share_x):
+    figure = draw(a_chart(5, columns=columns, share_x=share_x))
+    numbers = ["", *(str(i) for i in range(2, 6))]
+    boxes = [(*figure["narrow"][f"xaxis{n}"]["domain"], *figure["narrow"][f"yaxis{n}"]["domain"]) for n in numbers]
+    assert len({left for left, *_ in boxes}) == narrow
+    assert all(figure["narrow"][f"xaxis{n}"]["showticklabels"] for n in numbers)
+    inner = figure["narrow"]["height"] - figure["narrow"]["margin"]["t"] - 55  # what is below them: the renderer's _BOTTOM
+    column = sorted((bottom, top) for left, _, bottom, top in boxes if left == 0.0)
+    for (_, top), (bottom, _) in itertools.pairwise(column):
+        # Figures and a title of 13 px letters take some 45 px.
+        assert (bottom - top) * inner > 45.0
+
+
+def test_the_last_panel_may_be_as_wide_as_the_page():
+    layout = draw(a_chart(3, columns=2, panel_height=0.4, last_height=0.2))["layout"]
+    assert layout["xaxis3"]["domain"] == [0.0, 1.0]
+    heights = [layout[f"yaxis{n}"]["domain"][1] - layout[f"yaxis{n}"]["domain"][0] for n in ("", 2, 3)]
+    assert heights[0] == pytest.approx(heights[1])
+    assert heights[0] == pytest.approx(2.0 * heights[2])
+    assert layout["yaxis"]["domain"][0] > layout["yaxis3"]["domain"][1]
+    printed = matplotlib_charts.draw(a_chart(3, columns=2, panel_height=0.4, last_height=0.2)).axes
+    assert len(printed) == 3
+
+
+def test_a_band_is_tinted_over_the_whole_height_and_is_one_entry_of_the_legend():
+    bands = [Band(start=1.0, end=2.0, label="guard", colour="purple"), Band(start=3.0, end=4.0, label="guard", colour="purple")]
+    chart = Chart(name="chart", caption="", panels=[a_panel(bands=bands), a_panel(bands=bands)], share_x=True)
+    layout = draw(chart)["layout"]
+    assert [shape.get("showlegend", False) for shape in layout["shapes"]] == [True, False, False, False]
+    assert {(shape["x0"], shape["x1"], shape["y0"], shape["y1"]) for shape in layout["shapes"]} == {
+        (1.0, 2.0, 0, 1),
+        (3.0, 4.0, 0, 1),
+    }
+    assert [shape["yref"] for shape in layout["shapes"]] == ["y domain", "y domain", "y2 domain", "y2 domain"]
+    assert layout["showlegend"]
+    (legend,) = matplotlib_charts.draw(chart).legends
+    assert [text.get_text() for text in legend.get_texts()] == ["curve", "guard"]
+
+
+def test_the_legend_has_room_above_the_panels_and_more_of_it_on_a_narrow_screen():
+    x = np.array([0.0, 1.0])
+    lines = [Line(x=x, y=x, label=f"a curve with a long name, number {i}", colour="blue") for i in range(6)]
+    figure = draw(Chart(name="c", caption="", panels=[Panel(x_label="a [m]", y_label="b [m]", lines=lines)]))
+    few = draw(a_chart(1))
+    assert few["layout"]["margin"]["t"] < figure["layout"]["margin"]["t"] < figure["narrow"]["margin"]["t"]

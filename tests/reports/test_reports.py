@@ -67,7 +67,7 @@ def test_both_reports_are_built_from_disk_alone(copy):
 
 def test_the_sweep_shows_everything_in_its_place(report):
     assert [section.anchor for section in report.sections] == [
-        "trials", "trial1", "comparison", "failed", "flights", "innerloop", "parameters", "provenance",
+        "figures", "trials", "trial1", "comparison", "failed", "flights", "innerloop", "parameters", "provenance",
     ]  # fmt: skip
     names = {section.anchor: [c.name for c in blocks_of(report, Chart, section.anchor)] for section in report.sections}
     assert names["trial1"] == [f"trial1-nu1-{what}" for what in ("interval", "distance", "errors", "command")]
@@ -75,7 +75,8 @@ def test_the_sweep_shows_everything_in_its_place(report):
     assert names["innerloop"] == ["responses", "margins", "loops", "poles"]
     tables = {section.anchor: len(blocks_of(report, Table, section.anchor)) for section in report.sections}
     assert tables == {
-        "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "innerloop": 3, "parameters": 2, "provenance": 1,
+        "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "innerloop": 3, "parameters": 2,
+        "provenance": 1,
     }  # fmt: skip
     assert all([chart.name for chart in flight.charts] == ["tracks", "histories"] for flight in flights_of(report)[:2])
 
@@ -169,7 +170,7 @@ def test_of_a_sweep_the_closest_flight_and_a_typical_one_are_printed_and_all_if_
 
 
 def test_the_aircraft_is_named_at_the_head_of_the_report(report):
-    assert report.verdict.detail.endswith("Aircraft: Skywalker X8, in six degrees of freedom.")
+    assert "of the Skywalker X8 in six degrees of freedom" in report.flown
 
 
 def test_a_record_of_another_aircraft_over_airspeed_and_bank_is_shown_in_the_sweeps_report(copy):
@@ -177,7 +178,7 @@ def test_a_record_of_another_aircraft_over_airspeed_and_bank_is_shown_in_the_swe
     (copy / "innerloop.json").write_text(json.dumps(design), encoding="utf-8")
     html, pdf = build_reports(copy)
     assert pdf.read_bytes().startswith(b"%PDF")
-    assert f"Aircraft: {design['title']}, in six degrees of freedom" in html.read_text(encoding="utf-8")
+    assert f"of the {design['title']} in six degrees of freedom" in html.read_text(encoding="utf-8")
     section = next(section for section in content(read_run(copy)).sections if section.anchor == "innerloop")
     assert [block.name for block in section.blocks if isinstance(block, Chart)] == ["responses", "margins", "loops", "poles"]
     shown = [block for block in section.blocks if isinstance(block, Table)]

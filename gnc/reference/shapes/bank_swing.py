@@ -22,7 +22,8 @@ _ETA_MIN = 1e-9
 _ORDERS = 8
 """Pairs of terms in the series of the orbit; what is left out is below 1e-4 of its width."""
 
-_TURN = 2.0 * math.pi
+_TURN, _QUARTER_TURN = 2.0 * math.pi, 0.5 * math.pi
+_PER_QUARTER = 1.0 / _QUARTER_TURN
 
 _NODES, _WEIGHTS = (values.tolist() for values in np.polynomial.legendre.leggauss(10))
 """Of Gauss's rule, good to 1e-12 of the mean speed while the aircraft rolls."""
@@ -39,14 +40,13 @@ class BankSwing:
     """
 
     __slots__ = (
-        "_heading_rate", "_per_tangent", "_ramp", "_roll_rate", "_rolled", "_rolling", "_tables", "_tangent_max",
+        "_heading_rate", "_per_tangent", "_ramp", "_roll_rate", "_rolled", "_rolling", "_tables",
     )  # fmt: skip
 
     def __init__(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> None:
         self._per_tangent = STANDARD_GRAVITY / speed
         self._heading_rate, self._roll_rate = heading_rate, roll_rate_max
-        self._tangent_max = heading_rate / self._per_tangent
-        bank_max = math.atan(self._tangent_max)
+        bank_max = math.atan(heading_rate / self._per_tangent)
         # Time in which bank comes to its largest value, and the course that is turned through meanwhile.
         self._ramp = bank_max / roll_rate_max
         self._rolling = self._per_tangent / roll_rate_max
@@ -55,11 +55,11 @@ class BankSwing:
 
     def half_period(self, eta: float) -> float:
         """Return the time from one largest course offset to the other at full rates, the crossing interval [s]."""
-        return self._shape(eta)[0]
+        return 2.0 * self._shape(eta)[0]
 
     def largest_heading_rate(self, eta: float) -> float:
         """Return the heading rate at the largest bank of an amplitude [rad/s]."""
-        return self._per_tangent * self._shape(eta)[2]
+        return self._shape(eta)[2]
 
     def holds_bank(self, eta: float) -> bool:
         """Return whether an amplitude takes the largest bank, or less."""
@@ -73,64 +73,92 @@ class BankSwing:
         """Return the mean speed over speed [-]: the mean of cos(course) over a quarter of the period."""
         if eta < _ETA_MIN:
             return 1.0
-        half, ramp, tangent = self._shape(eta)
+        quarter, ramp, turning = self._shape(eta)
         total = 0.0
         for node, weight in zip(_NODES, _WEIGHTS, strict=True):
             banked = self._roll_rate * 0.5 * (1.0 + node) * ramp if ramp else 0.0
             total += weight * math.cos(eta + self._rolling * math.log(math.cos(banked)))
-        turning = self._per_tangent * tangent
-        return (ramp * total + 2.0 * math.sin(turning * (0.5 * half - ramp)) / turning) / half
+        return (0.5 * ramp * total + math.sin(turning * (quarter - ramp)) / turning) / quarter
 
     def frequency(self, eta: float, heading_rate: float) -> float:
         """Return the largest omega_0 within a heading rate and the roll rate, no more than that at ``ETA_FREQUENCY`` [rad/s]."""
-        half, _, tangent = self._shape(eta if eta > ETA_FREQUENCY else ETA_FREQUENCY)
-        largest = self._per_tangent * tangent
-        return math.pi / half if heading_rate >= largest else math.pi / half * heading_rate / largest
+        eta = eta if eta > ETA_FREQUENCY else ETA_FREQUENCY
+        if eta > self._rolled:
+            quarter, largest = self._ramp + (eta - self._rolled) / self._heading_rate, self._heading_rate
+        else:
+            quarter, largest = self._rolled_through(eta)
+        fastest = _QUARTER_TURN / quarter
+        return fastest if heading_rate >= largest else fastest * heading_rate / largest
 
     def course(self, eta: float, phase: float) -> float:
         """Return the course offset from the mean course [rad]."""
-        if eta < _ETA_MIN:
+        if eta > self._rolled:
+            rate = self._heading_rate
+            held = (eta - self._rolled) / rate
+            quarter = self._ramp + held
+        elif eta < _ETA_MIN:
             return eta * math.cos(phase)
-        half, ramp, tangent = self._shape(eta)
-        time = abs(math.remainder(phase, _TURN)) / math.pi * half
-        # Of the second half of the way across it is the first one's mirror image.
-        other = time + time > half
-        if other:
-            time = half - time
-        if time < ramp:
-            course = eta + self._rolling * math.log(math.cos(self._roll_rate * time))
         else:
-            course = self._per_tangent * tangent * (0.5 * half - time)
-        return -course if other else course
+            quarter, rate = self._rolled_through(eta)
+            held = 0.0
+        # Time from the middle of the way across, which is one half of the period before phase 0 and the other one after it.
+        off = quarter - quarter * _PER_QUARTER * abs(math.remainder(phase, _TURN))
+        if -held <= off <= held or not self._ramp:
+            return rate * off
+        course = eta + self._rolling * math.log(math.cos(self._roll_rate * (quarter - abs(off))))
+        return course if off > 0.0 else -course
+
+    def heading_rate(self, eta: float, phase: float) -> float:
+        """Return the heading rate of a reference that takes full rates [rad/s]."""
+        quarter, ramp, rate = self._shape(eta)
+        angle = math.remainder(phase, _TURN)
+        time = quarter - abs(quarter - quarter * _PER_QUARTER * abs(angle))
+        if ramp and time < ramp:
+            rate = self._per_tangent * math.tan(self._roll_rate * time)
+        return -rate if angle > 0.0 else rate
 
     def slopes(self, eta: float, phase: float) -> tuple[float, float]:
         """Return the slope of the course offset over eta, from -1 to 1, and that over the phase divided by eta [-]."""
-        if eta < _ETA_MIN:
+        if eta > self._rolled:
+            rate = self._heading_rate
+            held = (eta - self._rolled) / rate
+            quarter = self._ramp + held
+        elif eta < _ETA_MIN:
             return math.cos(phase), -math.sin(phase)
-        half, ramp, tangent = self._shape(eta)
+        else:
+            quarter, rate = self._rolled_through(eta)
+            held = 0.0
         angle = math.remainder(phase, _TURN)
-        time = abs(angle) / math.pi * half
-        other = time + time > half
-        if other:
-            time = half - time
-        banked = math.tan(self._roll_rate * time) if time < ramp else tangent
-        # Half a period grows by 2 over the largest heading rate per unit of eta, whether bank is held or not.
-        by_eta = 1.0 - 2.0 * time * banked / (half * tangent)
-        by_phase = self._per_tangent * banked * half / (math.pi * eta)
-        return -by_eta if other else by_eta, -by_phase if angle > 0.0 else by_phase
+        off = quarter - quarter * _PER_QUARTER * abs(angle)
+        # A quarter of the period grows by 1 over the largest heading rate per unit of eta, whether bank is held or not.
+        if -held <= off <= held or not self._ramp:
+            by_eta = off / quarter
+        else:
+            time = quarter - abs(off)
+            turning = self._per_tangent * math.tan(self._roll_rate * time)
+            by_eta = 1.0 - time * turning / (quarter * rate)
+            if off < 0.0:
+                by_eta = -by_eta
+            rate = turning
+        by_phase = _PER_QUARTER * rate * quarter / eta
+        return by_eta, -by_phase if angle > 0.0 else by_phase
 
     def offset(self, eta: float, phase: float) -> tuple[float, float]:
         """Return where the reference is from the orbit's centre, along the mean course and to its right [V_r/omega_0]."""
         return self._series().offset(eta, phase)
 
-    def _shape(self, eta: float) -> tuple[float, float, float]:
-        """Return half a period, the time in which bank comes to its largest value [s], and the tangent of that [-]."""
-        if eta > self._rolled:
-            return 2.0 * (self._ramp + (eta - self._rolled) / self._heading_rate), self._ramp, self._tangent_max
+    def _rolled_through(self, eta: float) -> tuple[float, float]:
+        """Return a quarter of the period [s] and the largest heading rate [rad/s] of an amplitude that takes less than phi_max."""
         # cos(bank) = exp(-eta/rolling): tan(bank)^2 = exp(2 eta/rolling) - 1.
         tangent = math.sqrt(math.expm1(2.0 * eta / self._rolling))
-        ramp = math.atan(tangent) / self._roll_rate
-        return 2.0 * ramp, ramp, tangent
+        return math.atan(tangent) / self._roll_rate, self._per_tangent * tangent
+
+    def _shape(self, eta: float) -> tuple[float, float, float]:
+        """Return a quarter of the period, the time until bank is largest [s], and the heading rate then [rad/s]."""
+        if eta > self._rolled:
+            return self._ramp + (eta - self._rolled) / self._heading_rate, self._ramp, self._heading_rate
+        quarter, largest = self._rolled_through(eta)
+        return quarter, quarter, largest
 
     def _series(self) -> OrbitTables:
         if self._tables is None:

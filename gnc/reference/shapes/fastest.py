@@ -84,7 +84,7 @@ class FastestOscillation:
 
     def heading_rate(self, phase: float) -> float:
         """Return the heading rate at a phase [rad/s]."""
-        return self.eta * self.omega_0 * self.courses.slopes(self.eta, phase)[1]
+        return self.courses.heading_rate(self.eta, phase)
 
     def sidebands(self, orders: npt.NDArray[np.int64]) -> Array:
         """Return |c_n|^2 of the Fourier series of exp(i course) [-]."""

@@ -6,9 +6,11 @@ import importlib.util
 import json
 import os
 import platform
+import shlex
 import subprocess
 import sys
 from collections.abc import Callable
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +24,9 @@ from measurement.estimate.result import plain
 
 MANIFEST, ESTIMATE, SAMPLES = "manifest.json", "estimate.json", "samples.csv"
 """What the directory holds."""
+
+FORMAT = 1
+"""Version of the directory, as the project's other runs count it."""
 
 STUDY = "measurement"
 """What the manifest calls the kind of run."""
@@ -71,9 +76,14 @@ def build_report(directory: Path) -> str:
 
 
 def _manifest(analysis: Analysis, source: Path, config: Path | None) -> dict[str, Any]:
+    configured = f" --config {shlex.quote(config.name)}" if config else ""
+    command = f"python -m measurement.estimate {shlex.quote(source.name)}{configured}"
     digest = hashlib.sha256(source.read_bytes() + (config.read_bytes() if config else b"")).hexdigest()[:_HASH_LETTERS]
     return {
+        "format": FORMAT,
         "study": STUDY,
+        "begun_utc": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}",
+        "command": command,
         "name": source.stem,
         "title": f"Fuel sulphur content of {source.stem}",
         "state": "complete",
@@ -83,6 +93,7 @@ def _manifest(analysis: Analysis, source: Path, config: Path | None) -> dict[str
         "git_revision": "not recorded",
         "python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}",
+        "cores": os.cpu_count(),
         "packages": {name: importlib.metadata.version(name) for name in _PACKAGES},
         "files": [ESTIMATE, SAMPLES],
     }

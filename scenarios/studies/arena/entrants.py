@@ -113,7 +113,14 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
             raise InputError(f"arena.conditions: two are called '{condition.name}'; give each a name of its own")
         if condition.name == TUNING:
             raise InputError(f"arena.conditions: '{TUNING}' is what the tuner's flights are called; give it another name")
-        bare = {"study": "flights", "title": condition.title, "arena": {}, "laws": (), "cases": cases_of(entrants, {})}
+        bare = {
+            "study": "flights",
+            "title": condition.title,
+            "arena": {},
+            "laws": (),
+            "cases": cases_of(entrants, {}),
+            "flight.measured_s": scenario.arena.window_s,
+        }
         try:
             trials[condition.name] = with_values(scenario, {**condition.set, **bare})
         except InputError as error:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.engine.task import Row
+from scenarios.metrics.window import MEASURED_COLUMNS
 from scenarios.planning.theory import crossing_limit
 from scenarios.schema.experiment import ArenaConfig
 from scenarios.schema.guidance import GuidanceConfig
@@ -26,7 +27,7 @@ LOWER_IS_BETTER = (
 )  # fmt: skip
 """Figures of a flight's end of which less is better."""
 
-GREATER_IS_BETTER = ("crossings_per_minute", "plume_s_per_minute")
+GREATER_IS_BETTER = ("crossings_per_minute", *MEASURED_COLUMNS)
 """And of which more is."""
 
 _TRACKING_ONLY = ("error_rms_m", "effort_rms_rad_s", "excess_rms_rad_s", "saturated_share")

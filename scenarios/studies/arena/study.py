@@ -11,7 +11,7 @@ from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Row, Task
 from scenarios.errors import InputError
 from scenarios.flight import FlightWork
-from scenarios.metrics.window import WINDOW_COLUMNS
+from scenarios.metrics.window import MEASURED_COLUMNS, WINDOW_COLUMNS
 from scenarios.schema.experiment import CaseConfig
 from scenarios.schema.scenario import Scenario
 from scenarios.studies.arena.entrants import cases_of, conditions_of, entrants_of
@@ -39,6 +39,8 @@ class ArenaStudy(FlightStudy):
     InputError : as of ``FlightStudy``; a law or a condition that does not exist, or an arena of several points
     """
 
+    chooses_flights = True
+
     def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
         if scenario.sweep.root or scenario.cases or scenario.comparison.variants or scenario.fidelity == "both":
             raise InputError(
@@ -48,13 +50,15 @@ class ArenaStudy(FlightStudy):
         self._arena, self._seed = scenario.arena, scenario.seed
         super().__init__(scenario, name, trials, overrides=overrides)
         keys = dict.fromkeys(f"guidance.{key}" for entrant in self.entrants for key in entrant.defaults)
-        self.tables |= {WINDOW_TABLE: ("flight_id", "trial", *WINDOW_COLUMNS), TUNING_TABLE: _TUNING_COLUMNS}
+        self.tables |= {WINDOW_TABLE: ("flight_id", "trial", *WINDOW_COLUMNS, *MEASURED_COLUMNS), TUNING_TABLE: _TUNING_COLUMNS}
         self.tables[DRAWS] = (*self.tables[DRAWS], *keys)
         self._chosen: dict[str, Mapping[str, float]] = {}
 
     def expanded(self, trials: Mapping[str, Scenario]) -> dict[str, Scenario]:
         """Return a trial for each condition, with a case for each law."""
         ((name, self._scenario),) = trials.items()
+        if self._scenario.flight.measured_s is not None:
+            raise InputError("flight.measured_s is given; an arena measures the last arena.window_s of each flight: set that")
         for key, duration in (
             ("flight.duration_max_s", self._scenario.flight.duration_max_s),
             ("arena.tuning_duration_s", self._arena.tuning_duration_s),

@@ -83,7 +83,7 @@ class Tuner:
                 setup = kinematic_setup(request.scenario)
                 plan = plan_flight(request.scenario, flight_id=request.flight_id, seed=request.noise, setup=setup)
                 record = fly(plan, release(plan, setup))
-                figures = window_figures(plan, record, window=arena.window_s, plume_half_width=arena.plume_half_width_m)
+                figures = window_figures(plan, record, window=arena.window_s)
                 errors.append(figures["error_rms_m"])
                 excesses.append(figures["excess_rms_rad_s"])
         except Exception as failed:  # noqa: BLE001 - a setting that fails is one to stay away from, with its reason
@@ -100,6 +100,9 @@ class Tuner:
             "kinematic.heading_rate_lag_s": self.lag,
             "flight.duration_max_s": arena.tuning_duration_s,
             "flights": arena.tuning_flights,
+            # Costs are of the tracking alone.
+            "payload.instruments": (),
+            "emission.ship": None,
             **arena.tuning_set,
             **entrant.values(parameters),
         }

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import FlightRequest
 from scenarios.flight import FlightWork
-from scenarios.metrics.window import window_figures
+from scenarios.metrics.window import measured_figures, window_figures
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.schema.load import with_values
 from scenarios.simulation.record import FlightRecord
@@ -56,10 +56,10 @@ class ArenaWork(FlightWork):
         chosen = {key: float(value) for key, value in task.labels if key.startswith(_GUIDANCE)}
         return replace(request, scenario=with_values(request.scenario, chosen))
 
-    def more_tables(self, request: FlightRequest, plan: FlightPlan, record: FlightRecord) -> dict[str, list[Row]]:
+    def more_tables(self, request: FlightRequest, plan: FlightPlan, record: FlightRecord, row: Row) -> dict[str, list[Row]]:
         """Return the figures of the end of a flight."""
-        arena = self.tuner.arena
-        figures = window_figures(plan, record, window=arena.window_s, plume_half_width=arena.plume_half_width_m)
+        window = self.tuner.arena.window_s
+        figures = window_figures(plan, record, window=window) | measured_figures(row, window=window)
         named = {"flight_id": request.flight_id, "trial": request.trial}
         return {WINDOW_TABLE: [named | figures]}
 

@@ -27,7 +27,7 @@ from scenarios.studies.convergence.ensemble import (
     fly_block,
     trajectory_of,
 )
-from scenarios.studies.manifest import initial_manifest
+from scenarios.studies.manifest import initial_manifest, write_logo
 
 _LOST = "lost"
 """Outcome of a trajectory whose process was lost."""
@@ -129,8 +129,9 @@ class ConvergenceStudy:
         )
         return tuple(blocks)
 
-    def work(self, _: RunDirectory) -> ConvergenceWork:
-        """Return the work on its blocks."""
+    def work(self, run: RunDirectory) -> ConvergenceWork:
+        """Return the work on its blocks, after writing the logo into the run directory."""
+        write_logo(self._scenario.report, run)
         return ConvergenceWork(blocks=self._blocks)
 
     def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:

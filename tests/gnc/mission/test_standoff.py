@@ -1,3 +1,4 @@
+import itertools
 import math
 
 import pytest
@@ -10,18 +11,28 @@ from gnc.estimation.target_motion import SteadyTarget
 from gnc.laws.cascade import CascadeLaw
 from gnc.laws.path.lgvf import LgvfLaw
 from gnc.laws.path.npfg import NpfgLaw
+from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
+from gnc.mission.plume_axis import Climb
 from gnc.mission.standoff import CirclePoint, StandoffOrbit, StandoffParameters
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move
 
 RADIUS, LIMIT = 120.0, 0.503
+LEVEL = AxisHeight(source=60.0)
 
 
-def mission(law, vessel=(6.0, 3.0)):
+def mission(law, vessel=(6.0, 3.0), height=LEVEL):
     own, target = TrueNavigation(), SteadyTarget(*vessel)
     parameters = StandoffParameters(
-        radius=RADIUS, tracked=12.0, speed=SPEED, speed_ratio_max=0.97, glide_airspeed=15.0, plan_interval=10, altitude=60.0
+        radius=RADIUS,
+        tracked=12.0,
+        speed=SPEED,
+        speed_ratio_max=0.97,
+        glide_airspeed=15.0,
+        plan_interval=10,
+        height=height,
+        climb=Climb(time=20.0, gradient=0.05),
     )
     tracking = TrackingParameters(law=law, heading_rate_max=LIMIT, time_step=TIME_STEP, lag=0.0)
     return own, target, StandoffOrbit(parameters, tracking, own=own, target=target)
@@ -78,3 +89,19 @@ def test_a_vessel_that_outruns_the_vehicle_is_followed():
     assert circling.mode is Mode.OUTRUN
     # On her course, north.
     assert circling.tracker.heading_rate_demand == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_circle_rises_to_the_height_of_the_plume_at_its_radius():
+    rising = AxisHeight(source=35.0, momentum_flux=124.0, buoyancy_flux=49.6)
+    own, target, circling = mission(CascadeLaw(), (10.0, 0.0), rising)
+    own.update((-RADIUS, 0.0, SPEED, 0.0, 0.0))
+    target.update(0.0, True)
+    assert circling.altitude == 35.0
+    steps = round(200.0 / (10 * TIME_STEP))
+    heights = []
+    for step in range(steps):
+        circling.plan(10 * TIME_STEP * step)
+        heights.append(circling.altitude)
+    # Ten time constants: what is left is below 0.01 m of the 13 m.
+    assert heights[-1] == pytest.approx(rising.at(RADIUS, 10.0), abs=0.01)
+    assert all(later >= earlier for earlier, later in itertools.pairwise(heights))

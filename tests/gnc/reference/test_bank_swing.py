@@ -73,6 +73,15 @@ def test_the_slopes_are_those_of_the_course(eta, phase, roll_rate):
     assert abs(by_eta) <= 1.0
 
 
+@given(eta=etas, phase=phases, roll_rate=st.sampled_from([0.1, ROLL_RATE, 3.0, math.inf]))
+@examples(60)
+def test_the_heading_rate_is_the_slope_over_the_phase_at_full_rates(eta, phase, roll_rate):
+    swing = courses(roll_rate=roll_rate)
+    expected = eta * math.pi / swing.half_period(eta) * swing.slopes(eta, phase)[1]
+    # Rounding of the phase, over which a small amplitude changes its bank fast.
+    assert swing.heading_rate(eta, phase) == pytest.approx(expected, rel=0.0, abs=1e-11)
+
+
 @pytest.mark.parametrize("roll_rate", [0.2, ROLL_RATE, math.inf])
 @pytest.mark.parametrize("eta", [0.05, 0.4, 1.7, 3.0, 3.9])
 def test_the_mean_speed_is_the_mean_of_the_cosine_of_the_course(eta, roll_rate):

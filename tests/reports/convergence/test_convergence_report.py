@@ -28,9 +28,13 @@ def test_a_study_in_which_all_converged_says_so(converged):
     # Two laws that the theory is about.
     assert converged.verdict.headline == f"All {2 * TRAJECTORIES:,} trajectories converged"
     assert converged.verdict.failures == []
-    assert [figure[1:] for figure in converged.verdict.figures[:3]] == [("100 %", "100 %"), ("100 %", "100 %"), ("100 %", "")]
+    assert [figure[1:] for figure in converged.verdict.figures[:3]] == [
+        ("100 %", "100 %", True),
+        ("100 %", "100 %", True),
+        ("100 %", "", None),
+    ]
     anchors = [section.anchor for section in converged.sections]
-    assert anchors == ["question", "settling", "samples", "parameters", "provenance"]
+    assert anchors == ["figures", "question", "settling", "samples", "parameters", "provenance"]
 
 
 def test_counter_examples_are_named_with_their_reasons(failed):
@@ -53,7 +57,7 @@ def test_cut_commands_have_no_part_in_the_verdict_but_are_shown(tmp_path):
     assert report.verdict.complete
     assert "26 of 30 converged" in report.verdict.detail
     # 26 of 30, rounded down.
-    assert report.verdict.figures[2] == ("Law (30), cut at ω_max: converged", "86.66 %", "")
+    assert report.verdict.figures[2] == ("Law (30), cut at ω_max: converged", "86.66 %", "", None)
     (table,) = blocks_of(report, Table, "counterexamples")
     assert len(table.rows) == 4
 
@@ -106,7 +110,7 @@ def test_where_no_settling_time_is_predicted_none_is_compared(tmp_path):
     known = rows[rows["trajectory"] >= 6].query("law != 'cascade_cut'")
     ratio = (known["settling_time_s"] / known["settling_time_predicted_s"]).median()
     report = content(read_run(path))
-    assert report.verdict.figures[-1] == ("Settling over predicted, median", f"{ratio:.2f}", "")
+    assert report.verdict.figures[-1] == ("Settling over predicted, median", f"{ratio:.2f}", "", None)
     # Of 10 trajectories of a law about a kind of reference 8 are left, and the first point comes twice.
     panels = named_charts(report)["predicted"].panels
     assert {len(line.x) for panel in panels for line in panel.lines} == {9}

@@ -58,11 +58,11 @@ def test_the_report_shows_what_was_asked(run_directory):
     assert not report.verdict.holds
 
 
-def test_both_reports_are_built_and_print_takes_two_pages(run_directory, tmp_path):
+def test_both_reports_are_built_and_print_takes_four_pages(run_directory, tmp_path):
     text = built(changed_run(run_directory, tmp_path))
     assert "Fuel sulphur content of example_flight" in text
     pages = re.findall(rb"/Type\s*/Page\b", (tmp_path / "report.pdf").read_bytes())
-    assert len(pages) == 2
+    assert len(pages) == 4
 
 
 def test_parts_of_the_uncertainty_add_to_the_whole(record):
@@ -103,7 +103,7 @@ def test_a_perfect_instrument_is_shown_where_it_is_known(run_directory, tmp_path
     report = content(read_run(changed_run(run_directory, tmp_path, record | {"true_percent": 0.25})))
     labels = [line.label for line in named_charts(report)["fsc-over-time"].panels[0].lines]
     assert "a perfect instrument" in labels
-    assert ("A perfect instrument reads", "0.250 %", "") in report.verdict.figures
+    assert ("A perfect instrument reads", "0.250 %", "", None) in report.verdict.figures
 
 
 def test_without_samples_the_report_says_so(run_directory, tmp_path):

@@ -42,7 +42,7 @@ def test_one_flight_is_told_with_result_probability_and_limit(one):
     told = next(block.text for block in section.blocks if isinstance(block, Text))
     assert re.search(r"the limit of 0\.1 %.*: it holds 0\.\d{3} ± 0\.\d{3} % sulphur \(95 %\), and with a probability of", told)
     assert "The fuel's own content is 0.100 %, of which a perfect instrument reads 0.097 %." in told
-    name, value, _ = one.verdict.figures[0]
+    name, value, *_ = one.verdict.figures[0]
     assert name.startswith("Sulphur in the fuel")
     assert re.fullmatch(r"0\.\d{3} ± 0\.\d{3} %", value)
     assert "sulphur" not in {section.anchor for section in one.sections}
@@ -64,11 +64,11 @@ def test_several_flights_are_judged_as_a_method(several):
     assert ("laser", "0.05", "0\N{NO-BREAK SPACE}%") in fuels
     assert ("laser", "0.5", "100\N{NO-BREAK SPACE}%") in fuels
     assert any(row[0].startswith("Passes that hit the plume") for row in hits.rows)
-    assert any("Bias of the sulphur content" in name for name, _, _ in several.verdict.figures)
+    assert any("Bias of the sulphur content" in name for name, *_ in several.verdict.figures)
 
 
 def test_flights_without_a_sniffer_have_none_of_it(tmp_path):
     bare = flown(tmp_path / "run", "payload=[]")
     assert not {"sulphur", "measurement"} & {section.anchor for section in bare.sections}
-    assert not any("ulphur" in name for name, _, _ in bare.verdict.figures)
+    assert not any("ulphur" in name for name, *_ in bare.verdict.figures)
     assert blocks_of(bare, Table)

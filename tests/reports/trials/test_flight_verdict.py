@@ -17,7 +17,7 @@ def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
     judged = content(with_values(run, 3, keepout_violations=2, keepout_depth_m=1.5, min_distance_m=198.5, criteria_met=False))
     assert not judged.verdict.holds
     assert judged.verdict.headline == "Keep-out violations in 1 of 4 flights, 2 in all"
-    assert ("Closest approach, from the keep-out sphere's centre", "198.5 m", "≥ 200 m") in judged.verdict.figures
+    assert ("Closest approach, from the keep-out sphere's centre", "198.5 m", "≥ 200 m", False) in judged.verdict.figures
     assert judged.verdict.failures == ["turns_00001: completed; "]
     (picker,) = blocks_of(judged, FlightPicker, "flights")
     assert "deepest keep-out violation" in next(flight.title for flight in picker.flights if flight.flight_id == "turns_00001")
@@ -46,7 +46,7 @@ def test_where_a_fault_is_flown_on_purpose_a_lost_aircraft_is_shown_and_keeping_
         "required to keep out, not to complete: 1 kept out, 0 completed. The exit status is about the first."
         in report.verdict.detail
     )
-    assert ("Aircraft lost", "1", "") in report.verdict.figures
+    assert ("Aircraft lost", "1", "", None) in report.verdict.figures
     assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "2"]
 
 
@@ -74,7 +74,7 @@ def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
     verdict = content(run).verdict
     # Clopper and Pearson, none of four: 1 - 0.05^(1/4).
     assert "at most 52.7 % of such flights at 95 % confidence" in verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
-    texts = [verdict.headline, verdict.detail, *verdict.failures, *(text for figure in verdict.figures for text in figure)]
+    texts = [verdict.headline, verdict.detail, *verdict.failures, *(text for figure in verdict.figures for text in figure[:3])]
     assert not any(re.search(r"\bsafe", text, re.IGNORECASE) for text in texts)
     # Those of a search are no random sample: no bound follows from them.
     manifest = run.manifest | {"sampled_at_random": {"steady": False, "turns": True}}
@@ -85,7 +85,7 @@ def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
 
 def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
     report = content(with_values(run, 2, tracking_error_rms_m=107.0, guard_lost_s=3.2, guard_interventions=1, manoeuvres_unflown=1))
-    (tracking,) = (value for name, value, _ in report.verdict.figures if "99" in name)
+    (tracking,) = (value for name, value, *_ in report.verdict.figures if "99" in name)
     assert tracking.endswith(", 107 m")
     assert report.verdict.failures == [
         "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",

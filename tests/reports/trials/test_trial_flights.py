@@ -38,7 +38,7 @@ def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
         for _, row in trial.rows.iterrows():
             tracks = flight_charts(trial, row)[0]
             lines = {line.label: line for line in tracks.panels[0].lines}
-            uav, closest = lines["UAV"], lines["closest"]
+            uav, closest = lines["flown"], lines["closest approach"]
             # The summary's bearing from the plume's axis counts clockwise, so that it is positive to the right of the axis.
             aspect, distance = math.radians(row["start_aspect_deg"]), row["start_distance_m"]
             assert uav.x[0] == pytest.approx(distance * math.sin(aspect), abs=1e-6)
@@ -51,7 +51,7 @@ def test_flights_cross_the_axis_where_the_trial_found_crossings(run):
     trial = read_trials(run)[0]
     row = trial.rows.iloc[0]
     tracks, histories = flight_charts(trial, row)
-    uav = next(line for line in tracks.panels[0].lines if line.label == "UAV")
+    uav = next(line for line in tracks.panels[0].lines if line.label == "flown")
     time = next(line for line in histories.panels[0].lines if line.label == "flown").x
     crossings = run.crossings_of(str(row["flight_id"]))
     assert len(crossings) == 3
@@ -83,8 +83,8 @@ def test_every_kind_of_trial_has_figures_of_any_run(run, kind, monkeypatch):
     monkeypatch.setattr(Trial, "kind", kind)
     for trial in read_trials(run):
         charts = trial_charts(trial)
-        # No vessel manoeuvres, and so no crossing resumes, but there is always a closest approach to show.
-        assert charts
+        # No vessel manoeuvres, and so no crossing resumes, but there is always a closest approach to show: by itself, not counted.
+        assert bool(charts) == (kind is not Kind.APPROACH)
         assert all(len(line.x) for chart in charts for panel in chart.panels for line in panel.lines)
 
 
@@ -99,7 +99,7 @@ def test_an_ordinate_of_names_is_marked_alike_on_screen_and_in_print():
     line = Line(x=np.array([0.0, 1.0]), y=np.array([0.0, 1.0]), label="", colour="blue")
     names = [(0.0, "approach"), (1.0, "tracking")]
     chart = Chart(
-        name="c", caption="", panels=[Panel(x_label="Time [s]", y_label="Mode [-]", lines=[line], y_names=names)]
+        name="c", caption="", panels=[Panel(x_label="Time [s]", y_label="Mode", lines=[line], y_names=names)]
     )  # fmt: skip
     printed = matplotlib_charts.draw(chart).axes[0]
     assert [(tick, text.get_text()) for tick, text in zip(printed.get_yticks(), printed.get_yticklabels(), strict=True)] == names

@@ -30,10 +30,10 @@ QUICK = (
 PERFECT = ("payload.sensor=laser", "payload.exact=true")
 
 
-def flown(*overrides):
+def flown(*overrides, every_step=False):
     scenario = load_study("sulphur", (*QUICK, *overrides))
     work = FlightWork(experiments=(Experiment("sulphur", scenario),), histories=1, setup=None, spreads=PredictedSpreads())
-    result = work.fly(Task(number=0))
+    result = work.fly(Task(number=0, every_step=every_step))
     (row,) = result.tables["summary.csv"]
     return row, history_in(result), result
 
@@ -56,6 +56,17 @@ def test_truth_and_reading_are_columns_of_the_time_history(slow):
     assert settled["co2_ppm"].max() > 500.0
     assert 430.0 < settled["co2_reading_ppm"].max() < settled["co2_ppm"].max()
     assert settled["co2_ppm"].min() == pytest.approx(420.0, abs=0.1)
+
+
+def test_a_flight_that_is_replayed_with_every_step_has_the_same_figures(slow):
+    row, history, _ = slow
+    again, every, _ = flown(every_step=True)
+    # Wall times alone differ; a figure that is not a number is not equal to itself.
+    assert {key: repr(value) for key, value in again.items() if key != "wall_time_s"} == {
+        key: repr(value) for key, value in row.items() if key != "wall_time_s"
+    }
+    assert len(every) == 2 * len(history) - 1
+    assert np.array_equal(every["co2_reading_ppm"][::2], history["co2_reading_ppm"])
 
 
 def test_gases_are_in_the_ratio_of_the_emission(slow):

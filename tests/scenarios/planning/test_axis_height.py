@@ -3,7 +3,7 @@
 import pytest
 
 from measurement.plume.rise import rise
-from scenarios.planning.guidance import axis_height
+from scenarios.planning.plume.axis import axis_height
 from scenarios.schema.load import load_study
 from scenarios.world.exhaust import emission
 from scenarios.world.vessel import SteadyVessel

@@ -65,7 +65,7 @@ def test_periods_are_those_of_the_speed_ratio():
 
 def test_the_plumes_elevation_makes_the_altitude_rise_with_distance():
     mission = plan(scenario(plume={"elevation_deg": 10.0})).guidance.mission
-    assert (mission.height.climb, mission.height.source) == (pytest.approx(math.tan(math.radians(10.0)), rel=1e-12), 60.0)
+    assert (mission.axis.height.climb, mission.axis.height.source) == (pytest.approx(math.tan(math.radians(10.0)), rel=1e-12), 60.0)
 
 
 def test_following_can_do_without_the_keep_out_guard():

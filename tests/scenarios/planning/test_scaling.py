@@ -38,7 +38,7 @@ NOT_SCALED = {
     "following.apparent_wind_min_mps", "following.vessel_acceleration_mps2", "following.vessel_speed_max_mps",
     "following.speed_error_mps", "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
     # What an arena of laws tunes and measures, for the aircraft that its file names.
-    "arena.tuning_duration_s", "arena.error_max_m", "arena.window_s", "arena.plume_half_width_m", "arena.effort_weight_m_s",
+    "arena.tuning_duration_s", "arena.error_max_m", "arena.window_s", "arena.effort_weight_m_s",
     "reference.standoff_radius_m",
     # The paper's vehicle has no lag, however fast it turns.
     "kinematic.heading_rate_lag_s",
@@ -47,7 +47,7 @@ NOT_SCALED = {
     # The simulation runs at 120 Hz for every aircraft.
     "guidance.rate_hz", "flight.log_rate_hz",
     # Not set by default; who sets them means what they say.
-    "flight.after_settling_s", "flight.altitude_min_m", "flight.altitude_max_m",
+    "flight.after_settling_s", "flight.measured_s", "flight.altitude_min_m", "flight.altitude_max_m",
     "guidance.heading_rate_max_rad_s", "start.place_m", "start.range_m",
     "criteria.tracking_error_end_m", "criteria.crossing_interval_s",
     "criteria.crossing_distance_m",

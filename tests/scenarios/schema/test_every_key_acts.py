@@ -47,6 +47,18 @@ flight.crossings = 0
 flight.after_settling_s = 20.0
 start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
 """,
+    "searching": """
+vessel.speed_mps = 8.0
+wind = { speed_mps = 5.0, from_deg = 80.0 }
+plume = { model = "fluctuating", source_height_m = 30.0 }
+emission = { ship = "container", fuel = "vlsfo", sulphur_percent = 2.0 }
+payload = { instruments = ["sniffer"], sensor = "fast" }
+following = { plume = "estimated", source_height_m = [12.0, 20.0], load = [0.2, 0.9] }
+flight.crossings = 0
+flight.altitude_m = 60.0
+flight.altitude_min_m = 52.0
+start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
+""",
     "standoff": """
 guidance.mission = "standoff"
 guidance.law = "npfg"
@@ -74,7 +86,7 @@ VALUES = {
     "laws": ["npfg"], "arena.tracking": ["npfg"], "arena.standoff": ["npfg"], "arena.conditions": [{"name": "a", "title": "b"}],
     "arena.evaluations": 1, "arena.tuning_flights": 1, "arena.tuning_duration_s": 100.0, "arena.tuning_set": {"seed": 2},
     "arena.tuning_range": 2.0, "arena.effort_weight_m_s": 1.0, "arena.error_max_m": 50.0, "arena.window_s": 10.0,
-    "arena.plume_half_width_m": 5.0, "arena.resamples": 100, "arena.limits": [[0.5, 9.0]],
+    "arena.resamples": 100, "arena.limits": [[0.5, 9.0]],
     "search.methods": ["local"], "search.time_s": 5.0, "search.restarts": 3, "search.confirmations": 1,
     "place.latitude_deg": 57.0, "place.longitude_deg": 11.0, "place.utc": "2026-06-01T10:00:00Z",
     "vessel.mmsi": 219999001, "vessel.gap_max_s": 100.0,
@@ -84,7 +96,7 @@ VALUES = {
     "vessel.manoeuvres.0.speed_mps": 8.0, "vessel.manoeuvres.0.acceleration_mps2": 0.1,
     "plume.direction": "apparent_wind", "plume.heading_deg": 170.0, "plume.elevation_deg": 10.0, "plume.source_height_m": 80.0,
     "emission.ship": "cruise", "emission.fuel": "mgo", "emission.sulphur_percent": 0.2, "emission.load": 0.5,
-    "wind.temperature_c": 30.0, "wind.stability_per_s": 0.03, "flight.after_settling_s": 60.0,
+    "wind.temperature_c": 30.0, "wind.stability_per_s": 0.03, "flight.after_settling_s": 60.0, "flight.measured_s": 15.0,
     "flight.altitude_min_m": 80.0, "flight.altitude_max_m": 40.0,
     "keepout.radius_m": 180.0, "keepout.shape": "cylinder", "wind.speed_mps": 3.0, "wind.from_deg": 100.0,
     "wind.roughness_m": 2e-4, "wind.height_m": 20.0,
@@ -108,6 +120,9 @@ VALUES = {
     "following.apparent_wind_min_mps": 12.0, "following.standoff_m": 50.0, "following.join_distance_m": 20.0,
     "following.tracked_m": 4.0, "following.vessel_acceleration_mps2": 0.3, "following.speed_error_mps": 1.0,
     "following.drift_rate_mps": 5.0, "following.vessel_speed_max_mps": 7.5,
+    "following.plume": "estimated", "following.search": "ladder", "following.distance": "best_measurement",
+    "following.source_height_m": [20.0, 40.0], "following.load": [0.1, 0.4], "following.climb_gradient": 0.02,
+    "flight.until": "verdict", "flight.altitude_m": 50.0,
     "start.distance_m": [350.0, 400.0], "start.spread_deg": 90.0, "start.range_m": 350.0, "start.aspect_deg": 20.0,
     "start.course_deg": 30.0, "start.place_m": [-300.0, 50.0],
     "flight.crossings": 4, "flight.duration_max_s": 20.0, "flight.settling_band_m": 0.5, "flight.log_rate_hz": 20.0,
@@ -125,20 +140,34 @@ OWN_VALUES = {
     "measuring": {
         "plume.direction": "given", "plume.meander": False, "payload.exact": True,
     },
+    "searching": {"following.plume": "told", "flight.altitude_min_m": 45.0},
     "standoff": {"plume.direction": "given", "guidance.mission": "track", "criteria.crossing_interval_error": False},
     "circle": {"reference.path": "oscillation"},
 }  # fmt: skip
 """Where that is what a mission has anyway, or its flight fails one limit as it does the other."""
 
-MEASURING = ("emission.", "flight.", "payload.", "plume.", "wind.")
-"""Sections that act on what is measured: the others do nothing more in a flight that measures."""
+SEARCHING = (
+    "following.plume", "following.search", "following.distance", "following.source_height_m", "following.load",
+    "following.climb_gradient", "flight.until", "flight.altitude_m", "flight.altitude_min_m", "flight.altitude_max_m",
+)  # fmt: skip
+"""Keys that act on a search."""
+
+MEASURING = tuple(
+    key for key in VALUES if key.startswith(("emission.", "flight.", "payload.", "plume.", "wind.")) and key != "flight.until"
+)
+"""Keys that act on what is measured, of a flight that is shorter than a verdict takes."""
+
+LOOKED_AT = {"measuring": (*MEASURING, "plume.meander", "payload.exact"), "searching": SEARCHING}
+"""Keys that are tried in a flight in which the others do nothing more than elsewhere."""
 
 ELSEWHERE = {
     "study", "title", "description", "fidelity", "aircraft", "payload.instruments", "vessel.track", "wind.table", "plume.model",
     "reference.shape",
     "flights", "histories", "sweep", "cases", "draws", "comparison", "comparison.variants",
+    "report.title", "report.author", "report.organisation", "report.logo",
 }  # fmt: skip
-"""Kinds of study, texts, experiments and parts, which tests of their own are about (test_extension_points, test_experiments)."""
+"""Kinds of study, texts, experiments, parts and reports, which tests of their own are about (test_extension_points,
+test_experiments, test_report_settings)."""
 
 LEVEL = {"criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"}
 """Criteria that the kinematic vehicle always meets: it is level and as fast as commanded."""
@@ -180,7 +209,7 @@ def test_with_another_value_of_any_key_the_flight_differs_or_the_key_is_refused(
     row, history = flown(path)
     silent, unnamed = [], []
     for key, value in (VALUES | OWN_VALUES.get(base, {})).items():
-        if base == "measuring" and not key.startswith(MEASURING):
+        if key not in LOOKED_AT.get(base, (key,)):
             continue
         try:
             other, changed = flown(path, f"{key}={written(value)}")
@@ -191,7 +220,7 @@ def test_with_another_value_of_any_key_the_flight_differs_or_the_key_is_refused(
         if other == row and (history is changed or history.equals(changed)):
             silent.append(key)
     assert set(silent) <= LEVEL | BEYOND_OR_WITHIN | IN_SILENCE, silent
-    assert len(BEYOND_OR_WITHIN & set(silent)) == (base != "measuring")
+    assert len(BEYOND_OR_WITHIN & set(silent)) == (base not in LOOKED_AT)
     assert not unnamed
 
 

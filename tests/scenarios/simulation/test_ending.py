@@ -8,6 +8,7 @@ import pytest
 from gnc.estimation.health import Fault
 from gnc.mission.mode import Mode
 from scenarios.simulation.ending import Ending
+from scenarios.simulation.judge import Enough
 from scenarios.simulation.outcome import Outcome
 
 AT_THE_MAST, ON_THE_WATER = (60.0,), (1.0,)
@@ -24,13 +25,16 @@ def ended(
     trouble="",
     vessel=True,
     after=math.inf,
+    enough=None,
 ):
     """Return how a flight ended at 300 s."""
     plan = SimpleNamespace(crossings=asked, after_settling=after, duration_max=300.0, world=object() if vessel else None)
     vehicle = SimpleNamespace(fault=lambda _: trouble)
     guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mission=SimpleNamespace(mode=mode))
-    ending = Ending(plan, vehicle, guidance, SimpleNamespace(at=settled, crossings=flown))
-    ending.reached(300.0, sample, complete=0 < asked <= flown)
+    guidance.target = SimpleNamespace(north=0.0, east=0.0)
+    judge = SimpleNamespace(enough=enough, over=lambda *_: True, words=f"{enough and enough.value}: it left") if enough else None
+    ending = Ending(plan, vehicle, guidance, SimpleNamespace(at=settled, crossings=flown), judge)
+    ending.reached(300.0, (0.0, 0.0, 0.0, 0.0, 0.0), sample, complete=0 < asked <= flown)
     return ending
 
 
@@ -61,6 +65,11 @@ def ended(
         ),
         ({"mode": Mode.GLIDING, "flown": 0}, Outcome.AIRCRAFT_LOST, "it was still gliding towards the sea at 300.0 s"),
         ({"mode": Mode.TERMINATING, "settled": math.nan}, Outcome.AIRCRAFT_LOST, "before it had settled"),
+        # A verdict is what such a flight is for, also where it has not settled for as long as is asked for.
+        ({"enough": Enough.BELOW, "after": 400.0, "mode": Mode.DEPARTING}, Outcome.COMPLETED, ""),
+        ({"enough": Enough.OUT_OF_REACH, "mode": Mode.DEPARTING}, Outcome.INCOMPLETE, "plume out of reach"),
+        ({"enough": Enough.SENSOR, "settled": math.nan, "mode": Mode.DEPARTING}, Outcome.INCOMPLETE, "sensor failed"),
+        ({"enough": Enough.ABOVE, "mode": Mode.GLIDING, "flown": 0}, Outcome.AIRCRAFT_LOST, "gliding"),
         ({"trouble": "bank reached 90 deg"}, Outcome.DIVERGED, "bank reached 90 deg at 300.0 s"),
     ],
 )

@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
+from common.intervals import clopper_pearson, quantile_interval, upper_bound
 from scenarios.statistics.estimates import NAMED_MAX, study_statistics
-from scenarios.statistics.intervals import clopper_pearson, quantile_interval, upper_bound
 from scenarios.statistics.stopping import confidence_at
 from tests.scenarios.study_rows import PREDICTED, RADIUS, few_indices, study_rows
 

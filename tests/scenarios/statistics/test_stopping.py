@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from scenarios.statistics.intervals import upper_bound
+from common.intervals import upper_bound
 from scenarios.statistics.stopping import confidence_at, looks, tight_enough
 
 

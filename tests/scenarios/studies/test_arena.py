@@ -94,6 +94,34 @@ def test_laws_are_compared_within_a_task_and_crossings_over_both(record):
     assert record["limits"]["calm"] == pytest.approx(7.0, abs=1e-3)
 
 
+def test_every_flight_is_measured_over_its_end_and_what_a_minute_is_worth_is_compared(run, record):
+    flights, windows = pd.read_csv(run / "summary.csv"), pd.read_csv(run / "window.csv")
+    # The window of QUICK, whether the flight has settled or not.
+    assert windows["plume_s_per_minute"].to_numpy() == pytest.approx(flights["seconds_in_plume_s"].to_numpy() * 60.0 / 40.0)
+    admitted = flights["sulphur_quality"] != "C"
+    assert (windows["sulphur_information_per_minute"] > 0.0).tolist() == admitted.tolist()
+    assert admitted.any()
+    compared = [e for e in record["estimates"] if (e["figure"], e["condition"]) == ("sulphur_information_per_minute", "all")]
+    assert len(compared) == len(record["entrants"])
+    best = max(compared, key=lambda estimate: estimate["mean"])
+    assert best["best"]
+
+
+def test_the_exhaust_and_the_sniffer_are_those_of_the_flights_that_measure():
+    of_arena, of_sulphur = load_study("arena"), load_study("sulphur")
+    assert (of_arena.emission, of_arena.payload) == (of_sulphur.emission, of_sulphur.payload)
+    assert (of_arena.plume.model, of_arena.plume.source_height_m) == (of_sulphur.plume.model, of_sulphur.plume.source_height_m)
+
+
+def test_without_a_sniffer_laws_are_compared_by_crossings_alone(tmp_path):
+    keys = ('arena.conditions=[{name="calm",title="Calm"}]', "flights=1", 'arena.tracking=["npfg"]', "payload=[]")
+    run_study(arena(*keys, "arena.standoff=[]", "arena.evaluations=0"), "arena", tmp_path / "run")
+    estimates = json.loads((tmp_path / "run" / "arena.json").read_text(encoding="utf-8"))["estimates"]
+    means = {estimate["figure"]: estimate["mean"] for estimate in estimates}
+    assert means["crossings_per_minute"] > 0.0
+    assert means["plume_s_per_minute"] is means["sulphur_information_per_minute"] is None
+
+
 def test_a_law_without_an_adapter_for_a_task_is_named_with_its_reason(record):
     found = {(entry["law"], entry["task"]): entry["reason"] for entry in record["refused"]}
     assert found.keys() == {("park_l1_point", "standoff"), ("lgvf", "tracking")}
@@ -129,6 +157,7 @@ def test_without_evaluations_laws_fly_their_defaults(tmp_path):
         ("arena.conditions=[]", ["arena.conditions is empty"]),
         ('arena.conditions=[{name="a",title="A",set={"wind.sped_mps"=1}}]', ["condition 'a'", "wind.sped_mps"]),
         ("arena.window_s=400", ["arena.window_s is 400 s", "flight.duration_max_s"]),
+        ("flight.measured_s=60", ["flight.measured_s is given", "arena.window_s"]),
         ("sweep.nu=[0.5]", ["study is 'arena' beside a sweep"]),
     ],
 )

@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from common.intervals import clopper_pearson
 from reports.build import build_reports
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import load_study
-from scenarios.statistics.intervals import clopper_pearson
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from scenarios.world.noise import Noise

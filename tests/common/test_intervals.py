@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from scenarios.statistics.intervals import Interval, clopper_pearson, quantile_interval, upper_bound
+from common.intervals import Interval, clopper_pearson, quantile_interval, upper_bound
 
 
 def test_no_event_in_ten_thousand_bounds_the_probability_by_the_root_of_what_confidence_leaves():

@@ -1,0 +1,76 @@
+"""Pictures that a user gives, such as the logo of a report."""
+
+import base64
+import hashlib
+import io
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from pathlib import Path
+
+BYTES_MAX = 1_000_000
+"""Largest file of a picture: it is written into every report."""
+
+_SUFFIXES = {"image/png": ".png", "image/jpeg": ".jpg", "image/svg+xml": ".svg"}
+"""Kinds of pictures that reports can show, and how the names of their files end."""
+
+
+class PictureError(ValueError):
+    """A file that is no picture. The message is one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A picture: the content of its file, and its kind as the web names it."""
+
+    content: bytes
+    media_type: str
+
+    @property
+    def suffix(self) -> str:
+        """How the name of its file ends."""
+        return _SUFFIXES[self.media_type]
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the file."""
+        return hashlib.sha256(self.content).hexdigest()
+
+    @property
+    def data_uri(self) -> str:
+        """The picture as an address that holds it."""
+        return f"data:{self.media_type};base64,{base64.b64encode(self.content).decode('ascii')}"
+
+
+def read_picture(path: Path) -> Picture:
+    """Read a picture, a PNG, JPEG or SVG file by its content.
+
+    Raises
+    ------
+    PictureError : the file cannot be read, is too large, or holds no picture
+    """
+    try:
+        content = path.read_bytes()
+    except (OSError, ValueError) as error:
+        raise PictureError(f"'{path.name}' cannot be read ({getattr(error, 'strerror', error)}); give a PNG, JPEG or SVG") from None
+    if len(content) > BYTES_MAX:
+        raise PictureError(f"'{path.name}' has {len(content) / 1e6:.1f} MB; at most {BYTES_MAX / 1e6:g} MB: give a smaller picture")
+    media_type = _media_type(content)
+    if media_type is None:
+        raise PictureError(f"'{path.name}' is no picture; give a whole PNG, JPEG or SVG file")
+    return Picture(content, media_type)
+
+
+def _media_type(content: bytes) -> str | None:
+    """Return the kind of a picture, or None of what is none."""
+    from PIL import Image
+
+    try:
+        with Image.open(io.BytesIO(content), formats=("PNG", "JPEG")) as image:
+            image.load()
+            return f"image/{str(image.format).lower()}"
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        pass
+    try:
+        return "image/svg+xml" if ET.fromstring(content).tag == "{http://www.w3.org/2000/svg}svg" else None
+    except (ET.ParseError, ValueError):
+        return None

@@ -1,0 +1,17 @@
+"""Fly a Monte Carlo study on two processes, and ask what it has shown."""
+
+from scenarios import run
+
+if __name__ == "__main__":
+    study = run("monte_carlo", jobs=2, flights=8, flight={"crossings": 3}, progress=True)
+    found = study.statistics
+
+    violation = found.violation
+    print(f"{violation.events} of {violation.flights} flights violated the keep-out area:")
+    print(f"{violation.low:.1%} to {violation.high:.1%} of flights do, at {found.confidence:.0%} confidence")
+    nearest = found.quantile("min_distance_m", 0.5)
+    print(f"median of the closest approach {nearest.value:.1f} m, {nearest.low:.1f} to {nearest.high:.1f} m")
+    for name, flight in study.flights.items():
+        if not flight.met:
+            print(f"{name}: {'; '.join(flight.reasons)}")
+    study.report("report.html")

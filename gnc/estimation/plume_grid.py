@@ -1,0 +1,168 @@
+"""The cells that a plume estimate is spread over, and how strong a pulse each of them lets expect."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ndtr
+
+from gnc.estimation.plume_prior import PlumePrior
+
+Array = npt.NDArray[np.float64]
+
+STRENGTH_STEP = 0.4
+"""Step of the logarithm of strengths [-]: half of it is 20 %, about what the shape of a plume leaves open."""
+
+_FADE = 16
+"""Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.4 of the centre."""
+
+_HEIGHTS, _BEARINGS, _PLACES = 45, 9, 31
+"""Cells over height and bearing, and places of the centre across at one moment [-]."""
+
+_REACH = 3.0
+"""Standard deviations of the prior that the cells reach to [-]."""
+
+_LOWEST = 5.0
+"""Least height of an axis [m]."""
+
+_NARROW, _WIDE = -1.2, 1.2
+"""Deviations of the narrow and of the wide spread from the expected one [-]: with weights 1/4, 1/2, 1/4 the variance is 0.7."""
+
+_SPREAD_WEIGHTS = (0.25, 0.5, 0.25)
+
+_MIDDLE, _COARSE = 1, 2
+"""The expected spread among the three, and cells of height that count as one where passes to come are weighed [-]."""
+
+_TINY = 1e-300
+"""Least probability that is divided by [-]."""
+
+_SPREAD_MIN = 0.4
+"""Least spread over that at the expected height [-]."""
+
+
+class PlumeGrid:
+    """Cells of spread, height, strength and bearing, in this order: shape (w, h, c, b).
+
+    A strength is the concentration in the centre of one realisation. Above the level of the sensor's delay there is nothing random
+    but the meander in height, which is independent from pass to pass: it forgets itself within 1 to 4 s.
+
+    Parameters
+    ----------
+    prior : what is expected
+
+    Attributes
+    ----------
+    height, strength, bearing : of the cells, shapes (h,), (c,), (b,) [m, ppm, rad]
+    sigma_y, sigma_z : of the cells, shape (w, h) [m]
+    faint : strengths from the faintest that a cell may be read with up to the strongest, shape (p,) [ppm]
+    prior : probability of each cell, shape (w, h, c, b)
+    """
+
+    def __init__(self, prior: PlumePrior) -> None:
+        self._expected = prior
+        low = max(_LOWEST, prior.height - _REACH * prior.height_deviation)
+        self.height: Array = np.linspace(low, prior.height + _REACH * prior.height_deviation, _HEIGHTS)
+        self.bearing: Array = np.linspace(-_REACH, _REACH, _BEARINGS) * prior.bearing_deviation
+        rises = prior.rise_of(self.height)
+        squares = prior.buoyant_spread**2 * (rises**2 - prior.rise_of(prior.height) ** 2)
+        scales = np.exp(prior.sigma_deviation * np.array([_NARROW, 0.0, _WIDE]))[:, np.newaxis]
+        self.sigma_y: Array = scales * np.sqrt(np.maximum(prior.sigma_y**2 + squares, (_SPREAD_MIN * prior.sigma_y) ** 2))
+        self.sigma_z: Array = scales * np.sqrt(np.maximum(prior.sigma_z**2 + squares, (_SPREAD_MIN * prior.sigma_z) ** 2))
+        median = np.log(prior.peak * prior.sigma_y * prior.sigma_z / (self.sigma_y * self.sigma_z))
+        reach = _REACH * prior.peak_deviation
+        logs = np.arange(median.min() - reach, median.max() + reach + STRENGTH_STEP, STRENGTH_STEP)
+        self.strength: Array = np.exp(logs)
+        self.faint: Array = np.exp(logs[0] + STRENGTH_STEP * np.arange(1 - _FADE, len(logs)))
+        self._index = _FADE - 1 + np.arange(len(logs)) - np.arange(_FADE)[:, np.newaxis]
+        self._edges: Array = np.sqrt(2.0 * STRENGTH_STEP * (np.arange(_FADE) + 0.5))
+        weight = np.array(_SPREAD_WEIGHTS)[:, np.newaxis, np.newaxis] * np.exp(
+            -0.5 * ((logs - median[..., np.newaxis]) / prior.peak_deviation) ** 2
+        )
+        weight *= _bell(self.height - prior.height, prior.height_deviation)[:, np.newaxis] / weight.sum(axis=2, keepdims=True)
+        cells = weight[..., np.newaxis] * _bell(self.bearing, prior.bearing_deviation)
+        self.prior: Array = cells / cells.sum()
+        across = _REACH * math.hypot(prior.bearing_deviation * prior.distance, prior.meander_y)
+        self.places: Array = np.linspace(-across, across, _PLACES)
+
+    @property
+    def spreads(self) -> Array:
+        """Spread of the pulse by the cells' first index, at the expected height, shape (w,) [m]."""
+        nearest = int(np.abs(self.height - self._expected.height).argmin())
+        result: Array = self.sigma_y[:, nearest]
+        return result
+
+    def fading(self, height: Array, altitude: float, looks: float) -> Array:
+        """Return how likely a pass at an altitude reads a plume with so many steps less than its strength, shape (w, h, f).
+
+        The centre is z_m above the axis with z_m ~ N(0, meander_z^2), and the pulse has exp(-(h + z_m - z)^2/2 sigma_z^2) of the
+        strength; of several looks at the plume the best counts. The rest to 1 is the chance of nothing.
+
+        Parameters
+        ----------
+        height : of the axes, shape (h,) [m]
+        altitude : z [m]
+        looks : independent centres that a pass meets, at least 1 [-]
+        """
+        reach = self._edges * self.sigma_z[..., np.newaxis]
+        return np.diff(self._within(reach, (height - altitude)[:, np.newaxis], looks), axis=-1, prepend=0.0)
+
+    def chances(self, off: Array, looks: float, least: float) -> Array:
+        """Return how likely a pass reads a strength of at least ``least`` [ppm], of the expected spread, shape (..., h', c).
+
+        Parameters
+        ----------
+        off : height of each axis of ``coarse`` above the pass, shape (..., h') [m]
+        looks : as of ``fading``
+        """
+        reach = np.sqrt(2.0 * np.log(np.maximum(self.strength / least, 1.0)))
+        return self._within(reach * self.sigma_z[_MIDDLE, ::_COARSE, np.newaxis], off[..., np.newaxis], looks)
+
+    def coarse(self, cells: Array) -> Array:
+        """Return the probability of every second height and each strength, shape (h', c), of cells (w, h, c)."""
+        result: Array = np.add.reduceat(cells.sum(axis=0), np.arange(0, len(self.height), _COARSE), axis=0)
+        return result
+
+    def coarse_heights(self, heights: Array) -> Array:
+        """Return the heights of ``coarse``, of those of the cells, shape (h',)."""
+        result: Array = heights[::_COARSE]
+        return result
+
+    def _within(self, reach: Array, off: Array, looks: float) -> Array:
+        """Return how likely the centre of the best look is nearer in height than ``reach`` [m], with the axis ``off`` [m]."""
+        meander = self._expected.meander_z
+        far, middle = reach / meander, off / meander
+        result: Array = 1.0 - (1.0 - ndtr(far - middle) + ndtr(-far - middle)) ** looks
+        return result
+
+    def expected_deviation(self, weights: Array, heights: Array, off: Array, looks: float) -> Array:
+        """Return the standard deviation of the height that is expected after a pass whose strength is read [m], shape (n,).
+
+        Parameters
+        ----------
+        weights : probability of each height and strength of ``coarse``, shape (h', c)
+        heights : of the axes, shape (h',) [m]
+        off : heights above each of the passes, shape (n, h') [m]
+        looks : as of ``fading``
+        """
+        reach = self._edges * self.sigma_z[_MIDDLE, ::_COARSE, np.newaxis]
+        fading = np.diff(self._within(reach, off[..., np.newaxis], looks), axis=-1, prepend=0.0)
+        # By height and reading, summed over the strengths that lead to it.
+        padded = np.pad(weights, ((0, 0), (_FADE - 1, _FADE - 1)))
+        windows = np.lib.stride_tricks.sliding_window_view(padded, _FADE, axis=1)
+        joint = np.einsum("nhf,hof->nho", fading, windows)
+        nothing = weights.sum(axis=1) * (1.0 - fading.sum(axis=-1))
+        joint = np.concatenate([joint, nothing[..., np.newaxis]], axis=-1)
+        total = np.maximum(joint.sum(axis=1), _TINY)
+        mean = np.einsum("nho,h->no", joint, heights)
+        square = float(weights.sum(axis=1) @ heights**2)
+        result: Array = np.sqrt(np.maximum(square - (mean**2 / total).sum(axis=1), 0.0))
+        return result
+
+    def over_strengths(self, faint: Array) -> Array:
+        """Return values over ``faint``, shape (w, p, b), as they are for each step less than each strength, shape (w, f, c, b)."""
+        return faint.take(self._index, axis=1)
+
+
+def _bell(off: Array, deviation: float) -> Array:
+    result: Array = np.exp(-0.5 * (off / deviation) ** 2)
+    return result

@@ -1,0 +1,240 @@
+"""What is taken for granted of a plume, and of the sensor that smells it, before anything is read."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from gnc.errors import InfeasibleError
+
+Array = npt.NDArray[np.float64]
+
+_ENTRAINMENT = 0.6
+"""Briggs' entrainment coefficient of a plume that bends over in the wind [-]."""
+
+_SPEED_MIN = 1.0
+"""Apparent wind that the rise is computed for at least [m/s]: below it a plume has no direction, and rises straight up."""
+
+_BUOYANT = 0.4 / math.sqrt(2.0)
+"""Spread that the rise makes, over the rise [-]: AERMOD's buoyancy-induced dispersion."""
+
+_SIGMA_V, _SIGMA_W = 1.9, 1.3
+"""Standard deviations of the wind across and up, over the friction velocity [-]: neutral air, AERMOD."""
+
+_DRAG, _DRAG_SLOPE = 0.029, 0.0008
+"""Friction velocity over the wind at 10 m, in calm, and how it grows with the wind [-, s/m]: Charnock's law to 3 %, 3 to 15 m/s."""
+
+_WIND_MIN = 0.5
+"""Least wind that makes turbulence [m/s]."""
+
+_SURFACE_SCALE = 0.72
+"""Length over height at which the sea stops the spread in height [-] (AERMOD, elevated part)."""
+
+_OWN_SHARE = 0.42
+"""Spread about the moving centre over that about the axis, by turbulence [-]: 0.37 to 0.5 of the plume model at 200 m."""
+
+_SOURCE_SPREAD = 4.0
+"""Spread at the funnel, in the wake of the superstructure [m]: 0 to 8 m, of which no measurement is known."""
+
+_MEANDER_LENGTH, _MEANDER_HEIGHT = 2.5, 0.25
+"""Integral scale across, and correlation length in height, of the meander, over the height of the source [-]: neutral air over
+the sea, to a factor of 2."""
+
+_AIR_DENSITY = 42.3
+"""Moles of air per volume [mol/m^3], at 15 degC."""
+
+_MODEL_ERROR, _SPREAD_ERROR, _BEARING_ERROR = 0.1, 0.25, 0.02
+"""Errors of the rise and of the spreads as computed, over themselves, and of the bearing [-, -, rad]: assumptions."""
+
+_MEANDER_MIN = 0.5
+"""Least standard deviation of the meander [m]."""
+
+
+def rise(momentum_flux: float, buoyancy_flux: float, distance: float, apparent_wind: float) -> float:
+    """Return the rise of a bent-over plume in neutral air [m] (Briggs 1975; AERMOD, CBLPRD).
+
+    Parameters
+    ----------
+    momentum_flux, buoyancy_flux : of the exhaust [m^4/s^2, m^4/s^3]
+    distance : behind the funnel, at least 0 [m]
+    apparent_wind : past the ship [m/s]
+    """
+    u = max(apparent_wind, _SPEED_MIN)
+    momentum, buoyancy = 3.0 * momentum_flux * distance / u**2, 1.5 * buoyancy_flux * distance**2 / u**3
+    return math.cbrt((momentum + buoyancy) / _ENTRAINMENT**2)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GasSensor:
+    """A channel for CO2: its data sheet.
+
+    Attributes
+    ----------
+    interval : between readings [s]
+    delay : of tube and pump [s]
+    time_constant : of its first-order lag, t90/ln 10 [s]
+    noise : standard deviation of a reading [ppm]
+    background_drift : how fast the reading of clean air may change, by drift and by altitude [ppm/s]
+    saturated : reading from which the channel is saturated [ppm]
+    """
+
+    interval: float
+    delay: float
+    time_constant: float
+    noise: float
+    background_drift: float = 0.1
+    saturated: float = math.inf
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlumePrior:
+    """A plume as it is expected, where it is to be crossed. Deviations are standard deviations.
+
+    Attributes
+    ----------
+    distance, apparent_wind : behind the funnel, and past the ship, that the other values are for [m, m/s]
+    source_height, source_deviation : of the funnel's mouth above the sea [m]
+    height, height_deviation : of the axis above the sea, from stack, load and rise [m]
+    bearing_deviation : of the axis from the one that the wind lets expect [rad]
+    sigma_y, sigma_z : spreads about the centre at one moment, at the expected height [m]
+    sigma_deviation : of the logarithm of both spreads, which are too large or too small together [-]
+    meander_y, meander_z : standard deviation of the centre about the axis [m]
+    meander_length : correlation length of the meander in height, along the plume [m]
+    meander_time : integral scale of the lateral meander, as the ship meets it [s]
+    peak, peak_deviation : CO2 above the background in the centre at one moment [ppm], its median, and the deviation of
+        its logarithm [-]; both at the expected height and spread
+    sensor : what reads it
+    lowest, highest : altitudes that may be flown, above the sea [m]
+    height_drift, bearing_drift : how far the axis wanders in a second [m, rad]; it grows with the root of time
+    """
+
+    distance: float
+    apparent_wind: float
+    source_height: float
+    source_deviation: float
+    height: float
+    height_deviation: float
+    bearing_deviation: float
+    sigma_y: float
+    sigma_z: float
+    sigma_deviation: float
+    meander_y: float
+    meander_z: float
+    meander_length: float
+    meander_time: float
+    peak: float
+    peak_deviation: float
+    sensor: GasSensor
+    lowest: float
+    highest: float
+    height_drift: float = 0.2
+    bearing_drift: float = 0.002
+
+    def __post_init__(self) -> None:
+        if not self.lowest < self.highest:
+            raise InfeasibleError(
+                f"altitudes that may be flown are {self.lowest:g} to {self.highest:g} m; the second must be above the first"
+            )
+        for name in ("distance", "apparent_wind", "height_deviation", "bearing_deviation", "sigma_y", "sigma_z", "peak"):
+            if not getattr(self, name) > 0.0:
+                raise InfeasibleError(f"{name} of the expected plume is {getattr(self, name):g}; it must be above 0")
+
+    @property
+    def buoyant_spread(self) -> float:
+        """Spread over rise that buoyancy makes [-]."""
+        return _BUOYANT
+
+    def rise_of(self, height: Array | float) -> Array:
+        """Return the expected rise of axes that are so high at the prior's distance and wind [m], at least 0.
+
+        Stack and rise share what an axis is off the expected height by as they share its variance.
+
+        Parameters
+        ----------
+        height : above the sea [m], any shape
+        """
+        share = max(0.0, 1.0 - (self.source_deviation / self.height_deviation) ** 2)
+        result: Array = np.maximum(0.0, self.height - self.source_height + share * (np.asarray(height) - self.height))
+        return result
+
+    def height_at(self, height: Array, distance: float, apparent_wind: float) -> Array:
+        """Return how high axes that are so high at the prior's distance and wind are elsewhere [m].
+
+        The rise goes with x^(2/3)/U (Briggs, buoyancy alone).
+
+        Parameters
+        ----------
+        height : at the prior's distance, in its apparent wind [m], any shape
+        distance, apparent_wind : behind the funnel [m], past the ship [m/s]
+        """
+        scale = rise(0.0, 1.0, max(distance, 0.0), apparent_wind) / rise(0.0, 1.0, self.distance, self.apparent_wind)
+        result: Array = height + (scale - 1.0) * self.rise_of(height)
+        return result
+
+
+def expected_plume(
+    *,
+    distance: float,
+    apparent_wind: float,
+    wind_speed: float,
+    wind_deviation: float,
+    source_height: float,
+    source_deviation: float,
+    momentum_flux: float,
+    buoyancy_flux: float,
+    co2_rate: float,
+    load_deviation: float,
+    sensor: GasSensor,
+    lowest: float,
+    highest: float,
+) -> PlumePrior:
+    """Return the plume that a ship of a class makes in some wind, over the sea in neutral air.
+
+    Spreads about a moving centre are those of source, buoyancy and turbulence; the meander has the rest of the turbulence. That the
+    first has so much of it is a fit to ``measurement.plume.spread`` at 200 to 500 m.
+
+    Parameters
+    ----------
+    distance : behind the funnel, where it is to be crossed [m]
+    apparent_wind, wind_speed : past the ship, and over the sea at 10 m [m/s]
+    wind_deviation : of each component of the apparent wind, as it is estimated on board [m/s]
+    source_height, source_deviation : of the funnel's mouth [m]
+    momentum_flux, buoyancy_flux, co2_rate : of the exhaust at the load that is expected [m^4/s^2, m^4/s^3, mol/s]
+    load_deviation : of the logarithm of the two latter [-]
+    sensor : for CO2
+    lowest, highest : altitudes that may be flown [m]
+    """
+    wind = max(apparent_wind, _SPEED_MIN)
+    climbed = rise(momentum_flux, buoyancy_flux, distance, wind)
+    wind_share, age = wind_deviation / wind, distance / wind
+    # The rise goes with the cube root of the flux, and with 1/U.
+    rise_deviation = climbed * math.hypot(load_deviation / 3.0, wind_share, _MODEL_ERROR)
+    height = source_height + climbed
+    friction = max(wind_speed, _WIND_MIN) * (_DRAG + _DRAG_SLOPE * wind_speed)
+    path = _SIGMA_W * friction * age
+    across, up = _SIGMA_V * friction * age, path / math.sqrt(1.0 + path / (_SURFACE_SCALE * height))
+    own = math.hypot(_SOURCE_SPREAD, _BUOYANT * climbed)
+    sigma_y, sigma_z = math.hypot(own, _OWN_SHARE * across), math.hypot(own, _OWN_SHARE * up)
+    rest = math.sqrt(1.0 - _OWN_SHARE**2)
+    return PlumePrior(
+        distance=distance,
+        apparent_wind=wind,
+        source_height=source_height,
+        source_deviation=source_deviation,
+        height=height,
+        height_deviation=math.hypot(source_deviation, rise_deviation),
+        bearing_deviation=math.hypot(wind_share, _BEARING_ERROR),
+        sigma_y=sigma_y,
+        sigma_z=sigma_z,
+        sigma_deviation=_SPREAD_ERROR,
+        meander_y=max(rest * across, _MEANDER_MIN),
+        meander_z=max(rest * up, _MEANDER_MIN),
+        meander_length=_MEANDER_HEIGHT * source_height,
+        meander_time=_MEANDER_LENGTH * source_height / wind,
+        peak=1e6 * co2_rate / (2.0 * math.pi * wind * sigma_y * sigma_z * _AIR_DENSITY),
+        peak_deviation=math.hypot(load_deviation, wind_share, _SPREAD_ERROR),
+        sensor=sensor,
+        lowest=lowest,
+        highest=highest,
+    )

@@ -1,0 +1,126 @@
+"""How high and how far off the predicted axis to fly next, so that the plume is found soon and then known well."""
+
+import math
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState
+
+Array = npt.NDArray[np.float64]
+
+_STEP = 6.0
+"""Between the heights that are weighed [m]: less than the spread of a plume."""
+
+_HORIZON = 8
+"""Passes that are looked ahead [-]."""
+
+_KNOWN = 0.35
+"""Deviation of the height over the spread of a pass [-], down to which the plume's height is probed."""
+
+_PROBE, _PROBES = 1.0, 9
+"""How far off the estimated height it is probed, over the spread of a pass, and heights that are weighed [-, -]."""
+
+
+class Demand(NamedTuple):
+    """Where to cross next.
+
+    Attributes
+    ----------
+    altitude : above the sea [m], within the limits
+    offset : of the centre of oscillation to the right of the predicted axis [m], at the distance of the estimator's last place
+    """
+
+    altitude: float
+    offset: float
+
+
+class Search(Protocol):
+    """Decides after each pass (``PlumeEstimator.update`` returned True) where to fly next."""
+
+    def next_demand(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> Demand:
+        """Return where to cross next.
+
+        Parameters
+        ----------
+        estimator : after its last pass
+        altitude : of the vehicle now [m]
+        pass_time : between passes [s]
+        """
+
+
+class HeightSearch:
+    """Maximises the probability of detection per time; once the plume is found, narrows its height down, and then stays.
+
+    While it searches, each height is weighed by the passes that lie on the way to it and at it: the sum over them of the
+    probability that the plume has been smelt by then is the largest for the height with the least expected time to find. Misses
+    that have a plume in common are not independent; given a cell of the estimate they are.
+
+    Parameters
+    ----------
+    lowest, highest : altitudes that may be flown [m]: limits of the flight, of the terrain and of the keep-out area together
+    climb_rate : that the vehicle climbs and sinks at [m/s]
+    """
+
+    __slots__ = ("_climb_rate", "_heights", "_highest", "_lowest")
+
+    def __init__(self, *, lowest: float, highest: float, climb_rate: float) -> None:
+        self._lowest, self._highest, self._climb_rate = lowest, highest, climb_rate
+        self._heights: Array = np.linspace(lowest, highest, max(2, 1 + math.ceil((highest - lowest) / _STEP)))
+
+    def next_demand(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> Demand:
+        """Return where to cross next; arguments as of ``Search``."""
+        if estimator.state is not PlumeState.FOUND:
+            return Demand(self._soonest(estimator, altitude, self._climb_rate * pass_time), estimator.offset)
+        spread = math.hypot(estimator.sigma_z, estimator.prior.meander_z)
+        height = estimator.height
+        if estimator.height_deviation > _KNOWN * spread:
+            height = self._narrowest(estimator, _PROBE * spread)
+        return Demand(min(max(height, self._lowest), self._highest), estimator.offset)
+
+    def _narrowest(self, estimator: PlumeEstimator, reach: float) -> float:
+        """Return the height within ``reach`` [m] of the estimated one at which a pass says most of the axis' height."""
+        low, high = (min(max(estimator.height + side * reach, self._lowest), self._highest) for side in (-1.0, 1.0))
+        altitudes = np.linspace(low, high, _PROBES)
+        return float(altitudes[int(estimator.expected_deviation(altitudes).argmin())])
+
+    def _soonest(self, estimator: PlumeEstimator, altitude: float, climb: float) -> float:
+        """Return the height with the least expected time to find, where ``climb`` [m] is what a pass leaves time for."""
+        weights, chances = estimator.prospects(self._heights)
+        missed = 1.0 - chances
+        steps = climb * np.arange(1, _HORIZON + 1)
+        way = altitude + np.clip(self._heights[:, np.newaxis] - altitude, -steps, steps)
+        step = self._heights[1] - self._heights[0]
+        index = np.clip(np.rint((way - self._lowest) / step).astype(np.intp), 0, len(self._heights) - 1)
+        still = np.ones_like(missed)
+        lost = np.zeros(len(self._heights))
+        for k in range(_HORIZON):
+            still *= missed[index[:, k]]
+            lost += np.tensordot(still, weights)
+        return float(self._heights[int(lost.argmin())])
+
+
+class LadderSearch:
+    """Goes up and down a ladder of heights, one after each pass, until the plume is found; then flies at the estimated height.
+
+    Parameters
+    ----------
+    lowest, highest : altitudes that may be flown [m]
+    rung : between heights [m]
+    """
+
+    __slots__ = ("_highest", "_lowest", "_rung", "_up")
+
+    def __init__(self, *, lowest: float, highest: float, rung: float = 15.0) -> None:
+        self._lowest, self._highest, self._rung = lowest, highest, rung
+        self._up = True
+
+    def next_demand(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> Demand:  # noqa: ARG002 - of the Protocol
+        """Return where to cross next; arguments as of ``Search``."""
+        height = estimator.height
+        if estimator.state is not PlumeState.FOUND:
+            if not self._lowest < altitude + (self._rung if self._up else -self._rung) < self._highest:
+                self._up = not self._up
+            height = altitude + (self._rung if self._up else -self._rung)
+        return Demand(min(max(height, self._lowest), self._highest), estimator.offset)

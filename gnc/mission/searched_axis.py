@@ -1,0 +1,205 @@
+"""A plume's axis that is searched for, and followed by what is smelt of it."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState, SensorState
+from gnc.estimation.plume_prior import GasSensor, expected_plume
+from gnc.mission.axis_height import AxisHeight
+from gnc.mission.mode import Mode
+from gnc.mission.plume_axis import Climb, Situation, trail
+from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
+
+_MODES = {PlumeState.SEARCHING: Mode.SEARCHING, PlumeState.FOUND: Mode.FOUND, PlumeState.LOST: Mode.LOST_AGAIN}
+
+_BEARING_TIME = 15.0
+"""Time in which the centre of oscillation follows the bearing that is estimated [s]: it is swung round the vessel gently."""
+
+_NOTED, _SILENT = 0.75, 2.0
+"""Time between readings beyond which the estimator is told a place in between, and beyond which it is told of silence [s]."""
+
+Place = tuple[float, float, float, float]
+"""Time [s], place along the predicted axis and to the right of it, altitude [m]."""
+
+_PASS_TIME, _PASS_MEMORY = 8.0, 0.3
+"""Time between passes before the first two [s], and weight of the last one in its mean [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Expectation:
+    """What is known beforehand of the ship's class and of the sensor, as arguments of ``plume_prior.expected_plume``."""
+
+    source_height: float
+    source_deviation: float
+    momentum_flux: float
+    buoyancy_flux: float
+    co2_rate: float
+    load_deviation: float
+    wind_deviation: float
+    sensor: GasSensor
+    lowest: float
+    highest: float
+
+    def arguments(self) -> dict[str, Any]:
+        """Return them by name."""
+        return {of.name: getattr(self, of.name) for of in fields(self)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchedPlume:
+    """A plume that is searched for.
+
+    Attributes
+    ----------
+    height : of the axis as it is predicted, flown at on the way
+    altitude : at the start [m]
+    climb : how the altitude follows
+    expected : of ship and sensor
+    climb_rate : that the vehicle climbs and sinks at [m/s]
+    ladder : whether a ladder of heights is climbed until it is found, instead of the height that tells most
+    """
+
+    height: AxisHeight
+    altitude: float
+    climb: Climb
+    expected: Expectation
+    climb_rate: float
+    ladder: bool = False
+
+    def search(self) -> Search:
+        """Return what decides where to cross next, fresh."""
+        lowest, highest = self.expected.lowest, self.expected.highest
+        if self.ladder:
+            return LadderSearch(lowest=lowest, highest=highest)
+        return HeightSearch(lowest=lowest, highest=highest, climb_rate=self.climb_rate)
+
+    def begin(self) -> "SearchedAxis":
+        """Return the axis of one flight."""
+        return SearchedAxis(self)
+
+
+@dataclass(slots=True)
+class PlumeEstimate:
+    """What was believed of a plume after the last pass; not a number before it is searched for.
+
+    Attributes
+    ----------
+    height, height_deviation : of the axis above the sea [m]
+    offset, offset_deviation : of the axis to the right of the predicted one [m]
+    spread : of one realisation in height [m]
+    innovation : mean normalised innovation squared [-]
+    """
+
+    height: float = math.nan
+    height_deviation: float = math.nan
+    offset: float = math.nan
+    offset_deviation: float = math.nan
+    spread: float = math.nan
+    innovation: float = math.nan
+
+
+class SearchedAxis:
+    """The axis as it is estimated from what is smelt, once the reference is tracked; attributes as of ``PlumeAxis``, and more.
+
+    Attributes
+    ----------
+    estimate : what was believed after the last pass
+    sensor : what the readings say of their sensor
+    """
+
+    __slots__ = (
+        "_bearing", "_estimator", "_last_note", "_last_pass", "_parameters", "_pass_time", "_places", "_search", "_situation",
+        "bearing", "climb", "demanded", "estimate", "flown", "mode", "sensor",
+    )  # fmt: skip
+
+    def __init__(self, parameters: SearchedPlume) -> None:
+        self._parameters, self.climb, self.demanded = parameters, parameters.climb, parameters.altitude
+        self._estimator: PlumeEstimator | None = None
+        self._search = parameters.search()
+        self._situation: Situation | None = None
+        self._places: list[Place] = []
+        self._last_note = self._last_pass = 0.0
+        self._pass_time, self._bearing, self.bearing, self.flown, self.mode = _PASS_TIME, 0.0, 0.0, math.nan, Mode.SEARCHING
+        self.estimate, self.sensor = PlumeEstimate(), SensorState.WORKING
+
+    def measurable(self) -> float:
+        """Return the probability that the plume can be crossed within the altitudes that are flown [-]; costly."""
+        return self._estimator.measurable if self._estimator is not None else math.nan
+
+    def heed(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
+        """Take note of the place now, and of what was read since the last readings came, each with its own time [s]."""
+        if self._estimator is None or self._situation is None:
+            return
+        self._places.append((time, *_seen_along(self._situation), self.flown))
+        for read_at, reading in readings:
+            if read_at - self._last_note > _NOTED:
+                self._note(0.5 * (self._last_note + read_at), math.nan)
+            self._note(read_at, reading)
+        if readings:
+            del self._places[:-2]
+        elif time - self._last_note > _SILENT:
+            self._note(time, math.nan)
+
+    def plan(self, time: float, situation: Situation, *, tracking: bool) -> None:
+        """Begin to search where the reference is first tracked; follow the prediction on the way there."""
+        p, self._situation = self._parameters, situation
+        wind = situation.centre.speed_ratio * situation.speed
+        if self._estimator is None:
+            if not tracking:
+                self.demanded = p.height.at(situation.centre.distance, wind)
+                return
+            blowing = math.hypot(situation.own.wind_north, situation.own.wind_east)
+            distance = situation.centre.distance
+            prior = expected_plume(distance=distance, apparent_wind=wind, wind_speed=blowing, **p.expected.arguments())
+            self._estimator = PlumeEstimator(prior)
+            self._last_note = self._last_pass = time
+            self._decide(self.demanded)
+        self.bearing += (self._bearing - self.bearing) * min(1.0, situation.plan_time / _BEARING_TIME)
+        self.sensor = self._estimator.sensor
+        self.mode = _MODES[self._estimator.state] if self.sensor is SensorState.WORKING else Mode.SENSOR_FAILED
+
+    def _note(self, at: float, reading: float) -> None:
+        """Tell the estimator the place at a time [s], and what was read there [ppm]."""
+        situation, estimator = self._situation, self._estimator
+        if situation is None or estimator is None:
+            return
+        along, across, altitude = _place_at(self._places, at)
+        estimator.predict(max(0.0, at - self._last_note))
+        self._last_note = max(at, self._last_note)
+        wind = situation.centre.speed_ratio * situation.speed
+        if estimator.update(along, across, altitude, reading, apparent_wind=wind):
+            self._pass_time += _PASS_MEMORY * (at - self._last_pass - self._pass_time)
+            self._last_pass = at
+            self._decide(altitude)
+
+    def _decide(self, altitude: float) -> None:
+        """Choose where to cross next."""
+        if self._estimator is not None and self._situation is not None:
+            demand = self._search.next_demand(self._estimator, altitude, self._pass_time)
+            self.demanded = demand.altitude
+            self._bearing = math.atan2(demand.offset, self._situation.centre.distance)
+            found = self._estimator
+            self.estimate = PlumeEstimate(
+                found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z,
+                found.innovation,
+            )  # fmt: skip
+
+
+def _seen_along(situation: Situation) -> tuple[float, float]:
+    """Return where the vehicle is behind the vessel, along the predicted axis and to the right of it [m]."""
+    own, target = situation.own, situation.target
+    x, y = own.ground_north - target.north, own.ground_east - target.east
+    axis = trail(own, target)
+    cos_a, sin_a = math.cos(axis), math.sin(axis)
+    return x * cos_a + y * sin_a, y * cos_a - x * sin_a
+
+
+def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float]:
+    """Return the place at a time [s] between those that are known, of which there is one at least."""
+    later = next((i for i, place in enumerate(places) if place[0] >= time), len(places) - 1)
+    (then, *after), (before, *last) = places[later], places[max(0, later - 1)]
+    share = min(max((time - before) / (then - before), 0.0), 1.0) if then > before else 1.0
+    along, across, altitude = (a + share * (b - a) for a, b in zip(last, after, strict=True))
+    return along, across, altitude

@@ -1,0 +1,222 @@
+"""The report of a comparison: what was changed, what came of it, and in which flights."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from reports.compare.charts import pair_charts
+from reports.compare.configuration import configuration_table, software_table, trials_apart
+from reports.compare.figures import PAIRS_MIN, Difference, differences
+from reports.compare.pairs import Pairs, paired
+from reports.compare.runs import Run
+from reports.compare.tables import LISTED_MAX, changed_table, difference_table, side_by_side, signed
+from reports.compare.tracks import most_changed
+from reports.document.blocks import Block, Card, Content, Heading, Section, Text, Verdict
+from reports.document.chart import Chart
+from reports.document.numbering import numbered
+from reports.run.columns import Mask, count, lost, total, violated
+from reports.run.letterhead import letterhead
+
+TIME_OF_COMPUTING = "wall_time_s"
+"""The column of a summary that differs between any two runs."""
+
+_CARDS = ("fsc_percent", "clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
+_CARDS_MAX = 3
+"""Figures at the head of the report on two runs: the first of those that the flights have."""
+
+_NAMED_MAX = 6
+"""Keys that a sentence names."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Compared:
+    """A run beside the first.
+
+    Attributes
+    ----------
+    pairs : flights in common
+    found : how their figures differ, by the names of the columns of ``differences.csv``
+    differing : columns of the summary in which any pair differs
+    """
+
+    pairs: Pairs
+    found: dict[str, Difference]
+    differing: list[str]
+
+    @property
+    def identical(self) -> bool:
+        """Whether both runs have the same flights, and no figure of any of them differs."""
+        return not self.differing and self.pairs.alone == (0, 0)
+
+
+def compare(runs: Sequence[Run]) -> list[Compared]:
+    """Return each run but the first beside the first.
+
+    Raises
+    ------
+    ReportError : one has no flight in common with the first
+    """
+    found = []
+    for other in runs[1:]:
+        pairs = paired(runs[0], other)
+        # The name of a flight may have that of its trial before it, which changes nothing.
+        differing = pairs.differing_figures(apart=(TIME_OF_COMPUTING, "flight_id", "trial"))
+        found.append(Compared(pairs=pairs, found=differences(pairs), differing=differing))
+    return found
+
+
+def comparison_content(runs: Sequence[Run], compared: Sequence[Compared]) -> Content:
+    """Return everything that the report shows."""
+    configuration = _configuration(runs)
+    tracks = [most_changed(of.pairs, of.found) if of.differing else None for of in compared]
+    # Page 1 has the tracks of the first pair of runs.
+    sections = [
+        Section(anchor="changed", title="What differs in the configuration", nav_title="Configuration", blocks=configuration),
+        Section(anchor="figures", title="Figures side by side", nav_title="Figures", blocks=_figures(runs)),
+        *(_pair_section(of, chart) for of, chart in zip(compared, [None, *tracks[1:]], strict=True)),
+        Section(anchor="provenance", title="Provenance", blocks=[software_table(runs)]),
+    ]
+    described = "; ".join(f"{run.title} ({run.manifest['title']}, {run.state})" for run in runs)
+    picture, sections = numbered(tracks[0], sections)
+    names = " and ".join(run.name for run in runs) if len(runs) == 2 else f"{runs[0].name} and {len(runs) - 1} others"
+    return Content(
+        title=f"Comparison of {len(runs)} runs",
+        letterhead=replace(letterhead(runs[0].data, {}), run=names),
+        description=f"{described}.",
+        changes="",
+        flown=f"{described}.",
+        verdict=_verdict(runs, compared),
+        picture=picture,
+        sections=sections,
+    )
+
+
+def _configuration(runs: Sequence[Run]) -> list[Block]:
+    table = configuration_table(runs)
+    same = [] if table else [Text("No key differs in the configuration of the flights.")]
+    return [*([table] if table else same), *(Text(sentence) for sentence in trials_apart(runs))]
+
+
+def _figures(runs: Sequence[Run]) -> list[Block]:
+    text = "Of every flight of each run, whether or not another run has it too. Figures after settling are of flights that settled."
+    if len({len(run.data.summary) for run in runs}) > 1:
+        text += " There is no difference from a run with another number of flights; those of the paired flights are below."
+    return [Text(text), side_by_side(runs)]
+
+
+def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
+    pairs, letter = compared.pairs, compared.pairs.other.letter
+    blocks: list[Block] = [Text(" ".join(pairing_sentences(pairs)))]
+    if compared.differing:
+        table = changed_table(pairs)
+        blocks += [Text(_difference_sentences(compared)), difference_table(pairs, compared.found)]
+        if table is not None:
+            changed = count(pairs.no_longer_met | pairs.newly_met)
+            first = f", of which the first {LISTED_MAX} are listed" if changed > LISTED_MAX else ""
+            blocks += [Heading(f"Flights whose criteria changed: {changed:,}{first}"), table]
+        blocks += pair_charts(pairs, compared.found)
+        blocks += [tracks] if tracks is not None else []
+    else:
+        blocks.append(Text(f"No figure of these flights differs between {pairs.first.letter} and {letter}."))
+    title = f"Flight by flight: {letter} against {pairs.first.letter}"
+    return Section(anchor=f"flights{letter.lower()}", title=title, nav_title=f"{letter} − {pairs.first.letter}", blocks=blocks)
+
+
+def pairing_sentences(pairs: Pairs) -> list[str]:
+    """Return how many flights are paired, how many have no partner, and whether what was sampled agrees."""
+    first, other = pairs.first, pairs.other
+    sentences = [f"{len(pairs):,} flight{'s are' if len(pairs) > 1 else ' is'} paired: the same point or case, number and seed."]
+    if any(pairs.alone):
+        alone = " and ".join(f"{of:,} of {run.letter}" for of, run in zip(pairs.alone, (first, other), strict=True) if of)
+        same = f"; {pairs.same_name:,} of them have the same name in both runs, but another seed" if pairs.same_name else ""
+        sentences.append(f"Without a partner are {alone}{same}.")
+    if differing := pairs.differing_inputs():
+        keys = ", ".join(f"{key} in {number:,}" for key, number in list(differing.items())[:_NAMED_MAX])
+        more = f" and {len(differing) - _NAMED_MAX} more keys" if len(differing) > _NAMED_MAX else ""
+        sentences.append(f"The flights of a pair differ in what was swept or sampled: {keys}{more}.")
+    return sentences
+
+
+def _difference_sentences(compared: Compared) -> str:
+    trials = {trial.key: trial for trial in compared.pairs.first.trials}
+    at_random = all(trials[str(name)].sampled_at_random for name in dict.fromkeys(compared.pairs.before["trial"]))
+    others = "" if at_random else " These flights are no random sample: it says how far they agree, not what others would show."
+    same = [of.figure.name.lower() for name, of in compared.found.items() if of.is_none and name != "keepout_violations"]
+    equal = f" The same in every pair that has them: {'; '.join(same)}." if same else ""
+    if len(compared.pairs) < PAIRS_MIN:
+        return f"Differences are those of each pair; of fewer than {PAIRS_MIN} pairs a median has no interval.{equal}"
+    return (
+        "Differences are those of each pair. The interval is the exact one of their median at 95 %, from order statistics, for any"
+        f" distribution; it takes {PAIRS_MIN} pairs, and is bold where it leaves out 0, as one in twenty does by chance."
+        f"{others}{equal}"
+    )
+
+
+def _verdict(runs: Sequence[Run], compared: Sequence[Compared]) -> Verdict:
+    unsafe = [of for of in compared if _new(of.pairs)]
+    worse = sum(count(of.pairs.no_longer_met) for of in compared)
+    return Verdict(
+        holds=not unsafe,
+        complete=worse == 0 and all(run.state == "complete" for run in runs),
+        headline=headline(compared),
+        detail=" ".join(f"{of.pairs.other.title}: {' '.join(pairing_sentences(of.pairs))}" for of in compared),
+        failures=[line for of in compared for line in _lines(of)],
+        figures=[card for of in compared for card in _cards(of, alone=len(compared) == 1)],
+    )
+
+
+def headline(compared: Sequence[Compared]) -> str:
+    """Return in a sentence what differs."""
+    pairs = sum(len(of.pairs) for of in compared)
+    what = f"{pairs:,} pair{'s' * (pairs > 1)} of flights"
+    if not any(of.differing for of in compared):
+        others = "" if all(of.identical for of in compared) else "; other flights have no partner"
+        return f"No figure differs in {what}{others}"
+    worse, better = (sum(count(mask) for mask in masks) for masks in zip(*(_turned(of.pairs) for of in compared), strict=True))
+    if not worse and not better:
+        return f"No criterion changed in {what}; figures differ"
+    turned = [f"{n:,} {words}{'s' * (n == 1)}" for n, words in ((worse, "no longer meet"), (better, "newly meet")) if n]
+    return f"Of {what}, {' and '.join(turned)} the criteria"
+
+
+def _turned(pairs: Pairs) -> tuple[Mask, Mask]:
+    return pairs.no_longer_met, pairs.newly_met
+
+
+def _new(pairs: Pairs) -> int:
+    """Return how many flights violate the keep-out area or lose their aircraft in the other run alone."""
+    bad = [violated(rows) | lost(rows) for rows in (pairs.before, pairs.after)]
+    return count(~bad[0] & bad[1])
+
+
+def _lines(compared: Compared) -> list[str]:
+    pairs = compared.pairs
+    first, other = pairs.first.letter, pairs.other.letter
+    if compared.identical:
+        return [f"{other}: no figure differs from {first}"]
+    lines = []
+    if new := _new(pairs):
+        what = "violate the keep-out area or lose the aircraft" if new > 1 else "violates the keep-out area or loses the aircraft"
+        lines.append(f"{other}: {new:,} flight{'s' * (new > 1)} {what}, and not in {first}")
+    for mask, where in ((pairs.no_longer_met, first), (pairs.newly_met, other)):
+        if count(mask):
+            lines.append(f"{other}: {count(mask):,} of {len(pairs):,} paired flights met in {where} alone")
+    lines += [f"{run.letter}: the run is {run.state}" for run in (pairs.other,) if run.state != "complete"]
+    return lines
+
+
+def _cards(compared: Compared, *, alone: bool) -> list[Card]:
+    pairs = compared.pairs
+    first, other = pairs.first.letter, pairs.other.letter
+    cards = [
+        Card(f"Flights paired, {other} with {first}", f"{len(pairs):,}"),
+        Card(f"Met in {first} alone, in {other} alone", f"{count(pairs.no_longer_met):,}, {count(pairs.newly_met):,}"),
+    ]
+    violations = [f"{total(rows, 'keepout_violations'):,}" for rows in (pairs.before, pairs.after)]
+    cards.append(Card(f"Keep-out violations of paired flights in {first}, in {other}", ", ".join(violations)))
+    if not alone:
+        return cards
+    for difference in [compared.found[name] for name in _CARDS if name in compared.found][:_CARDS_MAX]:
+        figure = difference.figure
+        value = f"{signed(difference.median, figure.digits)} {figure.unit}"
+        cards.append(Card(f"{figure.name}: median of {other} − {first}", value))
+    return cards

@@ -1,0 +1,128 @@
+"""Which flights of two runs are the same: of the same point or case, with the same number and the same seed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from reports.compare.runs import Run
+from reports.errors import ReportError
+from reports.run.columns import Mask, met
+
+_NAMING = ("flight_id", "trial", "variant")
+"""Columns of ``draws.csv`` that name a flight."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pairs:
+    """Flights that a run has in common with the first.
+
+    Attributes
+    ----------
+    first, other : the runs
+    before, after : rows of their summaries; the flights of row i are the same
+    same_name : flights without a partner of which the other run has one of the same name, with another seed
+    """
+
+    first: Run
+    other: Run
+    before: pd.DataFrame
+    after: pd.DataFrame
+    same_name: int
+
+    def __len__(self) -> int:
+        """Return the number of pairs."""
+        return len(self.before)
+
+    @property
+    def alone(self) -> tuple[int, int]:
+        """Number of flights without a partner, of the first run and of the other."""
+        return len(self.first.data.summary) - len(self), len(self.other.data.summary) - len(self)
+
+    @property
+    def names(self) -> list[str]:
+        """What the first run calls each flight."""
+        return [str(flight_id) for flight_id in self.before["flight_id"]]
+
+    @property
+    def no_longer_met(self) -> Mask:
+        """Flights that met every criterion in the first run alone."""
+        return met(self.before) & ~met(self.after)
+
+    @property
+    def newly_met(self) -> Mask:
+        """Flights that meet every criterion in the other run alone."""
+        return ~met(self.before) & met(self.after)
+
+    def differing_inputs(self) -> dict[str, int]:
+        """Return the keys that were sampled or swept in both runs with another value in some pairs, and in how many."""
+        tables = [run.data.draws.set_index("flight_id") for run in (self.first, self.other)]
+        shared = [name for name in tables[0] if name in tables[1] and name not in _NAMING]
+        before, after = (table.reindex(rows["flight_id"]) for table, rows in zip(tables, (self.before, self.after), strict=True))
+        counts = {str(name): int(np.count_nonzero(_differs(before[name], after[name]))) for name in shared}
+        return {name: count for name, count in counts.items() if count}
+
+    def differing_figures(self, *, apart: Sequence[str] = ()) -> list[str]:
+        """Return the columns in which any pair differs in the least, but for those ``apart``; one that a run lacks differs."""
+        columns = [name for name in dict.fromkeys([*self.before, *self.after]) if name not in apart]
+        return [
+            str(name)
+            for name in columns
+            if name not in self.before or name not in self.after or np.any(_differs(self.before[name], self.after[name]))
+        ]
+
+
+def paired(first: Run, other: Run) -> Pairs:
+    """Return the flights that two runs have in common.
+
+    Raises
+    ------
+    ReportError : they have none
+    """
+    rows = (first.data.summary, other.data.summary)
+    left = [_identities(table) for table in rows]
+    found: list[pd.DataFrame] = []
+    # Trials of other names, as of a run of one trial and of a list; and flights whose process was lost before the seed was known.
+    for keys in (["trial", "name", "seed"], ["name", "seed"], ["trial", "name"]):
+        matched = _matched(left[0], left[1], keys)
+        found.append(matched[["place_x", "place_y"]])
+        left = [table[~table["place"].isin(matched[place])] for table, place in zip(left, ("place_x", "place_y"), strict=True)]
+    places = pd.concat(found).sort_values("place_x")
+    same = len(set(left[0]["name"]) & set(left[1]["name"]))
+    if not len(places):
+        what = f"{same} agree in name but not in seed; give both the same --seed" if same else "no name is in both"
+        raise ReportError(
+            f"'{first.data.path}' ({len(rows[0])} flights) and '{other.data.path}' ({len(rows[1])} flights) have no flight in"
+            f" common: {what}"
+        )
+    before, after = (
+        table.iloc[places[place]].reset_index(drop=True) for table, place in zip(rows, ("place_x", "place_y"), strict=True)
+    )
+    return Pairs(first=first, other=other, before=before, after=after, same_name=same)
+
+
+def _identities(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return what flights are told by, and their places: the name is that within the trial, which several put before it."""
+    if not len(rows):
+        return pd.DataFrame({"trial": [], "name": [], "seed": [], "place": []})
+    named = zip(rows["flight_id"].astype(str), rows["trial"].astype(str), strict=True)
+    names = [flight.removeprefix(f"{trial}_") for flight, trial in named]
+    places = np.arange(len(rows))
+    return pd.DataFrame({"trial": rows["trial"].astype(str), "name": names, "seed": rows["seed"].astype(float), "place": places})
+
+
+def _matched(one: pd.DataFrame, two: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+    """Return the flights of both that agree in ``keys``, where no other flight of the same run does."""
+    by_seed = "seed" in keys
+    tables = [table[table["seed"].notna()] if by_seed else table for table in (one, two)]
+    found = tables[0].drop_duplicates(keys, keep=False).merge(tables[1].drop_duplicates(keys, keep=False), on=keys)
+    return found if by_seed else found[found["seed_x"].isna() | found["seed_y"].isna()]
+
+
+def _differs(before: "pd.Series[Any]", after: "pd.Series[Any]") -> Mask:
+    """Return which values differ; two that are missing do not."""
+    equal = np.asarray(before.to_numpy() == after.to_numpy(), dtype=np.bool_)
+    differs: Mask = ~(equal | (before.isna().to_numpy() & after.isna().to_numpy()))
+    return differs

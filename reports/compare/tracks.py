@@ -1,0 +1,173 @@
+"""The flight that differs most between two runs: both tracks in one figure."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from reports.compare.figures import Difference
+from reports.compare.pairs import Pairs
+from reports.compare.runs import Run
+from reports.document.axes import in_kilometres
+from reports.document.chart import Chart, Line, Panel, circle
+from reports.document.panels import around
+from reports.run.columns import Array, column
+from reports.run.time_history import about_the_plume, keepout_distance, thinned, tracking_error
+
+_JUDGED = ("clearance_m", "crossing_interval_error", "tracking_error_rms_m", "settling_time_s")
+"""Figures by which a flight differs much or little."""
+
+_POINTS_MAX = 1300
+"""Points of a curve at most."""
+
+_FAR = 1.6
+"""Least end of the distances that are shown, over r_min; so far the plume is drawn, too [-]."""
+
+_ERROR_MIN = 0.1
+"""Floor of the tracking error's logarithmic axis [m]."""
+
+_COLOURS = ("blue", "orange")
+"""Of the first run and of the other."""
+
+
+def most_changed(pairs: Pairs, found: dict[str, Difference]) -> Chart | None:
+    """Return both flights of the pair that differs most, of those that have both time histories; None if nothing differs.
+
+    Flights whose criteria changed come first. Then it is the largest difference over the figure's median in the first run, of the
+    figures that most reports judge.
+    """
+    recorded = [
+        pairs.first.data.has_history(before) and pairs.other.data.has_history(after)
+        for before, after in zip(pairs.names, map(str, pairs.after["flight_id"]), strict=True)
+    ]
+    changes = {name: _relative(found[name]) for name in _JUDGED if name in found}
+    if not changes or not any(recorded):
+        return None
+    table = np.array(list(changes.values()))
+    turned = pairs.no_longer_met | pairs.newly_met
+    size = np.where(recorded, table.max(axis=0) + np.where(turned, 1.0 + table.max(), 0.0), 0.0)
+    place = int(np.argmax(size))
+    if not size[place] > 0.0:
+        return None
+    figure = found[list(changes)[int(np.argmax(table[:, place]))]]
+    return _chart(pairs, place, _state(pairs, place) if turned[place] else _change(pairs, place, figure))
+
+
+def _relative(difference: Difference) -> Array:
+    """Return how large each difference is over the median in the first run; 0 where it is not known [-]."""
+    typical = float(np.nanmedian(np.abs(difference.before)))
+    size: Array = np.nan_to_num(np.abs(difference.change)) / typical if typical > 0.0 else np.zeros(len(difference.before))
+    return size
+
+
+def _state(pairs: Pairs, place: int) -> str:
+    runs = (pairs.first, pairs.other) if pairs.no_longer_met[place] else (pairs.other, pairs.first)
+    return f"meets its criteria in {runs[0].letter}, and not in {runs[1].letter}"
+
+
+def _change(pairs: Pairs, place: int, difference: Difference) -> str:
+    figure = difference.figure
+    before, after = (f"{values[place]:.{figure.digits}f} {figure.unit}" for values in (difference.before, difference.after))
+    return f"{figure.name}: {before} in {pairs.first.letter}, {after} in {pairs.other.letter}"
+
+
+def _chart(pairs: Pairs, place: int, why: str) -> Chart | None:
+    flown: list[_Flight] = []
+    for run, rows, colour in zip((pairs.first, pairs.other), (pairs.before, pairs.after), _COLOURS, strict=True):
+        row = rows.iloc[place]
+        history = run.data.history(str(row["flight_id"]))
+        if history is None or len(history) < 2:
+            return None
+        flown.append(_Flight(run=run, row=row, history=thinned(history, _POINTS_MAX), colour=colour))
+    vessel = all(np.isfinite(column(flight.history, "vessel_north_m")).any() for flight in flown)
+    panels = [_from_the_vessel(flown, "Whole flight"), _settled(flown), _distances(flown)] if vessel else [_over_the_ground(flown)]
+    return Chart(
+        name=f"changed{pairs.other.letter}",
+        caption=f"The flight that differs most, {pairs.names[place]}: {why}."
+        + " Seen from the vessel, with the plume’s axis up the page, and over time." * vessel,
+        panels=[in_kilometres(panel) for panel in (*panels, _errors(flown))],
+        columns=2,
+        panel_height=0.42,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Flight:
+    """One of both flights: its run, its row, its thinned time history, and its colour."""
+
+    run: Run
+    row: "pd.Series[Any]"
+    history: pd.DataFrame
+    colour: str
+
+    def curve(self, x: Array, y: Array) -> Line:
+        return Line(x=x, y=y, label=self.run.title, colour=self.colour)
+
+    def over_time(self, y: Array) -> Line:
+        return self.curve(column(self.history, "time_s"), y)
+
+
+def _settled(flown: list[_Flight]) -> Panel:
+    """Return the tracks from when both have settled; the second half of the flights if one never has."""
+    settled = max(float(flight.row["settling_time_s"]) for flight in flown)
+    known = math.isfinite(settled)
+    begin = settled if known else 0.5 * min(float(flight.history["time_s"].iloc[-1]) for flight in flown)
+    late = [replace(flight, history=flight.history[flight.history["time_s"] >= begin]) for flight in flown]
+    panel = _from_the_vessel(late, "Once both have settled" if known else "Second half of the flight")
+    right, along = (np.concatenate(of) for of in zip(*(about_the_plume(flight.history) for flight in late), strict=True))
+    return replace(panel, x_range=around(right), y_range=around(along))
+
+
+def _from_the_vessel(flown: list[_Flight], title: str) -> Panel:
+    radii = dict.fromkeys(float(flight.row["keepout_radius_m"]) for flight in flown)
+    rings = [Line(x=x, y=y, label="r_min", colour="vermillion", fill=True) for x, y in map(circle, radii)]
+    plume = Line(x=np.zeros(2), y=np.array([0.0, _FAR * max(radii)]), label="plume", colour="grey", style="dash")
+    return Panel(
+        x_label="Right of the plume's axis [m]",
+        y_label="Along the plume's axis [m]",
+        title=title,
+        equal=True,
+        lines=[*rings, plume, *(flight.curve(*about_the_plume(flight.history)) for flight in flown)],
+    )
+
+
+def _over_the_ground(flown: list[_Flight]) -> Panel:
+    lines = [flight.curve(column(flight.history, "east_m"), column(flight.history, "north_m")) for flight in flown]
+    return Panel(x_label="East [m]", y_label="North [m]", title="Over the ground", equal=True, lines=lines)
+
+
+def _distances(flown: list[_Flight]) -> Panel:
+    radius = max(float(flight.row["keepout_radius_m"]) for flight in flown)
+    distances = []
+    for flight in flown:
+        trial = flight.run.trial_of(str(flight.row["flight_id"]))
+        distances.append(keepout_distance(flight.history, trial.source_height, trial.shape))
+    nearest = min(float(np.nanmin(distance)) for distance in distances)
+    late = max(float(np.nanmax(distance[len(distance) // 2 :])) for distance in distances)
+    end = max(float(flight.history["time_s"].iloc[-1]) for flight in flown)
+    levels = [
+        Line(x=np.array([0.0, end]), y=np.array([level, level]), label="r_min", colour="vermillion", style="dash")
+        for level in dict.fromkeys(float(flight.row["keepout_radius_m"]) for flight in flown)
+    ]
+    return Panel(
+        x_label="Time [s]",
+        y_label="Distance [m]",
+        title="Distance from the keep-out area’s centre",
+        lines=[*levels, *(flight.over_time(distance) for flight, distance in zip(flown, distances, strict=True))],
+        y_range=(min(0.95 * radius, nearest - 2.0), max(_FAR * radius, 1.1 * late)),
+    )
+
+
+def _errors(flown: list[_Flight]) -> Panel:
+    errors = [np.maximum(tracking_error(flight.history), _ERROR_MIN) for flight in flown]
+    top = 10.0 * max(float(np.nanmax(error)) for error in errors)
+    return Panel(
+        x_label="Time [s]",
+        y_label="Off track [m]",
+        title="Distance to the reference",
+        lines=[flight.over_time(error) for flight, error in zip(flown, errors, strict=True)],
+        log_y=True,
+        y_range=(_ERROR_MIN, top),
+    )

@@ -1,0 +1,80 @@
+"""Where a run comes from: how it was made, of which source and input, with which software, on which kind of host."""
+
+from common.run_layout import FORMAT
+from reports.document.blocks import Section, Table
+from reports.document.tables import run_config
+from reports.run.letterhead import Letterhead
+from reports.run.run_data import RunData
+
+
+def provenance_section(run: RunData, head: Letterhead) -> Section:
+    """Return the last section of a report."""
+    rows = [row for rows in (_made(run, head), _vehicle(run), _hashes(run), _host(run)) for row in rows]
+    table = Table(
+        head=["", ""],
+        rows=rows,
+        widths=[1.0, 4.0],
+        left_columns=2,
+        prose=True,
+        print_size_pt=8.0,
+        caption="How the run was made; with the same source, input and seed it can be made again.",
+    )
+    return Section(anchor="provenance", title="Provenance", blocks=[table])
+
+
+def _made(run: RunData, head: Letterhead) -> list[list[str]]:
+    manifest = run.manifest
+    study = manifest.get("study")
+    of = {"design": "Design", "measurement": "Flight"}.get(str(study), "Scenario")
+    rows = [
+        [of, f"{manifest['name']}: {manifest['title']}"],
+        ["Command", manifest.get("command") or "not recorded: a program made the run"],
+        ["Changed for this run", ", ".join(manifest["overrides"]) or "nothing"],
+        ["Began", head.when],
+        ["State", manifest["state"]],
+    ]
+    if "wall_time_s" in manifest:
+        rows.append(["Duration", f"{manifest['wall_time_s']:.1f} s"])
+    if "peak_memory_mib" in manifest:
+        rows.append(["Largest memory of a process", f"{manifest['peak_memory_mib']:.0f} MiB"])
+    return rows
+
+
+def _hashes(run: RunData) -> list[list[str]]:
+    manifest = run.manifest
+    measured = manifest.get("study") == "measurement"
+    seed = manifest["config"].get("seed")
+    rows = [["Source revision", manifest["git_revision"]]]
+    if source := manifest.get("fingerprint", {}).get("source"):
+        rows.append(["Hash of the source", source])
+    # A design is made without chance, and of no more than its title says.
+    if manifest.get("study") != "design":
+        rows.append(["Hash of the input" if measured else "Hash of the scenario", manifest["config_hash"]])
+        rows += [] if measured else [["Seed", "each trial's own" if seed is None else str(seed)]]
+    if logo := manifest.get("report", {}).get("logo_sha256"):
+        rows.append(["Hash of the logo", logo[:16]])
+    return rows
+
+
+def _vehicle(run: RunData) -> list[list[str]]:
+    config = run_config(run)
+    rows = []
+    if run.innerloop:
+        rows.append(["Aircraft", f"{run.innerloop['title']}. {run.innerloop['source']}"])
+    elif config.get("fidelity", "six_dof") == "six_dof" and run.manifest.get("study") != "measurement":
+        rows.append(["Aircraft", str(config.get("aircraft", "unknown"))])
+    if config.get("fidelity") in ("kinematic", "both"):
+        words = "Equation (1) of the paper: it has the commanded speed at once, and is steered by its heading rate."
+        rows.append(["Kinematic vehicle", words])
+    return rows
+
+
+def _host(run: RunData) -> list[list[str]]:
+    manifest = run.manifest
+    cores = manifest.get("cores")
+    return [
+        ["Host", manifest["platform"] + (f", {cores} cores" if cores else "")],
+        ["Python", manifest["python"]],
+        ["Packages", ", ".join(f"{name} {version}" for name, version in manifest["packages"].items())],
+        ["Format of the run", str(manifest.get("format", FORMAT))],
+    ]

@@ -1,0 +1,54 @@
+"""Maps about a ship: her hull to scale, her plume up the page, the keep-out area, wind and north."""
+
+from collections.abc import Sequence
+
+from reports.document.chart import Line, Note, Panel, circle
+from reports.document.map_marks import hull_line, on_map, plume_lines
+from reports.document.palette import Meaning
+from reports.run.surroundings import Surroundings
+
+
+def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -> list[Line]:
+    """Return keep-out area, plume and ship, on a page on which the course ``up`` [rad] is up, with her funnel at a place."""
+    right, along = circle(about.radius)
+    hull, plume = about.hull, about.plume
+    return [
+        Line(x=x + right, y=y + along, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True),
+        *plume_lines(plume.distance, plume.half_width if plume.smoke else None, about.axis - up, x, y),
+        hull_line(hull.length, hull.beam, hull.funnel, about.heading - up, x, y),
+    ]
+
+
+def ship_panel(
+    about: Surroundings,
+    lines: Sequence[Line],
+    *,
+    title: str = "",
+    notes: Sequence[Note] = (),
+    shown: Sequence[Line] = (),
+    aspect: float = 1.0,
+) -> Panel:
+    """Return a map about the ship with her plume up the page.
+
+    Parameters
+    ----------
+    about : ship, plume, keep-out area and wind
+    lines, notes : seen from the ship, to the right of the plume's axis and along it [m]; the lines from back to front
+    title : above the panel
+    shown, aspect : as of ``map_marks.on_map``
+    """
+    every = [*ship_lines(about, about.axis), *lines]
+    panel = Panel(x_label="Right of the plume's axis [m]", y_label="Along it [m]", title=title, lines=every, notes=notes)
+    speed, towards = about.wind
+    return on_map(panel, north=-about.axis, wind=(speed, towards - about.axis), shown=shown, aspect=aspect)
+
+
+def ship_words(about: Surroundings) -> str:
+    """Return what a map about the ship shows, for a caption."""
+    hull = about.hull
+    width = " Its width is two standard deviations of the mean smoke to either side." if about.plume.smoke else ""
+    moved = " Ship, north and wind are as they were at the closest approach." if about.changing else ""
+    return (
+        f"Seen from the ship, with the axis of her plume up the page.{width} The keep-out {about.shape} is about her funnel; her"
+        f" hull is that of {hull.title}, {hull.length:g} m by {hull.beam:g} m, as the scenario gives none.{moved}"
+    )

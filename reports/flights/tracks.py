@@ -1,0 +1,191 @@
+"""Tracks of flights: about the ship with her plume up the page, at the plume from near, and over the ground."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from reports.document.axes import in_kilometres
+from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.map_marks import on_map
+from reports.document.palette import Meaning
+from reports.document.ship_map import ship_lines, ship_panel, ship_words
+from reports.flights.flight_view import FlightView, Place, flight_view
+from reports.run.columns import Array, column
+from reports.run.surroundings import Surroundings, surroundings
+from reports.run.time_history import about_the_plume, turned
+from reports.run.trials import Trial
+
+_STEPS = (10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)
+"""Times between marks along a track [s]."""
+
+_MARKS_MAX = 8
+"""Marks of the time along a track at most."""
+
+_NEAR_PERIODS = 2.0
+"""Periods of the oscillation that are shown from near, at the end of the flight."""
+
+_NEAR_S = 60.0
+"""The same of a flight without an oscillation [s]."""
+
+_NEARER = 0.5
+"""Size of what is shown from near, over that of the whole, up to which it has a panel of its own."""
+
+_BESIDE, _WIDE, _FLAT = 1.2, 1.9, 4.8
+"""Width over height: of a panel that has another beside it, of one that is alone, and of one over the ground."""
+
+_AWAY = 1.5
+"""Way of the ship over the size of the track about her, from which there is a panel over the ground."""
+
+
+def track_chart(view: FlightView) -> Chart:
+    """Return where one flight went: about the ship, her plume up the page, from near, and over the ground."""
+    return _Tracks(view).chart()
+
+
+def track_picture(flights: Sequence[tuple[Trial, "pd.Series[Any]", str]], *, name: str = "picture") -> Chart | None:
+    """Return a large picture of one flight about its ship, or of a few side by side; None if none has a time history.
+
+    Parameters
+    ----------
+    flights : each with its trial, its row and what is written above it
+    name : of the chart
+    """
+    views = [(view, title) for trial, row, title in flights if (view := flight_view(trial, row)) is not None]
+    if not views:
+        return None
+    aspect, height = (_WIDE, 0.5) if len(views) == 1 else (_BESIDE, 0.42)
+    drawn = [_Tracks(view).picture(title, aspect) for view, title in views]
+    return Chart(name=name, caption=drawn[0][1], panels=[panel for panel, _ in drawn], columns=len(drawn), panel_height=height)
+
+
+class _Tracks:
+    """The panels of one flight's tracks."""
+
+    def __init__(self, view: FlightView) -> None:
+        self.view = view
+        nearest = int(view.whole.index.get_indexer(view.closest.index)[0])
+        # What stands still in a panel is as it was at the closest approach.
+        self._about = surroundings(view.trial.config, view.row, view.whole, nearest) if view.vessel else None
+        self._step = next((s for s in _STEPS if view.ends[1] / s <= _MARKS_MAX), _STEPS[-1])
+
+    def chart(self) -> Chart:
+        """Return where it went."""
+        about = self._about
+        if about is None:
+            return Chart(name="tracks", caption="Over the ground.", panels=[in_kilometres(self.ground())], panel_height=0.42)
+        near, ground = self._near(about), self.ground() if self._way() is not None else None
+        panels = [self._whole(about, "The whole flight", _BESIDE if near else _WIDE), *([near] if near else [])]
+        over = " Below, over the ground, with ship, keep-out area and plume as they were at the closest approach." if ground else ""
+        return Chart(
+            name="tracks",
+            caption=ship_words(about) + over,
+            panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
+            columns=len(panels),
+            panel_height=0.35,
+            last_height=0.19 if ground else 0.0,
+        )
+
+    def picture(self, title: str, aspect: float) -> tuple[Panel, str]:
+        """Return the whole flight in one panel, and what it shows in words."""
+        about = self._about
+        panel = self.ground(title) if about is None else self._whole(about, title, aspect)
+        return in_kilometres(panel), "Over the ground." if about is None else ship_words(about)
+
+    def _whole(self, about: Surroundings, title: str, aspect: float) -> Panel:
+        """Return the whole flight, seen from the ship with her plume up the page."""
+        view = self.view
+        times, notes = self._times(about_the_plume, until=view.settled_at)
+        lines = [
+            *view.guarded(about_the_plume),
+            view.line(about_the_plume, view.samples, "flown", Meaning.FLOWN),
+            self._reference(about_the_plume, view.samples),
+            *view.marks(about_the_plume),
+            *view.ends_of(about_the_plume),
+            *times,
+        ]
+        return ship_panel(about, lines, title=title, notes=notes, shown=[*ship_lines(about, about.axis), *lines], aspect=aspect)
+
+    def _near(self, about: Surroundings) -> Panel | None:
+        """Return the last of the flight from near; None where it never settled, or where the whole is no larger."""
+        view, period = self.view, math.tau / float(self.view.row.get("omega_0_rad_s", math.nan))
+        last = _NEAR_PERIODS * period if math.isfinite(period) else _NEAR_S
+        begin = max(view.settled_at, float(view.ends[1]) - last)
+        late = view.since(begin)
+        if late is None:
+            return None
+        track = late.line(about_the_plume, late.whole, "flown", Meaning.FLOWN)
+        reference = self._reference(about_the_plume, late.whole)
+        size, whole = (max(float(np.ptp(x)), float(np.ptp(y))) for x, y in ((track.x, track.y), about_the_plume(view.samples)))
+        if size > _NEARER * max(whole, 2.0 * view.radius):
+            return None
+        lines = [*late.guarded(about_the_plume), track, reference, *late.marks(about_the_plume)]
+        title = f"The last {view.ends[1] - begin:.0f} s"
+        return ship_panel(about, lines, title=title, shown=[track, reference], aspect=_BESIDE)
+
+    def ground(self, title: str = "") -> Panel:
+        """Return the flight over the ground: along the way of a ship that goes far, else with north up the page."""
+        view, about, way = self.view, self._about, self._way()
+        up = way or 0.0
+
+        def place(samples: pd.DataFrame, prefix: str = "") -> tuple[Array, Array]:
+            return turned(column(samples, f"{prefix}north_m"), column(samples, f"{prefix}east_m"), up)
+
+        lines: list[Line] = []
+        if about is not None:
+            (x, y), track = place(view.closest, "vessel_"), place(view.samples, "vessel_")
+            lines += ship_lines(about, up, float(x[0]), float(y[0]))
+            lines.append(Line(x=track[0], y=track[1], label="ship's track", colour=Meaning.SHIP, style="thin"))
+        lines += [
+            *view.guarded(place),
+            view.line(place, view.samples, "flown", Meaning.FLOWN),
+            *([] if view.vessel else [self._reference(place, view.samples)]),
+            *view.marks(place),
+            *view.ends_of(place),
+        ]
+        times, notes = self._times(place, until=float(view.ends[1]), beside=way is None)
+        labels = ("East [m]", "North [m]") if way is None else ("Along the ship's way [m]", "To port [m]")
+        panel = Panel(x_label=labels[0], y_label=labels[1], title=title, lines=[*lines, *times], notes=notes)
+        wind = None if about is None else (about.wind[0], about.wind[1] - up)
+        return on_map(panel, north=-up, wind=wind, aspect=_WIDE if way is None else _FLAT)
+
+    def _way(self) -> float | None:
+        """Return the course that puts the ship's way across the page [rad]; None where she does not go far."""
+        view = self.view
+        if not view.vessel:
+            return None
+        north, east = (float(np.diff(column(view.whole, f"vessel_{axis}_m")[[0, -1]])[0]) for axis in ("north", "east"))
+        size = float(np.nanmax(np.hypot(*about_the_plume(view.samples))))
+        return math.atan2(east, north) - 0.5 * math.pi if math.hypot(north, east) > _AWAY * size else None
+
+    @staticmethod
+    def _reference(place: Place, samples: pd.DataFrame) -> Line:
+        """Return the reference, thin, to be drawn over the track."""
+        x, y = place(_reference_of(samples))
+        return Line(x=x, y=y, label="reference", colour=Meaning.ASKED, style="thin")
+
+    def _times(self, place: Place, *, until: float, beside: bool = True) -> tuple[list[Line], list[Note]]:
+        """Return marks along the track at round times up to some [s], and what they say: beside the track or above it all."""
+        times = np.arange(self._step, until - 0.3 * self._step, self._step)
+        if not len(times):
+            return [], []
+        x, y = place(self.view.at_times(times))
+        high = float(np.max(place(self.view.samples)[1])) + self.view.radius
+        notes = [
+            Note(x=float(right), y=float(up), text=f"  {_duration(time)}", align="left")
+            if beside
+            else Note(x=float(right), y=high, text=_duration(time))
+            for right, up, time in zip(x, y, times.tolist(), strict=True)
+        ]
+        return [Line(x=x, y=y, label="", colour=Meaning.SHIP, style="dots")], notes
+
+
+def _reference_of(samples: pd.DataFrame) -> pd.DataFrame:
+    """Return samples with the reference in the place of the aircraft."""
+    return samples.assign(north_m=samples["reference_north_m"], east_m=samples["reference_east_m"])
+
+
+def _duration(seconds: float) -> str:
+    return f"{seconds / 60.0:g} min" if seconds >= 60.0 else f"{seconds:g} s"

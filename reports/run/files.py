@@ -1,0 +1,63 @@
+"""Files that reports write, and runs that they cannot read."""
+
+import sqlite3
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+
+from common.files import is_file, write_whole
+from common.run_layout import JOURNAL
+from reports.errors import ReportError
+
+
+def refuse_running(directory: Path) -> None:
+    """Refuse a run that another program is writing to: it holds the journal locked. Nothing is written, not even a lock.
+
+    Raises
+    ------
+    ReportError : another program is writing to it
+    """
+    journal = (directory / JOURNAL).absolute()
+    if not is_file(journal):
+        return
+    try:
+        with closing(sqlite3.connect(f"{journal.as_uri()}?mode=ro", uri=True, timeout=0.0)) as database:
+            # Otherwise SQLite would leave an index beside the journal of a program that was killed.
+            database.execute("PRAGMA locking_mode = EXCLUSIVE")
+            database.execute("SELECT 1 FROM sqlite_master")
+    except sqlite3.Error as error:
+        # Any other error is no lock: reports do not read the journal.
+        if getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_BUSY:
+            raise ReportError(f"another program is writing to '{directory}'; wait until it has ended") from None
+
+
+@contextmanager
+def damage_named(*directories: Path) -> Iterator[None]:
+    """Refuse a run in one line, where reading what it holds fails; of several, one of them.
+
+    Raises
+    ------
+    ReportError : names the run and what failed
+    """
+    try:
+        yield
+    except ReportError:
+        raise
+    except (LookupError, TypeError, ValueError, AttributeError, OSError) as error:
+        what = f"{type(error).__name__}: {error}".splitlines()[0]
+        names = " or ".join(f"'{directory}'" for directory in directories)
+        raise ReportError(f"{names} is damaged ({what}); run it again in another --out") from None
+
+
+def written(path: Path, write: Callable[[Path], object]) -> Path:
+    """Write a file, whole or not at all, and return its path.
+
+    Raises
+    ------
+    ReportError : it cannot be written
+    """
+    try:
+        write_whole(path, write)
+    except OSError as error:
+        raise ReportError(f"'{path}' cannot be written: {error.strerror}; check permissions and space") from None
+    return path

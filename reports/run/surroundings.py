@@ -1,0 +1,83 @@
+"""What was about the aircraft at one moment of a flight: the ship, her plume, the keep-out area and the wind."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from reports.run.columns import column
+from reports.run.plume_shape import PlumeShape, plume_shape
+from reports.run.ship import Hull, hull_of
+from reports.run.time_history import about_the_plume, vessel_heading
+
+_TURNED = math.radians(2.0)
+"""Turn of the plume from which its course is said to change."""
+
+_SHORTEST, _LONGEST = 1.6, 4.0
+"""Length of the plume that is drawn, over r_min [-]."""
+
+_BEYOND = 1.2
+"""The same over the farthest that the aircraft was from the ship [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Surroundings:
+    """What was about the aircraft.
+
+    Attributes
+    ----------
+    hull : of the ship
+    heading : of her bow [rad]
+    axis : course along which her plume trails [rad]
+    plume : its shape
+    radius, shape : r_min [m], and the shape of the keep-out area
+    wind : its speed [m/s], and the course that it blows along [rad]
+    changing : whether the plume's course changed in flight
+    """
+
+    hull: Hull
+    heading: float
+    axis: float
+    plume: PlumeShape
+    radius: float
+    shape: str
+    wind: tuple[float, float]
+    changing: bool
+
+
+def surroundings(config: Mapping[str, Any], row: "pd.Series[Any]", history: pd.DataFrame, at: int = -1) -> Surroundings:
+    """Return what was about the aircraft at the sample ``at`` of a flight with a ship.
+
+    Parameters
+    ----------
+    config : of the flight's trial, as the manifest has it
+    row : of the flight in the summary
+    history : its time history
+    """
+    wind = _wind(row)
+    heading = vessel_heading(history, float(config.get("vessel", {}).get("course_deg", 0.0)))
+    axis = column(history, "plume_axis_rad")
+    radius = float(row["keepout_radius_m"])
+    north, east = (float(column(history, f"vessel_velocity_{name}_mps")[at]) for name in ("north", "east"))
+    apparent = math.hypot(wind[0] * math.cos(wind[1]) - north, wind[0] * math.sin(wind[1]) - east)
+    reach = _BEYOND * float(np.nanmax(np.hypot(*about_the_plume(history))))
+    length = min(max(reach, _SHORTEST * radius), _LONGEST * radius)
+    return Surroundings(
+        hull=hull_of(config),
+        heading=float(heading[at]),
+        axis=float(axis[at]),
+        plume=plume_shape(config, speed=math.hypot(north, east), wind=wind[0], apparent_wind=apparent, length=length),
+        radius=radius,
+        shape=str(config.get("keepout", {}).get("shape", "sphere")),
+        wind=wind,
+        changing=bool(np.ptp(np.unwrap(axis)) > _TURNED),
+    )
+
+
+def _wind(row: "pd.Series[Any]") -> tuple[float, float]:
+    """Return the wind's speed and the course that it blows along: it is given by where it comes from."""
+    speed, origin = (float(row.get(name, math.nan)) for name in ("wind_speed_mps", "wind_from_deg"))
+    return (speed, math.radians(origin) + math.pi) if speed > 0.0 and math.isfinite(origin) else (0.0, 0.0)

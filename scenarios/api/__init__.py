@@ -1,0 +1,9 @@
+"""The programming interface: fly a scenario from a script or a notebook. Its names are those of ``scenarios``."""
+
+from scenarios.api.flying import fly, run
+from scenarios.api.results import Flight, Run
+from scenarios.api.scenario import Scenario, load
+from scenarios.api.statistics import Statistics
+from scenarios.errors import InputError
+
+__all__ = ["Flight", "InputError", "Run", "Scenario", "Statistics", "fly", "load", "run"]

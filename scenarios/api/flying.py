@@ -1,0 +1,178 @@
+"""Fly one flight, or a whole study, from a program."""
+
+import os
+import shutil
+import tempfile
+import weakref
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from scenarios.api.objects import LentWork, check_picklable, lent
+from scenarios.api.results import Flight, Run
+from scenarios.api.scenario import Given, Scenario, load
+from scenarios.errors import InputError
+
+if TYPE_CHECKING:
+    from scenarios.engine.executor import Executor
+    from scenarios.engine.runner import Progress, RunResult
+    from scenarios.engine.task import Work
+    from scenarios.studies.flight_study import FlightStudy
+
+
+def fly(
+    scenario: Given | Scenario,
+    /,
+    *,
+    flight_id: str | None = None,
+    out: str | os.PathLike[str] | None = None,
+    progress: bool = False,
+    **keys: object,
+) -> Flight:
+    """Fly one flight of a scenario, in this process, and return it with its time history.
+
+    It is the flight that the command line flies, to the last bit. Nothing is written unless ``out`` is given: the files that
+    are needed on the way are in a temporary directory, which is removed together with what is returned.
+
+    Parameters
+    ----------
+    scenario : a name of the catalog, the path of a TOML file, what such a file holds, as a mapping, or what ``load`` returned
+    flight_id : name of the flight, where the scenario has several
+    out : run directory, which must be new or empty
+    progress : show a progress bar on standard error
+    keys : to set, as of ``Scenario.set``: ``fly("sweep_nu", nu=0.5, **{"guidance.preview": False})``
+
+    Raises
+    ------
+    InputError : the scenario cannot be flown, or has several flights, or not this one; one line
+    """
+    from scenarios.engine.in_process_executor import InProcessExecutor
+    from scenarios.engine.runner import fly_study
+    from scenarios.studies.single_flight import SingleFlight
+
+    loaded = load(scenario).set(**keys)
+    with lent(loaded.parts), _directory(out) as (directory, keeping), _shown(progress=progress) as tell:
+        study = _study_of(loaded)
+        name = flight_id or _only_flight(study, loaded)
+        single = SingleFlight.of(study, name)
+        if single is None:
+            raise InputError(f"'{loaded.name}' has no flight '{name}'; its flights are {_names(study)}")
+        result = fly_study(single, directory, executor_factory=InProcessExecutor, resume=False, progress=tell)
+        return _finished(result, keeping).flights[name]
+
+
+def run(
+    scenario: Given | Scenario,
+    /,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    jobs: int | None = None,
+    progress: bool = False,
+    **keys: object,
+) -> Run:
+    """Fly a whole study and return its results.
+
+    They are those of the command line, to the last bit. Nothing is written unless ``out`` is given: the files that are needed
+    on the way are in a temporary directory, which is removed together with what is returned.
+
+    Parameters
+    ----------
+    scenario, out, progress, keys : as of ``fly``
+    jobs : number of processes; one per core if not given
+
+    Raises
+    ------
+    InputError : the scenario cannot be flown, the directory cannot be used, or a part that was given as an object cannot be sent
+        to other processes; one line
+    KeyboardInterrupt : it was interrupted; in ``out`` finished flights are kept, and ``--resume`` of the command line goes on
+    """
+    from scenarios.engine.executors import ExecutorFactory
+    from scenarios.studies.registry import run_study
+
+    if jobs is not None and jobs < 1:
+        raise InputError(f"jobs is {jobs}; at least one process has to fly: give 1 or more")
+    loaded = load(scenario).set(**keys)
+    check_picklable(loaded.parts)
+    processes = ExecutorFactory(jobs=jobs or os.cpu_count() or 1)
+
+    def executor(work: "Work") -> "Executor":
+        return processes(LentWork(work, loaded.parts) if loaded.parts else work)
+
+    with lent(loaded.parts), _directory(out) as (directory, keeping), _shown(progress=progress) as tell:
+        result = run_study(
+            loaded.config, loaded.name, directory, executor_factory=executor, progress=tell, overrides=loaded.changes
+        )
+        return _finished(result, keeping)
+
+
+def _study_of(loaded: Scenario) -> "FlightStudy":
+    """Return the study of a scenario, one flight of which can be flown."""
+    from scenarios.studies.flight_study import FlightStudy
+    from scenarios.studies.registry import study_of
+
+    study = study_of(loaded.config, loaded.name, loaded.changes)
+    if not isinstance(study, FlightStudy) or study.chooses_flights:
+        raise InputError(
+            f"'{loaded.name}' is a study of {loaded.config.study}, which has no flight that could be flown alone; use run"
+        )
+    return study
+
+
+def _only_flight(study: "FlightStudy", loaded: Scenario) -> str:
+    """Return the name of the only flight of a study."""
+    if study.planned > 1:
+        raise InputError(
+            f"'{loaded.name}' has {study.planned} flights; name one of them by flight_id ({_names(study)}), set nu, or use run"
+        )
+    return next(iter(study.experiments.values())).named(0)[0]
+
+
+def _names(study: "FlightStudy") -> str:
+    """Return the names of the first and the last flight."""
+    first, *_, last = [(experiment, number) for experiment in study.experiments.values() for number in (0, experiment.flights - 1)]
+    return " to ".join(dict.fromkeys(experiment.named(number)[0] for experiment, number in (first, last)))
+
+
+Keeping = Callable[[object], None]
+"""Called with the object together with which a temporary directory is removed."""
+
+
+@contextmanager
+def _directory(out: str | os.PathLike[str] | None) -> Iterator[tuple[Path, Keeping]]:
+    """Yield the run directory; one that is temporary is removed with what it is kept for, or if there is nothing."""
+    if out is not None:
+        yield Path(out), lambda _: None
+        return
+    directory = Path(tempfile.mkdtemp(prefix="plume-flight-"))
+    removers: list[weakref.finalize[..., object]] = []
+
+    def keeping(user: object) -> None:
+        removers.append(weakref.finalize(user, shutil.rmtree, directory, ignore_errors=True))
+
+    try:
+        yield directory, keeping
+    finally:
+        if not removers:
+            shutil.rmtree(directory, ignore_errors=True)
+
+
+@contextmanager
+def _shown(*, progress: bool) -> Iterator["Progress"]:
+    """Yield what is called as the flights advance: a progress bar, or nothing."""
+    if not progress:
+        with nullcontext():
+            yield lambda *_: None
+        return
+    from scenarios.engine.progress import progress_bar
+
+    with progress_bar() as tell:
+        yield tell
+
+
+def _finished(result: "RunResult", keeping: Keeping) -> Run:
+    if result.interrupted:
+        raise KeyboardInterrupt
+    run = Run(result.directory, met=result.all_met, lines=tuple(result.summary.lines))
+    keeping(run)
+    return run

@@ -1,0 +1,125 @@
+"""The statistics of a Monte Carlo study as an object: what is in ``statistics.json``, with names and types."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from scenarios.errors import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Probability:
+    """The probability of an event in a flight; limits that the flights do not give are not a number.
+
+    Attributes
+    ----------
+    events, flights : number of flights with the event, and of all flights
+    estimate : share of flights with the event, or the estimate of subset simulation [-]
+    low, high : two-sided interval, by Clopper and Pearson, or by the scatter of subset simulations [-]
+    upper : one-sided upper bound [-]
+    """
+
+    events: int
+    flights: int
+    estimate: float
+    low: float
+    high: float
+    upper: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Quantile:
+    """A quantile of a figure, in the figure's unit.
+
+    Attributes
+    ----------
+    probability : of a value below it [-]
+    value : of the flights
+    low, high : interval from order statistics; a limit that the flights do not give is not a number
+    """
+
+    probability: float
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Statistics:
+    """What a Monte Carlo study shows, and how sure that is.
+
+    Attributes
+    ----------
+    confidence : of each interval, not of all of them together [-]
+    flights, measured : number of flights that are done, and of those that were measured
+    outcomes : number of flights by their outcome
+    violation : probability of a keep-out violation, from the flights that were measured
+    violation_at_most : its one-sided upper bound if every flight of unknown end had one [-]
+    quantiles : quantiles of each figure, by its name with its unit, as "min_distance_m"; none of subset simulation
+    content : everything that ``statistics.json`` holds
+    """
+
+    confidence: float
+    flights: int
+    measured: int
+    outcomes: Mapping[str, int]
+    violation: Probability
+    violation_at_most: float
+    quantiles: Mapping[str, tuple[Quantile, ...]]
+    content: Mapping[str, Any]
+
+    def quantile(self, figure: str, probability: float) -> Quantile:
+        """Return a quantile of a figure.
+
+        Parameters
+        ----------
+        figure : its name, as "min_distance_m"
+        probability : of a value below the quantile [-]
+
+        Raises
+        ------
+        InputError : there is no such figure, or no such quantile of it
+        """
+        known = self.quantiles.get(figure, ())
+        for quantile in known:
+            if math.isclose(quantile.probability, probability):
+                return quantile
+        given = ", ".join(f"{quantile.probability:g}" for quantile in known)
+        there = f"it has those of {given}" if known else f"figures are {', '.join(self.quantiles) or 'none'}"
+        raise InputError(f"statistics have no quantile {probability:g} of '{figure}'; {there}")
+
+
+def statistics_of(content: Mapping[str, Any]) -> Statistics:
+    """Return the object for the content of ``statistics.json``, of plain sampling or of subset simulation."""
+    violation = content["violation"]
+    plain = violation.get("measured", violation)
+    flights = content["flights"]
+    return Statistics(
+        confidence=content["confidence"],
+        flights=flights["done"],
+        measured=flights["measured"],
+        outcomes=content["outcomes"],
+        violation=Probability(
+            events=plain["events"],
+            flights=plain.get("flights", flights["measured"]),
+            estimate=_number(plain.get("share", plain.get("estimate"))),
+            low=_number(plain["low"]),
+            high=_number(plain["high"]),
+            upper=_number(plain["upper"]),
+        ),
+        violation_at_most=_number(violation["pessimistic"]["upper"]),
+        quantiles={
+            name: tuple(
+                Quantile(**{key: _number(quantile[key]) for key in ("probability", "value", "low", "high")})
+                for quantile in figure["quantiles"]
+            )
+            for name, figure in content.get("figures", {}).items()
+        },
+        content=content,
+    )
+
+
+def _number(value: float | None) -> float:
+    """Return a number; JSON has none for "not a number"."""
+    return math.nan if value is None else value

@@ -1,0 +1,165 @@
+"""What the guidance knows beforehand of a plume's axis: how high it is expected to be, how sure that is, and how it is found."""
+
+import math
+
+import numpy as np
+
+from gnc.errors import InfeasibleError
+from gnc.estimation.plume_prior import GasSensor
+from gnc.mission.axis_height import AxisHeight
+from gnc.mission.plume_axis import AxisParameters, Climb, PredictedPlume
+from gnc.mission.searched_axis import Expectation, SearchedPlume
+from measurement.emission.emission import Emission
+from measurement.gases import GASES
+from measurement.sniffer.presets import sensor_preset
+from scenarios.instruments.sniffer import SnifferOnBoard
+from scenarios.schema.scenario import Scenario
+from scenarios.world.exhaust import emission
+from scenarios.world.vessel import VesselTruth
+
+PREDICTED_TIME, KNOWN_TIME = 20.0, 4.0
+"""Time in which the altitude follows a height that is predicted from wind under estimation, and one that is known [s]."""
+
+ALTITUDE_MARGIN = {"none": 3.0, "light": 6.0, "moderate": 10.0, "severe": 15.0}
+"""How far within the limits of the altitude is flown, by the turbulence [m]."""
+
+_ROOM = 10.0
+"""Least room between the altitudes that are flown, to search in [m]."""
+
+_LOADS = 9
+"""Loads, evenly within their range, of which the deviation of what is emitted is taken."""
+
+_SOURCE_ERROR, _LOAD_ERROR = 2.0, 0.3
+"""Deviation of the mouth's height [m], and of the logarithm of what is emitted [-], where neither has a range."""
+
+_WIND_ERROR = 0.5
+"""Deviation of each component of the apparent wind as it is estimated on board [m/s]."""
+
+CO2 = GASES.index("co2")
+
+
+def plume_axis(scenario: Scenario, vessel: VesselTruth, altitude_reach: float = math.inf) -> AxisParameters:
+    """Return how the guidance knows the plume's axis.
+
+    Parameters
+    ----------
+    scenario, vessel : of the flight
+    altitude_reach : how far from the altitude that is flown a command may be [m]
+
+    Raises
+    ------
+    MeasurementError : the ship has no such speed
+    InfeasibleError : the limits of the altitude leave no room to search in, or the flight starts outside of them
+    """
+    f = scenario.following
+    gradient = f.climb_gradient
+    if scenario.emission.ship is None or f.plume == "predicted":
+        climb = Climb(time=PREDICTED_TIME, gradient=gradient)
+        return PredictedPlume(height=axis_height(scenario, vessel), altitude=scenario.altitude, climb=climb)
+    limits = flown_altitudes(scenario)
+    height = axis_height(scenario, vessel, limits)
+    climb = Climb(time=KNOWN_TIME, gradient=gradient, reach=altitude_reach)
+    if f.plume == "told":
+        return PredictedPlume(height=height, altitude=scenario.altitude, climb=climb)
+    return SearchedPlume(
+        height=height,
+        altitude=scenario.altitude,
+        climb=climb,
+        expected=_expectation(scenario, vessel, limits),
+        climb_rate=gradient * scenario.guidance.airspeed_mps,
+        ladder=f.search == "ladder",
+    )
+
+
+def flown_altitudes(scenario: Scenario) -> tuple[float, float]:
+    """Return the lowest and the highest altitude that is flown while the plume is searched for and followed [m].
+
+    Raises
+    ------
+    InfeasibleError : they leave no room, or the flight starts outside of them
+    """
+    flight, margin = scenario.flight, ALTITUDE_MARGIN[scenario.turbulence.level]
+    lowest, highest = flight.altitude_min_m + margin, flight.altitude_max_m - margin
+    if highest - lowest < _ROOM:
+        raise InfeasibleError(
+            f"flight.altitude_min_m and altitude_max_m are {flight.altitude_min_m:g} and {flight.altitude_max_m:g} m; the aircraft"
+            f" keeps {margin:g} m from each, and a plume is searched for within at least {_ROOM:g} m: give them"
+            f" {2.0 * margin + _ROOM:g} m or more between them"
+        )
+    if not lowest <= scenario.altitude <= highest:
+        raise InfeasibleError(
+            f"the flight starts at an altitude of {scenario.altitude:g} m; the aircraft keeps within {lowest:g} and {highest:g} m,"
+            " which follow from flight.altitude_min_m and altitude_max_m: set flight.altitude_m in between"
+        )
+    return lowest, highest
+
+
+def axis_height(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float] | None = None) -> AxisHeight:
+    """Return the height that the guidance expects: at the load that the speed takes, or in the middle of the ranges given.
+
+    Parameters
+    ----------
+    scenario, vessel : of the flight
+    limits : lowest and highest altitude that is flown [m]; those of the flight unless given
+
+    Raises
+    ------
+    MeasurementError : the ship has no such speed
+    """
+    f, flight = scenario.following, scenario.flight
+    lowest, highest = limits or (flight.altitude_min_m, flight.altitude_max_m)
+    source = sum(f.source_height_m) / 2.0 if f.source_height_m else scenario.plume.source_height_m
+    climb = math.tan(math.radians(scenario.plume.elevation_deg))
+    if scenario.emission.ship is None:
+        return AxisHeight(source=source, climb=climb)
+    expected = expected_emission(scenario, vessel, 0.5)
+    return AxisHeight(
+        source=source,
+        climb=climb,
+        momentum_flux=expected.momentum_flux,
+        buoyancy_flux=expected.buoyancy_flux,
+        lowest=lowest,
+        highest=highest,
+    )
+
+
+def expected_emission(scenario: Scenario, vessel: VesselTruth, quantile: float) -> Emission:
+    """Return what is expected to be emitted, at a quantile of the load's range; at the load that the speed takes without one."""
+    load = scenario.following.load
+    if load is not None:
+        return emission(scenario, speed=math.nan, load=load[0] + quantile * (load[1] - load[0]))
+    _, _, v_north, v_east = vessel.motion(0.0)
+    return emission(scenario, speed=math.hypot(v_north, v_east))
+
+
+def _expectation(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float]) -> Expectation:
+    """Return what is known of ship and sensor, within the altitudes that are flown."""
+    f, middle = scenario.following, expected_emission(scenario, vessel, 0.5)
+    sources, loads = f.source_height_m, [expected_emission(scenario, vessel, (i + 0.5) / _LOADS) for i in range(_LOADS)]
+    return Expectation(
+        source_height=axis_height(scenario, vessel).source,
+        source_deviation=(sources[1] - sources[0]) / math.sqrt(12.0) if sources else _SOURCE_ERROR,
+        momentum_flux=middle.momentum_flux,
+        buoyancy_flux=middle.buoyancy_flux,
+        co2_rate=middle.rates[CO2],
+        load_deviation=float(np.std(np.log([of.rates[CO2] for of in loads]))) if f.load else _LOAD_ERROR,
+        wind_deviation=_WIND_ERROR,
+        sensor=_co2_sensor(scenario),
+        lowest=limits[0],
+        highest=limits[1],
+    )
+
+
+def _co2_sensor(scenario: Scenario) -> GasSensor:
+    """Return the CO2 channel of the sniffer on board, by its data sheet."""
+    if "sniffer" not in scenario.payload.instruments:
+        raise InfeasibleError("following.plume is 'estimated', and nothing smells it: put 'sniffer' into payload.instruments")
+    spec = sensor_preset(scenario.payload.settings(SnifferOnBoard).sensor)
+    channel = spec.known("co2")
+    return GasSensor(
+        interval=1.0 / spec.rate_hz,
+        delay=channel.delay_s,
+        time_constant=channel.constants[0],
+        noise=channel.noise,
+        saturated=channel.range_high,
+    )

@@ -1,0 +1,96 @@
+"""What the guidance learns of the plume in flight: readings of CO2, or the truth; and what it believes, for the record."""
+
+import math
+
+import numpy as np
+
+from gnc.estimation.own_motion import Motion
+from gnc.guidance import Guidance
+from gnc.mission.plume_axis import PlumeAxis, PredictedAxis
+from gnc.mission.plume_following import PlumeFollowing
+from gnc.mission.searched_axis import SearchedAxis
+from scenarios.instruments.instrument import GasReader
+from scenarios.vehicles.vehicle import Vehicle
+from scenarios.world.world import World
+
+_SELDOM = 15.0
+"""Time between looks at what is costly to compute [s]."""
+
+
+class Smelling:
+    """Passes on what a sniffer reads, and what a flight is told of its plume.
+
+    Parameters
+    ----------
+    reader : a sniffer that is read in flight, or none
+    world, vehicle : of the flight
+    axis : of the plume, as the guidance has it
+    interval : guidance steps between rows of the record, at which the sniffer's path is known
+    told : whether the guidance is told where the axis is
+    """
+
+    __slots__ = ("_axis", "_interval", "_reader", "_told", "_vehicle", "_world")
+
+    def __init__(
+        self, reader: GasReader | None, world: World, vehicle: Vehicle, axis: PlumeAxis, *, interval: int, told: bool
+    ) -> None:
+        self._reader, self._world, self._vehicle, self._axis = reader, world, vehicle, axis
+        self._interval, self._told = interval, told
+
+    def pass_on(self, step: int, time: float, motion: Motion, guidance: Guidance) -> None:
+        """Pass on what has come until a step; the guidance has taken note of its own motion at it."""
+        if step % self._interval == 0:
+            sample, axis = self._vehicle.sample(), self._axis
+            axis.flown = sample[0]
+            readings = self._reader.follow(time, motion, sample) if self._reader is not None else ()
+            if isinstance(axis, SearchedAxis):
+                axis.heed(time, readings)
+        if self._told and step % guidance.plan_interval == 0:
+            self._tell(time, guidance)
+
+    def _tell(self, time: float, guidance: Guidance) -> None:
+        """Say where the mean axis is, seen from the centre of oscillation as the guidance has it."""
+        exhaust, centre = self._world.exhaust, guidance.mission.centre
+        if exhaust is None or not isinstance(self._axis, PredictedAxis):
+            return
+        north, east, _, _ = self._world.vessel.motion(time)
+        height = self._world.source_height
+        at = (np.array([value]) for value in (time, north + centre.x, east + centre.y, height))
+        plume = exhaust.sample(*at)
+        across, above = float(plume.across[0]), float(plume.axis_height[0])
+        if math.isfinite(above):
+            bearing, distance = math.atan2(centre.y, centre.x), math.hypot(centre.x, centre.y)
+            self._axis.tell(above, bearing - math.atan2(across, distance))
+
+
+class PlumeBelief:
+    """What the guidance believes of the plume, as columns of the time history.
+
+    Parameters
+    ----------
+    axis : of the plume, as the guidance has it
+    """
+
+    COLUMNS = (
+        "axis_height_estimated_m", "axis_height_deviation_m", "axis_offset_estimated_m", "axis_offset_deviation_m",
+        "axis_spread_estimated_m", "axis_measurable", "axis_innovation",
+    )  # fmt: skip
+
+    def __init__(self, axis: SearchedAxis) -> None:
+        self._axis = axis
+        self._measurable, self._next = math.nan, 0.0
+
+    def read(self, time: float, motion: Motion, sample: tuple[float, ...]) -> tuple[float, ...]:  # noqa: ARG002 - of an instrument
+        """Return a value for each column."""
+        found = self._axis.estimate
+        if time >= self._next:
+            self._measurable, self._next = self._axis.measurable(), time + _SELDOM
+        return (
+            found.height, found.height_deviation, found.offset, found.offset_deviation, found.spread, self._measurable,
+            found.innovation,
+        )  # fmt: skip
+
+
+def axis_of(guidance: Guidance) -> PlumeAxis | None:
+    """Return the axis of the plume that a guidance follows, if it follows one."""
+    return guidance.mission.axis if isinstance(guidance.mission, PlumeFollowing) else None

@@ -1,0 +1,55 @@
+"""Pictures that a user gives are known by their content, and anything else is refused in one line."""
+
+import io
+
+import pytest
+from PIL import Image
+
+from common.picture import BYTES_MAX, PictureError, read_picture
+
+SVG = b'<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2"><rect width="4" height="2"/></svg>'
+
+
+def drawn(kind):
+    buffer = io.BytesIO()
+    Image.new("RGB", (40, 20), "navy").save(buffer, kind)
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("content", "media_type", "suffix"),
+    [(drawn("PNG"), "image/png", ".png"), (drawn("JPEG"), "image/jpeg", ".jpg"), (SVG, "image/svg+xml", ".svg")],
+)
+def test_the_content_says_what_kind_of_picture_a_file_is_and_its_name_does_not(content, media_type, suffix, tmp_path):
+    path = tmp_path / "logo.dat"
+    path.write_bytes(content)
+    picture = read_picture(path)
+    assert (picture.content, picture.media_type, picture.suffix) == (content, media_type, suffix)
+    assert picture.data_uri.startswith(f"data:{media_type};base64,")
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"", "is no picture; give a whole PNG"),
+        (b"no picture", "is no picture"),
+        (drawn("PNG")[:60], "is no picture"),
+        (drawn("GIF"), "is no picture"),
+        (b"<html/>", "is no picture"),
+        (b"<svg/>", "is no picture"),
+        (SVG + b" " * BYTES_MAX, "has 1.0 MB; at most 1 MB: give a smaller picture"),
+    ],
+)
+def test_what_is_no_picture_is_refused_in_one_line_that_names_the_file_alone(content, said, tmp_path):
+    path = tmp_path / "logo.png"
+    path.write_bytes(content)
+    with pytest.raises(PictureError) as refused:
+        read_picture(path)
+    assert str(refused.value).startswith("'logo.png' ")
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_file_that_is_gone_is_refused(tmp_path):
+    with pytest.raises(PictureError, match=r"'gone\.png' cannot be read \(No such file or directory\); give a PNG, JPEG or SVG"):
+        read_picture(tmp_path / "gone.png")

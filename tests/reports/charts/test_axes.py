@@ -1,0 +1,81 @@
+"""Marks of logarithmic axes, and what a caption says of curves that leave their panels."""
+
+import numpy as np
+import pytest
+
+from reports.document.axes import cut_words, in_kilometres, log_axis, mark_text
+from reports.document.chart import Chart, Line, Note, Panel
+from reports.render import matplotlib_charts, plotly_charts
+
+
+@pytest.mark.parametrize(
+    ("limits", "marks"),
+    [
+        ((0.1, 1000.0), [0.1, 1.0, 10.0, 100.0, 1000.0]),
+        ((0.7, 130.0), [1.0, 10.0, 100.0]),
+        ((2.0, 130.0), [3.0, 10.0, 30.0, 100.0]),
+        ((1.5, 6.0), [2.0, 3.0, 4.0, 5.0, 6.0]),
+    ],
+)
+def test_a_logarithmic_axis_has_three_marks_at_least_and_powers_of_ten_where_they_are_enough(limits, marks):
+    assert log_axis(limits, [])[1] == pytest.approx(marks)
+
+
+def test_an_axis_of_many_decades_leaves_marks_out():
+    assert len(log_axis((1e-20, 1.0), [])[1]) <= 8
+
+
+def test_limits_that_are_not_given_hold_the_positive_data_with_room_to_spare():
+    (low, high), _ = log_axis(None, [np.array([0.0, 2.0, np.nan]), np.array([50.0, -1.0])])
+    assert 1.5 < low < 2.0
+    assert 50.0 < high < 65.0
+    low, high = log_axis(None, [np.zeros(2)])[0]
+    assert 0.0 < low < high
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.001, "0.001"), (30.0, "30"), (1e5, "10⁵"), (3e-7, "3·10⁻⁷"), (1e-12, "10⁻¹²"), (2e4, "20000")]
+)
+def test_marks_are_plain_figures_or_powers_of_ten(value, text):
+    assert mark_text(value) == text
+
+
+def test_both_renderers_have_the_same_marks():
+    x = np.array([2.0, 130.0])
+    panel = Panel(x_label="a [m]", y_label="b [m]", lines=[Line(x=x, y=x, label="", colour="blue")], log_x=True, log_y=True)
+    chart = Chart(name="c", caption="", panels=[panel])
+    printed, screen = matplotlib_charts.draw(chart).axes[0], plotly_charts.draw(chart)["layout"]
+    assert [text.get_text() for text in printed.get_yticklabels()] == screen["yaxis"]["ticktext"] == ["3", "10", "30", "100"]
+    assert list(printed.get_xticks()) == pytest.approx(screen["xaxis"]["tickvals"])
+
+
+@pytest.mark.parametrize(("most", "dtick"), [(1.0, 1), (7.0, 1), (24.0, None)])
+def test_counts_are_marked_at_whole_numbers(most, dtick):
+    x = np.array([0.0, 1.0])
+    line = Line(x=x, y=most * x, label="", colour="blue")
+    panel = Panel(x_label="a [m]", y_label="Flights", lines=[line], y_range=(0.0, most), y_whole=True)
+    chart = Chart(name="c", caption="", panels=[panel])
+    # From eight on Plotly marks whole numbers by itself: it makes about six marks.
+    assert plotly_charts.draw(chart)["layout"]["yaxis"].get("dtick") == dtick
+    ticks = matplotlib_charts.draw(chart).axes[0].get_yticks()
+    assert ticks == pytest.approx(np.round(ticks))
+
+
+def test_a_caption_says_which_curves_leave_their_panels_and_on_which_side():
+    def panel(values, y_range):
+        y = np.array(values)
+        return Panel(x_label="a [m]", y_label="Gain [dB]", lines=[Line(x=y, y=y, label="", colour="blue")], y_range=y_range)
+
+    assert cut_words([panel([0.0, 39.0], (0.0, 40.0))]) == ""
+    assert cut_words([panel([0.0, 41.0, np.nan], (0.0, 40.0))]) == " Beyond the scale: gain above 40 dB."
+    assert cut_words([panel([-61.0, 61.0], (-60.0, 60.0))] * 2) == " Beyond the scale: gain above 60 dB, gain below −60 dB."
+    assert cut_words([panel([1e9], None)]) == ""
+
+
+def test_words_among_the_curves_go_along_to_kilometres():
+    x = np.array([0.0, 2e4])
+    panel = Panel(
+        x_label="a [m]", y_label="b [s]", lines=[Line(x=x, y=x, label="", colour="blue")], notes=[Note(x=1e4, y=5.0, text="here")]
+    )
+    (note,) = in_kilometres(panel).notes
+    assert (note.x, note.y) == (10.0, 5.0)

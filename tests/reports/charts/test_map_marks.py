@@ -1,0 +1,88 @@
+"""Hull, arrows, scale bar and plume of a map."""
+
+import math
+
+import numpy as np
+import pytest
+
+from measurement.emission.ship import ship_names, ship_preset
+from reports.document.chart import Line, Panel
+from reports.document.map_marks import arrow, hull_line, on_map, plume_lines
+from reports.run.ship import ANY, HULLS, hull_of
+from reports.run.time_history import turned
+
+
+def a_map(**kinds):
+    x = np.array([-300.0, 500.0])
+    line = Line(x=x, y=np.array([0.0, 400.0]), label="track", colour="blue")
+    return on_map(Panel(x_label="East [m]", y_label="North [m]", lines=[line]), **kinds)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, math.pi, -2.0])
+def test_a_hull_is_to_scale_with_its_bow_at_the_angle(angle):
+    line = hull_line(150.0, 23.0, 0.2, angle, x=10.0, y=-5.0)
+    ahead = np.array([math.sin(angle), math.cos(angle)])
+    beside = np.array([math.cos(angle), -math.sin(angle)])
+    along, across = (np.column_stack([line.x - 10.0, line.y + 5.0]) @ side for side in (ahead, beside))
+    # The funnel is a fifth of the length from the stern.
+    assert (along.min(), along.max()) == pytest.approx((-30.0, 120.0))
+    assert (across.min(), across.max()) == pytest.approx((-11.5, 11.5))
+    assert (line.x[0], line.y[0]) == pytest.approx((line.x[-1], line.y[-1]))
+
+
+def test_an_arrow_points_where_its_angle_says():
+    shaft, head = arrow(1.0, 2.0, math.radians(90.0), 4.0, "sky")
+    # To the right: from x = -1 to 3, at y = 2.
+    assert (shaft.x[0], shaft.y[0]) == pytest.approx((-1.0, 2.0))
+    assert (head.x.max(), head.y[0]) == pytest.approx((3.0, 2.0))
+
+
+def test_a_map_shows_every_line_below_its_strip_whatever_its_aspect():
+    for aspect in (0.6, 1.0, 4.5):
+        panel = a_map(north=0.0, wind=(5.0, 1.0), aspect=aspect)
+        (left, right), (bottom, top) = panel.x_range, panel.y_range
+        assert (right - left) / (top - bottom) == pytest.approx(aspect)
+        assert panel.equal
+        track, strip = panel.lines[0], panel.lines[1]
+        assert left < track.x.min() < track.x.max() < right
+        assert bottom < track.y.min() < track.y.max() < strip.y.min()
+        # Bar, arrows and words lie in the strip.
+        assert all(line.y.min() >= strip.y.min() for line in panel.lines[2:])
+        assert all(strip.y.min() < note.y < top for note in panel.notes)
+
+
+def test_the_scale_bar_is_as_long_as_it_says():
+    panel = a_map(north=None)
+    bar, text = panel.lines[2], panel.notes[0].text
+    assert text == " 100 m"
+    assert np.ptp(bar.x) == pytest.approx(100.0)
+
+
+def test_calm_air_has_no_arrow_and_what_is_not_known_no_word():
+    assert [note.text for note in a_map(north=0.0, wind=(0.0, 0.0)).notes] == [" 100 m", "calm air", "N"]
+    assert [note.text for note in a_map(north=None).notes] == [" 100 m"]
+    assert [note.text for note in a_map(north=0.0, wind=(7.04, 0.3)).notes][1] == "wind 7.0 m/s"
+
+
+def test_a_plume_begins_at_the_funnel_and_is_as_wide_as_given():
+    width, axis = plume_lines(np.array([0.0, 100.0]), np.array([2.0, 10.0]), math.radians(90.0), x=1.0)
+    # Along x: its width lies across, along y.
+    assert (axis.x.tolist(), axis.y) == (pytest.approx([1.0, 101.0]), pytest.approx([0.0, 0.0]))
+    assert (width.y.min(), width.y.max()) == pytest.approx((-10.0, 10.0))
+    assert [line.label for line in plume_lines(np.array([0.0, 100.0]), None)] == ["plume's axis"]
+
+
+def test_a_course_that_is_up_is_up():
+    right, up = turned(np.array([3.0]), np.array([4.0]), math.atan2(4.0, 3.0))
+    assert (right[0], up[0]) == pytest.approx((0.0, 5.0))
+
+
+def test_every_ship_that_is_known_has_a_hull_that_is_a_ships():
+    assert set(HULLS) == set(ship_names())
+    for hull in (ANY, *HULLS.values()):
+        # Merchant ships are five to eight and a half times as long as they are wide; an assumption of this table.
+        assert 5.0 < hull.length / hull.beam < 8.5
+    # The most powerful is the longest.
+    assert max(HULLS, key=lambda name: HULLS[name].length) == max(ship_names(), key=lambda name: ship_preset(name).power_max)
+    assert hull_of({"emission": {"ship": "coaster"}}).length == HULLS["coaster"].length
+    assert hull_of({"emission": {"ship": None}}) == hull_of({}) == ANY

@@ -1,0 +1,48 @@
+"""How wide a plume is drawn."""
+
+import math
+
+import numpy as np
+import pytest
+
+from reports.run.plume_shape import LINE_HALF_WIDTH, SPREADS, plume_shape
+
+LINE = {"plume": {"model": "straight", "elevation_deg": 10.0, "source_height_m": 35.0}, "emission": {"ship": None}}
+SMOKE = {
+    "plume": {"model": "fluctuating", "elevation_deg": 0.0, "source_height_m": 35.0},
+    "emission": {"ship": "container", "fuel": "mgo", "sulphur_percent": 0.1, "load": None},
+    "wind": {"temperature_c": 15.0, "stability_per_s": 0.0},
+}
+
+
+def shape_of(config, apparent_wind=10.0, wind=7.0):
+    return plume_shape(config, speed=12.0, wind=wind, apparent_wind=apparent_wind, length=800.0)
+
+
+def test_an_axis_alone_has_no_width_of_its_own_and_rises_as_configured():
+    shape = shape_of(LINE)
+    assert not shape.smoke
+    assert shape.half_width == pytest.approx(np.full(len(shape.distance), LINE_HALF_WIDTH))
+    assert shape.height[-1] == pytest.approx(35.0 + 800.0 * math.tan(math.radians(10.0)))
+
+
+def test_smoke_widens_with_distance_and_in_weaker_wind_past_the_funnel():
+    wide, narrow = shape_of(SMOKE, apparent_wind=6.0), shape_of(SMOKE, apparent_wind=14.0)
+    assert wide.smoke
+    assert np.all(np.diff(wide.half_width) > 0.0)
+    # The same distance is reached at a greater age.
+    assert np.all(wide.half_width[1:] > narrow.half_width[1:])
+
+
+def test_far_away_the_mean_plume_is_as_wide_as_the_turbulence_makes_it():
+    # Of ambient turbulence sigma_y is at most sigma_v t, with sigma_v = 1.9 u* and u* about 0.035 of the wind over sea: 0.47 m/s
+    # (the sources of MarineAir); buoyancy and source add some. Age 80 s at 800 m.
+    sigma = shape_of(SMOKE).half_width[-1] / SPREADS
+    assert 0.5 * 0.47 * 80.0 < sigma < 1.2 * 0.47 * 80.0
+
+
+@pytest.mark.parametrize(("key", "value"), [("apparent", 0.5), ("sulphur", 50.0)])
+def test_what_has_no_plume_is_drawn_as_its_axis(key, value):
+    # No direction in too weak a wind; and a fuel that this version does not take.
+    config = SMOKE | {"emission": SMOKE["emission"] | ({"sulphur_percent": value} if key == "sulphur" else {})}
+    assert not shape_of(config, apparent_wind=value if key == "apparent" else 10.0).smoke

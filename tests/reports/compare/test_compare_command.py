@@ -1,0 +1,136 @@
+"""``python -m reports.compare``: what it prints and writes, and what it refuses."""
+
+import json
+import multiprocessing
+import shutil
+
+import pytest
+
+from reports.run.run_data import read_run
+from scenarios.engine.journal import Journal
+from scenarios.engine.task import Result, Task
+from tests.in_process import assert_refused, run_command
+from tests.reports.compare.compared_runs import flown
+
+
+def compared(*arguments):
+    return run_command("reports.compare.__main__", *arguments)
+
+
+def change_manifest(run, **entries):
+    manifest = json.loads((run / "manifest.json").read_text(encoding="utf-8"))
+    (run / "manifest.json").write_text(json.dumps(manifest | entries), encoding="utf-8")
+
+
+@pytest.fixture
+def copies(first, larger, tmp_path):
+    return [shutil.copytree(path, tmp_path / path.name) for path in (first, larger)]
+
+
+def test_it_prints_the_figures_and_writes_reports_and_table_beside_the_first_run(copies, tmp_path):
+    before = sorted(path.name for path in copies[0].rglob("*"))
+    ended = compared(*copies)
+    assert (ended.status, ended.errors) == (0, "")
+    folder = tmp_path / "compare-first-larger"
+    assert [line for line in ended.out.splitlines() if line.startswith("comparison: ")] == [
+        f"comparison: {folder / name}" for name in ("differences.csv", "compare.html", "compare.pdf")
+    ]
+    assert "Of 3 pairs of flights, 3 no longer meet the criteria" in ended.out
+    assert "keepout.radius_m" in ended.out
+    html = (folder / "compare.html").read_text(encoding="utf-8")
+    assert "Comparison of 2 runs" in html
+    assert str(tmp_path) not in html
+    assert (folder / "compare.pdf").read_bytes().startswith(b"%PDF")
+    assert len((folder / "differences.csv").read_text(encoding="utf-8").splitlines()) == 4
+    # Runs are read, and never changed.
+    assert sorted(path.name for path in copies[0].rglob("*")) == before
+
+
+def test_out_names_the_directory_and_is_made(first, same, tmp_path):
+    ended = compared(first, same, "--out", tmp_path / "a" / "b")
+    assert ended.status == 0, ended
+    assert "No figure differs in 3 pairs of flights" in ended.out
+    assert (tmp_path / "a" / "b" / "compare.html").is_file()
+
+
+def test_runs_of_other_seeds_have_no_flight_in_common(first, tmp_path):
+    other = flown(tmp_path / "other", "seed=77")
+    assert_refused(compared(first, other), "no flight in common", "3 agree in name but not in seed", "--seed")
+
+
+def test_fewer_than_two_runs_and_the_same_twice_are_refused(first):
+    assert_refused(compared(first), "1 run given; 2 to 6")
+    assert_refused(compared(first, first.parent / "." / first.name), "given twice")
+
+
+def test_a_directory_that_holds_no_run_is_refused(first, tmp_path):
+    assert_refused(compared(first, tmp_path), "holds no run")
+    assert_refused(compared(first, tmp_path / "nowhere"), "holds no run")
+
+
+def test_a_run_that_was_killed_before_its_tables_were_written_is_refused(copies):
+    (copies[1] / "summary.csv").unlink()
+    assert_refused(compared(*copies), "holds nothing finished", "--resume")
+
+
+@pytest.mark.parametrize("entry", ["trials", "fingerprint", "config_hash"])
+def test_a_manifest_of_another_version_is_refused(copies, entry):
+    manifest = json.loads((copies[1] / "manifest.json").read_text(encoding="utf-8"))
+    del manifest[entry]
+    (copies[1] / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    assert_refused(compared(*copies), "another version", f"'{entry}'")
+
+
+def test_a_summary_of_another_version_is_refused(copies):
+    summary = copies[1] / "summary.csv"
+    summary.write_text(summary.read_text(encoding="utf-8").replace(",seed,", ",noise_seed,"), encoding="utf-8")
+    assert_refused(compared(*copies), "another version", "'seed'")
+
+
+@pytest.mark.parametrize("study", ["design", "measurement", "convergence"])
+def test_studies_without_flights_are_refused(copies, study):
+    change_manifest(copies[1], study=study)
+    assert_refused(compared(*copies), f"of the study '{study}'")
+
+
+@pytest.mark.parametrize("trials", [[], {"sweep_nu": 3}, {"sweep_nu": {"draws": 7}}])
+def test_a_damaged_manifest_is_one_line(copies, trials):
+    change_manifest(copies[1], trials=trials)
+    assert_refused(compared(*copies), "is damaged")
+
+
+def test_the_directory_of_a_run_is_no_place_for_a_comparison(copies):
+    assert_refused(compared(*copies, "--out", copies[0]), "directory of a run")
+
+
+def test_a_place_that_cannot_be_made_is_refused(copies, tmp_path):
+    (tmp_path / "file").touch()
+    assert_refused(compared(*copies, "--out", tmp_path / "file" / "below"), "cannot be made", "--out")
+
+
+def _hold(path, opened, released):
+    """Write to a journal, as a run does, until it is to end, and then end as if killed: without closing it."""
+    journal = Journal(path)
+    journal.add(Result(task=Task(number=0), items=1, lost=False, tables={}))
+    opened.set()
+    released.wait(30.0)
+
+
+def test_a_run_that_another_process_is_writing_is_refused_and_one_that_was_killed_is_not(copies):
+    context = multiprocessing.get_context("fork")
+    opened, released = context.Event(), context.Event()
+    journal = copies[1] / "journal.sqlite"
+    writer = context.Process(target=_hold, args=(journal, opened, released))
+    writer.start()
+    try:
+        assert opened.wait(30.0)
+        assert_refused(compared(*copies), "another program is writing to", str(copies[1]))
+        assert_refused(run_command("reports.build", copies[1]), "another program is writing to")
+    finally:
+        writer.kill()
+        writer.join()
+    files = sorted(path.name for path in copies[1].iterdir())
+    assert "journal.sqlite-wal" in files
+    assert len(read_run(copies[1]).summary) == 3
+    # SQLite has nothing to do with a run that is only read.
+    assert sorted(path.name for path in copies[1].iterdir()) == files

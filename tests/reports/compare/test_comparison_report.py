@@ -1,0 +1,170 @@
+"""The report on two short sweeps, and the table of their pairs."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from report_parts import assert_axes_read_quantity_and_unit, blocks_of
+
+from reports.compare.content import compare, comparison_content, headline
+from reports.compare.runs import read_runs
+from reports.compare.table_of_pairs import write_differences
+from reports.document.blocks import Table, Text
+from reports.document.chart import Chart
+from reports.render import matplotlib_charts, plotly_charts
+from reports.run.time_history import about_the_plume
+
+
+def texts_of(report):
+    return " ".join(block.text for block in blocks_of(report, Text))
+
+
+def test_the_report_says_what_was_changed_what_came_of_it_and_in_which_flights(report):
+    assert [section.anchor for section in report.sections] == ["changed", "figures", "flightsb", "provenance"]
+    (keys,) = blocks_of(report, Table, "changed")
+    assert [row[:3] for row in keys.rows] == [
+        ["keepout.radius_m", "200", "230"],
+        ["criteria.tracking_error_rms_m", "5", "1e-09"],
+    ]
+    assert report.verdict.headline == "Of 3 pairs of flights, 3 no longer meet the criteria"
+    assert report.verdict.holds
+    assert not report.verdict.complete
+    assert "3 flights are paired" in texts_of(report)
+
+
+def test_figures_of_whole_runs_are_those_of_their_summaries(report, first, larger):
+    (table,) = blocks_of(report, Table, "figures")
+    cells = {row[0]: row[1:] for row in table.rows}
+    nearest = [pd.read_csv(path / "summary.csv")["min_distance_m"].min() for path in (first, larger)]
+    assert cells["Closest approach of any flight [m]"][:2] == [f"{distance:.1f}" for distance in nearest]
+    assert cells["Flights that met every criterion"] == ["3 of 3", "0 of 3", "-3"]
+    # Three crossings of three flights each, as the scenario asks for.
+    assert cells["Plume crossings after settling, all flights"] == ["9", "9", "0"]
+
+
+def test_every_flight_whose_criteria_changed_is_listed_with_its_reason(report):
+    table = next(table for table in blocks_of(report, Table, "flightsb") if table.head[0] == "Flight")
+    assert [row[0] for row in table.rows] == ["nu_0.30", "nu_0.50", "nu_0.70"]
+    for row in table.rows:
+        assert row[1:3] == ["met in A alone", "met"]
+        assert "rms tracking error" in row[3]
+
+
+def test_charts_can_be_drawn_for_screen_and_print(report):
+    charts = blocks_of(report, Chart)
+    assert_axes_read_quantity_and_unit(charts)
+    for chart in charts:
+        plotly_charts.draw(chart)
+        matplotlib_charts.draw(chart).canvas.draw()
+
+
+def test_both_tracks_of_the_flight_that_differs_most_are_those_of_its_time_histories(report, runs):
+    chart = report.picture
+    assert chart is not None
+    assert chart.name == "changedB"
+    flight = next(name for name in ("nu_0.30", "nu_0.50", "nu_0.70") if name in chart.caption)
+    for run in runs:
+        right, along = about_the_plume(run.data.history(flight))
+        line = next(line for line in chart.panels[0].lines if line.label == run.title)
+        # A thinned track keeps its first sample and lies within the whole one.
+        assert (line.x[0], line.y[0]) == (right[0], along[0])
+        assert set(line.x) <= set(right)
+
+
+def test_the_table_of_pairs_has_each_figure_of_both_runs_and_their_difference(compared, first, larger, tmp_path):
+    write_differences(compared, tmp_path / "table.csv")
+    table = pd.read_csv(tmp_path / "table.csv")
+    before, after = (pd.read_csv(path / "summary.csv") for path in (first, larger))
+    assert list(table["flight_id"]) == list(before["flight_id"])
+    assert list(table["seed"]) == list(before["seed"])
+    assert [*table["run"], *table["directory"]] == ["B"] * 3 + ["larger"] * 3
+    assert list(table["criteria_met_first"]) == [True] * 3
+    assert not table["criteria_met"].any()
+    for name in ("min_distance_m", "tracking_error_rms_m", "settling_time_s", "duration_s"):
+        assert np.array_equal(table[f"{name}_first"], before[name])
+        assert np.array_equal(table[name], after[name])
+        assert np.array_equal(table[f"{name}_difference"], after[name] - before[name])
+    # The report shows this one in per cent, the table has it as the summary would.
+    off = (after["crossing_interval_mean_s"] / after["crossing_interval_predicted_s"] - 1.0).abs()
+    assert table["crossing_interval_error"].to_numpy() == pytest.approx(off.to_numpy(), rel=1e-9)
+
+
+def test_runs_of_the_same_flights_are_said_to_be_the_same(first, same):
+    runs = read_runs([first, same])
+    compared = compare(runs)
+    report = comparison_content(runs, compared)
+    assert report.verdict.headline == "No figure differs in 3 pairs of flights"
+    assert report.verdict.failures == ["B: no figure differs from A"]
+    assert (report.verdict.holds, report.verdict.complete) == (True, True)
+    assert not blocks_of(report, Chart)
+    assert "No key differs" in texts_of(report)
+
+
+def test_a_figure_that_differs_in_its_last_bit_is_a_difference(first, same):
+    runs = read_runs([first, same])
+    rows = runs[1].data.summary
+    rows.loc[1, "end_distance_m"] = np.nextafter(rows.loc[1, "end_distance_m"], np.inf)
+    compared = compare(runs)
+    assert compared[0].differing == ["end_distance_m"]
+    assert headline(compared) == "No criterion changed in 3 pairs of flights; figures differ"
+    comparison_content(runs, compared)
+
+
+def test_a_flight_that_one_run_has_not_flown_yet_has_no_partner(first, same):
+    runs = read_runs([first, same])
+    manifest = runs[1].manifest | {"state": "interrupted"}
+    runs[1] = replace(runs[1], data=replace(runs[1].data, summary=runs[1].data.summary.iloc[:2], manifest=manifest))
+    report = comparison_content(runs, compare(runs))
+    assert report.verdict.headline == "No figure differs in 2 pairs of flights; other flights have no partner"
+    assert not report.verdict.complete
+    assert "B: the run is interrupted" in report.verdict.failures
+    assert "Without a partner are 1 of A." in texts_of(report)
+    (figures,) = blocks_of(report, Table, "figures")
+    # Counts of 3 and of 2 flights have no difference that says anything.
+    assert next(row for row in figures.rows if row[0] == "Flights that kept out")[1:] == ["3 of 3", "2 of 2", "–"]
+    assert [row[-1] for row in figures.rows] == ["-1"] + ["–"] * (len(figures.rows) - 1)
+
+
+def test_the_headline_counts_both_directions(first, same):
+    runs = read_runs([first, same])
+    runs[0].data.summary.loc[0, "criteria_met"] = False
+    assert headline(compare(runs)) == "Of 3 pairs of flights, 1 newly meets the criteria"
+    runs[1].data.summary.loc[1:, "criteria_met"] = False
+    assert headline(compare(runs)) == "Of 3 pairs of flights, 2 no longer meet and 1 newly meets the criteria"
+
+
+@pytest.mark.parametrize("change", [{"keepout_violations": 1}, {"outcome": "aircraft_lost"}])
+def test_a_new_violation_or_a_lost_aircraft_makes_it_red(first, same, change):
+    runs = read_runs([first, same])
+    for name, value in {**change, "criteria_met": False}.items():
+        runs[1].data.summary.loc[0, name] = value
+    verdict = comparison_content(runs, compare(runs)).verdict
+    assert not verdict.holds
+    assert "B: 1 flight violates the keep-out area or loses the aircraft, and not in A" in verdict.failures
+    # The other way round the flight is better.
+    back = comparison_content(runs[::-1], compare(runs[::-1])).verdict
+    assert (back.holds, back.complete) == (True, True)
+
+
+def test_several_runs_are_each_compared_with_the_first(first, larger, same):
+    runs = read_runs([first, larger, same])
+    report = comparison_content(runs, compare(runs))
+    anchors = [section.anchor for section in report.sections]
+    assert anchors == ["changed", "figures", "flightsb", "flightsc", "provenance"]
+    (figures,) = blocks_of(report, Table, "figures")
+    assert figures.head == ["", "A", "B", "C", "B − A", "C − A"]
+    assert all(cell in ("0", "–") for row in figures.rows for cell in row[5:])
+    assert len({chart.name for chart in blocks_of(report, Chart)}) == len(blocks_of(report, Chart))
+
+
+def test_flights_without_a_time_history_have_no_tracks(first, larger):
+    runs = read_runs([first, larger])
+    runs = [replace(run, data=replace(run.data, path=run.data.path / "nowhere")) for run in runs]
+    report = comparison_content(runs, compare(runs))
+    assert not [chart for chart in blocks_of(report, Chart) if chart.name.startswith("changed")]
+
+
+def test_the_report_has_no_path_of_the_machine(report, first):
+    assert str(first.parent) not in json.dumps([block.rows for block in blocks_of(report, Table)]) + texts_of(report)

@@ -1,0 +1,166 @@
+"""Page 1: what a client has to know, with its date, its figures coloured by their criterion and a picture, on one page."""
+
+import re
+import shutil
+from dataclasses import replace
+
+import pypdfium2
+import pytest
+
+from reports.build import build_reports
+from reports.document.blocks import CARDS_MAX, Card, Heading, Section, Table, Verdict
+from reports.document.chart import Chart
+from reports.document.numbering import figures_in, numbered
+from reports.registry import content
+from reports.render.pdf import write_pdf
+from reports.run.run_data import read_run
+from tests.in_process import run_command
+
+SHORT = """
+title = "Short"
+description = "Flights for a test."
+fidelity = "kinematic"
+flights = 3
+seed = 3
+vessel.speed_mps = 8.0
+flight.crossings = 2
+start.distance_m = [300.0, 400.0]
+criteria.tracking_error_rms_m = 1e-4
+"""
+
+
+@pytest.fixture(scope="module")
+def run_path(tmp_path_factory):
+    """Three flights that fail the criterion on tracking, as nothing tracks to 0.1 mm, and meet the others."""
+    folder = tmp_path_factory.mktemp("front")
+    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
+    ended = run_command("scenarios.run", folder / "short.toml", "--out", folder / "run", "--no-report")
+    assert ended.status == 1, ended.errors
+    return folder / "run"
+
+
+@pytest.fixture(scope="module")
+def report(run_path):
+    return content(read_run(run_path))
+
+
+@pytest.fixture(scope="module")
+def built(run_path):
+    """Return the text of the page for the screen, and that of each printed page."""
+    html, pdf = build_reports(run_path)
+    return html.read_text(encoding="utf-8"), pages_of(pdf)
+
+
+def pages_of(path):
+    """Return the text of each page of a PDF."""
+    document = pypdfium2.PdfDocument(path)
+    texts = [page.get_textpage().get_text_range() for page in document]
+    document.close()
+    return texts
+
+
+def card(report, name):
+    (found,) = (card for card in report.verdict.figures if card.name.startswith(name))
+    return found
+
+
+def test_page_1_says_when_and_what_was_flown_and_shows_the_closest_flight_and_a_typical_one(report):
+    assert re.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC", report.letterhead.when)
+    assert re.fullmatch(
+        r"3 flights \(0\.\d+ h\) of the kinematic vehicle, eq\. \(1\), beside a vessel at 8 m/s, in still air\.", report.flown
+    )
+    titles = [panel.title for panel in report.picture.panels]
+    assert [title.split(":")[0] for title in titles] == ["Closest", "Typical"]
+
+
+def test_the_closest_and_the_median_flight_are_those_of_the_summary(run_path, report):
+    rows = read_run(run_path).summary.sort_values("min_distance_m")
+    shown = [float(re.search(r"([\d.]+) m$", panel.title)[1]) for panel in report.picture.panels]
+    # Titles have a digit after the point.
+    assert shown == [round(float(rows["min_distance_m"].iloc[i]), 1) for i in (0, 1)]
+
+
+def test_a_figure_says_in_words_whether_its_criterion_is_met(report):
+    closest, tracking = card(report, "Closest approach"), card(report, "Tracking error, rms after settling, worst")
+    assert closest.met
+    assert closest.judgement == "✓ met, required ≥ 200 m"
+    assert not tracking.met
+    assert tracking.judgement == "✗ not met, required ≤ 0.0001 m"
+    assert card(report, "Probability").judgement == "no criterion"
+
+
+def test_colours_on_the_screen_are_those_of_the_criteria(built):
+    cards = re.findall(r'<div class="card( met| missed|)">.*?<span class="judged">(.*?)</span>', built[0])
+    assert len(cards) == CARDS_MAX
+    meaning = {" met": "✓ met, ", " missed": "✗ not met, ", "": "no criterion"}
+    assert all(words.startswith(meaning[colour]) for colour, words in cards)
+    assert {colour for colour, _ in cards} == set(meaning)
+
+
+def test_page_1_holds_everything_that_is_for_the_client_and_the_contents_stand_on_page_2(built, report):
+    first, second, *others = built[1]
+    flat = " ".join(first.split())
+    for words in (
+        report.title,
+        report.letterhead.when,
+        report.verdict.headline,
+        "Figure 1.",
+        *(c.value for c in report.verdict.cards),
+    ):
+        assert " ".join(words.split()) in flat
+    assert f"page 1 of {2 + len(others)}" in flat
+    assert "Contents" in second
+    assert "short" in second.splitlines()[0]
+
+
+def test_page_1_is_one_page_however_much_failed(report, tmp_path):
+    long = "a flight that failed, " * 15
+    verdict = replace(report.verdict, detail=long * 2, failures=[long] * 9)
+    write_pdf(replace(report, verdict=verdict, sections=report.sections[-1:]), tmp_path / "report.pdf")
+    first, second, *_ = pages_of(tmp_path / "report.pdf")
+    assert "Figure 1." in first
+    assert "and 5 more" in first
+    assert second.splitlines()[1] == "Contents"
+
+
+def test_the_provenance_is_last_and_names_command_hashes_and_kind_of_host(built, report):
+    assert report.sections[-1].anchor == "provenance"
+    rows = dict(report.sections[-1].blocks[0].rows)
+    assert rows["Command"] == "python -m scenarios.run short.toml --out run --no-report"
+    assert rows["Began"] == report.letterhead.when
+    assert re.fullmatch(r"\w+ \w+, \d+ cores", rows["Host"])
+    assert {"Source revision", "Hash of the source", "Hash of the scenario", "Seed", "Duration"} <= rows.keys()
+    assert "Provenance" in built[1][-1]
+
+
+def test_figures_and_tables_are_numbered_in_reading_order_without_gaps(report):
+    blocks = [block for section in report.sections for block in section.blocks]
+    figures = [report.picture.number, *(block.number for block in blocks if isinstance(block, Chart))]
+    assert figures == [f"Figure {i}" for i in range(1, len(figures) + 1)]
+    assert figures_in(report.picture, report.sections) == len(figures)
+    tables = [block for block in blocks if isinstance(block, Table)]
+    assert [table.number for table in tables] == [f"Table {i}" for i in range(1, len(tables) + 1)]
+    assert all(table.caption for table in tables)
+
+
+def test_a_heading_right_before_a_table_is_its_caption():
+    table = Table(head=["a"], rows=[["1"]], widths=[1.0])
+    blocks = [Heading("Of the table"), table, table, Heading("Kept"), replace(table, caption="Its own")]
+    _, (section,) = numbered(None, [Section(anchor="s", title="Title", blocks=blocks)])
+    assert [block.caption for block in section.blocks if isinstance(block, Table)] == ["Of the table", "Of the table", "Its own"]
+    assert [block.text for block in section.blocks if isinstance(block, Heading)] == ["Kept"]
+
+
+@pytest.mark.parametrize(("figures", "shown"), [(0, 0), (3, 3), (4, 4), (5, 4), (6, 6), (9, 6)])
+def test_page_1_has_as_many_figures_as_fill_its_rows(figures, shown):
+    cards = [Card(str(i), "1") for i in range(figures)]
+    verdict = Verdict(holds=True, complete=True, headline="", detail="", failures=[], figures=cards)
+    assert verdict.cards == cards[:shown]
+
+
+def test_a_run_without_time_histories_shows_its_first_figure(run_path, tmp_path):
+    copy = shutil.copytree(run_path, tmp_path / "run")
+    shutil.rmtree(copy / "flights")
+    report = content(read_run(copy))
+    assert report.picture is not None
+    assert "Closest" not in [panel.title.split(":")[0] for panel in report.picture.panels]

@@ -1,0 +1,126 @@
+"""Title, author, organisation and logo of reports that exist, and runs that cannot be reported on."""
+
+import json
+import shutil
+import sqlite3
+
+import pytest
+from PIL import Image
+
+from reports.errors import ReportError
+from reports.registry import content
+from reports.run.letterhead import parse_settings
+from reports.run.run_data import read_run
+from tests.in_process import run_command
+
+SHORT = """
+title = "Short"
+fidelity = "kinematic"
+seed = 3
+vessel.speed_mps = 8.0
+flight.crossings = 2
+start.distance_m = [300.0, 400.0]
+report.author = "A. Author"
+"""
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("letterhead")
+    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
+    assert run_command("scenarios.run", folder / "short.toml", "--out", folder / "run", "--no-report").status == 0
+    return folder / "run"
+
+
+@pytest.fixture
+def run_path(flown, tmp_path):
+    return shutil.copytree(flown, tmp_path / "run")
+
+
+def changed(run_path, **entries):
+    path = run_path / "manifest.json"
+    path.write_text(json.dumps(json.loads(path.read_text(encoding="utf-8")) | entries), encoding="utf-8")
+
+
+def refused(*arguments):
+    ended = run_command("reports.build", *arguments)
+    assert ended.status == 2
+    assert ended.errors.count("\n") == 1
+    return ended.errors
+
+
+def test_reports_of_a_run_that_exists_take_another_title_and_logo_and_leave_the_run_as_it_is(run_path, tmp_path):
+    logo = tmp_path / "logo.jpg"
+    Image.new("RGB", (40, 20), "navy").save(logo)
+    before = (run_path / "manifest.json").read_bytes()
+    settings = [f"report.logo={logo}", "report.title='Over the strait'", "report.organisation=Agency"]
+    ended = run_command("reports.build", run_path, *(word for setting in settings for word in ("--set", setting)))
+    assert ended.status == 0, ended.errors
+    page = (run_path / "report.html").read_text(encoding="utf-8")
+    assert "<h1>Over the strait</h1>" in page
+    assert "A. Author, Agency" in page
+    assert "data:image/jpeg;base64," in page
+    assert (run_path / "manifest.json").read_bytes() == before
+
+
+def test_a_run_without_a_date_or_settings_has_the_scenarios_title():
+    assert parse_settings([]) == {}
+
+
+@pytest.mark.parametrize(
+    ("override", "said"),
+    [
+        ("report.titel=x", "did you mean 'report.title'?"),
+        ("title=x", "sets nothing of a report"),
+        ("report.title", "sets nothing of a report"),
+        ("seed=3", "reports have report.title, report.author, report.organisation, report.logo"),
+        ("report.logo=gone.png", "report.logo: 'gone.png' cannot be read"),
+    ],
+)
+def test_a_setting_that_reports_do_not_have_is_refused(override, said):
+    with pytest.raises(ReportError) as error:
+        parse_settings([override])
+    assert said in str(error.value)
+
+
+def test_a_logo_that_is_no_picture_ends_the_command_with_status_2(run_path):
+    (run_path / "text.png").write_text("no picture", encoding="utf-8")
+    said = refused(run_path, "--set", f"report.logo={run_path / 'text.png'}")
+    assert said == "error: report.logo: 'text.png' is no picture; give a whole PNG, JPEG or SVG file\n"
+
+
+def test_a_logo_that_the_run_has_lost_is_named_among_its_missing_files(run_path):
+    changed(run_path, report={"logo": "logo.png"})
+    report = content(read_run(run_path))
+    assert report.letterhead.logo is None
+    (section,) = (section for section in report.sections if section.anchor == "missing")
+    assert ["logo.png", "cannot be read", "the logo"] in section.blocks[-1].rows
+
+
+@pytest.mark.parametrize("version", [0, 2, "3"])
+def test_a_run_directory_of_another_version_is_refused_in_one_line(version, run_path):
+    changed(run_path, format=version)
+    said = f"is a run of format {version!r}, and this version reads 1; use the version that made it\n"
+    assert refused(run_path).endswith(said)
+
+
+def test_a_run_directory_without_a_version_is_read(run_path):
+    manifest = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))
+    assert manifest.pop("format") == 1
+    (run_path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    assert content(read_run(run_path)).title == "Short"
+
+
+def test_a_run_that_another_program_is_writing_is_refused_and_one_that_was_killed_is_not(run_path):
+    changed(run_path, state="running")
+    assert read_run(run_path).manifest["state"] == "running"
+    writing = sqlite3.connect(run_path / "journal.sqlite", isolation_level=None)
+    try:
+        # As the engine's journal holds it (scenarios.engine.journal).
+        writing.execute("PRAGMA locking_mode = EXCLUSIVE")
+        writing.execute("PRAGMA journal_mode = WAL")
+        writing.execute("CREATE TABLE more (number INTEGER)")
+        with pytest.raises(ReportError, match=r"another program is writing to '.*'; wait until it has ended"):
+            read_run(run_path)
+    finally:
+        writing.close()

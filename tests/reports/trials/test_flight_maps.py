@@ -1,0 +1,116 @@
+"""Maps of flights: the guard's stretches, the ship, her plume and what was about them."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reports.flights.flight_view import GUARD, GUARD_LOST, FlightView, flight_view
+from reports.flights.single_flight import flight_charts
+from reports.flights.tracks import track_picture
+from reports.run.surroundings import surroundings
+from reports.run.time_history import about_the_plume, guard_stretches, vessel_heading
+from reports.run.trials import read_trials
+
+
+@pytest.fixture(scope="module")
+def flight(run):
+    trial = read_trials(run)[0]
+    return trial, trial.rows.iloc[0]
+
+
+def guarded_view(flight, guard):
+    """Return a flight with other values of the column ``guard``."""
+    trial, row = flight
+    history = trial.run.history(str(row["flight_id"]))
+    states = np.zeros(len(history))
+    states[: len(guard)] = guard
+    return FlightView(trial, row, history.assign(guard=states))
+
+
+def test_stretches_of_the_guard_are_where_its_column_says():
+    history = pd.DataFrame({"guard": [0.0, 1.0, 1.0, 2.0, 0.0, 1.0]})
+    assert guard_stretches(history) == [(1, 3, True), (3, 4, False), (5, 6, True)]
+    assert guard_stretches(pd.DataFrame({"guard": [np.nan, 0.0]})) == []
+    assert guard_stretches(pd.DataFrame({"time_s": [0.0, 1.0]})) == []
+
+
+def test_stretches_of_the_guard_are_marked_in_the_track_and_over_time(flight):
+    view = guarded_view(flight, np.repeat([0, 1, 2, 0, 1], 4))
+    time = view.whole["time_s"].to_numpy()
+    held, lost = view.guarded(about_the_plume)
+    assert (held.label, lost.label) == (GUARD, GUARD_LOST)
+    # Two stretches, each ended by a gap; the first from the sample before it to that after it.
+    assert np.count_nonzero(np.isnan(held.x)) == 2
+    first = np.flatnonzero(np.isnan(held.x))[0]
+    x, y = about_the_plume(view.whole)
+    assert (held.x[0], held.y[0]) == (x[3], y[3])
+    assert (held.x[first - 1], held.y[first - 1]) == (x[8], y[8])
+    bands = [(band.label, band.start, band.end) for band in view.bands()]
+    assert bands == [(GUARD, time[4], time[8]), (GUARD, time[16], time[20]), (GUARD_LOST, time[8], time[12])]
+
+
+def test_many_stretches_become_few_that_hold_them_all(flight):
+    view = guarded_view(flight, np.tile([0, 1, 1, 0, 0], 60))
+    bands = view.bands()
+    time, guard = (view.whole[name].to_numpy() for name in ("time_s", "guard"))
+    assert 1 <= len(bands) <= 30
+    assert all(any(band.start <= t <= band.end for band in bands) for t in time[guard > 0.0])
+
+
+def test_the_track_begins_and_ends_where_the_flight_does_and_the_reference_lies_over_it(flight):
+    chart = flight_charts(*flight)[0]
+    whole = chart.panels[0]
+    lines, names = {line.label: line for line in whole.lines}, [line.label for line in whole.lines]
+    flown = lines["flown"]
+    assert (lines["start"].x[0], lines["end"].y[0]) == (flown.x[0], flown.y[-1])
+    assert names.index("reference") > names.index("flown")
+    assert lines["reference"].style == "thin"
+    assert "150 m by 23 m" in chart.caption
+    # Nothing is cut off: ship, keep-out area and track lie within the panel.
+    for name in ("ship, to scale", "keep-out area, r_min", "flown", "reference"):
+        line = lines[name]
+        assert whole.x_range[0] < line.x.min() < line.x.max() < whole.x_range[1], name
+        assert whole.y_range[0] < line.y.min() < line.y.max() < whole.y_range[1], name
+
+
+def test_the_ship_on_the_map_heads_and_trails_her_plume_as_she_did(flight):
+    trial, row = flight
+    view = flight_view(trial, row)
+    about = surroundings(trial.config, row, view.whole)
+    # She goes north; the plume trails along the wind less her own way.
+    north, east = (row["wind_speed_mps"] * f(math.radians(row["wind_from_deg"]) + math.pi) for f in (math.cos, math.sin))
+    assert about.heading == pytest.approx(0.0, abs=1e-9)
+    trails = math.atan2(east, north - row["vessel_speed_mps"])
+    assert math.cos(about.axis - trails) == pytest.approx(1.0, abs=1e-9)
+    assert about.wind[0] == row["wind_speed_mps"]
+    assert not about.plume.smoke
+
+
+def test_a_ship_at_rest_heads_as_configured_and_one_that_stops_as_before():
+    still = pd.DataFrame({"vessel_velocity_north_mps": [0.0, 0.0], "vessel_velocity_east_mps": [0.0, 0.0]})
+    assert vessel_heading(still, 90.0) == pytest.approx(math.pi / 2)
+    stops = pd.DataFrame({"vessel_velocity_north_mps": [0.0, 0.0, 0.0], "vessel_velocity_east_mps": [0.0, 5.0, 0.0]})
+    assert vessel_heading(stops, 0.0) == pytest.approx(math.pi / 2)
+
+
+def test_from_near_only_the_marks_of_the_time_shown_are_seen(flight):
+    view = flight_view(*flight)
+    times = view.crossings["time_s"].to_numpy()
+    late = view.since(float(times[-1]) - 0.05)
+    assert late.crossings["time_s"].tolist() == [times[-1]]
+    assert view.since(float(view.ends[1])) is None
+
+
+def test_a_picture_has_a_panel_for_each_flight_with_a_time_history(run, flight):
+    trial, row = flight
+    trials = read_trials(run)
+    picture = track_picture([(trial, row, "closest"), (trials[1], trials[1].rows.iloc[0], "typical")])
+    assert [panel.title for panel in picture.panels] == ["closest", "typical"]
+    assert picture.columns == 2
+    assert len(track_picture([(trial, row, "only")]).panels) == 1
+    unknown = row.copy()
+    unknown["flight_id"] = "nobody"
+    assert track_picture([(replace(trial), unknown, "none")]) is None

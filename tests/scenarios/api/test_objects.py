@@ -1,0 +1,172 @@
+"""Parts that are given as objects fly as those that are named by their files, and are refused in one line."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from aircraft.fleet.x8 import X8
+from gnc.laws.line_of_sight import LineOfSightLaw
+from gnc.reference.shapes.sinusoid import Sinusoid
+from scenarios import InputError, fly, load, run
+
+SHORT = {
+    "title": "One short flight",
+    "fidelity": "kinematic",
+    "sweep": {"nu": [0.5]},
+    "flight": {"crossings": 2},
+    "criteria": {"crossing_interval_error": False, "tracking_error_rms_m": False},
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pursuit:
+    """The law of docs/extending.md."""
+
+    gain: float = 1.2
+    lead_s: float = 1.0
+
+    def heading_rate(self, reference, to_north, to_east, course, speed):
+        lead = self.lead_s * reference.speed
+        sight = math.atan2(to_east + lead * math.sin(reference.course), to_north + lead * math.cos(reference.course))
+        return self.gain * math.remainder(sight - course, math.tau) + reference.heading_rate
+
+
+class Northbound:
+    """A track that counts how often it was asked: a state that must not pass from flight to flight."""
+
+    manoeuvres_end = math.nan
+
+    def __init__(self, vessel=None, speed=9.71, duration=math.inf):
+        self.speed, self.asked = speed, 0
+
+    def course(self, time):
+        return 0.0
+
+    def motion(self, time):
+        self.asked += 1
+        return self.speed * time, 0.0, self.speed, 0.0
+
+
+@dataclass(frozen=True)
+class SlowSinusoid(Sinusoid):
+    share: float = 0.9
+
+    def design(self, *, heading_rate_max, **limits):
+        return super().design(heading_rate_max=self.share * heading_rate_max, **limits)
+
+    def swing(self, *, heading_rate, **limits):
+        return super().swing(heading_rate=self.share * heading_rate, **limits)
+
+
+class Clock:
+    COLUMNS = ("doubled_s",)
+
+    def __init__(self, scenario, world, generator):
+        pass
+
+    def read(self, time, motion, sample):
+        return (2.0 * time,)
+
+
+def test_a_law_as_an_object_brings_its_parameters():
+    scenario = load(SHORT, law=Pursuit(gain=1.5))
+    assert (scenario["guidance.law"], scenario["guidance.gain"], scenario["guidance.lead_s"]) == ("Pursuit", 1.5, 1.0)
+
+
+def test_a_law_as_an_object_flies_as_the_one_of_the_file():
+    named = fly(SHORT, law=f"{__file__}:Pursuit", **{"guidance.gain": 1.5})
+    given = fly(SHORT, law=Pursuit(gain=1.5))
+    assert given.history.equals(named.history)
+    assert not given.history.equals(fly(SHORT, law=Pursuit).history)
+
+
+def test_a_law_of_the_project_keeps_its_name():
+    assert load(SHORT, law=LineOfSightLaw(gain_per_s=1.0)).changes == ('guidance.law="line_of_sight"', "guidance.gain_per_s=1.0")
+
+
+def test_laws_are_compared_and_swept_in_other_processes():
+    laws = {"sweep.guidance.law": ["cascade", Pursuit], "comparison.variants": [{"name": "soft", "set": {"guidance.law": Pursuit}}]}
+    study = run(SHORT, jobs=2, **laws)
+    assert list(study.flights) == [
+        "nu_0.50_law_cascade", "nu_0.50_law_Pursuit", "nu_0.50_law_cascade_soft", "nu_0.50_law_Pursuit_soft",
+    ]  # fmt: skip
+    assert study.flights["nu_0.50_law_cascade_soft"].history.equals(study.flights["nu_0.50_law_Pursuit"].history)
+
+
+def test_a_track_is_given_as_a_class_or_as_an_object_of_which_flights_take_copies():
+    track = Northbound()
+    by_class, by_object = fly(SHORT, nu=0.5, track=Northbound), fly(SHORT, nu=0.5, track=track)
+    assert track.asked == 0
+    assert by_object.met
+    # The class is called with 0.5 times the UAV's 19.42 m/s, which is the 9.71 m/s of the object to rounding.
+    np.testing.assert_allclose(by_object.history["vessel_north_m"], by_class.history["vessel_north_m"], rtol=1e-12)
+
+
+def test_a_shape_of_the_same_name_is_not_taken_for_the_one_before():
+    reference = fly(SHORT, nu=0.5, wind={"speed_mps": 3.0}, shape=SlowSinusoid).row
+    slower = fly(SHORT, nu=0.5, wind={"speed_mps": 3.0}, shape=SlowSinusoid(share=0.7)).row
+    assert slower["omega_0_rad_s"] < reference["omega_0_rad_s"]
+
+
+def test_instruments_are_classes_and_names():
+    history = fly(SHORT, payload=[Clock]).history
+    assert history["doubled_s"].equals(2.0 * history["time_s"])
+
+
+def test_an_aircraft_is_a_spec():
+    scenario = load("sweep_nu", aircraft=replace(X8, name="slow_x8"))
+    assert scenario["aircraft"] == "slow_x8"
+
+
+def test_a_part_is_known_to_its_flights_alone():
+    fly(SHORT, law=Pursuit)
+    with pytest.raises(InputError, match="unknown steering law 'Pursuit'"):
+        load(SHORT, law="Pursuit")
+
+
+def test_numbers_of_numpy_are_numbers():
+    scenario = load(SHORT, nu=np.linspace(0.3, 0.5, 3), seed=np.int64(3))
+    assert scenario.changes == ("sweep.nu=[0.3, 0.4, 0.5]", "seed=3")
+
+
+def local_law():
+    @dataclass(frozen=True)
+    class Hidden(Pursuit):
+        pass
+
+    return Hidden
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"law": object()}, "guidance.law is an object of class object; give the class itself"),
+        ({"law": Clock}, "steering law 'Clock' has no method heading_rate()"),
+        ({"law": lambda: None}, "has no name; define it by class or def"),
+        ({"law": local_law()}, "guidance.law: 'Hidden' cannot be sent to other processes"),
+        ({"laws": [Pursuit, Pursuit(gain=2.0)]}, "laws is an object of class Pursuit; give the class itself"),
+        ({"aircraft": replace(X8, title="Mine")}, "aircraft 'x8' is known already, and is not the object that was given"),
+        ({"aircraft": X8.envelope}, "aircraft 'Envelope' is of type Envelope; it must be an AircraftSpec"),
+        ({"seed": object()}, "seed is an object; it takes a number, a word or a list"),
+        ({"wind": {"speed_mps": None}}, "wind.speed_mps: value is None"),
+        ({"wind": {"sped_mps": 1.0}}, "unknown key 'wind.sped_mps'; did you mean 'wind.speed_mps'?"),
+        ({"following": {"standoff_m": 50.0}}, "key 'following.standoff_m' has no effect here"),
+        ({"guidance": {"prevew": True}}, "did you mean 'preview'?"),
+        ({"nu": 20.0}, "speed ratios lie between 0 and 10"),
+        ({"jobs": 0}, "jobs is 0"),
+    ],
+)
+def test_what_is_wrong_is_one_line(keys, words, capfd):
+    with pytest.raises(InputError) as refused:
+        run(SHORT, **keys)
+    assert words in str(refused.value)
+    assert "\n" not in str(refused.value)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_two_objects_of_one_name_are_refused():
+    other = type("Pursuit", (Pursuit,), {})
+    with pytest.raises(InputError, match="two objects are called 'Pursuit'"):
+        load(SHORT, **{"sweep.guidance.law": [Pursuit, other]})

@@ -1,0 +1,113 @@
+"""A program gets what the command line gets: the same rows, crossings and time histories, byte for byte."""
+
+import csv
+
+import pandas as pd
+import pytest
+
+from scenarios import fly, load, run
+from scenarios.engine.fingerprint import fingerprint
+from tests.in_process import run_command
+
+SHORT = """
+title = "Two short flights"
+fidelity = "kinematic"
+seed = 7
+
+[sweep]
+nu = [0.3, 0.5]
+
+[flight]
+crossings = 4
+
+[comparison]
+nu = [0.5]
+variants = [{ name = "no_guard", set = { "guidance.keepout_guard" = false } }]
+"""
+
+TIMED = "wall_time_s"
+"""The column that differs between repetitions of a flight."""
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("scenario") / "short.toml"
+    path.write_text(SHORT, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def by_command(file):
+    out = file.parent / "by_command"
+    ended = run_command("scenarios.run", file, "--out", out, "--set", "guidance.look_ahead_m=55", "--jobs", "1", "--no-report")
+    assert ended.status == 0, ended
+    return out
+
+
+@pytest.fixture(scope="module")
+def by_program(file):
+    return run(file, out=file.parent / "by_program", jobs=2, guidance={"look_ahead_m": 55})
+
+
+def rows(path):
+    with path.open(encoding="utf-8", newline="") as table:
+        return [{name: cell for name, cell in row.items() if name != TIMED} for row in csv.DictReader(table)]
+
+
+def test_files_of_a_run_are_the_same(by_command, by_program):
+    names = {path.relative_to(by_command) for path in by_command.rglob("*") if path.suffix in (".csv", ".parquet")}
+    # Two swept speed ratios, and the comparison at one of them.
+    assert sum(name.suffix == ".parquet" for name in names) == 3
+    for name in names:
+        theirs, mine = by_command / name, by_program.directory / name
+        if name.name in ("summary.csv", "comparison.csv"):
+            assert rows(theirs) == rows(mine), name
+        else:
+            assert theirs.read_bytes() == mine.read_bytes(), name
+
+
+def test_the_manifest_has_the_same_configuration(by_program, by_command):
+    theirs = fly_manifest(by_command)
+    for entry in ("config_hash", "config", "overrides", "name", "trials"):
+        assert by_program.manifest[entry] == theirs[entry]
+    assert by_program.manifest["fingerprint"] == fingerprint()
+
+
+def fly_manifest(directory):
+    import json
+
+    return json.loads((directory / "manifest.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("flight_id", ["nu_0.50", "nu_0.50_no_guard"])
+def test_a_single_flight_is_that_of_the_run(file, by_program, tmp_path, flight_id):
+    flight = fly(file, flight_id=flight_id, guidance={"look_ahead_m": 55})
+    its = by_program.flights[flight_id]
+    pd.testing.assert_series_equal(flight.row.drop(TIMED), its.row.drop(TIMED), check_exact=True)
+    assert flight.export(tmp_path / "flight.parquet").read_bytes() == its.export(tmp_path / "its.parquet").read_bytes()
+    assert flight.crossings.equals(its.crossings)
+    assert len(flight.crossings) == 4
+
+
+@pytest.mark.usefixtures("x8_design")
+def test_an_aircraft_flies_the_same_in_both(tmp_path):
+    arguments = ("--set", "sweep.nu=[0.6]", "--set", "flight.crossings=4", "--seed", "5", "--no-report", "--jobs", "1")
+    assert run_command("scenarios.run", "sweep_nu", "--out", tmp_path / "run", *arguments).status == 0
+    flight = fly("sweep_nu", nu=0.6, flight={"crossings": 4}, seed=5)
+    assert flight.met
+    recorded = tmp_path / "run" / "flights" / "nu_0.60.parquet"
+    assert flight.export(tmp_path / "flight.parquet").read_bytes() == recorded.read_bytes()
+
+
+def test_a_mapping_is_the_file_that_it_would_be(file, by_program):
+    import tomllib
+
+    flight = fly(tomllib.loads(SHORT), nu=0.5, guidance={"look_ahead_m": 55})
+    assert flight.history.equals(by_program.flights["nu_0.50"].history)
+
+
+def test_a_scenario_is_changed_as_by_the_command_line(file):
+    scenario = load(file).set(nu=0.4, wind={"speed_mps": 3.0}, **{"guidance.rate_hz": 10})
+    assert scenario.changes == ("sweep.nu=[0.4]", "wind.speed_mps=3.0", "guidance.rate_hz=10")
+    assert scenario["wind.speed_mps"] == 3.0
+    assert load(file).changes == ()

@@ -1,0 +1,39 @@
+"""The scripts of docs/scripts run as they stand, and say what they are for."""
+
+import runpy
+from pathlib import Path
+
+import pytest
+
+SCRIPTS = Path(__file__).parents[3] / "docs" / "scripts"
+
+PRINTED = {
+    "one_flight": ("nu_0.50", "30 crossings", "rad"),
+    "own_law": ("criteria_met", "0.3", "True"),
+    "ship_from_ais": ("from 2026-06-01T10:00:00", "keep-out violations: 0"),
+    "monte_carlo": ("0 of 8 flights", "at 95% confidence", "median of the closest approach"),
+}
+
+WRITTEN = {
+    "one_flight": {"flight.png", "flight.kmz", "flight.parquet"},
+    "own_law": set(),
+    "ship_from_ais": {"wind.csv", "flight.kmz"},
+    "monte_carlo": {"report.html"},
+}
+
+
+def test_every_script_is_tested_and_short():
+    assert {path.stem for path in SCRIPTS.glob("*.py")} == set(PRINTED)
+    for path in SCRIPTS.glob("*.py"):
+        assert len(path.read_text(encoding="utf-8").splitlines()) <= 25, path.name
+
+
+@pytest.mark.usefixtures("x8_design")
+@pytest.mark.parametrize("name", PRINTED)
+def test_a_script_runs_and_writes_what_it_says(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(SCRIPTS / f"{name}.py"), run_name="__main__")
+    printed = capsys.readouterr().out
+    for words in PRINTED[name]:
+        assert words in printed
+    assert {path.name for path in tmp_path.iterdir()} == WRITTEN[name]

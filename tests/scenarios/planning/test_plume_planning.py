@@ -1,0 +1,95 @@
+"""What is planned of a plume before the flight: limits of the altitude, what is known of the ship, the distance."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gnc.errors import InfeasibleError
+from gnc.mission.plume_axis import PredictedPlume
+from gnc.mission.searched_axis import SearchedPlume
+from scenarios.errors import InputError
+from scenarios.planning.planner import plan_flight
+from scenarios.planning.plume.axis import ALTITUDE_MARGIN, plume_axis
+from scenarios.planning.plume.distance import additional_distance, information
+from scenarios.schema.load import load_study
+from scenarios.vehicles.vehicle_setup import kinematic_setup
+from scenarios.world.exhaust import emission
+from scenarios.world.vessel import SteadyVessel
+
+VESSEL = SteadyVessel(8.0, 0.0)
+
+
+def searching(*overrides):
+    return load_study("plume_search", ["comparison.variants=[]", *overrides])
+
+
+def test_a_search_keeps_within_the_limits_by_a_margin_that_grows_with_turbulence():
+    for level in ("none", "moderate"):
+        expected = plume_axis(searching(f"turbulence.level={level}"), VESSEL).expected
+        margin = ALTITUDE_MARGIN[level]
+        assert (expected.lowest, expected.highest) == (20.0 + margin, 120.0 - margin)
+
+
+def test_what_is_known_of_the_ship_is_the_middle_and_the_spread_of_the_ranges():
+    scenario = searching()
+    axis = plume_axis(scenario, VESSEL)
+    assert isinstance(axis, SearchedPlume)
+    # Of a uniform distribution from 20 to 60 m: mean 40, deviation the range over the root of 12.
+    assert axis.expected.source_height == 40.0
+    assert axis.expected.source_deviation == pytest.approx(40.0 / math.sqrt(12.0), rel=1e-12)
+    assert axis.expected.buoyancy_flux == emission(scenario, speed=math.nan, load=0.55).buoyancy_flux
+    # The logarithm of a load that is uniform from 0.2 to 0.9 scatters by 0.4; fuel burnt goes almost with the load.
+    assert axis.expected.load_deviation == pytest.approx(0.4, abs=0.05)
+
+
+def test_a_flight_that_is_told_knows_the_same_height_before_it_is_told():
+    told, searched = (plume_axis(searching(f"following.plume={how}"), VESSEL) for how in ("told", "estimated"))
+    assert isinstance(told, PredictedPlume)
+    assert told.height == searched.height
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        (["flight.altitude_min_m=50", "flight.altitude_max_m=62"], "flight.altitude_min_m"),
+        (["flight.altitude_max_m=60"], "flight.altitude_m"),
+        (["payload={}"], "payload.instruments"),
+    ],
+)
+def test_limits_that_leave_no_room_and_a_search_without_a_sniffer_are_refused_in_one_line(overrides, words):
+    with pytest.raises(InfeasibleError) as refusal:
+        plume_axis(searching(*overrides), VESSEL)
+    assert words in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_ranges_are_in_their_order_and_heights_of_the_mouth_vary_only_with_an_altitude_of_its_own():
+    with pytest.raises(InputError, match="source_height_m"):
+        searching("following.source_height_m=[60,20]")
+    with pytest.raises(InputError, match=r"plume\.source_height_m"):
+        load_study("sulphur", ["flights=2", 'draws=[{key="plume.source_height_m", uniform=[20.0,60.0]}]'])
+
+
+def test_the_flight_starts_at_its_altitude_and_keeps_out_of_the_sphere_about_the_mouth():
+    scenario = load_study("sulphur", ["fidelity=kinematic", "flight.altitude_m=80"])
+    plan = plan_flight(scenario, flight_id="a", seed=1, setup=kinematic_setup(scenario))
+    assert (plan.altitude, plan.source_height) == (80.0, 35.0)
+
+
+@pytest.mark.parametrize("sensor", ["fast", "electrochemical"])
+@pytest.mark.parametrize("wind", [4.0, 9.0, 16.0])
+def test_the_sulphur_is_known_best_from_as_near_as_may_be(sensor, wind):
+    scenario = load_study("sulphur", [f"payload.sensor={sensor}", "following.distance=best_measurement"])
+    assert additional_distance(scenario, VESSEL, 220.0, wind) == 0.0
+    # Flights at 500 m had up to three times the noise of those at 200 m (docs/sulphur.md).
+    near, far = information(scenario, VESSEL, np.array([200.0, 500.0]), wind)
+    assert 1.5 < math.sqrt(near / far) < 4.0
+
+
+def test_where_the_axis_is_below_the_limits_near_the_ship_it_is_measured_farther_off():
+    low = load_study(
+        "sulphur",
+        ["following.distance=best_measurement", "plume.source_height_m=15", "flight.altitude_m=80", "flight.altitude_min_m=55"],
+    )
+    assert additional_distance(low, VESSEL, 220.0, 8.0) > 50.0

@@ -1,0 +1,84 @@
+"""When a flight has enough: two looks that agree, or a plume that cannot be measured."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+
+from gnc.estimation.plume_estimator import SensorState
+from gnc.mission.searched_axis import PlumeEstimate, SearchedAxis
+from scenarios.simulation import judge as judging
+from scenarios.simulation.judge import GONE, INTERVAL, Enough, Judge
+
+
+class Axis(SearchedAxis):
+    """A search that has its beliefs from a test."""
+
+    def __init__(self, *, sensor=SensorState.WORKING, measurable=1.0):
+        self.sensor, self.estimate, self._measurable = sensor, PlumeEstimate(height=131.0, height_deviation=8.0), measurable
+
+    __slots__ = ("_measurable",)
+
+    def measurable(self):
+        return self._measurable
+
+
+class Mission:
+    def __init__(self, axis):
+        self.axis, self.departing = axis, False
+
+    def depart(self):
+        self.departing = True
+
+
+def judged(monkeypatch, verdicts, *, axis=None, settled=0.0):
+    """Return a judge whose looks find these verdicts one after the other, and its mission."""
+    looks = iter(verdicts)
+
+    def estimate(*_, **__):
+        return SimpleNamespace(verdicts=(SimpleNamespace(verdict=next(looks)),))
+
+    monkeypatch.setattr(judging, "estimate", estimate)
+    reader = SimpleNamespace(limit_percent=0.1, spec=None, readings=lambda since: since)
+    mission = Mission(axis or Axis())
+    return Judge(reader, mission, SimpleNamespace(at=settled)), mission
+
+
+def looks(judge, number, distance=230.0):
+    """Let as many looks go by, sampled ten times a second; return the times at which it was over."""
+    return [t for t in (0.1 * i for i in range(round(10 * number * INTERVAL) + 1)) if judge.over(t, distance)]
+
+
+def test_a_verdict_counts_from_the_second_look_that_agrees(monkeypatch):
+    judge, mission = judged(monkeypatch, ["above", "open", "below", "below"])
+    assert looks(judge, 3) == []
+    assert not mission.departing
+    looks_again, _ = judged(monkeypatch, ["above", "open", "below", "below"])
+    looks(looks_again, 4)
+    assert looks_again.enough is Enough.BELOW
+    assert looks_again.left_at == pytest.approx(4 * INTERVAL, abs=0.11)
+
+
+def test_it_is_over_when_the_vehicle_has_gone_farther_than_where_it_left(monkeypatch):
+    judge, mission = judged(monkeypatch, ["above", "above"])
+    looks(judge, 2)
+    assert mission.departing
+    assert not judge.over(40.0, 230.0 + GONE - 1.0)
+    assert judge.over(41.0, 230.0 + GONE + 1.0)
+
+
+def test_before_the_flight_has_settled_no_reading_counts(monkeypatch):
+    judge, _ = judged(monkeypatch, [], settled=math.nan)
+    assert looks(judge, 5) == []
+    assert judge.enough is None
+
+
+@pytest.mark.parametrize(
+    ("beliefs", "enough"),
+    [({"sensor": SensorState.STUCK}, Enough.SENSOR), ({"measurable": 0.01}, Enough.OUT_OF_REACH)],
+)
+def test_what_cannot_be_measured_is_left_with_what_is_believed(monkeypatch, beliefs, enough):
+    judge, mission = judged(monkeypatch, [], axis=Axis(**beliefs))
+    looks(judge, 2)
+    assert (judge.enough, mission.departing) == (enough, True)
+    assert "131 m high, with a deviation of 8 m" in judge.words

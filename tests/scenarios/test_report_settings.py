@@ -1,0 +1,121 @@
+"""The section ``report``: it is in the manifest and in both reports, and has no effect on the flights."""
+
+import hashlib
+import json
+
+import pandas as pd
+import pytest
+from PIL import Image
+
+from common.run_layout import REPORT_SETTINGS
+from scenarios.errors import InputError
+from scenarios.schema.load import load_study
+from scenarios.schema.report import ReportConfig
+from scenarios.studies.registry import study_of
+from tests.in_process import run_command
+
+SHORT = """
+title = "Short"
+fidelity = "kinematic"
+seed = 3
+vessel.speed_mps = 8.0
+flight.crossings = 2
+start.distance_m = [300.0, 400.0]
+"""
+REPORT = """
+[report]
+title = "Survey of the strait"
+author = "A. Author"
+organisation = "Agency"
+logo = "pictures/logo.png"
+"""
+
+
+@pytest.fixture
+def scenario(tmp_path):
+    (tmp_path / "pictures").mkdir()
+    Image.new("RGB", (40, 20), "navy").save(tmp_path / "pictures" / "logo.png")
+    path = tmp_path / "short.toml"
+    path.write_text(SHORT + REPORT, encoding="utf-8")
+    return path
+
+
+def manifest(run):
+    return json.loads((run / "manifest.json").read_text(encoding="utf-8"))
+
+
+def hash_of(path, *overrides):
+    return study_of(load_study(str(path), overrides), "short").config_hash
+
+
+def test_the_keys_are_those_that_reports_read():
+    assert tuple(ReportConfig.model_fields) == REPORT_SETTINGS
+
+
+def test_a_run_keeps_what_its_reports_say_of_themselves_without_a_path_of_the_machine(scenario, tmp_path):
+    out = tmp_path / "run"
+    ended = run_command("scenarios.run", scenario, "--out", out)
+    assert ended.status == 0, ended.errors
+    content = (tmp_path / "pictures" / "logo.png").read_bytes()
+    assert manifest(out)["report"] == {
+        "title": "Survey of the strait",
+        "author": "A. Author",
+        "organisation": "Agency",
+        "logo": "logo.png",
+        "logo_sha256": hashlib.sha256(content).hexdigest(),
+    }
+    assert (out / "logo.png").read_bytes() == content
+    assert "logo.png" in manifest(out)["files"]
+    assert str(tmp_path) not in (out / "manifest.json").read_text(encoding="utf-8")
+    assert manifest(out)["command"] == "python -m scenarios.run short.toml --out run"
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "<h1>Survey of the strait</h1>" in page
+    assert "A. Author, Agency" in page
+    assert '<img src="data:image/png;base64,' in page
+
+
+def test_neither_the_hash_nor_a_flight_depends_on_the_report(scenario, tmp_path):
+    plain = tmp_path / "plain.toml"
+    plain.write_text(SHORT, encoding="utf-8")
+    assert hash_of(scenario) == hash_of(plain) == hash_of(plain, "report.title=2026")
+    assert hash_of(plain) != hash_of(plain, "seed=4")
+
+
+def test_a_complete_run_that_is_resumed_with_another_report_flies_nothing_and_is_reported_anew(scenario, tmp_path):
+    out = tmp_path / "run"
+    run_command("scenarios.run", scenario, "--out", out, "--no-report")
+    before, flown = manifest(out), pd.read_csv(out / "summary.csv")
+    ended = run_command("scenarios.run", scenario, "--out", out, "--resume", "--set", "report.title=Another")
+    assert ended.status == 0, ended.errors
+    assert manifest(out) == before | {"report": before["report"] | {"title": "Another"}}
+    pd.testing.assert_frame_equal(pd.read_csv(out / "summary.csv"), flown)
+    assert "<h1>Another</h1>" in (out / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("given", ["file", "override"])
+def test_a_logo_that_is_no_picture_is_refused_before_anything_is_flown(given, scenario, tmp_path):
+    (tmp_path / "pictures" / "text.png").write_text("no picture", encoding="utf-8")
+    override = ["--set", f"report.logo={tmp_path / 'pictures' / 'text.png'}"]
+    if given == "file":
+        scenario.write_text(scenario.read_text(encoding="utf-8").replace("logo.png", "text.png"), encoding="utf-8")
+        override = []
+    ended = run_command("scenarios.run", scenario, "--out", tmp_path / "run", *override)
+    assert ended.status == 2
+    assert ended.errors == "error: report.logo: 'text.png' is no picture; give a whole PNG, JPEG or SVG file\n"
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_report_of_trials_is_set_for_their_list():
+    trials = load_study("sea_trial", ["report.title=Mine", "share=0.01"])
+    assert (trials.report.title, trials.set) == ("Mine", ())
+
+
+@pytest.mark.parametrize("override", ['sweep.report.title=["a","b"]', 'draws=[{key="report.title",choice=["a","b"]}]'])
+def test_a_report_that_varies_from_flight_to_flight_is_refused(override, scenario):
+    with pytest.raises(InputError, match=r"'report\.title' varies from flight to flight; a report is of all flights"):
+        study_of(load_study(str(scenario), [override]), "short")
+
+
+def test_an_unknown_key_of_the_report_is_refused_with_the_known_one(scenario):
+    with pytest.raises(InputError, match=r"unknown key 'report\.titel'; did you mean 'report\.title'\?"):
+        load_study(str(scenario), ["report.titel=x"])
