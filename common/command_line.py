@@ -2,7 +2,8 @@
 
 import io
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Annotated
 
 import typer
 
@@ -12,14 +13,24 @@ _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """Base class of the errors that typer raises for bad options, which it does not export."""
 
 
-def run_command(command: Callable[..., None], name: str) -> None:
-    """Run ``command`` as a command line called ``name`` and exit with its status, 2 for bad options."""
+def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]], name: str, version: str = "") -> None:
+    """Run a command as a command line called ``name`` and exit with its status, 2 for bad options.
+
+    Parameters
+    ----------
+    command : the only one, or commands by the words that choose them
+    name : of the command line
+    version : what ``--version`` prints, of a command line with several commands
+    """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             # Names may have letters that a terminal does not.
             stream.reconfigure(errors="backslashreplace")
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    app.command()(command)
+    for word, one in command.items() if isinstance(command, Mapping) else [(None, command)]:
+        app.command(word)(one)
+    if version:
+        app.callback()(_with_version(f"{name} {version}"))
     try:
         status = app(prog_name=name, standalone_mode=False)
     except _USAGE_ERROR as error:
@@ -29,6 +40,22 @@ def run_command(command: Callable[..., None], name: str) -> None:
         print("interrupted", file=sys.stderr)
         status = INTERRUPTED
     sys.exit(status or 0)
+
+
+def _with_version(text: str) -> Callable[..., None]:
+    """Return what reads the options that stand before any command."""
+
+    def printed(given: bool) -> None:
+        if given:
+            print(text)
+            raise typer.Exit
+
+    option = typer.Option("--version", help="Print the version and exit.", callback=printed, is_eager=True)
+
+    def options(_version: Annotated[bool, option] = False) -> None:
+        """Fly a fixed-wing UAV through a ship's exhaust plume."""
+
+    return options
 
 
 def refuse(error: Exception | str) -> int:

@@ -14,7 +14,7 @@ class Ensemble(Section):
     """The initial states: the same for every law."""
 
     trajectories: Annotated[int, Field(ge=1, le=10_000_000)] = 10_000
-    """Initial states, each flown with every law; a third each about a circling, an oscillating and a randomly turning reference."""
+    """Initial states, each flown with every law; a third each about a circling, oscillating and randomly turning reference [-]."""
     distance_max_m: Annotated[float, Field(gt=0.0, le=100_000.0)] = 5000.0
     """Farthest start from the reference, sampled evenly over the disc [m]."""
     time_max_s: Annotated[float, Field(gt=0.0, le=1_000_000.0)] = 20_000.0
@@ -22,7 +22,7 @@ class Ensemble(Section):
     settling_band_m: Positive = 5.0
     """Settled from the moment the distance to the reference stays below this [m]."""
     samples: Annotated[int, Field(ge=0, le=1000)] = 6
-    """Trajectories whose time histories are kept beside those of the counter-examples."""
+    """Trajectories whose time histories are kept beside those of the counter-examples [-]."""
 
 
 class EnsembleGuidance(Section):
@@ -58,10 +58,13 @@ class ConvergenceScenario(Section):
     study: Literal["convergence"]
     """Many kinematic pursuits from random initial states."""
     title: str
+    """What reports and lists call it."""
     description: str = ""
+    """In a sentence or two, for the head of the report."""
     fidelity: Literal["kinematic"] = "kinematic"
     """The paper's vehicle, eq. (1)."""
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1
+    """Of the initial states and of the references [-]."""
     ensemble: Ensemble = Ensemble()
     guidance: EnsembleGuidance = EnsembleGuidance()
     report: ReportConfig = ReportConfig()

@@ -300,10 +300,11 @@ def unused(scenario: Scenario, key: str) -> str:
     mission = ("guidance.mission", *(_OPERATIONAL if scenario.guidance.mission is None else ()))
     for rule in RULES:
         depends = (*rule.depends, *(mission if rule.by_mission else ()))
-        if _named(key, rule.keys) and not rule.acts(scenario) and not any(_named(other, depends) for other in varied):
+        if named_by(key, rule.keys) and not rule.acts(scenario) and not any(named_by(other, depends) for other in varied):
             return rule.user
     return ""
 
 
-def _named(key: str, names: Iterable[str]) -> bool:
+def named_by(key: str, names: Iterable[str]) -> bool:
+    """Return whether a dotted key is among the names, of which those that end in a dot are beginnings of keys."""
     return any(key == name or (name.endswith(".") and key.startswith(name)) for name in names)

@@ -63,7 +63,9 @@ class VariantConfig(Section):
     """A comparison: the same flights with some keys set otherwise."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
+    """Part of the names of its flights."""
     set: dict[str, object]
+    """Keys with dots, and their values."""
 
 
 class ComparisonConfig(Section):
@@ -72,7 +74,7 @@ class ComparisonConfig(Section):
     nu: tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...] = ()
     """Those of the swept speed ratios at which variants are flown; all flights if not given [-]."""
     flights: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
-    """Of each point of the experiment, how many flights are flown with each variant; all of them if not given."""
+    """Of each point of the experiment, how many flights are flown with each variant; all of them if not given [-]."""
     variants: tuple[VariantConfig, ...] = ()
 
 
@@ -80,7 +82,9 @@ class CaseConfig(Section):
     """One flight of a study of cases, with some keys set otherwise; flown with each vehicle that ``fidelity`` names."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
+    """Part of the names of its flights."""
     set: dict[str, object] = Field(default_factory=dict)
+    """Keys with dots, and their values."""
     set_kinematic: dict[str, object] = Field(default_factory=dict)
     """More keys, for the kinematic vehicle alone."""
     comparison: bool = False
@@ -93,17 +97,17 @@ class DrawConfig(Section):
     key: str
     """Dotted key of the scenario; a number is an index into a list, as in vessel.manoeuvres.0.turn_deg."""
     uniform: Range | None = None
-    """Evenly between these."""
+    """Evenly between these [unit of the key]."""
     normal: tuple[float, Positive] | None = None
-    """Mean and standard deviation."""
+    """Mean and standard deviation [unit of the key]."""
     weibull: tuple[Positive, Positive] | None = None
-    """Shape and scale, as wind speeds have them."""
+    """Shape, a number, and scale, as wind speeds have them [unit of the key]."""
     within: Range | None = None
-    """Limits at which a normal or Weibull distribution is cut off."""
+    """Limits at which a normal or Weibull distribution is cut off [unit of the key]."""
     choice: Annotated[tuple[object, ...], Field(min_length=1)] | None = None
     """One of these: in turn, so that each comes equally often, or at random by their weights."""
     weights: tuple[NonNegative, ...] | None = None
-    """Of the choices, in any unit."""
+    """Of the choices; their sum does not matter [-]."""
 
     @model_validator(mode="after")
     def _one(self) -> "DrawConfig":
@@ -223,8 +227,11 @@ class ConditionConfig(Section):
     """A condition in which every law of an arena flies."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
+    """Part of the names of its flights."""
     title: str
+    """What the report calls it."""
     set: dict[str, object] = Field(default_factory=dict)
+    """Keys with dots, and their values."""
 
 
 class ArenaConfig(Section):
@@ -262,16 +269,19 @@ class TrialList(Section):
     """A list of trials, flown and reported together."""
 
     study: Literal["trials"]
+    """Scenarios that are flown and reported together."""
     title: str
+    """What reports and lists call it."""
     description: str = ""
+    """In a sentence or two, for the head of the report."""
     trials: Annotated[tuple[str, ...], Field(min_length=1)]
     """Scenarios of flights, by their names in the catalog or their paths."""
     share: Annotated[float, Field(gt=0.0, le=1.0)] = 1.0
     """Fraction of each trial's flights that are flown, for a quick look [-]."""
     seed: Seed | None = None
-    """Seed of every trial; each has its own if not given."""
+    """Seed of every trial; each has its own if not given [-]."""
     histories: Annotated[int, Field(ge=0, le=100_000)] = 350
-    """Number of time histories to be kept."""
+    """Number of time histories to be kept [-]."""
     set: tuple[str, ...] = ()
     """Keys to set in every trial, as key=value; overrides of the command line that are not keys of this list come here."""
     report: ReportConfig = ReportConfig()

@@ -17,7 +17,7 @@ def known_keys(kind: type[BaseModel]) -> list[str]:
         return keys
     for name, field in kind.model_fields.items():
         keys.append(name)
-        for model, listed in _models(field.annotation):
+        for model, listed in models_in(field.annotation):
             keys += [f"{name}.0.{key}" if listed else f"{name}.{key}" for key in known_keys(model)]
     return keys
 
@@ -28,7 +28,7 @@ def key_parts(kind: type[BaseModel], dotted: str) -> list[str]:
     model: type[BaseModel] = kind
     for depth, part in enumerate(parts[:-1], start=1):
         field = None if part.isdigit() else model.model_fields.get(part)
-        found = next(_models(field.annotation), None) if field else None
+        found = next(models_in(field.annotation), None) if field else None
         if found is None:
             break
         model = found[0]
@@ -59,7 +59,7 @@ def entry_model(kind: type[BaseModel], parts: Sequence[str]) -> type[BaseModel] 
     for part in parts:
         if found and not part.isdigit():
             field = found[0].model_fields.get(part)
-            found = next(_models(field.annotation), None) if field else None
+            found = next(models_in(field.annotation), None) if field else None
     return found[0] if found and found[1] else None
 
 
@@ -68,11 +68,11 @@ def example_value(field: FieldInfo) -> object:
     return field.examples[0] if field.examples else "name" if field.annotation is str else 100
 
 
-def _models(annotation: Any) -> Iterator[tuple[type[BaseModel], bool]]:
+def models_in(annotation: Any) -> Iterator[tuple[type[BaseModel], bool]]:
     """Yield the schemas in a type, each with whether they are the entries of a list."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         yield annotation, False
     listed = typing.get_origin(annotation) in (tuple, list)
     for part in typing.get_args(annotation):
-        for model, inside in _models(part):
+        for model, inside in models_in(part):
             yield model, listed or inside

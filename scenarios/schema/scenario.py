@@ -44,9 +44,6 @@ The last one can be where ``flight.altitude_m`` is given.
 POINTS_MAX = 10_000
 """Most points of an experiment: all are checked before the first flight, in a millisecond and 20 kB each."""
 
-Histories = Annotated[int, Field(ge=0, le=100_000)]
-"""Number of time histories to be kept: an even sample. Those of flights that failed a criterion are kept beside them."""
-
 
 class Scenario(Section):
     """A whole scenario file of flights."""
@@ -55,16 +52,21 @@ class Scenario(Section):
     """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search; arena, laws side by side; or
     FILE.py:NAME."""
     title: str
+    """What reports and lists call it."""
     description: str = ""
+    """In a sentence or two, for the head of the report."""
     aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = DEFAULT_AIRCRAFT
+    """The aircraft, by its name (innerloop.design --list) or FILE.py:NAME."""
     fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
     """The aircraft in six degrees of freedom, the paper's kinematic vehicle, or one after the other."""
     seed: Seed = 1
+    """Of everything random; flights have seeds of their own, which follow from it [-]."""
     flights: Annotated[int, Field(ge=1, le=FLIGHTS_MAX)] = 1
-    """Flights of each point of the experiment, each with a seed and a sample of the random variables of its own."""
+    """Flights of each point of the experiment, each with a seed and a sample of the random variables of its own [-]."""
     flight_seed: Seed | None = None
-    """Of start, air and noise; each flight has its own, from seed, name and number, if it is not given."""
-    histories: Histories = 200
+    """Of start, air and noise; each flight has its own, from seed, name and number, if it is not given [-]."""
+    histories: Annotated[int, Field(ge=0, le=100_000)] = 200
+    """Number of time histories to be kept: an even sample; those of flights that failed a criterion are kept beside them [-]."""
     speed_ratio: Range = (0.0, 1e9)
     """Flights whose nu leaves this range, at the start or after a manoeuvre, are sampled again [-]."""
     method: Literal["plain", "subset"] = "plain"

@@ -43,7 +43,7 @@ class VesselConfig(Section):
     track: str = "manoeuvres"
     """Where it is over time: by its speed, course and manoeuvres, by a file of AIS reports (.csv, .nmea), or FILE.py:NAME."""
     mmsi: Annotated[int, Field(ge=0, le=999_999_999)] | None = None
-    """Its identity in a file of AIS reports; not needed where that has one vessel alone."""
+    """Its identity in a file of AIS reports; not needed where that has one vessel alone [-]."""
     gap_max_s: Positive = 180.0
     """Longest time without a report that the track from a file is bridged over [s]."""
     manoeuvres: tuple[ManoeuvreConfig, ...] = ()
@@ -140,7 +140,7 @@ class KeepoutConfig(Section):
     shape: Shape = "sphere"
     """A sphere, as in the paper, which is narrower above and below; or a cylinder, as wide at every height."""
     radius_m: Annotated[float, Field(ge=10.0, le=10_000.0)] = 200.0
-    """r_min [m]."""
+    """r_min, its radius [m]."""
 
 
 class WindConfig(Section):
@@ -180,7 +180,7 @@ class TurbulenceConfig(Section):
     level: Literal["none", "light", "moderate", "severe"] = "none"
     """Light, moderate and severe are 15, 30 and 45 knots of wind at 20 feet."""
     gusts: Annotated[int, Field(ge=0, le=100)] = 0
-    """Number of 1-cosine gusts, at random times and from random directions."""
+    """Number of 1-cosine gusts, at random times and from random directions [-]."""
     gust_speed_mps: NonNegative = 0.0
     """Their largest speed [m/s]."""
     gust_length_s: Positive = 4.0

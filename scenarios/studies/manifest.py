@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -14,6 +13,7 @@ from common.registry import file_hash
 from common.run_layout import FORMAT, LOGO
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
+from scenarios.schema.documented_parts import DIMENSIONLESS, split_unit
 from scenarios.schema.effect import unused
 from scenarios.schema.load import AnyStudy
 from scenarios.schema.parts import names_file, part_names
@@ -96,8 +96,13 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
             continue
         values = section.model_dump(mode="json")
         for key, field in type(section).model_fields.items():
-            meaning, unit = _split_unit(field.description or "")
-            parameter = {"key": f"{section_name}.{key}", "value": values[key], "unit": unit, "meaning": meaning}
+            meaning, unit = split_unit(field.description or "")
+            parameter = {
+                "key": f"{section_name}.{key}",
+                "value": values[key],
+                "unit": unit.replace(DIMENSIONLESS, ""),
+                "meaning": meaning,
+            }
             if not field.is_required():
                 parameter["default"] = to_jsonable_python(field.get_default(call_default_factory=True))
             if not (isinstance(scenario, Scenario) and unused(scenario, parameter["key"])):
@@ -107,12 +112,3 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
             for key, value in (section.model_extra or {}).items()
         ]
     return listed
-
-
-def _split_unit(description: str) -> tuple[str, str]:
-    """Split "Meaning [unit]; more." into the meaning and the unit."""
-    found = re.search(r"\s*\[([^\]]+)\]", description)
-    if found is None:
-        return description, ""
-    meaning = description[: found.start()] + description[found.end() :]
-    return meaning, "" if found[1] == "-" else found[1]

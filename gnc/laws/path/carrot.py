@@ -52,7 +52,7 @@ class CarrotLaw(PathLaw):
     Attributes
     ----------
     carrot_ahead_m : of the nearest point of the tangent [m]
-    carrot_gain_per_s : [1/s]
+    carrot_gain_per_s : heading rate per angle between course and bearing [1/s]
     """
 
     given: ClassVar[str] = "tangent of the path over the ground (M1)"
@@ -73,7 +73,7 @@ class CarrotOrbitLaw(PathLaw):
     Attributes
     ----------
     carrot_angle_rad : of the carrot ahead of the vehicle's bearing from the centre [rad]
-    carrot_gain_per_s : [1/s]
+    carrot_gain_per_s : heading rate per angle between course and bearing [1/s]
     """
 
     given: ClassVar[str] = "the circle in the frame of its centre (M2)"

@@ -1,0 +1,78 @@
+"""What ``plume-flight describe`` says of keys and sections, in lines of text."""
+
+import re
+import textwrap
+from collections.abc import Iterator
+
+from scenarios.errors import InputError
+from scenarios.schema.documented import DocumentedSection, documented_keys, documented_sections, similar_key
+from scenarios.schema.documented_parts import DocumentedKey
+from scenarios.schema.overrides import as_toml
+
+_WIDTH = 100
+_INDENT = 10
+
+
+def described(name: str | None = None) -> list[str]:
+    """Return what is known of a key or a section; of nothing given, the sections.
+
+    Parameters
+    ----------
+    name : a dotted key, as wind.speed_mps, or a section, as wind; the index of an entry of a list may be left out
+
+    Raises
+    ------
+    InputError : there is neither
+    """
+    if name is None:
+        return list(_all_sections())
+    wanted = re.sub(r"\.\d+(?=\.|$)", "", name)
+    keys = [key for key in documented_keys() if key.key.replace(".0", "") == wanted or (wanted == "nu" and key.key == "sweep")]
+    sections = [section for section in documented_sections() if section.name and section.name.replace(".0", "") == wanted]
+    if not keys and not sections:
+        guess = similar_key(wanted)
+        remedy = f"did you mean '{guess}'?" if guess else "plume-flight describe lists the sections"
+        raise InputError(f"unknown key '{name}'; {remedy}")
+    lines = [line for section in sections for line in _section(section)]
+    return [*lines, *(line for key in keys for line in _key(key))]
+
+
+def value_text(value: object) -> str:
+    """Return a value as a scenario file has it; "not set" for none."""
+    return "not set" if value is None else as_toml(value)
+
+
+def _all_sections() -> Iterator[str]:
+    yield "Sections of a scenario file, and how many keys each has; plume-flight describe SECTION lists them:"
+    for section in documented_sections():
+        name = section.name.replace(".0", "") or "(top)"
+        yield from _wrapped(f"{name:<21} {len(section.keys):>3}  ", section.meaning if section.name else "What is in no section.")
+
+
+def _section(section: DocumentedSection) -> Iterator[str]:
+    entries = "A list, each entry with these keys. " if section.listed else ""
+    yield from _wrapped("", f"[{section.name.replace('.0', '')}] {entries}{section.meaning}")
+    for key in section.keys:
+        default = "required" if key.required else value_text(key.default)
+        unit = f" {key.unit}" if key.unit not in ("", "-") and key.default is not None else ""
+        yield from _wrapped(f"  {key.key.rpartition('.')[2]:<28} {default}{unit}  ", key.meaning)
+
+
+def _key(key: DocumentedKey) -> Iterator[str]:
+    yield key.key
+    about = {
+        "": key.meaning,
+        "value": key.range,
+        "unit": key.unit,
+        "default": "none: it has to be given" if key.required else value_text(key.default),
+        "studies": ", ".join(key.studies),
+    }
+    for name, text in about.items():
+        if text:
+            yield from _wrapped(f"  {name:<{_INDENT}}" if name else "  ", text)
+    for condition in key.conditions:
+        yield from _wrapped(f"  {'used by':<{_INDENT}}", condition)
+
+
+def _wrapped(before: str, text: str) -> list[str]:
+    return textwrap.wrap(f"{before}{text}", _WIDTH, subsequent_indent=" " * min(len(before), 32), drop_whitespace=True) or [before]

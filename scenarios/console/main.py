@@ -1,0 +1,76 @@
+"""Console command: ``plume-flight run|design|report|export|compare|describe|new``. Each hands on to what does the work."""
+
+import importlib
+import importlib.metadata
+import importlib.util
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from common.command_line import refuse, run_command
+
+
+def export(
+    directory: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="A directory that plume-flight run wrote.")],
+    to: Annotated[list[str], typer.Option(metavar="NAME,...", help="Formats: kmz, acmi, czml, ..., or FILE.py:NAME.")],
+    flight: Annotated[str | None, typer.Option(metavar="ID", help="Export this flight alone.")] = None,
+) -> None:
+    """Write the flights of a run in other formats, into RUN_DIR/export."""
+    from reports.build import command
+
+    command(directory, export=to, flight=flight)
+
+
+def describe(
+    key: Annotated[
+        str | None, typer.Argument(metavar="KEY|SECTION", help="As in wind.speed_mps or wind; sections if left out.")
+    ] = None,
+) -> None:
+    """Say what a key of the scenario file means, its unit, range and default, and the studies that take it."""
+    from scenarios.console.describe import described
+    from scenarios.errors import InputError
+
+    try:
+        for line in described(key):
+            print(line)
+    except InputError as error:
+        raise typer.Exit(refuse(error)) from None
+
+
+def new(
+    file: Annotated[Path, typer.Argument(metavar="FILE.toml", help="The file to write; one that is there is left alone.")],
+    source: Annotated[
+        str, typer.Option("--from", metavar="NAME|FILE.toml", help="The scenario that it is made from.")
+    ] = "sweep_nu",
+) -> None:
+    """Write a scenario file with every key, its meaning, unit, range and default, that flies as another scenario does."""
+    from scenarios.console.template import write_template
+    from scenarios.errors import InputError
+
+    try:
+        write_template(file, source)
+    except InputError as error:
+        raise typer.Exit(refuse(error)) from None
+    print(f"scenario: {file}")
+
+
+def commands() -> dict[str, Callable[..., None]]:
+    """Return the commands by their words."""
+    from innerloop.design import command as design
+    from reports.build import command as report
+    from scenarios.run import command as run
+
+    found: dict[str, Callable[..., None]] = {"run": run, "design": design, "report": report, "export": export}
+    if importlib.util.find_spec("reports.compare"):
+        found["compare"] = importlib.import_module("reports.compare.__main__").command
+    return {**found, "describe": describe, "new": new}
+
+
+def main() -> None:
+    """Entry point."""
+    # As of scenarios.run: small matrices in several processes need no threads of their own.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    run_command(commands(), "plume-flight", importlib.metadata.version("plume-flight-study"))

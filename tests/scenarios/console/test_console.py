@@ -1,0 +1,159 @@
+"""The console command hands on to the command lines of the project, and says what is known of keys."""
+
+import importlib.metadata
+import json
+
+import pytest
+
+from scenarios import fly
+from scenarios.console.describe import described
+from scenarios.console.main import commands
+from scenarios.console.template import template
+from scenarios.schema.documented import documented_sections
+from scenarios.schema.effect import unused
+from scenarios.schema.experiment import TrialList
+from scenarios.schema.load import catalog, load_study
+from scenarios.schema.scenario import Scenario
+from tests.in_process import assert_refused, run_command
+
+SHORT = """
+title = "Two short flights"
+fidelity = "kinematic"
+histories = 5
+
+[sweep]
+nu = [0.3, 0.5]
+
+[flight]
+crossings = 2
+
+[criteria]
+crossing_interval_error = false
+tracking_error_rms_m = false
+
+[vessel]
+course_deg = 45.0
+"""
+
+
+def console(*arguments):
+    return run_command("scenarios.console.main", *arguments)
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "short.toml"
+    path.write_text(SHORT, encoding="utf-8")
+    return path
+
+
+def test_the_commands_are_these():
+    assert [word for word in commands() if word != "compare"] == ["run", "design", "report", "export", "describe", "new"]
+    assert importlib.metadata.version("plume-flight-study") in console("--version").out
+    for word in commands():
+        assert word in console("--help").out
+        assert f"plume-flight {word}" in console(word, "--help").out
+
+
+def test_a_run_is_flown_reported_and_exported(file, tmp_path):
+    out = tmp_path / "run"
+    ended = console("run", file, "--out", out, "--jobs", "1", "--no-report")
+    assert (ended.status, "results: " in ended.out) == (0, True)
+    assert console("report", out).status == 0
+    assert (out / "report.html").is_file()
+    ended = console("export", out, "--to", "geojson,tracks_csv", "--flight", "nu_0.50")
+    assert ended.out.count("export: ") == 2
+    assert json.loads((out / "export" / "short.nu_0.50.geojson").read_text(encoding="utf-8"))["type"] == "FeatureCollection"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((), ("Missing command", "plume-flight --help")),
+        (("rum",), ("No such command 'rum'",)),
+        (("run", "sweep_un"), ("did you mean 'sweep_nu'?",)),
+        (("run", "sweep_nu", "--sed", "3"), ("No such option",)),
+        (("export", "."), ("--to",)),
+        (("export", ".", "--to", "kmz"), ("holds no run",)),
+        (("report", "."), ("holds no run",)),
+        (("design", "x9"), ("unknown aircraft 'x9'",)),
+        (("describe", "wind.sped_mps"), ("unknown key 'wind.sped_mps'; did you mean 'wind.speed_mps'?",)),
+        (("describe", "gravity_of_the_situation"), ("unknown key", "plume-flight describe lists the sections")),
+        (("new", "mine.toml", "--from", "sweep_un"), ("did you mean 'sweep_nu'?",)),
+        (("new", "missing/mine.toml"), ("'missing/mine.toml' cannot be written",)),
+    ],
+)
+def test_bad_input_is_one_line(arguments, words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert_refused(console(*arguments), *words)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_key_is_described_with_unit_range_and_default():
+    found = console("describe", "wind.speed_mps").out
+    for words in (
+        "Wind speed.",
+        "a number from 0 to 40",
+        "m/s",
+        "default   0.0",
+        "monte_carlo",
+        "used by   a wind without a table",
+    ):
+        assert words in found
+
+
+def test_keys_of_entries_of_parts_and_of_other_studies_are_described():
+    assert described("vessel.manoeuvres.at_s") == described("vessel.manoeuvres.0.at_s")
+    assert "When it begins." in "".join(described("vessel.manoeuvres.at_s"))
+    assert "guidance.law 'npfg'" in "".join(described("guidance.npfg_period_s"))
+    assert "".join(described("seed")).count("studies") == 3
+    assert "Keys, each with the values" in "".join(described("nu"))
+
+
+def test_sections_are_listed_and_described():
+    listed = described()
+    for section in documented_sections():
+        assert any(line.startswith(section.name.replace(".0", "") or "(top)") for line in listed)
+    assert any(line.strip().startswith("speed_mps") for line in described("wind"))
+
+
+def test_a_new_file_holds_every_key_with_its_meaning():
+    text = template("sweep_nu", "mine.toml")
+    for section in documented_sections(Scenario):
+        for key in section.keys:
+            name = key.key.rpartition(".")[2]
+            assert f"\n{name} = " in text or f"\n# {name} =" in text or f"#   {name}: " in text or name == "sweep", key.key
+    assert max(map(len, (line for line in text.splitlines() if line.startswith("# ")))) <= 120
+
+
+@pytest.mark.parametrize("name", catalog())
+def test_a_new_file_says_what_the_scenario_says_that_it_is_made_from(name, tmp_path):
+    path = tmp_path / f"{name}.toml"
+    assert console("new", path, "--from", name).status == 0
+    made, source = load_study(str(path)), load_study(name)
+    theirs, mine = _leaves(source.model_dump()), _leaves(made.model_dump())
+    differing = {key for key in theirs | mine if theirs.get(key) != mine.get(key)}
+    # What a base sets and no part of the flights uses is not said again.
+    assert all(isinstance(source, Scenario) and unused(source, key) for key in differing), differing
+
+
+def _leaves(values, before=""):
+    leaves = {}
+    for key, value in values.items():
+        leaves |= _leaves(value, f"{before}{key}.") if isinstance(value, dict) and value else {f"{before}{key}": value}
+    return leaves
+
+
+def test_a_new_file_flies_the_same(file, tmp_path):
+    assert console("new", tmp_path / "mine.toml", "--from", file).status == 0
+    assert fly(tmp_path / "mine.toml", nu=0.5).history.equals(fly(file, nu=0.5).history)
+
+
+def test_a_file_that_is_there_is_not_overwritten(file):
+    assert_refused(console("new", file), f"'{file}' is there already, and is not overwritten")
+    assert file.read_text(encoding="utf-8") == SHORT
+
+
+def test_a_new_list_of_trials_has_the_keys_of_one():
+    lines = template("sea_trial", "mine.toml").splitlines()
+    assert {line.removeprefix("# ").partition(" =")[0] for line in lines if " =" in line} == set(TrialList.model_fields)
