@@ -21,7 +21,7 @@ _PLUME_LENGTH = 3.0
 
 
 def flight_scene(trial: Trial, row: "pd.Series[Any]") -> Scene | None:
-    """Return the scene of one flight of a trial, given its row; None if it has no time history, or no vessel."""
+    """Return the scene of one flight of a trial, given its row; None if it has no time history of any length, or no vessel."""
     history = trial.run.history(str(row["flight_id"]))
     if history is None or len(history) < 2 or not np.isfinite(row["keepout_radius_m"]):
         return None
@@ -30,7 +30,10 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]") -> Scene | None:
         return None
     interval = max(INTERVAL, float(np.median(np.diff(recorded))))
     # Never more than the history has, whatever its times are.
-    time = recorded[0] + interval * np.arange(min(len(history), int((recorded[-1] - recorded[0]) / interval + 1e-6) + 1))
+    samples = min(len(history), int((recorded[-1] - recorded[0]) / interval + 1e-6) + 1)
+    if samples < 2:
+        return None
+    time = recorded[0] + interval * np.arange(samples)
 
     def at_times(values: Array, *, angles: bool = False) -> Array:
         # A value that is not known stays what it was.

@@ -2,6 +2,7 @@
 
 import json
 import os
+import select
 import shutil
 import subprocess
 import time
@@ -52,18 +53,16 @@ class Browser:
         if self._session:
             message["sessionId"] = self._session
         os.write(self._write, json.dumps(message).encode() + b"\0")
-        deadline = time.monotonic() + _SECONDS_MAX
-        while time.monotonic() < deadline:
-            answer = self._next()
-            if answer.get("id") == self._number:
-                if "error" in answer:
-                    raise RuntimeError(f"{method}: {answer['error']['message']}")
-                return answer["result"]
+        while (answer := self._next()).get("id") != self._number:
             self._note(answer)
-        raise TimeoutError(f"{method} was not answered within {_SECONDS_MAX:g} s")
+        if "error" in answer:
+            raise RuntimeError(f"{method}: {answer['error']['message']}")
+        return answer["result"]
 
     def _next(self):
         while b"\0" not in self._rest:
+            if not select.select([self._read], [], [], _SECONDS_MAX)[0]:
+                raise TimeoutError(f"the browser has said nothing for {_SECONDS_MAX:g} s")
             piece = os.read(self._read, 1 << 16)
             if not piece:
                 raise RuntimeError("the browser has ended")

@@ -7,7 +7,6 @@ from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
-import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -121,10 +120,23 @@ def test_a_vessel_at_rest_points_along_its_course(monkeypatch, trial, row):
     assert with_history(monkeypatch, turned, row, **still).columns["vessel_heading"] == pytest.approx(np.pi / 2.0)
 
 
-@pytest.mark.parametrize("history", [None, pd.DataFrame({"time_s": [0.0]})])
-def test_without_a_time_history_there_is_no_scene(monkeypatch, trial, row, history):
+@pytest.mark.parametrize("samples", [0, 1, 2])
+def test_without_a_time_history_of_some_length_there_is_no_scene(monkeypatch, trial, row, samples):
+    history = history_of(trial, row).iloc[:samples] if samples else None
     monkeypatch.setattr(RunData, "history", lambda *_: history)
     assert flight_scene(trial, row) is None
+
+
+@pytest.mark.parametrize("value", [np.inf, np.nan, 1e300])
+def test_a_damaged_time_history_makes_no_page_that_cannot_be_read(monkeypatch, trial, row, value):
+    clean = history_of(trial, row)
+    for name in ("time_s", "north_m", "altitude_m", "roll_rad", "vessel_north_m", "plume_axis_rad"):
+        damaged = clean[name].to_numpy().copy()
+        damaged[-1] = value
+        scene = with_history(monkeypatch, trial, row, **{name: damaged})
+        monkeypatch.undo()
+        if scene is not None:
+            json.dumps(replay.draw_scene(scene), allow_nan=False)
 
 
 def test_without_a_vessel_there_is_no_scene(monkeypatch, trial, row):
