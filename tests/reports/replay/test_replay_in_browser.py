@@ -38,7 +38,7 @@ def page_of(run_of, tmp_path_factory):
     return page
 
 
-def show(browser, page, width=1200):
+def show(browser, page, width=800):
     """Open a page, or, where it is open, give it a width."""
     if browser.run("location.href") == page.as_uri():
         browser.errors.clear()
@@ -138,8 +138,7 @@ def test_another_flight_is_picked_and_those_without_a_history_have_no_replay(bro
 
 def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(page_of, tmp_path):
     _, page = page_of("trials")
-    # Both switches: without a graphics processor the first alone leaves the one that is made of software.
-    without = Browser(tmp_path, "--disable-3d-apis", "--disable-gpu")
+    without = Browser(tmp_path, "--disable-3d-apis")
     try:
         without.open(page)
         assert without.run("document.querySelector('[data-part=without]').innerText").startswith(
