@@ -4,29 +4,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from reports.run.columns import Array
+from reports.run.plume_shape import PlumeShape
+from reports.run.ship import Hull
 
 COLUMNS = (
     "north", "east", "altitude", "heading", "pitch", "roll", "reference_north", "reference_east", "vessel_north", "vessel_east",
     "vessel_heading", "plume_axis",
 )  # fmt: skip
 """What a scene knows at each of its times."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlumeShape:
-    """A plume as a tube about its axis; every array has the shape (n,).
-
-    Attributes
-    ----------
-    distance : from the funnel along the sea, increasing from 0 [m]
-    height : of the axis above the sea [m]
-    half_width, half_height : of the tube across and up [m]
-    """
-
-    distance: Array
-    height: Array
-    half_width: Array
-    half_height: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,8 +29,7 @@ class Scene:
     keepout_radius : r_min [m]
     keepout_shape : "sphere" or "cylinder"
     source_height : of the funnel's mouth above the sea [m]
-    hull_length, hull_beam : of the vessel [m]
-    plume : its shape
+    hull, plume : their shapes
     """
 
     start: float
@@ -56,6 +40,5 @@ class Scene:
     keepout_radius: float
     keepout_shape: str
     source_height: float
-    hull_length: float
-    hull_beam: float
+    hull: Hull
     plume: PlumeShape

@@ -1,6 +1,7 @@
 """The report as one self-contained HTML file."""
 
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -47,5 +48,11 @@ def _panels(picture: Chart) -> list[Chart]:
     ]
 
 
-def _flights(picker: FlightPicker) -> str:
-    return for_script({flight.flight_id: [draw(chart) for chart in flight.charts] for flight in picker.flights})
+def _flights(picker: FlightPicker) -> tuple[str, str]:
+    """Return the figures of all flights and, once each, the curves in them: time is that of every history of a flight."""
+    curves: dict[str, int] = {}
+    figures = {flight.flight_id: [draw(chart) for chart in flight.charts] for flight in picker.flights}
+    for trace, axis in product((trace for drawn in figures.values() for figure in drawn for trace in figure["data"]), ("x", "y")):
+        if trace[axis]:
+            trace[axis] = curves.setdefault(trace[axis]["bdata"], len(curves))
+    return for_script(figures), for_script(list(curves))

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from reports.document.blocks import FlightPicker
 from reports.document.palette import COLOURS, Meaning
@@ -20,8 +21,13 @@ SCRIPTS = tuple(
 )
 """What draws the replay with it, in the order in which the page reads them."""
 
-_LEVELS = 65535
-"""Steps between the least and the greatest value of a column."""
+_PLACE, _ANGLE = 0.01, 0.002
+"""Steps in which places and angles are sent [m, rad]: 1 cm, and 0.1 deg."""
+
+_ANGLES = ("heading", "pitch", "roll", "vessel_heading", "plume_axis")
+
+_STEPS_MAX = 2.0**40
+"""Farthest that is sent, in steps: ten million kilometres, as of a vehicle out of control."""
 
 _STRAIGHT = 1e-6
 """Deviation from a straight line over time that a column is sent as one despite [m, rad]."""
@@ -36,14 +42,14 @@ _MEANINGS = {
     "ship": Meaning.SHIP,
     "plume": Meaning.PLUME,
 }
-"""What the replay shows, and what its colour means, as in the figures."""
+"""What the scripts call what they draw, and what that means in figures."""
 
 Data = dict[str, Any]
 
 
 def colours() -> dict[str, str]:
     """Return the colour of everything that the replay shows."""
-    return {name: COLOURS[colour] for name, colour in _MEANINGS.items()}
+    return {name: COLOURS[meaning] for name, meaning in _MEANINGS.items()}
 
 
 def wanted(picker: FlightPicker) -> bool:
@@ -70,8 +76,7 @@ def data(picker: FlightPicker) -> str:
 def draw_scene(scene: Scene) -> Data:
     """Return a scene as the replay reads it.
 
-    A column that is straight over time is sent by its ends. Any other is sent as whole numbers of 16 bits, between its least and
-    its greatest value: a place within 2 km is good to 1.5 cm, a turn of 360 degrees to 0.003 degrees.
+    A column that is straight over time is sent by its ends, any other in whole steps.
     """
     plume = scene.plume
     sections = (plume.distance, plume.height, plume.half_width, plume.half_height)
@@ -79,19 +84,34 @@ def draw_scene(scene: Scene) -> Data:
         "start": scene.start,
         "interval": scene.interval,
         "samples": len(scene.columns["north"]),
-        "columns": {name: _column(values) for name, values in scene.columns.items()},
+        "columns": {name: packed_column(values, _ANGLE if name in _ANGLES else _PLACE) for name, values in scene.columns.items()},
         "guard": [list(stretch) for stretch in scene.guard],
         "crossings": np.round(scene.crossings, 2).tolist(),
         "keepout": {"radius": scene.keepout_radius, "shape": scene.keepout_shape, "height": scene.source_height},
-        "hull": {"length": scene.hull_length, "beam": scene.hull_beam},
+        "hull": {"length": scene.hull.length, "beam": scene.hull.beam, "funnel": scene.hull.funnel},
         "plume": np.round(np.column_stack(sections), 1).tolist(),
     }
 
 
-def _column(values: Array) -> Data:
+def packed_column(values: Array, step: float) -> Data:
+    """Return a column of shape (n,) as the page has it: by its ends if it is straight, else to the nearest ``step``."""
     first, last = float(values[0]), float(values[-1])
     if np.abs(values - np.linspace(first, last, len(values))).max() <= _STRAIGHT:
         return {"first": first, "last": last}
-    low, high = float(values.min()), float(values.max())
-    levels = np.round((values - low) * (_LEVELS / (high - low))).astype("<u2")
-    return {"low": low, "high": high, "data": base64.b64encode(levels.tobytes()).decode("ascii")}
+    levels = np.round(np.clip(values / step, -_STEPS_MAX, _STEPS_MAX)).astype(np.int64)
+    # Second differences are small: most are a byte.
+    changes = np.diff(np.concatenate([[0, 0], levels]), n=2)
+    return {"step": step, "data": base64.b64encode(_packed(changes)).decode("ascii")}
+
+
+def _packed(numbers: npt.NDArray[np.int64]) -> bytes:
+    """Return whole numbers as bytes: 0, -1, 1, -2, ... as 0, 1, 2, 3, ..., seven bits to a byte, the lowest first.
+
+    The eighth bit of a byte says that more follow (LEB128, with the signs of Protocol Buffers' sint64).
+    """
+    unsigned = (numbers << 1) ^ (numbers >> 63)
+    count = 1 + np.sum([unsigned >> (7 * k) > 0 for k in range(1, 9)], axis=0)
+    place = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    more = place < np.repeat(count, count) - 1
+    packed: npt.NDArray[np.uint8] = ((np.repeat(unsigned, count) >> (7 * place)) & 127 | more * 128).astype(np.uint8)
+    return packed.tobytes()

@@ -9,6 +9,8 @@ class Camera {
     this.controls.maxPolarAngle = 0.49 * Math.PI;
     this.controls.maxDistance = 0.6 * FAR;
     this.controls.minDistance = 3;
+    // A finger that moves up or down scrolls the page, across it turns the view.
+    canvas.style.touchAction = "pan-y";
     // The wheel scrolls the page unless the picture was clicked or reached by the keyboard.
     this.controls.enableZoom = false;
     canvas.addEventListener("focus", () => { this.controls.enableZoom = true; });

@@ -7,10 +7,20 @@ function decodedColumn(column, samples) {
     for (let i = 0; i < samples; i++) values[i] = column.first + slope * i;
     return values;
   }
+  // Second differences in whole steps, packed as replay.py says.
   const bytes = Uint8Array.from(atob(column.data), (letter) => letter.charCodeAt(0));
-  const levels = new DataView(bytes.buffer);
-  const step = (column.high - column.low) / 65535;
-  for (let i = 0; i < samples; i++) values[i] = column.low + step * levels.getUint16(2 * i, true);
+  let at = 0, level = 0, slope = 0;
+  for (let i = 0; i < samples; i++) {
+    let number = 0, factor = 1, byte;
+    do {
+      byte = bytes[at++];
+      number += (byte & 127) * factor;
+      factor *= 128;
+    } while (byte & 128);
+    slope += number % 2 ? -(number + 1) / 2 : number / 2;
+    level += slope;
+    values[i] = level * column.step;
+  }
   return values;
 }
 

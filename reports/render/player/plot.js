@@ -73,10 +73,10 @@ class Plot {
   drawPanel(pen, {label, values, low, high, limit}, top) {
     const y = (value) => top + (this.height * (high - value)) / (high - low);
     pen.save();
-    pen.globalAlpha = 0.25;
+    pen.globalAlpha = 0.35;
     for (const [from, to, held] of this.flight.guard) {
       pen.fillStyle = this.colours[held ? "guard" : "guardLost"];
-      pen.fillRect(this.x(from), top, Math.max(1.5, this.x(to) - this.x(from)), this.height);
+      pen.fillRect(this.x(from), top, Math.max(2, this.x(to) - this.x(from)), this.height);
     }
     pen.restore();
     pen.lineWidth = 1;

@@ -53,7 +53,7 @@ class Replay {
   // Show a flight from its start; none of those that have no time history.
   show(name) {
     this.play(false);
-    this.root.hidden = !(name in this.flights);
+    this.root.hidden = !Object.hasOwn(this.flights, name);
     if (this.root.hidden) return;
     this.flight = new Flight(this.flights[name]);
     this.time = this.flight.start;
@@ -92,7 +92,8 @@ class Replay {
     let before = null;
     const next = (now) => {
       if (!this.playing) return;
-      this.seek(this.time + (Number(this.part("speed").value) * (now - (before ?? now))) / 1000);
+      // A page that was hidden goes on where it was.
+      this.seek(this.time + Number(this.part("speed").value) * Math.min(0.25, (now - (before ?? now)) / 1000));
       before = now;
       if (this.time >= this.flight.end) this.play(false);
       else requestAnimationFrame(next);

@@ -49,9 +49,9 @@ function block(width, height, length, x, y, z, colour) {
   return mesh;
 }
 
-// A ship about her funnel, whose mouth is at the given height above the sea.
-function shipShape({length, beam}, height, colour) {
-  const group = new THREE.Group(), aft = 0.2 * length, fore = -0.8 * length, half = beam / 2, deck = 0.22 * height;
+// A ship about her funnel, of whose mouth the height above the sea is given, and the share of her length that is aft of it.
+function shipShape({length, beam, funnel: share}, height, colour) {
+  const group = new THREE.Group(), aft = share * length, fore = aft - length, half = beam / 2, deck = 0.22 * height;
   const outline = [[0, fore], [0.3, fore + 0.06 * length], [0.5, fore + 0.2 * length], [0.5, aft - 0.04 * length], [0.4, aft]];
   const round = [...outline, ...outline.slice(1).reverse().map(([x, z]) => [-x, z])];
   const corners = [...round.map(([x, z]) => [1.7 * x * half, 0, 0.97 * z]), ...round.map(([x, z]) => [2 * x * half, deck, z])];
@@ -60,7 +60,7 @@ function shipShape({length, beam}, height, colour) {
   group.add(polyhedron(corners.slice(n), [round.map((_, i) => i)], ["#9aa3ab"]));
   group.add(block(0.84 * beam, 0.5 * height, 0.09 * length, 0, deck, -0.07 * length, "#f4f6f8"));
   group.add(block(0.94 * beam, 0.05 * height, 0.05 * length, 0, deck + 0.5 * height, -0.085 * length, "#dfe5ea"));
-  for (const share of [-0.24, -0.39, -0.54]) group.add(block(0.8 * beam, 0.14 * height, 0.12 * length, 0, deck, share * length, "#b9c1c9"));
+  for (let z = -0.24; z - 0.06 > share - 0.85; z -= 0.15) group.add(block(0.8 * beam, 0.14 * height, 0.12 * length, 0, deck, z * length, "#b9c1c9"));
   const funnel = new THREE.Mesh(
     new THREE.CylinderGeometry(0.11 * beam, 0.15 * beam, height - deck, 20), new THREE.MeshLambertMaterial({color: colour}),
   );

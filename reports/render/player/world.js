@@ -1,6 +1,6 @@
 // Sea, ship, plume, keep-out area and aircraft of one flight, each where it is at the time shown.
 
-const SKY = "#f2f7fa", SEA = "#e3edf3", SPAN = 2.1, ENLARGED = 15, FAR = 5000;
+const SKY = "#f2f7fa", SEA = "#e3edf3", SPAN = 2.1, ENLARGED = 15, FAR = 5000, TRAIL = 0.1;
 
 class World {
   constructor(flight, colours) {
@@ -37,13 +37,12 @@ class World {
     this.scale = ENLARGED;
   }
 
-  // The whole path of aircraft and reference, four points to a sample; of it what is flown is drawn.
+  // The whole path of aircraft and reference, a point every TRAIL seconds; of it what is flown is drawn.
   tracks(relative) {
     const {flight, colours} = this, group = new THREE.Group();
-    this.step = flight.interval / 4;
     const shade = Object.fromEntries(["flown", "guard", "guardLost"].map((name) => [name, new THREE.Color(colours[name])]));
     const flown = [], reference = [], shades = [];
-    for (let time = flight.start; time <= flight.end + 1e-9; time += this.step) {
+    for (let time = flight.start; time <= flight.end + 1e-9; time += TRAIL) {
       const now = flight.at(time), {r, g, b} = shade[flight.guardAt(time) ?? "flown"];
       flown.push(now[`${relative}east`], now.altitude, -now[`${relative}north`]);
       reference.push(now[`${relative}reference_east`], now.altitude, -now[`${relative}reference_north`]);
@@ -71,7 +70,7 @@ class World {
     this.plume.rotation.y = -now.plume_axis;
     this.trails.vessel.visible = aboutVessel;
     this.trails.ground.visible = !aboutVessel;
-    const segments = Math.floor((time - this.flight.start) / this.step + 1e-6);
+    const segments = Math.floor((time - this.flight.start) / TRAIL + 1e-6);
     for (const trail of Object.values(this.trails))
       for (const line of trail.children) {
         line.geometry.instanceCount = segments;

@@ -1,6 +1,5 @@
 """Reports of every kind that has a replay, opened from disk in a browser that has no network."""
 
-import json
 import math
 
 import numpy as np
@@ -13,7 +12,8 @@ from reports.run.run_data import read_run
 
 pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no chromium is installed; .ci/run installs it")
 
-KINDS = ("monte_carlo", "sulphur", "paper", "trials", "sweep_nu")
+KINDS = ("sweep_nu", "monte_carlo", "sulphur", "paper", "trials")
+"""Those with a replay. The page of the last one stays open for the tests after it."""
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def page_of(run_of, tmp_path_factory):
     return page
 
 
-def show(browser, page, width=1200):
+def show(browser, page, width=800):
     """Open a page, or, where it is open, give it a width."""
     if browser.run("location.href") == page.as_uri():
         browser.errors.clear()
@@ -64,19 +64,19 @@ def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, page_
         place = browser.run(f"(() => {{ const slider = document.querySelector('[data-part=time]'); {moved} }})()")
         # The slider's steps are those of the history, 0.1 s.
         assert place["time"] == pytest.approx(sample["time_s"], abs=1e-9)
-        # 16 bits for some 2 km are good to 1.5 cm, the cubic between samples to centimetres.
+        # Samples are good to 0.5 cm, the cubic between them to 3.4 cm in any of 60 flights of all studies, turbulence among them.
         for axis in ("north", "east"):
-            assert place[axis] == pytest.approx(sample[f"{axis}_m"], abs=0.1)
-        assert place["altitude"] == pytest.approx(sample["altitude_m"], abs=0.02)
-        # A kinematic vehicle has no heading of its own, and rolls within a fraction of a second.
+            assert place[axis] == pytest.approx(sample[f"{axis}_m"], abs=0.05)
+        assert place["altitude"] == pytest.approx(sample["altitude_m"], abs=0.05)
+        # A kinematic vehicle has no heading of its own. Angles are good to 1 mrad; where a bank begins to change, to 0.06 rad.
         heading = sample["heading_rad"] if np.isfinite(sample["heading_rad"]) else sample["course_rad"]
-        assert turned(place["heading"], heading) < 0.03
+        assert turned(place["heading"], heading) < 0.02
         assert turned(place["roll"], np.nan_to_num(sample["roll_rad"])) < 0.06
     assert browser.errors == []
 
 
 def test_nothing_is_asked_of_a_network_and_what_is_drawn_is_not_blank(browser, page_of):
-    _, page = page_of("sweep_nu")
+    _, page = page_of("trials")
     show(browser, page)
     assert browser.run("performance.getEntriesByType('resource').map((entry) => entry.name)") == []
     assert browser.run("navigator.onLine") is False
@@ -91,7 +91,7 @@ def test_nothing_is_asked_of_a_network_and_what_is_drawn_is_not_blank(browser, p
 
 
 def test_the_keyboard_moves_time_camera_and_play(browser, page_of):
-    _, page = page_of("sweep_nu")
+    _, page = page_of("trials")
     show(browser, page)
     browser.run("window.replay.seek(0), document.querySelector('[data-part=stage]').focus()")
     browser.press("ArrowRight")
@@ -116,7 +116,7 @@ def test_the_keyboard_moves_time_camera_and_play(browser, page_of):
 
 
 def test_the_page_is_not_wider_than_a_small_screen(browser, page_of):
-    _, page = page_of("sweep_nu")
+    _, page = page_of("trials")
     show(browser, page, 520)
     widest = "Math.max(...[...document.querySelectorAll('.replay, .replay *')].map((part) => part.getBoundingClientRect().right))"
     assert browser.run(widest) <= 520
@@ -126,19 +126,19 @@ def test_the_page_is_not_wider_than_a_small_screen(browser, page_of):
 def test_another_flight_is_picked_and_those_without_a_history_have_no_replay(browser, page_of):
     run, page = page_of("trials")
     show(browser, page)
-    pick = "(() => {{ const pick = document.getElementById('pick'); pick.value = {}; pick.dispatchEvent(new Event('change')); }})()"
-    for flight in browser.run("Object.keys(window.replay.flights)"):
-        browser.run(pick.format(json.dumps(flight)))
-        start = run.history(flight).iloc[0]
-        assert browser.run("window.replay.place()")["north"] == pytest.approx(start["north_m"], abs=0.1)
+    shown = "document.getElementById('pick').value"
+    before = browser.run(shown)
+    browser.run("document.getElementById('next').click()")
+    flight = browser.run(shown)
+    assert flight != before
+    assert browser.run("window.replay.place()")["north"] == pytest.approx(run.history(flight)["north_m"].iloc[0], abs=0.05)
     browser.run("window.replay.show('no such flight')")
     assert browser.run("document.getElementById('replay').hidden") is True
 
 
 def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(page_of, tmp_path):
-    _, page = page_of("sweep_nu")
-    # Both switches: without a graphics processor the first alone leaves the one that is made of software.
-    without = Browser(tmp_path, "--disable-3d-apis", "--disable-gpu")
+    _, page = page_of("trials")
+    without = Browser(tmp_path, "--disable-3d-apis")
     try:
         without.open(page)
         assert without.run("document.querySelector('[data-part=without]').innerText").startswith(
