@@ -175,3 +175,9 @@ def test_the_height_is_that_at_the_place_and_in_the_wind_of_the_pass() -> None:
 def test_limits_without_room_are_refused_in_one_line() -> None:
     with pytest.raises(InfeasibleError, match="must be above the first"):
         replace(PRIOR, lowest=80.0, highest=60.0)
+
+
+@pytest.mark.parametrize("name", ["interval", "time_constant", "noise"])
+def test_a_sensor_without_noise_or_lag_is_refused(name: str) -> None:
+    with pytest.raises(InfeasibleError, match=f"{name} of the CO2 sensor is 0"):
+        replace(SENSOR, **{name: 0.0})
