@@ -63,6 +63,11 @@ class PlumeEstimator:
 
     Attributes
     ----------
+    prior, grid, cells : what was expected, the cells, and the probability of each, shape (w, h, c, b)
+    height, height_deviation : of the axis above the sea, at the distance and in the apparent wind of the last pass [m]
+    bearing, bearing_deviation : of the axis to the right of the predicted one [rad]; a bearing is to be added to its course
+    offset, offset_deviation : of the axis to the right of the predicted one, at the distance of the last pass [m]
+    sigma_y, sigma_z : spreads of the plume at one moment, at the estimated height [m]
     state : whether the plume is searched for, found, or lost again
     signal_to_noise : peak of the readings over their noise, of the best pass so far [-]
     found_at : time since the start at which the plume was found first [s]; not a number before

@@ -86,6 +86,11 @@ class GasSensor:
     background_drift: float = 0.1
     saturated: float = math.inf
 
+    def __post_init__(self) -> None:
+        for name, unit in (("interval", "s"), ("time_constant", "s"), ("noise", "ppm")):
+            if not getattr(self, name) > 0.0:
+                raise InfeasibleError(f"{name} of the CO2 sensor is {getattr(self, name):g} {unit}; it must be above 0")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlumePrior:

@@ -1,13 +1,8 @@
 """How high the plume's axis is, as the guidance takes it to be: from the funnel's mouth at a given slope, and by its rise."""
 
-import math
 from dataclasses import dataclass
 
-_ENTRAINMENT = 0.6
-"""Briggs' entrainment coefficient of a plume that bends over in the wind [-]."""
-
-_SPEED_MIN = 1.0
-"""Apparent wind that the rise is computed for at least [m/s]: below it a plume has no direction, and rises straight up."""
+from gnc.estimation.plume_prior import rise
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,11 +26,6 @@ class AxisHeight:
     highest: float = float("inf")
 
     def at(self, distance: float, speed: float) -> float:
-        """Return the height above the sea [m] at a distance behind the funnel [m] in an apparent wind [m/s].
-
-        The rise is that of a bent-over plume in neutral air (Briggs 1975; AERMOD, CBLPRD).
-        """
-        u = max(speed, _SPEED_MIN)
-        momentum, buoyancy = 3.0 * self.momentum_flux * distance / u**2, 1.5 * self.buoyancy_flux * distance**2 / u**3
-        rise = math.cbrt((momentum + buoyancy) / _ENTRAINMENT**2)
-        return min(max(self.source + self.climb * distance + rise, self.lowest), self.highest)
+        """Return the height above the sea [m] at a distance behind the funnel [m] in an apparent wind [m/s]."""
+        climbed = rise(self.momentum_flux, self.buoyancy_flux, distance, speed)
+        return min(max(self.source + self.climb * distance + climbed, self.lowest), self.highest)

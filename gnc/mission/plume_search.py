@@ -16,7 +16,7 @@ _STEP = 6.0
 _HORIZON = 8
 """Passes that are looked ahead [-]."""
 
-_KNOWN = 0.35
+_KNOWN = 0.5
 """Deviation of the height over the spread of a pass [-], down to which the plume's height is probed."""
 
 _PROBE, _PROBES = 1.0, 9

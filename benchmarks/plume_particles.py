@@ -1,0 +1,83 @@
+"""The plume estimate by particles, to compare the grid with: a regularised bootstrap filter over the same model."""
+
+import math
+
+import numpy as np
+
+from gnc.estimation.plume_estimator import PlumeEstimator
+from gnc.estimation.plume_passes import Evidence, Path
+from gnc.estimation.plume_prior import PlumePrior
+
+COUNT = 1000
+"""Particles [-]."""
+
+_SHRINK = 0.15
+"""Bandwidth of the kernels that resampled particles are drawn from, over the spread of all [-]."""
+
+
+class ParticleEstimator(PlumeEstimator):
+    """Particles of height, bearing, logarithm of strength and of spread. Figures and prospects are those of the cells they are in.
+
+    Parameters
+    ----------
+    prior : what is expected
+    """
+
+    def __init__(self, prior: PlumePrior) -> None:
+        super().__init__(prior)
+        self._generator = np.random.default_rng(0)
+        cells = self.grid.prior
+        drawn = self._generator.choice(cells.size, COUNT, p=cells.ravel())
+        w, h, c, b = np.unravel_index(drawn, cells.shape)
+        values = [w.astype(float), self.grid.height[h], np.log(self.grid.strength[c]), self.grid.bearing[b]]
+        self._particles = np.array(values)
+        self._steps = np.array([1.0] + [axis[1] - axis[0] for axis in self._axes()])
+        self._particles += self._steps[:, np.newaxis] * self._generator.uniform(-0.5, 0.5, self._particles.shape)
+
+    def _axes(self) -> tuple[np.ndarray, ...]:
+        return self.grid.height, np.log(self.grid.strength), self.grid.bearing
+
+    def _diffuse(self, time: float) -> None:
+        drifts = np.array([0.0, self.prior.height_drift, 0.0, self.prior.bearing_drift]) * math.sqrt(time)
+        self._particles += drifts[:, np.newaxis] * self._generator.standard_normal(self._particles.shape)
+
+    def _correct(self, path: Path, evidence: Evidence) -> None:
+        prior, grid, generator = self.prior, self.grid, self._generator
+        self._distance, altitude = path.at(self.offset)
+        self._looks = self._seen(path, evidence)
+        w = np.clip(np.rint(self._particles[0]).astype(int), 0, 2)
+        heights = prior.height_at(self._particles[1], self._distance, self._wind)
+        looks = generator.standard_normal((max(1, round(self._looks)), COUNT))
+        off = np.abs(heights + prior.meander_z * looks - altitude).min(axis=0)
+        nearest = np.clip(np.rint((self._particles[1] - grid.height[0]) / self._steps[1]).astype(int), 0, len(grid.height) - 1)
+        strength = np.exp(self._particles[2] - 0.5 * (off / grid.sigma_z[w, nearest]) ** 2)
+        across = self._distance * self._particles[3] + prior.meander_y * generator.standard_normal(COUNT)
+        step = grid.places[1] - grid.places[0]
+        j = np.rint((across - grid.places[0]) / step).astype(int)
+        inside = (j >= 0) & (j < len(grid.places))
+        table = self._over_nothing(evidence)
+        p = np.clip((np.log(np.maximum(strength, 1e-9) / grid.faint[0])) / self._steps[2], 0.0, len(grid.faint) - 1.0)
+        log_weight = np.where(inside, table[w, np.clip(j, 0, len(grid.places) - 1), np.rint(p).astype(int)], 0.0)
+        self._least = 5.0 * prior.sensor.noise / evidence.response
+        self._judge(evidence, altitude)
+        weight = np.exp(log_weight - log_weight.max())
+        self._resample(weight / weight.sum())
+
+    def _resample(self, weight: np.ndarray) -> None:
+        generator, spread = self._generator, self._particles.std(axis=1)
+        places = (generator.uniform() + np.arange(COUNT)) / COUNT
+        chosen = self._particles[:, np.minimum(np.searchsorted(np.cumsum(weight), places), COUNT - 1)]
+        mean = chosen.mean(axis=1, keepdims=True)
+        # Shrunk to the mean, so that the kernels do not widen the whole (Liu and West 2001).
+        shrunk = mean + math.sqrt(1.0 - _SHRINK**2) * (chosen - mean)
+        width = _SHRINK * np.maximum(np.minimum(chosen.std(axis=1), spread), 0.2 * self._steps)
+        self._particles = shrunk + width[:, np.newaxis] * generator.standard_normal(chosen.shape)
+        self.cells = self._counted()
+
+    def _counted(self) -> np.ndarray:
+        indices = [np.clip(np.rint(self._particles[0]).astype(int), 0, 2)]
+        for values, axis in zip(self._particles[1:], self._axes(), strict=True):
+            indices.append(np.clip(np.rint((values - axis[0]) / (axis[1] - axis[0])).astype(int), 0, len(axis) - 1))
+        counts = np.bincount(np.ravel_multi_index(tuple(indices), self.cells.shape), minlength=self.cells.size)
+        result: np.ndarray = counts.reshape(self.cells.shape) / COUNT
+        return result

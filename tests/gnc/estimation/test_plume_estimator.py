@@ -1,0 +1,183 @@
+"""The plume estimate: symmetry, what silence and absence say, consistency, and sensors that do not work."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from plume_cases import PRIOR, SENSOR, MadePlume, estimated
+
+from gnc.errors import InfeasibleError
+from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState, SensorState
+
+AROUND = [65.0, 72.0, 58.0, 68.0, 62.0, 70.0]
+"""Altitudes of passes about the expected height [m]."""
+
+
+def test_without_a_reading_the_estimate_stays_the_prior() -> None:
+    estimator = PlumeEstimator(PRIOR)
+    before = estimator.height, estimator.height_deviation, estimator.bearing_deviation
+    for i in range(1200):
+        estimator.predict(0.1)
+        estimator.update(230.0, 60.0 * math.cos(0.07 * i), 50.0, math.nan)
+    assert estimator.state is PlumeState.SEARCHING
+    # The height drifts by 0.2 m a root of a second, 2 m in all; of 12 m that is 1.4 %. The rest is what the grid's ends reflect.
+    assert estimator.height == pytest.approx(before[0], abs=0.1)
+    assert before[1] * 0.99 < estimator.height_deviation < before[1] * 1.03
+    assert estimator.bearing_deviation > before[2] * 0.99
+
+
+def test_a_mirrored_flight_has_the_mirrored_estimate() -> None:
+    plume = MadePlume(height=70.0, offset=12.0)
+    straight, mirrored = PlumeEstimator(PRIOR), PlumeEstimator(PRIOR)
+    plume.fly(straight, AROUND)
+    plume.fly(mirrored, AROUND, mirrored=True)
+    # Rounding alone is left.
+    assert mirrored.offset == pytest.approx(-straight.offset, abs=1e-6)
+    assert mirrored.height == pytest.approx(straight.height, abs=1e-6)
+    assert straight.offset > 5.0
+
+
+def test_a_constant_background_says_nothing() -> None:
+    prior = replace(PRIOR, sensor=replace(SENSOR, noise=0.5))
+
+    def with_background(level: float) -> PlumeEstimator:
+        estimator = PlumeEstimator(prior)
+        update = estimator.update
+
+        def shifted(along: float, across: float, altitude: float, reading: float) -> bool:
+            return update(along, across, altitude, reading + level)
+
+        estimator.update = shifted  # type: ignore[method-assign, assignment]
+        MadePlume(height=70.0).fly(estimator, AROUND)
+        return estimator
+
+    usual, more = with_background(0.0), with_background(150.0)
+    # The first level is only known to 1000 ppm, so that a shift of 150 ppm leaves rounding.
+    assert more.height == pytest.approx(usual.height, abs=0.01)
+    assert more.offset == pytest.approx(usual.offset, abs=0.01)
+
+
+def test_places_in_between_readings_do_not_change_the_estimate() -> None:
+    """The path is interpolated: places at 20 Hz say what places at 10 Hz say."""
+    dense, sparse = PlumeEstimator(PRIOR), PlumeEstimator(PRIOR)
+    plume = MadePlume(height=70.0, meander=0.0)
+    plume.fly(dense, AROUND)
+    update, calls = sparse.update, iter(range(10**6))
+
+    def every_other(along: float, across: float, altitude: float, reading: float) -> bool:
+        return next(calls) % 2 == 0 and update(along, across, altitude, reading)
+
+    sparse.update = every_other  # type: ignore[method-assign, assignment]
+    plume.fly(sparse, AROUND)
+    # Turns are found a step later, and the way between is a chord: less than 0.1 m.
+    assert sparse.height == pytest.approx(dense.height, abs=0.5)
+
+
+def test_absence_moves_the_estimate_away_from_the_flown_height() -> None:
+    estimator = PlumeEstimator(PRIOR)
+    grid = estimator.grid
+    near = np.abs(grid.height - 60.0) < 8.0
+    before, chance = estimator.cells[:, near].sum(), estimator.detection(60.0)
+    MadePlume(height=60.0, peak=0.0).fly(estimator, [60.0] * 4)
+    assert estimator.state is PlumeState.SEARCHING
+    assert estimator.cells[:, near].sum() < 0.2 * before
+    assert estimator.detection(60.0) < 0.3 * chance
+    # What is left lies above and below, and the best height to fly with it.
+    altitudes = np.linspace(20.0, 120.0, 51)
+    best = altitudes[int(np.argmax([estimator.detection(float(altitude)) for altitude in altitudes]))]
+    assert abs(best - 60.0) > 8.0
+
+
+def test_a_plume_that_does_not_meander_is_placed_within_metres() -> None:
+    estimator = estimated(MadePlume(height=74.0, offset=-15.0, meander=0.0), AROUND)
+    assert estimator.state is PlumeState.FOUND
+    # The filter takes a meander of 4 m and an error of strength of 25 % for granted, and 6 passes.
+    assert estimator.height == pytest.approx(74.0, abs=4.0)
+    # The cells of bearing are 10 m wide, and the meander across is 5 m.
+    assert estimator.offset == pytest.approx(-15.0, abs=5.0)
+
+
+def test_stated_intervals_hold_the_truth() -> None:
+    generator = np.random.default_rng(20)
+    inside, squares = [], []
+    for seed in range(40):
+        plume = MadePlume(
+            height=PRIOR.height + PRIOR.height_deviation * generator.standard_normal(),
+            offset=PRIOR.distance * PRIOR.bearing_deviation * generator.standard_normal(),
+            peak=PRIOR.peak * math.exp(PRIOR.peak_deviation * generator.standard_normal()),
+            seed=seed,
+        )
+        estimator = estimated(plume, AROUND)
+        low, high = estimator.height_interval
+        inside.append(low <= plume.height <= high)
+        squares.append(((estimator.height - plume.height) / estimator.height_deviation) ** 2)
+    # 40 cases at 95 %: fewer than 34 happen once in 300.
+    assert sum(inside) >= 34
+    # The mean of 40 squares of unit variance is 1 +- 0.22; the filter allows for more than the made plume has.
+    assert 0.3 < np.mean(squares) < 1.7
+
+
+def test_innovations_are_those_of_a_consistent_filter() -> None:
+    estimator = estimated(MadePlume(height=68.0), AROUND)
+    # Chances of a hit are near 1, where squares are 0.02 unless there is a miss.
+    assert 0.0 < estimator.innovation < 1.5
+
+
+def test_a_plume_that_goes_is_lost_again() -> None:
+    estimator = estimated(MadePlume(height=65.0), AROUND)
+    assert estimator.state is PlumeState.FOUND
+    MadePlume(height=65.0, peak=0.0).fly(estimator, [estimator.height] * 6)
+    assert estimator.state is PlumeState.LOST
+    MadePlume(height=65.0).fly(estimator, [65.0] * 3)
+    assert estimator.state is PlumeState.FOUND
+
+
+@pytest.mark.parametrize(
+    ("broken", "state"), [(431.5, SensorState.STUCK), (5000.0, SensorState.SATURATED), (math.nan, SensorState.SILENT)]
+)
+def test_a_sensor_that_does_not_work_is_recognised_and_says_nothing(broken: float, state: SensorState) -> None:
+    estimator = PlumeEstimator(replace(PRIOR, sensor=replace(SENSOR, saturated=5000.0)))
+    before = estimator.cells.copy()
+    MadePlume(height=65.0).fly(estimator, [65.0] * 4, broken=broken)
+    assert estimator.sensor is state
+    assert estimator.state is PlumeState.SEARCHING
+    # Only the drift of 45 s is left, 1.3 m of 12 m.
+    assert np.abs(estimator.cells - before).max() < 0.05 * before.max()
+
+
+def test_a_sensor_that_comes_back_is_believed_again() -> None:
+    estimator = PlumeEstimator(PRIOR)
+    MadePlume(height=65.0).fly(estimator, [65.0] * 2, broken=420.0)
+    assert estimator.sensor is SensorState.STUCK
+    MadePlume(height=65.0).fly(estimator, AROUND)
+    assert estimator.sensor is SensorState.WORKING
+    assert estimator.state is PlumeState.FOUND
+
+
+def test_a_plume_above_the_limits_cannot_be_measured() -> None:
+    assert PlumeEstimator(PRIOR).measurable > 0.9
+    above = replace(PRIOR, height=190.0, height_deviation=8.0, source_deviation=5.0, highest=120.0)
+    assert PlumeEstimator(above).measurable < 0.05
+
+
+def test_the_height_is_that_at_the_place_and_in_the_wind_of_the_pass() -> None:
+    """In half the apparent wind the plume rises twice as much: Briggs, 1/U."""
+    estimator = PlumeEstimator(PRIOR)
+    risen = float(PRIOR.rise_of(65.0))
+    twice = float(PRIOR.height_at(np.array(65.0), PRIOR.distance, 0.5 * PRIOR.apparent_wind))
+    assert twice == pytest.approx(65.0 + risen)
+    farther = float(PRIOR.height_at(np.array(65.0), 8.0 * PRIOR.distance, PRIOR.apparent_wind))
+    assert farther == pytest.approx(65.0 + 3.0 * risen)  # 8^(2/3) = 4
+    assert estimator.height == pytest.approx(65.0, abs=0.5)
+
+
+def test_limits_without_room_are_refused_in_one_line() -> None:
+    with pytest.raises(InfeasibleError, match="must be above the first"):
+        replace(PRIOR, lowest=80.0, highest=60.0)
+
+
+@pytest.mark.parametrize("name", ["interval", "time_constant", "noise"])
+def test_a_sensor_without_noise_or_lag_is_refused(name: str) -> None:
+    with pytest.raises(InfeasibleError, match=f"{name} of the CO2 sensor is 0"):
+        replace(SENSOR, **{name: 0.0})

@@ -1,0 +1,70 @@
+"""The cells of the plume estimate: what a pass is expected to read in each."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from plume_cases import PRIOR
+
+from gnc.estimation.plume_grid import STRENGTH_STEP, PlumeGrid
+
+GRID = PlumeGrid(PRIOR)
+
+
+def test_the_prior_has_the_moments_that_it_was_given() -> None:
+    assert GRID.prior.sum() == pytest.approx(1.0)
+    of_heights = GRID.prior.sum(axis=(0, 2, 3))
+    # Cut at three deviations, a Gaussian keeps 98.7 % of its deviation.
+    assert of_heights @ GRID.height == pytest.approx(PRIOR.height, abs=0.1)
+    deviation = np.sqrt(of_heights @ (GRID.height - PRIOR.height) ** 2)
+    assert 0.97 * PRIOR.height_deviation < deviation < PRIOR.height_deviation
+
+
+@pytest.mark.parametrize("looks", [1, 3])
+def test_fading_is_that_of_centres_drawn_at_random(looks: int) -> None:
+    altitude, i = 70.0, len(GRID.height) // 2
+    fading = GRID.fading(GRID.height, altitude, looks)[1, i]
+    centres = GRID.height[i] + PRIOR.meander_z * np.random.default_rng(1).standard_normal((looks, 200_000))
+    off = np.abs(centres - altitude).min(axis=0)
+    steps = np.rint(0.5 * (off / GRID.sigma_z[1, i]) ** 2 / STRENGTH_STEP).astype(int)
+    drawn = np.bincount(steps, minlength=len(fading))[: len(fading)] / 200_000
+    # A share p of 200,000 has a deviation of at most 0.0011.
+    assert fading == pytest.approx(drawn, abs=0.005)
+
+
+def test_a_plume_far_from_the_pass_is_not_read() -> None:
+    fading = GRID.fading(GRID.height, 300.0, 1.0)
+    assert fading.sum() < 1e-9
+
+
+def test_chances_rise_with_strength_and_fall_with_the_distance() -> None:
+    off = (GRID.coarse_heights(GRID.height) - 65.0)[np.newaxis]
+    chances = GRID.chances(off, 1.0, 4.0)[0]
+    assert np.all(np.diff(chances, axis=1) >= -1e-12)
+    nearest = int(np.abs(off).argmin())
+    assert np.all(np.diff(chances[nearest:], axis=0) <= 1e-12)
+
+
+def test_a_pass_is_never_expected_to_widen_the_height() -> None:
+    """The law of total variance."""
+    weights, heights = GRID.coarse(GRID.prior.sum(axis=3)), GRID.coarse_heights(GRID.height)
+    altitudes = np.array([-500.0, 40.0, 65.0, 90.0, 500.0])
+    expected = GRID.expected_deviation(weights, heights, heights - altitudes[:, np.newaxis], 1.0)
+    of_heights = weights.sum(axis=1)
+    now = float(np.sqrt(of_heights @ heights**2 - (of_heights @ heights) ** 2))
+    assert np.all(expected <= now + 1e-9)
+    # A pass far away says nothing, one within the plume does.
+    assert expected[[0, -1]] == pytest.approx(now, rel=1e-6)
+    assert expected[1:4].max() < 0.95 * now
+
+
+def test_a_plume_that_rises_more_is_wider_and_weaker() -> None:
+    assert np.all(np.diff(GRID.sigma_z[1]) >= 0.0)
+    peaks = GRID.prior[1].sum(axis=2) @ np.log(GRID.strength) / GRID.prior[1].sum(axis=(1, 2))
+    assert peaks[-1] < peaks[0]
+
+
+def test_without_an_uncertain_stack_the_whole_difference_is_rise() -> None:
+    sure = replace(PRIOR, source_deviation=0.0)
+    assert sure.rise_of(90.0) == pytest.approx(90.0 - PRIOR.source_height)
+    assert replace(PRIOR, source_deviation=PRIOR.height_deviation).rise_of(90.0) == pytest.approx(25.0)

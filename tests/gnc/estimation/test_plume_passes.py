@@ -1,0 +1,122 @@
+"""Passes: where they end, and what their readings say of pulses."""
+
+import math
+
+import numpy as np
+import pytest
+from plume_cases import SENSOR
+
+from gnc.estimation.plume_passes import PassCollector, PassReader, Path, Place
+
+_SPEED = 20.0
+
+
+def _path(readings: np.ndarray | None = None, *, duration: float = 9.0, seed: int = 0) -> Path:
+    """Return a straight way across at 20 m/s, the axis half way, and readings at 5 Hz."""
+    time = np.arange(0.0, duration + 0.5, 0.25)
+    across = _SPEED * (time - 0.5 * duration)
+    read_at = np.arange(0.5, duration, 0.2)
+    noise = SENSOR.noise * np.random.default_rng(seed).standard_normal(len(read_at))
+    values = 420.0 + noise + (0.0 if readings is None else readings)
+    return Path(time, np.full_like(time, 230.0), across, np.full_like(time, 60.0), read_at, values)
+
+
+def _pulse(read_at: np.ndarray, strength: float, *, place: float, spread: float, duration: float = 9.0) -> np.ndarray:
+    """Return the readings of a Gaussian pulse through the sensor's lag, by its convolution in steps of 1 ms."""
+    fine = np.arange(0.0, duration, 1e-3)
+    air = strength * np.exp(-0.5 * ((_SPEED * (fine - 0.5 * duration) - place) / spread) ** 2)
+    lagged, decay = np.empty_like(air), math.exp(-1e-3 / SENSOR.time_constant)
+    state = 0.0
+    for i, value in enumerate(air.tolist()):
+        state = decay * state + (1.0 - decay) * value
+        lagged[i] = state
+    return np.interp(read_at, fine, lagged)
+
+
+PLACES, SPREADS = np.linspace(-40.0, 40.0, 17), np.array([6.0, 9.0, 13.0])
+
+
+def test_a_pulse_is_found_where_and_as_strong_as_it_is() -> None:
+    clean = _path()
+    evidence = PassReader(SENSOR).read(_path(_pulse(clean.read_at, 80.0, place=10.0, spread=9.0)), PLACES, SPREADS)
+    assert evidence is not None
+    assert PLACES[evidence.at] == pytest.approx(10.0)
+    assert SPREADS[evidence.spread] == 9.0
+    # A step of 0.25 s of the path is half a spread.
+    assert evidence.strength == pytest.approx(80.0, rel=0.05)
+    # Through a lag of 0.43 s a pulse of 0.45 s keeps about two thirds of its peak.
+    assert 0.5 * 80.0 < evidence.peak < 0.8 * 80.0
+
+
+def test_clean_air_has_no_significant_pulse() -> None:
+    # Of 17 places and 3 spreads some fit the noise; above 5 one in a million would.
+    for seed in range(20):
+        evidence = PassReader(SENSOR).read(_path(seed=seed), PLACES, SPREADS)
+        assert evidence is not None
+        assert evidence.significance < 5.0
+        assert evidence.peak < 5.0 * SENSOR.noise
+
+
+def test_slope_and_bend_are_those_of_the_whole_covariance() -> None:
+    """Woodbury's identity: against the inverse of the full matrix."""
+    path = _path(seed=3)
+    reader = PassReader(SENSOR)
+    templates = reader._templates(path, PLACES, SPREADS)
+    evidence = reader.read(path, PLACES, SPREADS)
+    assert evidence is not None
+    y = path.readings - np.median(path.readings)
+    since = path.read_at
+    background = np.stack(
+        [
+            np.full(len(y), 1e3),
+            SENSOR.background_drift * (since - 0.5 * since[-1]),
+            SENSOR.noise * np.exp(-since / SENSOR.time_constant),
+        ]
+    )
+    variance = SENSOR.noise**2 + (0.15 * (y - np.median(y)).max()) ** 2
+    inverse = np.linalg.inv(variance * np.eye(len(y)) + background.T @ background)
+    assert evidence.slope.ravel() == pytest.approx(templates @ inverse @ y, rel=1e-5, abs=1e-8)
+    assert evidence.bend.ravel() == pytest.approx(np.einsum("km,mn,kn->k", templates, inverse, templates), rel=1e-5)
+
+
+def test_a_place_that_was_not_flown_to_says_nothing() -> None:
+    evidence = PassReader(SENSOR).read(_path(), np.array([-300.0, 300.0]), SPREADS)
+    assert evidence is not None
+    assert evidence.bend.max() < 1e-12
+
+
+def test_readings_without_noise_are_not_believed() -> None:
+    path = _path()
+    still = Path(path.time, path.along, path.across, path.altitude, path.read_at, np.full_like(path.readings, 421.0))
+    assert PassReader(SENSOR).read(still, PLACES, SPREADS) is None
+
+
+def test_there_is_a_pass_for_each_half_of_an_oscillation() -> None:
+    collector = PassCollector(delay=1.0, tail=0.43)
+    step, period = 0.1, 16.0
+    paths = []
+    for i in range(round(5.0 * period / step)):
+        time = i * step
+        place = Place(time, 230.0, 50.0 * math.cos(2.0 * math.pi * time / period), 60.0)
+        path = collector.add(place, 420.0 if i % 2 == 0 else math.nan)
+        if path is not None:
+            paths.append(path)
+    # The last one has not been read to its end.
+    assert len(paths) == 9
+    for path in paths[1:]:
+        # From turn to turn, and what the sensor still has of it.
+        assert path.duration == pytest.approx(0.5 * period + 0.43, abs=0.3)
+        assert path.across[0] * path.across[-1] < 0.0
+        assert len(path.readings) == pytest.approx(0.5 * period / 0.2, abs=1)
+
+
+def test_a_way_that_does_not_turn_ends_after_a_while() -> None:
+    collector = PassCollector(delay=1.0, tail=0.43)
+    paths = [collector.add(Place(0.2 * i, 230.0, 4.0 * i, 60.0), 420.0) for i in range(300)]
+    assert sum(path is not None for path in paths) == 2
+
+
+def test_the_way_along_the_plume_is_that_against_the_air() -> None:
+    """At rest along the axis the plume goes by at the apparent wind: here 10 m/s, half as fast as the way across."""
+    assert _path().drawn_out(0.0, 10.0) == pytest.approx(0.5)
+    assert _path().drawn_out(0.0, 0.0) == pytest.approx(0.0)
