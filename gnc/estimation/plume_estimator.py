@@ -36,6 +36,9 @@ _STRENGTH_ERROR = 0.25
 _LOOK = 1.0
 """Way along the plume to an independent centre, over the correlation length of the meander [-]."""
 
+_NEAREST = 0.3
+"""Least distance behind the funnel at which a pass is believed, over the prior's [-]: nearer it is another plume."""
+
 _BEND_MIN = 1e-12
 """Least curvature of a likelihood [1/ppm^2]: a place that the vehicle has not been to says nothing."""
 
@@ -126,7 +129,9 @@ class PlumeEstimator:
         self._diffuse(self._time - self._pass_at)
         self._pass_at = self._time
         self.passes += 1
-        evidence = None if self._spoilt else self._reader.read(path, self.grid.places, self.grid.spreads)
+        behind = path.at(self.offset)[0] > _NEAREST * self.prior.distance
+        believed = behind and not self._spoilt
+        evidence = self._reader.read(path, self.grid.places, self.grid.spreads) if believed else None
         self._spoilt = False
         if evidence is not None:
             self._correct(path, evidence)

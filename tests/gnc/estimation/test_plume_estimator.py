@@ -177,6 +177,19 @@ def test_limits_without_room_are_refused_in_one_line() -> None:
         replace(PRIOR, lowest=80.0, highest=60.0)
 
 
+def test_a_pass_ahead_of_the_ship_says_nothing() -> None:
+    estimator = PlumeEstimator(PRIOR)
+    generator = np.random.default_rng(4)
+    before = estimator.cells.copy()
+    for i in range(600):
+        estimator.predict(0.1)
+        reading = 420.0 + generator.standard_normal() if i % 2 == 0 else math.nan
+        estimator.update(-150.0, 60.0 * math.cos(0.35 * 0.1 * i), 65.0, reading)
+    assert estimator.passes > 4
+    assert estimator.height == pytest.approx(PRIOR.height, abs=0.5)
+    assert np.abs(estimator.cells - before).max() < 0.1 * before.max()
+
+
 @pytest.mark.parametrize("name", ["interval", "time_constant", "noise"])
 def test_a_sensor_without_noise_or_lag_is_refused(name: str) -> None:
     with pytest.raises(InfeasibleError, match=f"{name} of the CO2 sensor is 0"):
