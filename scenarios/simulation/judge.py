@@ -4,6 +4,7 @@ import math
 from enum import Enum
 
 from gnc.estimation.plume_estimator import SensorState
+from gnc.mission.mode import Mode
 from gnc.mission.plume_following import PlumeFollowing
 from gnc.mission.searched_axis import SearchedAxis
 from measurement.errors import MeasurementError
@@ -91,7 +92,8 @@ class Judge:
         if isinstance(axis, SearchedAxis):
             if axis.sensor is not SensorState.WORKING:
                 return Enough.SENSOR
-            if axis.measurable() < _MEASURABLE:
+            # Off its orbit a flight smells nothing, wherever the plume is.
+            if self._mission.in_place and axis.mode is not Mode.FOUND and axis.measurable() < _MEASURABLE:
                 return Enough.OUT_OF_REACH
         if math.isnan(self._settling.at):
             return None

@@ -97,7 +97,7 @@ class FlightRecord:
     outcome: Outcome
     message: str
     mode: str
-    enough: str
+    enough: str = ""
     settled_at: float
     interventions: list[Intervention]
     columns: tuple[str, ...]

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from gnc.estimation.plume_estimator import SensorState
+from gnc.mission.mode import Mode
 from gnc.mission.searched_axis import PlumeEstimate, SearchedAxis
 from scenarios.simulation import judge as judging
 from scenarios.simulation.judge import GONE, INTERVAL, Enough, Judge
@@ -14,7 +15,8 @@ from scenarios.simulation.judge import GONE, INTERVAL, Enough, Judge
 class Axis(SearchedAxis):
     """A search that has its beliefs from a test."""
 
-    def __init__(self, *, sensor=SensorState.WORKING, measurable=1.0):
+    def __init__(self, *, sensor=SensorState.WORKING, measurable=1.0, mode=Mode.SEARCHING):
+        self.mode = mode
         self.sensor, self.estimate, self._measurable = sensor, PlumeEstimate(height=131.0, height_deviation=8.0), measurable
 
     __slots__ = ("_measurable",)
@@ -25,7 +27,7 @@ class Axis(SearchedAxis):
 
 class Mission:
     def __init__(self, axis):
-        self.axis, self.departing = axis, False
+        self.axis, self.departing, self.in_place = axis, False, True
 
     def depart(self):
         self.departing = True
@@ -71,6 +73,15 @@ def test_before_the_flight_has_settled_no_reading_counts(monkeypatch):
     judge, _ = judged(monkeypatch, [], settled=math.nan)
     assert looks(judge, 5) == []
     assert judge.enough is None
+
+
+def test_off_its_orbit_and_where_it_is_smelt_no_plume_is_out_of_reach(monkeypatch):
+    judge, mission = judged(monkeypatch, ["open"] * 9, axis=Axis(measurable=0.01))
+    mission.in_place = False
+    looks(judge, 3)
+    found, _ = judged(monkeypatch, ["open"] * 9, axis=Axis(measurable=0.01, mode=Mode.FOUND))
+    looks(found, 3)
+    assert (judge.enough, found.enough) == (None, None)
 
 
 @pytest.mark.parametrize(
