@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: sweep_nu test check bench lock clean
+.PHONY: sweep_nu test check docs bench lock clean
 
 sweep_nu: .venv
 	@$(BIN)/python -m scenarios.run sweep_nu
@@ -17,6 +17,11 @@ check: .venv/.developer
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# From what is installed, without a network; a warning is an error.
+docs: .venv/.docs
+	@$(BIN)/python -m sphinx --nitpicky --fail-on-warning --keep-going --quiet docs docs/_build/html
+	@echo "documentation: docs/_build/html/index.html"
 
 bench: .venv/.developer
 	@$(BIN)/python -m benchmarks.closed_loop
@@ -37,9 +42,14 @@ bench: .venv/.developer
 	@$(INSTALL) -e '.[dev]'
 	@touch $@
 
-lock: .venv/.developer
+.venv/.docs: .venv/.installed
+	@echo "installing what builds the documentation into .venv, once"
+	@$(INSTALL) -e '.[docs]'
+	@touch $@
+
+lock: .venv/.developer .venv/.docs
 	@{ echo '# Pinned versions of everything the environment holds. `make lock` writes this file anew.'; \
 		$(BIN)/python -m pip freeze --exclude-editable; } > constraints.txt
 
 clean:
-	rm -rf .venv runs
+	rm -rf .venv runs docs/_build docs/generated

@@ -21,7 +21,7 @@ from scenarios.studies.arena.work import TUNING_TABLE, WINDOW_TABLE, ArenaWork
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.study import study
 
-_TUNING_COLUMNS = ("entrant", "evaluation", "cost_m", "error_m", "excess_rad_s", "parameters", "message", "wall_time_s")
+TUNING_COLUMNS = ("entrant", "evaluation", "cost_m", "error_m", "excess_rad_s", "parameters", "message", "wall_time_s")
 
 
 @study("arena")
@@ -50,7 +50,7 @@ class ArenaStudy(FlightStudy):
         self._arena, self._seed = scenario.arena, scenario.seed
         super().__init__(scenario, name, trials, overrides=overrides)
         keys = dict.fromkeys(f"guidance.{key}" for entrant in self.entrants for key in entrant.defaults)
-        self.tables |= {WINDOW_TABLE: ("flight_id", "trial", *WINDOW_COLUMNS, *MEASURED_COLUMNS), TUNING_TABLE: _TUNING_COLUMNS}
+        self.tables |= {WINDOW_TABLE: ("flight_id", "trial", *WINDOW_COLUMNS, *MEASURED_COLUMNS), TUNING_TABLE: TUNING_COLUMNS}
         self.tables[DRAWS] = (*self.tables[DRAWS], *keys)
         self._chosen: dict[str, Mapping[str, float]] = {}
 

@@ -1,0 +1,50 @@
+"""Writes the pages and the sketch that are made from the program before Sphinx reads them."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from reference_pages.columns import columns_page
+from reference_pages.commands import commands_page
+from reference_pages.frames import frames_svg
+from reference_pages.keys import keys_page
+from reference_pages.modules import module_pages
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+FOLDER = "generated"
+"""Where they are written, in the folder of the documentation; it is not committed."""
+
+
+def pages() -> dict[str, str]:
+    """Return the texts of the files by their names."""
+    modules = dict(module_pages())
+    contents = ["# Modules", "", "```{toctree}", ":maxdepth: 1", "", *(f"modules/{name}" for name in modules), "```", ""]
+    return {
+        "keys.md": keys_page(),
+        "columns.md": columns_page(),
+        "command_line.md": commands_page(),
+        "frames.svg": frames_svg(),
+        "modules.md": "\n".join(contents),
+        **{f"modules/{name}.md": text for name, text in modules.items()},
+    }
+
+
+def _write(app: "Sphinx") -> None:
+    folder = Path(app.srcdir) / FOLDER
+    made = pages()
+    for path in folder.rglob("*.md"):
+        if path.relative_to(folder).as_posix() not in made:
+            path.unlink()
+    for name, text in made.items():
+        path = folder / name
+        # What has not changed is not read again.
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+
+
+def setup(app: "Sphinx") -> dict[str, bool]:
+    """Write the pages when the build begins."""
+    app.connect("builder-inited", _write)
+    return {"parallel_read_safe": True}

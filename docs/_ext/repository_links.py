@@ -1,0 +1,44 @@
+"""Links from pages to the repository: a file is handed to the reader, a folder is named, and a page is the page."""
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+_LINK = re.compile(r"\[(?P<text>[^\]]+)\]\((?P<target>(?:\.\./)+[^)#\s]+)\)")
+
+PAGES = {"gnc/EQUATIONS.md": "equations.md", "CHANGELOG.md": "changelog.md"}
+"""Files of the repository that are pages of the documentation."""
+
+
+def with_links(text: str, folder: Path, root: Path) -> str:
+    """Return a page whose links out of the documentation can be followed in it.
+
+    Parameters
+    ----------
+    text : of the page
+    folder : in which the page is
+    root : of the documentation
+    """
+
+    def link(found: re.Match[str]) -> str:
+        target = (folder / found["target"]).resolve()
+        if target.is_dir() and not target.is_relative_to(root):
+            return found["text"]
+        page = PAGES.get(target.relative_to(root.parent).as_posix()) if target.is_relative_to(root.parent) else None
+        return f"[{found['text']}](/{page})" if page else found[0]
+
+    return _LINK.sub(link, text)
+
+
+def setup(app: "Sphinx") -> dict[str, bool]:
+    """Have the links of every page followed so."""
+
+    def read(app: "Sphinx", name: str, source: list[str]) -> None:
+        root = Path(app.srcdir).resolve()
+        source[0] = with_links(source[0], (root / name).parent, root)
+
+    app.connect("source-read", read)
+    return {"parallel_read_safe": True}

@@ -1,0 +1,47 @@
+"""The docstrings of the house come out as text in the documentation: a description is not a type."""
+
+import inspect
+
+from docstrings import as_text
+
+from gnc.laws.steering_law import SteeringLaw
+from gnc.reference.reference import Reference
+
+
+def test_entries_are_terms_with_their_descriptions_and_units():
+    """As ``Reference`` has them."""
+    text = as_text(inspect.getdoc(Reference).splitlines())
+    start = text.index(":Attributes:")
+    assert text[start : start + 7] == [
+        ":Attributes:",
+        "",
+        "   ``north``, ``east``",
+        "      position [m]",
+        "",
+        "   ``course``",
+        "      chi_r [rad]",
+    ]
+
+
+def test_a_description_that_goes_on_stays_with_its_entry():
+    text = as_text(inspect.getdoc(SteeringLaw.heading_rate).splitlines())
+    first = text.index("   ``reference``")
+    assert text[first + 1].startswith("      the point to track; its ``course`` [rad]")
+    assert text[first + 2] == "      its position may be given for another frame than ``to_north`` and ``to_east``"
+
+
+def test_a_section_ends_at_an_empty_line():
+    text = as_text(["Returns", "-------", "row : of the flight", "", "Afterwards."])
+    assert text == ["", ":Returns:", "", "   ``row``", "      of the flight", "", "", "Afterwards."]
+
+
+def test_a_section_without_entries_is_text():
+    assert as_text(["Notes", "-----", "As published."])[1:3] == [":Notes:", "   As published."]
+
+
+def test_characters_of_markup_are_escaped_but_in_literals_and_bullets():
+    assert as_text(["* x_ is |a|*b, and ``x_*`` is code"]) == [r"* x\_ is \|a\|\*b, and ``x_*`` is code"]
+
+
+def test_names_with_underscores_are_left_as_they_are():
+    assert as_text(["omega_0 of heading_rate"]) == ["omega_0 of heading_rate"]

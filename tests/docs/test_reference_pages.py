@@ -1,0 +1,65 @@
+"""The pages of the reference that are made from the program are complete."""
+
+import re
+
+from generated_pages import pages
+from reference_pages.columns import columns_page, tables
+from reference_pages.commands import commands_page
+from reference_pages.frames import frames_svg
+from reference_pages.keys import keys_page
+from reference_pages.markdown import literal, plain, table
+
+from scenarios.console.main import commands
+from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, INSTRUMENT_MEANINGS, MEANINGS
+from scenarios.schema.documented import documented_keys
+
+
+def test_every_key_of_a_scenario_is_on_its_page_with_its_meaning():
+    rows = keys_page().splitlines()
+    for key in documented_keys():
+        name, meaning = literal(key.key.replace(".0", "")), plain(key.meaning).replace("|", r"\|")
+        assert any(row.startswith(f"| {name} |") and meaning in row for row in rows), key.key
+
+
+def test_every_column_that_is_written_has_a_meaning():
+    for title, (names, meanings) in tables().items():
+        assert [name for name in names if not meanings.get(name)] == [], title
+
+
+def test_no_meaning_is_of_a_column_that_nothing_writes():
+    written = {name for names, _ in tables().values() for name in names}
+    said = {name for meanings in (*MEANINGS.values(), CONVERGENCE_MEANINGS, INSTRUMENT_MEANINGS) for name in meanings}
+    assert said <= written
+
+
+def test_columns_stand_with_their_units():
+    rows = set(columns_page().splitlines())
+    assert "| `heading_rate_limit_rad_s` | rad/s | omega\\_max, at which commands are cut |" in rows
+    assert "| `crossing_count` |  | crossings of the plume, settled |" in rows
+
+
+def test_every_command_and_every_option_is_on_its_page():
+    page = commands_page()
+    assert re.findall(r"^## (\w+)$", page, re.MULTILINE) == list(commands())
+    for option in ("--set KEY=VALUE", "--resume", "--no-report", "--to NAME,...", "--from NAME|FILE.toml"):
+        assert f"`{option}`".replace("|", r"\|") in page
+
+
+def test_the_page_of_a_module_names_its_modules():
+    made = pages()
+    assert ".. automodule:: gnc.laws.steering_law" in made["modules/gnc.laws.md"]
+    assert "modules/gnc.laws\n" in made["modules.md"]
+
+
+def test_the_sketch_has_the_orbit_closed_about_the_centre():
+    """Equations (2) to (6): the reference comes back to the centre of oscillation after a period."""
+    points = re.search(r'class="orbit" points="([^"]+)"', frames_svg())[1].split()
+    start, middle, end = (tuple(map(float, points[i].split(","))) for i in (0, len(points) // 2, -1))
+    # A tenth of a pixel is the rounding of the picture; each of two numbers has half of it.
+    for place in (middle, end):
+        assert max(abs(a - b) for a, b in zip(start, place, strict=True)) < 0.11
+
+
+def test_a_cell_of_a_table_cannot_end_it():
+    assert table(("a",), [("x | y",)])[-2] == r"| x \| y |"
+    assert plain("a_b*[c]") == r"a\_b\*\[c\]"
