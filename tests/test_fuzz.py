@@ -231,16 +231,16 @@ def test_a_flight_of_a_damaged_run_is_replayed_or_refused(place, name, how, at):
 @given(st.sampled_from(RUN_FILES), DAMAGES, st.integers(0, 10**6))
 @settings(max_examples=14 * DEPTH, derandomize=DEPTH == 1)
 def test_a_report_of_a_damaged_run_names_it_or_is_refused(place, name, how, at):
-    from reports.build import _damage_named
     from reports.errors import ReportError
     from reports.registry import content
+    from reports.run.files import damage_named
     from reports.run.run_data import read_run
 
     run = fresh(place)
     damage(run / name, how, at)
     with bounded(), contextlib.suppress(ReportError):
         data = read_run(run)
-        with _damage_named(run):
+        with damage_named(run):
             shown = content(data)
         # A file that is gone is named; one that is changed may be read as something else.
         if how == "gone" and not name.startswith("journal"):

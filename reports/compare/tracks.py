@@ -12,6 +12,7 @@ from reports.compare.pairs import Pairs
 from reports.compare.runs import Run
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, circle
+from reports.document.palette import Meaning
 from reports.document.panels import around
 from reports.run.columns import Array, column
 from reports.run.time_history import about_the_plume, keepout_distance, thinned, tracking_error
@@ -122,8 +123,8 @@ def _settled(flown: list[_Flight]) -> Panel:
 
 def _from_the_vessel(flown: list[_Flight], title: str) -> Panel:
     radii = dict.fromkeys(float(flight.row["keepout_radius_m"]) for flight in flown)
-    rings = [Line(x=x, y=y, label="r_min", colour="vermillion", fill=True) for x, y in map(circle, radii)]
-    plume = Line(x=np.zeros(2), y=np.array([0.0, _FAR * max(radii)]), label="plume", colour="grey", style="dash")
+    rings = [Line(x=x, y=y, label="r_min", colour=Meaning.LIMIT, fill=True) for x, y in map(circle, radii)]
+    plume = Line(x=np.zeros(2), y=np.array([0.0, _FAR * max(radii)]), label="plume", colour=Meaning.PLUME, style="dash")
     return Panel(
         x_label="Right of the plume's axis [m]",
         y_label="Along the plume's axis [m]",

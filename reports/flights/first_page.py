@@ -1,8 +1,6 @@
 """What page 1 says of flights: what was flown in a sentence, and the tracks of the closest flight and of a typical one."""
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,15 +8,10 @@ import pandas as pd
 from reports.document.chart import Chart
 from reports.document.tables import vehicle_flown
 from reports.flights.names import flight_name
-from reports.flights.single_flight import flight_charts
+from reports.flights.tracks import track_picture
 from reports.run.columns import Array, clearance, column, total
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
-
-_CAPTION = (
-    "Seen from the vessel, with the true axis of its plume up the page. Diamonds are plume crossings after settling and the closest"
-    " approach; dots are where the keep-out guard changed commands."
-)
 
 _CALM = 0.05
 """Speed of the wind below which air counts as still [m/s]."""
@@ -70,25 +63,3 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
         shown.append((trial, row, f"{what}: {name}, {float(row['min_distance_m']):.1f} m"))
     told = " Closest: the flight with the closest approach. Typical: the one whose closest approach is the median."
     return track_picture(shown, told=told)
-
-
-def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: str = "") -> Chart | None:
-    """Return the tracks of flights side by side, each with its title, seen from the vessel; all tracks of a flight that is alone.
-
-    Parameters
-    ----------
-    shown : trial, row and title of each flight
-    told : what the caption says besides
-
-    Returns
-    -------
-    The figure, or None if no flight has a time history.
-    """
-    found = [(charts[0], name) for trial, row, name in shown if (charts := flight_charts(trial, row))]
-    if not found:
-        return None
-    tracks = found[0][0]
-    if len(found) == 1:
-        return tracks
-    panels = [replace(chart.panels[0], title=name) for chart, name in found]
-    return replace(tracks, panels=panels, columns=len(panels), caption=_CAPTION + told)

@@ -12,8 +12,8 @@ from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Findings, FlightContent, FlightPicker, Heading, Section, Table, Text
 from reports.document.chart import Chart
 from reports.document.tables import length, number, outcome, parameter_table
-from reports.flights.first_page import track_picture
 from reports.flights.single_flight import flight_charts
+from reports.flights.tracks import track_picture
 from reports.paper.bounds import bounds_section
 from reports.paper.charts import VEHICLES, find_flight, sim_1_charts, sim_2_charts, sim_3_charts, vehicle_name
 from reports.paper.checks import DISTANCE_PRINTED, INTERVAL_PRINTED, paper_verdict, rows_by_id, vehicles
