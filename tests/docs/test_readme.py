@@ -1,0 +1,73 @@
+"""What README.md and CONTRIBUTING.md say can be done as it stands."""
+
+import re
+import shlex
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from common.command_line import run_command
+from scenarios.console.main import commands
+from scenarios.schema.load import load_study
+
+ROOT = Path(__file__).parents[2]
+PAGES = ("README.md", "CONTRIBUTING.md")
+
+
+def _lines(page: str) -> list[str]:
+    blocks = re.findall(r"^```[a-z]*\n(.*?)^```$", (ROOT / page).read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    return [line.split(" #")[0].strip() for block in blocks for line in block.splitlines() if line.strip()]
+
+
+def _commands(word: str) -> list[list[str]]:
+    called = (shlex.split(line) for page in PAGES for line in _lines(page) if line.startswith((".venv", "plume-flight")))
+    return [words[2:] for words in called if words[0].endswith("plume-flight") and words[1] == word]
+
+
+def test_the_readme_is_short():
+    for page in PAGES:
+        lines = (ROOT / page).read_text("utf-8").splitlines()
+        assert len(lines) <= 250
+        assert max(map(len, lines)) <= 120
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_make_target_exists(page):
+    targets = {words.split()[1] for words in _lines(page) if words.startswith("make ")}
+    makefile = (ROOT / "Makefile").read_text("utf-8")
+    assert targets
+    for target in targets:
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_link_and_picture_exists(page):
+    text = (ROOT / page).read_text("utf-8")
+    places = [*re.findall(r"\]\(([^)#]+)[^)]*\)", text), *re.findall(r'src="([^"]+)"', text)]
+    assert [place for place in places if not place.startswith("https://") and not (ROOT / place).exists()] == []
+
+
+@pytest.mark.parametrize("arguments", _commands("run"), ids=" ".join)
+def test_every_scenario_and_key_of_the_readme_is_taken(arguments):
+    """Reading a study refuses scenarios, keys and values that there are not, and keys that act nowhere."""
+    overrides = [word for flag, word in pairwise(arguments) if flag == "--set"]
+    assert load_study(arguments[0], overrides).title
+
+
+@pytest.mark.parametrize("word", sorted(commands()))
+def test_every_command_takes_the_options_that_are_given(word, monkeypatch, capsys):
+    """Of the commands that the README shows; what is asked for is their help, so that nothing is flown."""
+    for arguments in _commands(word):
+        options = [argument for argument in arguments if argument.startswith("--")]
+        monkeypatch.setattr(sys, "argv", ["plume-flight", word, "--help"])
+        with pytest.raises(SystemExit):
+            run_command(commands(), "plume-flight")
+        shown = capsys.readouterr().out
+        assert [option for option in options if option not in shown] == []
+
+
+def test_continuous_integration_runs_what_the_readme_names():
+    ci = (ROOT / ".ci" / "run").read_text("utf-8")
+    assert re.findall(r"^make (\w+)$", ci, re.MULTILINE) == ["check", "test", "docs"]
