@@ -1,14 +1,23 @@
 """Configuration of the documentation: `make docs` builds it from what is installed, without a network."""
 
 import importlib.metadata
+import logging
 import os
 import sys
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT), str(Path(__file__).parent / "_ext")]
 # Tutorials are run in temporary directories, by processes of their own.
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
+# They are the same whatever a user has set up for IPython, and say nothing that is no error.
+_ipython = tempfile.TemporaryDirectory(prefix="ipython-")
+os.environ["IPYTHONDIR"] = _ipython.name
+_profile = Path(_ipython.name) / "profile_default"
+_profile.mkdir()
+(_profile / "ipython_kernel_config.py").write_text("get_config().IPKernelApp.log_level = 'ERROR'\n", encoding="utf-8")
+logging.getLogger("traitlets").setLevel(logging.WARNING)
 
 project = "Plume flight study"
 author = "the authors of the plume flight study"

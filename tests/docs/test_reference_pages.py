@@ -1,6 +1,7 @@
 """The pages of the reference that are made from the program are complete."""
 
 import re
+from pathlib import Path
 
 from generated_pages import pages
 from reference_pages.columns import columns_page, tables
@@ -9,6 +10,10 @@ from reference_pages.frames import frames_svg
 from reference_pages.keys import keys_page
 from reference_pages.markdown import literal, plain, table
 
+from measurement.estimate import estimate
+from measurement.estimate.flight_log.config import LogConfig
+from measurement.estimate.flight_log.csv_file import read_flight
+from measurement.estimate.flight_log.run_files import SAMPLE_MEANINGS, samples
 from scenarios.console.main import commands
 from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, INSTRUMENT_MEANINGS, MEANINGS
 from scenarios.schema.documented import documented_keys
@@ -30,6 +35,13 @@ def test_no_meaning_is_of_a_column_that_nothing_writes():
     written = {name for names, _ in tables().values() for name in names}
     said = {name for meanings in (*MEANINGS.values(), CONVERGENCE_MEANINGS, INSTRUMENT_MEANINGS) for name in meanings}
     assert said <= written
+
+
+def test_the_samples_of_a_logged_flight_have_the_columns_that_are_said():
+    log = Path(__file__).parents[2] / "docs" / "example_flight.csv"
+    flight = read_flight(log, LogConfig())
+    table = samples(estimate(flight.readings, LogConfig().instrument).signals, flight.place)
+    assert list(table) == list(SAMPLE_MEANINGS)
 
 
 def test_columns_stand_with_their_units():

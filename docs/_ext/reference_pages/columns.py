@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
+from measurement.estimate.flight_log.run_files import SAMPLE_MEANINGS
 from reference_pages.markdown import literal, plain, table
 from reports.compare.figures import MEASURES
 from reports.export.tracks_csv import COLUMNS as TRACK_COLUMNS
@@ -48,6 +49,7 @@ def tables() -> dict[str, tuple[Iterable[str], Mapping[str, str]]]:
         "flights/ID.parquet, of flights with a sniffer": (SnifferOnBoard.COLUMNS, histories),
         "flights/ID.parquet, of flights that search for the plume": (PlumeBelief.COLUMNS, histories),
         "summary.csv and counterexamples.csv, of a study of convergence": (CONVERGENCE_COLUMNS, CONVERGENCE_MEANINGS),
+        "samples.csv of the log of a flight": (SAMPLE_MEANINGS, SAMPLE_MEANINGS),
         "export/NAME.tracks.csv": (("flight_id", *TRACK_COLUMNS), {"flight_id": "name of the flight", **histories}),
     }
 

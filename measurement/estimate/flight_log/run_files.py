@@ -31,6 +31,24 @@ FORMAT = 1
 STUDY = "measurement"
 """What the manifest calls the kind of run."""
 
+SAMPLE_MEANINGS = {
+    "time_s": "time of the reading",
+    "so2_ppb": "reading",
+    "co2_ppm": "reading, with its background",
+    "no_ppb": "reading, where there is one",
+    "no2_ppb": "reading, where there is one",
+    "co2_excess_ppm": "CO2 above its background, corrected, with the response of the slowest channel",
+    "so2_excess_ppb": "SO2 above its background, likewise",
+    "fit_ppb": "SO2 that the slope gives for this CO2",
+    "residual_ppb": "what SO2 is off that",
+    "north_m": "place, where the log has it",
+    "east_m": "place, where the log has it",
+    "height_m": "height, where the log has it",
+    "so2_true_ppb": "truth, of a simulated flight",
+    "co2_true_ppm": "truth, of a simulated flight",
+}
+"""Columns of ``SAMPLES``, and what they are."""
+
 _HASH_LETTERS = 16
 """Letters of the hash of flight and configuration that are kept."""
 
