@@ -98,7 +98,9 @@ class PaceHold:
         own : the vehicle's motion
         guarding : whether the keep-out guard turns the vehicle away
         """
-        command = airspeed_to_hold(self.hold, along=along, reference_speed=self.speed, speed=own.speed, airspeed=own.airspeed)
+        # The guard reckons with V_r: a vehicle that catches up meanwhile turns the wider. It catches up afterwards.
+        behind = 0.0 if guarding else along
+        command = airspeed_to_hold(self.hold, along=behind, reference_speed=self.speed, speed=own.speed, airspeed=own.airspeed)
         return self.turn_speed if guarding and command > self.turn_speed else command
 
 

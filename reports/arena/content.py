@@ -36,7 +36,7 @@ _PLUME = (
 )
 
 _SULPHUR = (
-    "The plume is the one that the exhaust makes: it rises, spreads, meanders and fluctuates. In it counts where the concentration"
+    "The plume is the one that the exhaust makes: it rises, spreads, meanders and fluctuates. Inside is where the concentration"
     " is above exp(-2) of that on the axis. Every law carries the same sniffer. The sulphur error is the standard uncertainty by"
     " noise of the fuel's sulphur content that a minute leaves, as the estimator states it: the inverse root of the mean"
     " information 1/σ², which adds up over minutes and flights, and is 0 of a result that is not"

@@ -67,6 +67,7 @@ _MEASURES = {
     "resumes_within_periods": _Measure(
         what="Next crossing after the last manoeuvre", values=_column("resume_periods"), unit="periods"
     ),
+    "time_to_find_s": _Measure(what="Time to find the plume", values=_column("time_to_find_s"), unit="s"),
 }  # fmt: skip
 """Criteria that are limits of a figure, in the order of the verdict's tiles."""
 

@@ -101,6 +101,11 @@ def _mission_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
         periods = row.get("resume_periods", math.nan)
         message = f"crossings resumed {periods:.2f} periods after the last manoeuvre"
         checks.append((periods <= criteria.resumes_within_periods, message))
+    if criteria.time_to_find_s is not None:
+        checks.append(_at_most("time to find the plume", row.get("time_to_find_s", math.nan), criteria.time_to_find_s, "s"))
+    if criteria.within_altitudes:
+        outside = row.get("altitude_outside_s", math.nan)
+        checks.append((outside == 0.0, f"{outside:.1f} s outside of flight.altitude_min_m and altitude_max_m"))
     if criteria.modes_at_end:
         checks.append((row["mode_at_end"] in criteria.modes_at_end, f"ended {row['mode_at_end']}"))
     return checks

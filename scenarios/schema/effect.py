@@ -169,6 +169,8 @@ RULES = (
          user="a plume that is searched for: set following.plume to 'estimated'", depends=("following.plume",)),
     Rule(keys=("flight.until",), acts=lambda s: "sniffer" in s.payload.instruments and not s.stands_off,
          user="a sniffer: put 'sniffer' into payload.instruments", depends=("payload.instruments",)),
+    Rule(keys=("criteria.time_to_find_s", "criteria.within_altitudes"), acts=lambda s: "sniffer" in s.payload.instruments,
+         user="a sniffer: put 'sniffer' into payload.instruments", depends=("payload.instruments",)),
     Rule(keys=("flight.altitude_m",), acts=lambda s: s.follows and not s.stands_off,
          user="the mission that follows the vessel; the others fly at the height of the plume: set guidance.mission to 'follow'",
          by_mission=True),

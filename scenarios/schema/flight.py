@@ -92,5 +92,9 @@ class CriteriaConfig(Section):
     """Whether the law itself must ask for no more than omega_max, before commands are cut."""
     resumes_within_periods: Positive | None = None
     """Largest time from the end of the last manoeuvre to the next crossing, in periods of the oscillation [-]."""
+    time_to_find_s: Positive | None = None
+    """Largest time from reaching the orbit to the first reading of the plume [s]."""
+    within_altitudes: bool = False
+    """Whether flight.altitude_min_m and altitude_max_m must never be left, but by an aircraft with a fault."""
     modes_at_end: tuple[str, ...] = ()
     """Modes in which it may end; any if empty."""

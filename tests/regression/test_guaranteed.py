@@ -38,4 +38,4 @@ def test_the_report_says_the_laws_largest_demand_and_with_which_look_ahead(direc
     text = html.read_text(encoding="utf-8")
     assert "Heading-rate demand over ω_max, worst" in text
     assert "R as searched" in text
-    assert "kinematic vehicle, eq. (1), not with an aircraft" in text
+    assert "of the kinematic vehicle, eq. (1)" in text

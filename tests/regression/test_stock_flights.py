@@ -74,7 +74,7 @@ def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(t37):
     (way,) = (line for line in tracks.panels[-1].lines if line.label == "ship's track")
     assert way.x.max() == pytest.approx(50.0, abs=5.0)
     # Fitted limits have three digits, and equilibria are shown in the turn that it flies, nearest to 30 degrees.
-    assert {name: limit for name, _, limit in report.verdict.figures}["Tracking error, rms after settling, worst"] == "≤ 40.3 m"
+    assert {card.name: card.limit for card in report.verdict.figures}["Tracking error, rms after settling, worst"] == "≤ 40.3 m"
     assert not [block for block in blocks if isinstance(block, Table) and not block.rows]
     assert "level, and at 31.6 degrees of bank" in html.read_text(encoding="utf-8")
 

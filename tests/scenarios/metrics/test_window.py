@@ -6,7 +6,7 @@ import pytest
 
 from scenarios.metrics.window import measured_figures
 
-MEASURED = {"seconds_in_plume_s": 20.0, "fsc_noise_percent": 0.01, "sulphur_quality": "B"}
+MEASURED = {"seconds_in_plume_s": 20.0, "fsc_noise_percent": 0.01, "sulphur_quality": "B", "outcome": "not_settled"}
 
 
 def test_information_is_that_of_a_minute_and_adds_up():
@@ -18,8 +18,10 @@ def test_information_is_that_of_a_minute_and_adds_up():
     assert measured_figures(longer, window=300.0) == pytest.approx(found)
 
 
-@pytest.mark.parametrize("row", [{"sulphur_quality": "C"}, {"sulphur_quality": "C", "fsc_noise_percent": math.nan}])
-def test_a_result_that_is_not_admitted_is_no_information(row):
+@pytest.mark.parametrize(
+    "row", [{"outcome": "aircraft_lost"}, {"sulphur_quality": "C"}, {"sulphur_quality": "C", "fsc_noise_percent": math.nan}]
+)
+def test_a_result_that_is_not_admitted_or_lost_with_the_aircraft_is_no_information(row):
     assert measured_figures(MEASURED | row, window=150.0)["sulphur_information_per_minute"] == 0.0
 
 

@@ -134,6 +134,7 @@ VALUES = {
     "criteria.altitude_error_max_m": 1e-9, "criteria.crossing_interval_error": 1e-9, "criteria.tracking_error_end_m": 1e-15,
     "criteria.crossing_interval_s": [1.0, 1.1], "criteria.crossing_distance_m": [1.0, 1.1],
     "criteria.law_beyond_heading_rate_max": True, "criteria.law_within_heading_rate_max": True,
+    "criteria.time_to_find_s": 1e-3, "criteria.within_altitudes": True,
     "criteria.resumes_within_periods": 1e-3, "criteria.modes_at_end": ["transit"],
 }  # fmt: skip
 """Another legal value of each key."""
@@ -151,7 +152,8 @@ OWN_VALUES = {
 
 SEARCHING = (
     "following.plume", "following.search", "following.distance", "following.source_height_m", "following.load",
-    "following.climb_gradient", "flight.until", "flight.altitude_m", "flight.altitude_min_m", "flight.altitude_max_m",
+    "following.climb_gradient", "criteria.time_to_find_s",
+    "flight.until", "flight.altitude_m", "flight.altitude_min_m", "flight.altitude_max_m",
 )  # fmt: skip
 """Keys that act on a search."""
 
