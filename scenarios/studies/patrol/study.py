@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
-from common.run_layout import SUMMARY
+from common.run_layout import PHASES, SHIPS, SUMMARY
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
@@ -13,7 +13,7 @@ from scenarios.errors import InputError
 from scenarios.schema.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.patrol.ships import sampled_patrol
-from scenarios.studies.patrol.tables import PATROL_COLUMNS, PHASE_COLUMNS, PHASES, SHIP_COLUMNS, SHIPS
+from scenarios.studies.patrol.tables import PATROL_COLUMNS, PHASE_COLUMNS, SHIP_COLUMNS
 from scenarios.studies.patrol.work import SNIFFER, PatrolWork
 from scenarios.studies.study import study
 

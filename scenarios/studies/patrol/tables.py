@@ -9,9 +9,6 @@ from scenarios.simulation.outcome import Outcome
 from scenarios.studies.patrol.legs import Leg
 from scenarios.studies.patrol.ships import Patrol
 
-SHIPS, PHASES = "ships.csv", "phases.csv"
-"""A row per ship of a patrol, and one per stretch of it."""
-
 LOST = (Outcome.AIRCRAFT_LOST.value, Outcome.DIVERGED.value)
 """Outcomes of flights whose aircraft does not come back."""
 

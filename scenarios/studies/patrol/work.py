@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from common.run_layout import HISTORY_SUFFIX, SUMMARY
+from common.run_layout import HISTORY_SUFFIX, PHASES, SHIPS, SUMMARY
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
@@ -25,8 +25,6 @@ from scenarios.studies.patrol.order import Prospect, ends_of, exact_order, inser
 from scenarios.studies.patrol.ships import Patrol, sampled_patrol
 from scenarios.studies.patrol.tables import (
     LOST,
-    PHASES,
-    SHIPS,
     TRANSIT,
     flight_name,
     patrol_figures,
