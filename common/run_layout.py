@@ -55,6 +55,12 @@ SULPHUR = "sulphur.json"
 ARENA = "arena.json"
 """What an arena of steering laws has shown, and what each law was given."""
 
+SHIPS = "ships.csv"
+"""A row per ship of a patrol."""
+
+PHASES = "phases.csv"
+"""A row per stretch of a patrol: the way to a ship, and what was done beside her."""
+
 MODEL = "model"
 """Directory of the aircraft's model with the autopilot."""
 

@@ -17,6 +17,7 @@ from reports.errors import ReportError
 from reports.flights.content import flights_content
 from reports.measurement.content import measurement_content
 from reports.paper.content import paper_content
+from reports.patrol.content import patrol_content
 from reports.run.letterhead import letterhead, title
 from reports.run.run_data import RunData
 
@@ -24,6 +25,7 @@ STUDIES: dict[str, Callable[[RunData], Findings]] = {
     **dict.fromkeys(("flights", "trials", "monte_carlo", "falsify"), flights_content),
     "paper": paper_content,
     "arena": arena_content,
+    "patrol": patrol_content,
     "convergence": convergence_content,
     "design": design_content,
     "measurement": measurement_content,

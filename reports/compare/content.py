@@ -208,15 +208,17 @@ def _cards(compared: Compared, *, alone: bool) -> list[Card]:
     pairs = compared.pairs
     first, other = pairs.first.letter, pairs.other.letter
     cards = [
-        Card(f"Flights paired, {other} with {first}", f"{len(pairs):,}"),
-        Card(f"Met in {first} alone, in {other} alone", f"{count(pairs.no_longer_met):,}, {count(pairs.newly_met):,}"),
+        Card(f"Flights paired, {other} with {first}", f"{len(pairs):,}", judged=False),
+        Card(
+            f"Met in {first} alone, in {other} alone", f"{count(pairs.no_longer_met):,}, {count(pairs.newly_met):,}", judged=False
+        ),
     ]
     violations = [f"{total(rows, 'keepout_violations'):,}" for rows in (pairs.before, pairs.after)]
-    cards.append(Card(f"Keep-out violations of paired flights in {first}, in {other}", ", ".join(violations)))
+    cards.append(Card(f"Keep-out violations of paired flights in {first}, in {other}", ", ".join(violations), judged=False))
     if not alone:
         return cards
     for difference in [compared.found[name] for name in _CARDS if name in compared.found][:_CARDS_MAX]:
         figure = difference.figure
         value = f"{signed(difference.median, figure.digits)} {figure.unit}"
-        cards.append(Card(f"{figure.name}: median of {other} − {first}", value))
+        cards.append(Card(f"{figure.name}: median of {other} − {first}", value, judged=False))
     return cards

@@ -149,7 +149,7 @@ def _distances(flown: list[_Flight]) -> Panel:
     late = max(float(np.nanmax(distance[len(distance) // 2 :])) for distance in distances)
     end = max(float(flight.history["time_s"].iloc[-1]) for flight in flown)
     levels = [
-        Line(x=np.array([0.0, end]), y=np.array([level, level]), label="r_min", colour="vermillion", style="dash")
+        Line(x=np.array([0.0, end]), y=np.array([level, level]), label="r_min", colour=Meaning.LIMIT, style="dash")
         for level in dict.fromkeys(float(flight.row["keepout_radius_m"]) for flight in flown)
     ]
     return Panel(

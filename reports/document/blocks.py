@@ -109,19 +109,20 @@ class Section:
 class Card(NamedTuple):
     """A figure that is judged or told: its name, its value, what is required of it, and whether that is met.
 
-    No limit, and None for ``met``, where nothing is required.
+    No limit, and None for ``met``, where nothing is required; not ``judged`` where nothing could be, as in a comparison.
     """
 
     name: str
     value: str
     limit: str = ""
     met: bool | None = None
+    judged: bool = True
 
     @property
     def judgement(self) -> str:
         """Return what its criterion says, in words and with a sign: colour alone says nothing in grey."""
         if self.met is None:
-            return self.limit or "no criterion"
+            return self.limit or "no criterion" * self.judged
         return f"{'✓ met' if self.met else '✗ not met'}, required {self.limit}"
 
 

@@ -13,7 +13,9 @@ from common.run_layout import (
     FLIGHTS,
     INTERVENTIONS,
     LOGO,
+    PHASES,
     SAMPLES,
+    SHIPS,
     STATISTICS,
     TRAJECTORIES,
     WORST,
@@ -34,6 +36,8 @@ _SHOWN: Mapping[str, str] = {
     COUNTEREXAMPLES: "nothing: the summary has the same rows",
     FLIGHTS: "figures of this flight over time",
     TRAJECTORIES: "figures of this trajectory over time",
+    SHIPS: "the ships of patrols, maps and time lines",
+    PHASES: "maps and time lines of patrols",
     WORST: "nothing: a scenario file of one of the worst flights",
     **{f"{LOGO}{suffix}": "the logo" for suffix in (".png", ".jpg", ".svg")},
 }

@@ -62,4 +62,4 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
         name = f"{f'{trial.title}, ' * several}{flight_name(trial, row)}"
         shown.append((trial, row, f"{what}: {name}, {float(row['min_distance_m']):.1f} m"))
     told = " Closest: the flight with the closest approach. Typical: the one whose closest approach is the median."
-    return track_picture(shown, told=told)
+    return track_picture(shown, told=told * (len(shown) > 1))

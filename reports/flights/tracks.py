@@ -37,8 +37,8 @@ _NEAR_S = 60.0
 _NEARER = 0.5
 """Size of what is shown from near, over that of the whole, up to which it has a panel of its own."""
 
-_BESIDE, _WIDE, _FLAT = 1.2, 1.9, 4.8
-"""Width over height: of a panel that has another beside it, of one that is alone, and of one over the ground."""
+_UPRIGHT, _BESIDE, _WIDE, _FLAT = 0.75, 1.2, 1.9, 4.8
+"""Width over height: of one of two on page 1, of one that has another beside it, of one that is alone, and over the ground."""
 
 _AWAY = 1.0
 """Way of the ship over the size of the track about her, from which there is a panel over the ground."""
@@ -103,7 +103,7 @@ class _Tracks:
     def picture(self, title: str) -> tuple[Panel, str]:
         """Return the whole flight in one panel, and what it shows in words."""
         about = self._about
-        panel = self.ground(title) if about is None else self._whole(about, title, _BESIDE)
+        panel = self.ground(title) if about is None else self._whole(about, title, _UPRIGHT)
         return in_kilometres(panel), "Over the ground." if about is None else ship_words(about)
 
     def _whole(self, about: Surroundings, title: str, aspect: float) -> Panel:

@@ -21,6 +21,9 @@ from reports.run.trials import Kind, Trial
 _Figure = tuple[Array, str, list[tuple[float, str]]]
 """Values of the flights, the label of their axis, and values to be marked, by name."""
 
+_ROW = 3
+"""Panels that stand in one row."""
+
 _R_MIN = (0.0, "r_min")
 _TRACKING = ("tracking_error_rms_m", "Tracking error, rms [m]")
 
@@ -41,8 +44,10 @@ def trial_charts(trial: Trial) -> list[Chart]:
 def _chart(trial: Trial, name: str, caption: str, panels: Sequence[Panel | None], height: float, columns: int = 2) -> Chart:
     """Return a chart of the panels that show anything."""
     shown = [panel for panel in panels if panel is not None and any(len(line.x) for line in panel.lines)]
-    columns = max(1, min(columns, len(shown)))
-    return Chart(name=f"{trial.name}-{name}", caption=caption, panels=shown, columns=columns, panel_height=height)
+    columns = max(1, min(columns if len(shown) != _ROW else _ROW, len(shown)))
+    # What would be alone in its row is as wide as the page.
+    last = height if len(shown) > columns and len(shown) % columns == 1 else 0.0
+    return Chart(name=f"{trial.name}-{name}", caption=caption, panels=shown, columns=columns, panel_height=height, last_height=last)
 
 
 def _sweep(trial: Trial) -> list[Chart]:

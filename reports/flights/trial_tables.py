@@ -58,8 +58,8 @@ def flight_table(
     cells = [
         [name(row), *(number(row.get(key), pattern) for _, key, pattern in columns), outcome(row)] for _, row in rows.iterrows()
     ]
-    longest = max((len(row[0]) for row in cells), default=0)
-    widths = [min(2.2, max(1.0, 0.12 * longest)), *[1.05] * len(columns), 2.2]
+    first, last = (min(2.6, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, -1))
+    widths = [first, *[1.05] * len(columns), last]
     return Table(
         caption="The flights, a row each, with their outcome.",
         head=[head, *(title for title, _, _ in columns), "Outcome"],

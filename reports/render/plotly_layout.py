@@ -41,6 +41,9 @@ _ONE_BY_ONE = 3
 _HIGHEST = 0.6
 """Height of a row on a narrow screen at most, over its width, where the panels are no maps."""
 
+_MAP, _UPRIGHT = 0.85, 1.1
+"""Width of a map that is alone in its row on a narrow screen, and height of its row at most, over that of the screen."""
+
 _FEW = 8.0
 """Range of whole numbers from which Plotly marks whole numbers by itself."""
 
@@ -74,8 +77,8 @@ def narrow(chart: Chart) -> Data:
     """Return what of the layout changes on a narrow screen: entries that take the place of, or are merged into, its own."""
     columns = 1 if chart.columns <= _ONE_BY_ONE else 2
     height = chart.panel_height * chart.columns / columns
-    if not any(panel.equal for panel in chart.panels):
-        height = min(height, max(chart.panel_height, _HIGHEST))
+    maps = [_upright(panel) for panel in chart.panels if panel.equal]
+    height = max(height, min(_UPRIGHT, _MAP * max(maps))) if maps else min(height, max(chart.panel_height, _HIGHEST))
     chart = replace(chart, columns=columns, panel_height=height)
     place = _Place(chart, NARROW_WIDTH, below_labels=True)
     found: Data = {"height": place.height, "margin": {"t": place.top, "l": 60, "r": 10}, "legend": {"y": place.legend}}
@@ -183,6 +186,13 @@ def _words(chart: Chart, place: _Place) -> list[Data]:
             at = {"x": note.x, "y": note.y, "xref": f"x{_number(i)}", "yref": f"y{_number(i)}", "xanchor": note.align}
             words.append({"text": note.text, "font": {"size": 11, "color": INK}, "showarrow": False, **at})
     return words
+
+
+def _upright(panel: Panel) -> float:
+    """Return the height of a map over its width; 0 if it has no limits."""
+    if not (panel.x_range and panel.y_range):
+        return 0.0
+    return (panel.y_range[1] - panel.y_range[0]) / (panel.x_range[1] - panel.x_range[0])
 
 
 def _bands(chart: Chart) -> list[Data]:

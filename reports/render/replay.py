@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from reports.document.blocks import FlightPicker
+from reports.document.blocks import FlightPicker, Section
 from reports.document.palette import COLOURS, Meaning
 from reports.document.scene import Scene
 from reports.render.script_data import for_script
@@ -55,6 +55,11 @@ def colours() -> dict[str, str]:
 def wanted(picker: FlightPicker) -> bool:
     """Return whether any of the flights can be replayed: a page without one has no use for the library."""
     return any(flight.scene for flight in picker.flights)
+
+
+def within(section: Section) -> bool:
+    """Return whether a section has a replay."""
+    return any(isinstance(block, FlightPicker) and wanted(block) for block in section.blocks)
 
 
 def library() -> str:

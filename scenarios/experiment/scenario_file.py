@@ -26,6 +26,7 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
         "draws",
         "laws",
         "arena",
+        "patrol",
         "report",
     ):
         document.pop(experiment)

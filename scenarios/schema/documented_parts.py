@@ -10,7 +10,7 @@ from gnc.laws.steering_law import STEERING_LAWS
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS
 from scenarios.schema.guidance import GuidanceConfig
 
-FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena")
+FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol")
 """Studies whose scenario files are those of flights."""
 
 DIMENSIONLESS = "-"

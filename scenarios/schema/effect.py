@@ -264,6 +264,7 @@ RULES = (
     Rule(keys=("flights",), acts=lambda s: s.study != "falsify", user="other studies; a search flies search.population"
          " times search.generations"),
     Rule(keys=("laws", "arena."), acts=lambda s: s.study == "arena", user="laws side by side: set study to 'arena'"),
+    Rule(keys=("patrol.",), acts=lambda s: s.study == "patrol", user="several ships one after the other: set study to 'patrol'"),
     Rule(keys=("speed_ratio",), acts=lambda s: bool(s.draws), user="random variables: give draws"),
     Rule(keys=("comparison.nu",), acts=lambda s: not s.comparison.nu or (bool(s.comparison.variants) and "nu" in s.sweep.root),
          user="variants that are flown at swept speed ratios: give comparison.variants and sweep.nu, or use comparison.flights"),

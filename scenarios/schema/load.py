@@ -36,6 +36,7 @@ KINDS: dict[str, type[Any]] = {
     "monte_carlo": Scenario,
     "falsify": Scenario,
     "arena": Scenario,
+    "patrol": Scenario,
 }
 """What a file may say of ``study``, and the scenario that it then holds."""
 

@@ -21,6 +21,7 @@ from scenarios.schema.experiment import (
 )
 from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
 from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
+from scenarios.schema.patrol import PatrolConfig
 from scenarios.schema.report import ReportConfig
 from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
 from scenarios.schema.world import (
@@ -49,8 +50,8 @@ class Scenario(Section):
     """A whole scenario file of flights."""
 
     study: str = "flights"
-    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search; arena, laws side by side; or
-    FILE.py:NAME."""
+    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search; arena, laws side by side;
+    patrol, several ships one after the other; or FILE.py:NAME."""
     title: str
     """What reports and lists call it."""
     description: str = ""
@@ -83,6 +84,7 @@ class Scenario(Section):
     laws: tuple[str, ...] = ()
     """Laws that take part in an arena beside its own, each by its name or FILE.py:NAME."""
     arena: ArenaConfig = ArenaConfig()
+    patrol: PatrolConfig = PatrolConfig()
     place: PlaceConfig = PlaceConfig()
     vessel: VesselConfig = VesselConfig()
     plume: PlumeConfig = PlumeConfig()

@@ -39,6 +39,9 @@ NOT_SCALED = {
     "following.speed_error_mps", "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
     # What an arena of laws tunes and measures, for the aircraft that its file names.
     "arena.tuning_duration_s", "arena.error_max_m", "arena.window_s", "arena.effort_weight_m_s",
+    # Where ships are, and how long they take, for the aircraft that a patrol's file names.
+    "patrol.endurance_s", "patrol.area_m", "patrol.separation_m", "patrol.clearance_m", "patrol.patience_s", "patrol.service_s",
+    "patrol.service_deviation_s",
     "reference.standoff_radius_m",
     # The paper's vehicle has no lag, however fast it turns.
     "kinematic.heading_rate_lag_s",

@@ -1,0 +1,108 @@
+"""Patrols of a run: their ships, and what the UAV did when."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from common.files import is_file
+from common.run_layout import PHASES, SHIPS
+from reports.run.columns import Array, column
+from reports.run.run_data import RunData
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Patrol:
+    """A patrol.
+
+    Attributes
+    ----------
+    name : of the patrol
+    row : of ``summary.csv``
+    ships, phases : its rows of the tables of these names; empty where it failed
+    """
+
+    name: str
+    row: "pd.Series[Any]"
+    ships: pd.DataFrame
+    phases: pd.DataFrame
+
+    @property
+    def duration(self) -> float:
+        """Return when it ended [s]."""
+        return float(self.phases["ends_s"].max()) if len(self.phases) else 0.0
+
+    @property
+    def wind(self) -> tuple[float, float]:
+        """Return the wind's speed [m/s] and the course that it blows to [rad]."""
+        return float(self.row["wind_speed_mps"]), math.radians(float(self.row["wind_from_deg"])) + math.pi
+
+    def track(self, ship: "pd.Series[Any]") -> tuple[Array, Array]:
+        """Return north and east of a ship at the start and at the end of the patrol, shape (2,) each [m]."""
+        course, time = math.radians(float(ship["vessel_course_deg"])), np.array([0.0, self.duration])
+        way = float(ship["vessel_speed_mps"]) * time
+        return float(ship["north_m"]) + way * math.cos(course), float(ship["east_m"]) + way * math.sin(course)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Patrols:
+    """The patrols of a run.
+
+    Attributes
+    ----------
+    run : the run
+    patrols : in their order
+    ships : rows of all their ships
+    """
+
+    run: RunData
+    patrols: list[Patrol]
+    ships: pd.DataFrame
+
+    def total(self, name: str) -> int:
+        """Return the sum of a column of counts over all patrols."""
+        return int(np.nansum(column(self.run.summary, name)))
+
+    @property
+    def hours(self) -> float:
+        """Return the duration of all patrols [h]."""
+        return float(np.nansum(column(self.run.summary, "duration_s"))) / 3600.0
+
+    @property
+    def share(self) -> float:
+        """Return correct verdicts over the oracle's; 1 where that has none."""
+        oracle = self.total("oracle_verdicts")
+        return self.total("correct") / oracle if oracle else 1.0
+
+    @property
+    def wrong_share(self) -> float:
+        """Return wrong ones among all verdicts; 0 where there are none."""
+        verdicts = self.total("verdicts")
+        return self.total("wrong") / verdicts if verdicts else 0.0
+
+
+def read_patrols(run: RunData) -> Patrols:
+    """Return the patrols of a run."""
+    ships, phases = (_table(run.path / name) for name in (SHIPS, PHASES))
+    return Patrols(
+        run=run,
+        patrols=[
+            Patrol(
+                name=str(row["flight_id"]),
+                row=row,
+                ships=ships[ships["patrol"] == row["flight_id"]],
+                phases=phases[phases["patrol"] == row["flight_id"]],
+            )
+            for _, row in run.summary.iterrows()
+        ],
+        ships=ships,
+    )
+
+
+def _table(path: Path) -> pd.DataFrame:
+    if not is_file(path):
+        return pd.DataFrame(columns=["patrol"])
+    return pd.read_csv(path, keep_default_na=False, na_values=[""])
