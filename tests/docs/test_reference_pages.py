@@ -17,6 +17,7 @@ from measurement.estimate.flight_log.run_files import SAMPLE_MEANINGS, samples
 from scenarios.console.main import commands
 from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, INSTRUMENT_MEANINGS, MEANINGS
 from scenarios.schema.documented import documented_keys
+from scenarios.studies.patrol.meanings import MEANINGS as PATROL_MEANINGS
 
 
 def test_every_key_of_a_scenario_is_on_its_page_with_its_meaning():
@@ -33,7 +34,11 @@ def test_every_column_that_is_written_has_a_meaning():
 
 def test_no_meaning_is_of_a_column_that_nothing_writes():
     written = {name for names, _ in tables().values() for name in names}
-    said = {name for meanings in (*MEANINGS.values(), CONVERGENCE_MEANINGS, INSTRUMENT_MEANINGS) for name in meanings}
+    said = {
+        name
+        for meanings in (*MEANINGS.values(), *PATROL_MEANINGS.values(), CONVERGENCE_MEANINGS, INSTRUMENT_MEANINGS)
+        for name in meanings
+    }
     assert said <= written
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
+from common.run_layout import PHASES, SHIPS, SUMMARY
 from measurement.estimate.flight_log.run_files import SAMPLE_MEANINGS
 from reference_pages.markdown import literal, plain, table
 from reports.compare.figures import MEASURES
@@ -16,6 +17,8 @@ from scenarios.simulation.record import unit_of
 from scenarios.simulation.smelling import PlumeBelief
 from scenarios.studies.arena.study import TUNING_COLUMNS
 from scenarios.studies.convergence.ensemble import COLUMNS as CONVERGENCE_COLUMNS
+from scenarios.studies.patrol.meanings import MEANINGS as PATROL_MEANINGS
+from scenarios.studies.patrol.tables import PATROL_COLUMNS, PHASE_COLUMNS, SHIP_COLUMNS
 
 _INTRODUCTION = """\
 # Every column
@@ -49,6 +52,9 @@ def tables() -> dict[str, tuple[Iterable[str], Mapping[str, str]]]:
         "flights/ID.parquet, of flights with a sniffer": (SnifferOnBoard.COLUMNS, histories),
         "flights/ID.parquet, of flights that search for the plume": (PlumeBelief.COLUMNS, histories),
         "summary.csv and counterexamples.csv, of a study of convergence": (CONVERGENCE_COLUMNS, CONVERGENCE_MEANINGS),
+        "summary.csv, of patrols": (PATROL_COLUMNS, PATROL_MEANINGS[SUMMARY]),
+        "ships.csv, of patrols": (SHIP_COLUMNS, PATROL_MEANINGS[SHIPS]),
+        "phases.csv, of patrols": (PHASE_COLUMNS, PATROL_MEANINGS[PHASES]),
         "samples.csv of the log of a flight": (SAMPLE_MEANINGS, SAMPLE_MEANINGS),
         "export/NAME.tracks.csv": (("flight_id", *TRACK_COLUMNS), {"flight_id": "name of the flight", **histories}),
     }

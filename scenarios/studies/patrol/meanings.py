@@ -1,0 +1,82 @@
+"""What the columns of a patrol's tables mean. Units are the ends of the names."""
+
+from collections.abc import Mapping
+
+from common.run_layout import PHASES, SHIPS, SUMMARY
+
+_OF_PATROL = {
+    "flight_id": "name of the patrol, or of the flight beside a ship",
+    "patrol": "name of the patrol",
+    "ship": "number of the ship, from 0",
+    "kept_out": "whether the UAV kept out of the keep-out areas, and that is known to the end",
+    "keepout_violations": "how often it entered the keep-out area of the ship that it served",
+    "min_distance_m": "closest approach to the ship that is served",
+    "others_distance_min_m": "closest approach to any other ship, on the way too",
+    "message": "the reason of an outcome other than completed",
+}
+
+MEANINGS: Mapping[str, Mapping[str, str]] = {
+    SUMMARY: {
+        **_OF_PATROL,
+        "seed": "of the patrol",
+        "wind_speed_mps": "mean wind",
+        "wind_from_deg": "where it comes from, clockwise from north",
+        "ships": "number of ships",
+        "served": "ships that the UAV flew beside",
+        "verdicts": "of them those with a verdict",
+        "correct": "verdicts that agree with the fuel",
+        "wrong": "verdicts that do not",
+        "open": "ships that were served, and have no verdict",
+        "oracle_verdicts": "correct verdicts of an oracle, which knows how long each ship takes",
+        "told_verdicts": "ships with a correct verdict if each is served alone, and the UAV is told where the plume is",
+        "served_per_hour": "ships served in an hour",
+        "duration_s": "duration of the patrol",
+        "transit_s": "time on the way between ships",
+        "beside_s": "time beside ships",
+        "unused_s": "endurance that is left",
+        "aircraft_lost": "whether the aircraft was lost",
+        "outcome": "completed or aircraft_lost",
+        "criteria_met": "whether it kept out everywhere and came through",
+        "wall_time_s": "computing time",
+    },
+    SHIPS: {
+        **_OF_PATROL,
+        "position": "in the order in which ships were served, from 0; empty for a ship that was not",
+        "north_m": "place of the ship at the start of the patrol",
+        "east_m": "place of the ship at the start of the patrol",
+        "vessel_speed_mps": "her speed",
+        "vessel_course_deg": "her course",
+        "plume_source_height_m": "height of her funnel",
+        "emission_load": "load of her engine",
+        "nu": "speed ratio through the air: her speed over the UAV's",
+        "fsc_fuel_percent": "sulphur in her fuel, by mass",
+        "truth": "above or below the limit",
+        "verdict": "above, below or open",
+        "correct": "whether the verdict is the truth",
+        "fsc_percent": "fuel sulphur content that was measured",
+        "leaves_s": "time of the patrol at which the UAV set out for her",
+        "reached_s": "time of the patrol at which the flight beside her began",
+        "orbit_at_s": "time of that flight at which the way to the orbit ended",
+        "time_to_find_s": "time on the orbit until the plume was smelt",
+        "settling_time_s": "time of that flight from which it had settled",
+        "ended_s": "time of the patrol at which the UAV left her",
+        "enough": "why it left before its time, or empty",
+        "outcome": "of the flight beside her, as in other studies",
+        "altitude_outside_s": "time outside the limits of the altitude",
+        "told_service_s": "how long she takes if the UAV is told where the plume is",
+        "told_verdict": "the verdict then",
+        "oracle_position": "in the order of the oracle, from 0; empty for a ship that it leaves out",
+        "oracle_ended_s": "time of the patrol at which the oracle leaves her",
+    },
+    PHASES: {
+        **{name: _OF_PATROL[name] for name in ("flight_id", "patrol", "ship")},
+        "phase": "transit, approach, searching, measuring or leaving",
+        "begins_s": "time of the patrol at which it begins",
+        "ends_s": "time of the patrol at which it ends",
+        "from_north_m": "place at its beginning",
+        "from_east_m": "place at its beginning",
+        "to_north_m": "place at its end",
+        "to_east_m": "place at its end",
+    },
+}
+"""Meanings by the file and the column."""
