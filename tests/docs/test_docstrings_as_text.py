@@ -1,6 +1,9 @@
 """The docstrings of the house come out as text in the documentation: a description is not a type."""
 
+import ast
 import inspect
+import re
+from pathlib import Path
 
 from docstrings import as_text
 
@@ -45,3 +48,20 @@ def test_characters_of_markup_are_escaped_but_in_literals_and_bullets():
 
 def test_names_with_underscores_are_left_as_they_are():
     assert as_text(["omega_0 of heading_rate"]) == ["omega_0 of heading_rate"]
+
+
+ROOMS = ("aircraft", "common", "gnc", "innerloop", "measurement", "reports", "scenarios")
+
+
+def test_every_docstring_of_the_project_names_its_parameters_so():
+    """A line of these sections is an entry, ``name : description``, or goes on with one: else it would be lost among the text."""
+    root = Path(__file__).parents[2]
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    strange = []
+    for path in sorted(path for room in ROOMS for path in (root / room).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            text = (ast.get_docstring(node) or "") if isinstance(node, documented) else ""
+            for section in re.findall(r"^(?:Parameters|Attributes|Raises)\n-+\n(.*?)(?:\n\n|\Z)", text, re.MULTILINE | re.DOTALL):
+                lines = as_text(["Parameters", "----------", *section.splitlines()])
+                strange += [f"{path.relative_to(root)}: {line}" for line in lines[2:] if re.match(r" {3}(?!``| )\S", line)]
+    assert strange == []
