@@ -20,6 +20,11 @@ def is_data_file(name: str) -> bool:
     return name.lower().endswith(DATA_SUFFIXES)
 
 
+def is_path(name: str) -> bool:
+    """Return whether ``name`` leads into a folder, as ``DIR/NAME`` does."""
+    return any(separator and separator in name for separator in ("/", os.sep, os.altsep))
+
+
 def is_file(path: Path) -> bool:
     """Return whether there is a file, which there is not under a name that no file can have."""
     try:
