@@ -114,7 +114,7 @@ def _design(
     write_script(found.design.schedule, root)
     if reversals:
         record = _with_repeated_search(found, root, reversals)
-    write_json(out / DESIGN_RECORD, record)
+    write_json(out / DESIGN_RECORD, record, indent=None)
     command = command_line("innerloop.design", sys.argv[1:])
     write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started, command=command))
     print_design(record)

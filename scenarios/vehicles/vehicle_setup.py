@@ -143,7 +143,8 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
     schedule = found.design.schedule
     with tempfile.TemporaryDirectory() as folder:
         write_tree(write_root(schedule, Path(folder)), run.model)
-    run.write_json(run.innerloop, found.record)
+    # A megabyte of numbers.
+    run.write_json(run.innerloop, found.record, indent=None)
     start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.altitude, schedule.level(schedule.middle))
     turns = schedule.trims[schedule.middle]
     reversal = found.record["turn_reversal"]
