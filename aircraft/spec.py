@@ -2,10 +2,11 @@
 
 import bisect
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from aircraft.errors import AircraftError
+from aircraft.model_files import ModelFiles
 from common.units import RAD_S_PER_RPM
 
 MODELS = Path(__file__).parent / "models"
@@ -139,6 +140,8 @@ class AircraftSpec:
     title : as reports print it
     root : JSBSim root directory that holds ``aircraft/`` and ``engine/``
     model : JSBSim model name
+    folder : of the model file, if it is not ``root/aircraft/model``
+    other_roots : further JSBSim roots whose engines and systems the model may name
     inputs : control inputs; ``elevator``, ``aileron`` and ``throttle`` at least
     own_actuators : only if they are not one for each control input, such as a flying wing's elevons
     driven_states : servo and propeller states that have a property of their own; other lags are measured
@@ -153,6 +156,8 @@ class AircraftSpec:
     title: str
     root: Path
     model: str
+    folder: Path | None = None
+    other_roots: tuple[Path, ...] = ()
     inputs: tuple[ControlInput, ...]
     own_actuators: tuple[Actuator, ...] = ()
     driven_states: tuple[DrivenState, ...] = ()
@@ -161,6 +166,16 @@ class AircraftSpec:
     engine_flags: tuple[str, ...] = ()
     settle_time: float = 2.0
     source: str
+
+    @property
+    def files(self) -> ModelFiles:
+        """Return where the model's files are."""
+        folder = self.folder or self.root / "aircraft" / self.model
+        return ModelFiles(model=self.model, folder=folder, roots=(self.root, *self.other_roots))
+
+    def placed(self, other: "AircraftSpec") -> "AircraftSpec":
+        """Return this aircraft with its files where those of ``other`` are."""
+        return replace(self, root=other.root, folder=other.folder, other_roots=other.other_roots)
 
     @property
     def actuators(self) -> tuple[Actuator, ...]:

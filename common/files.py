@@ -20,6 +20,11 @@ def is_data_file(name: str) -> bool:
     return name.lower().endswith(DATA_SUFFIXES)
 
 
+def is_path(name: str) -> bool:
+    """Return whether ``name`` leads into a folder, as ``DIR/NAME`` does."""
+    return any(separator and separator in name for separator in ("/", os.sep, os.altsep))
+
+
 def is_file(path: Path) -> bool:
     """Return whether there is a file, which there is not under a name that no file can have."""
     try:
@@ -40,14 +45,14 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
         part.unlink(missing_ok=True)
 
 
-def write_json(path: Path, value: Mapping[str, Any]) -> None:
-    """Write a JSON file, completely or not at all.
+def write_json(path: Path, value: Mapping[str, Any], *, indent: int | None = 1) -> None:
+    """Write a JSON file, completely or not at all; with an ``indent`` of None on one line, which takes a tenth of the time.
 
     Raises
     ------
     ValueError : a number is not finite, which JSON cannot express
     """
-    text = json.dumps(value, indent=1, allow_nan=False) + "\n"
+    text = json.dumps(value, indent=indent, allow_nan=False) + "\n"
     write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def command(
     aircraft: Annotated[
-        str | None, typer.Argument(metavar="AIRCRAFT", help="The aircraft to design for, e.g. x8, c172x or FILE.py:NAME.")
+        str | None, typer.Argument(metavar="AIRCRAFT", help="The aircraft to design for, e.g. x8, c172x, DIR/NAME or FILE.py:NAME.")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Directory for the design; default runs/design-AIRCRAFT.")] = None,
     altitude: Annotated[float, typer.Option(min=10.0, max=5000.0, help="Design altitude in metres.")] = 100.0,
@@ -34,37 +34,47 @@ def command(
             "--set", metavar="report.KEY=VALUE", help="Title, author, organisation or logo of the reports; may be repeated."
         ),
     ] = None,
+    aircraft_dir: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to take AIRCRAFT from."),
+    ] = None,
     list_aircraft: Annotated[
-        bool, typer.Option("--list", help="List every known aircraft: whether it can be flown, or why not; then exit.")
+        bool, typer.Option("--list", help="List every known aircraft, or those of --aircraft-dir: whether each flies, or why not.")
     ] = False,
 ) -> None:
     """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a JSBSim root that flies it."""
     from aircraft.errors import AircraftError
+    from aircraft.fleet.folder import folder_path
     from reports.errors import ReportError
 
-    if list_aircraft:
-        _list(altitude)
-        return
-    if aircraft is None:
-        raise typer.Exit(refuse("no aircraft given; `--list` lists the known ones"))
     try:
-        _design(aircraft, out, altitude, reversals, overrides or [], no_report=no_report)
+        if list_aircraft:
+            _list(altitude, aircraft_dir)
+            return
+        name = aircraft if aircraft_dir is None else folder_path(aircraft_dir, aircraft)
+        if name is None:
+            raise AircraftError("no aircraft given; `--list` lists the known ones")
+        _design(name, out, altitude, reversals, overrides or [], no_report=no_report)
     except (AircraftError, ReportError) as error:
         raise typer.Exit(refuse(error)) from None
     except OSError as error:
         raise typer.Exit(refuse(f"'{error.filename}' cannot be written: {error.strerror}; choose another --out")) from None
 
 
-def _list(altitude: float) -> None:
+def _list(altitude: float, directory: Path | None) -> None:
     """Print a line for every aircraft, as soon as it is known."""
+    from aircraft.fleet.find import aircraft_names
+    from aircraft.fleet.folder import folder_names, folder_path
     from innerloop.designs.listing import discover
 
+    names = aircraft_names() if directory is None else [folder_path(directory, name) for name in folder_names(directory)]
+    width = max(18, 1 + max(map(len, names)))
     print("designing every aircraft whose design is not cached; this takes some minutes the first time", file=sys.stderr)
     count = 0
     try:
-        for found in discover(altitude, os.cpu_count() or 1):
+        for found in discover(names, altitude, os.cpu_count() or 1):
             count += found.flies
-            print(f"{'flies' if found.flies else '-':6}{found.name:18}{found.text}", flush=True)
+            print(f"{'flies' if found.flies else '-':6}{found.name:{width}}{found.text}", flush=True)
     except KeyboardInterrupt:
         print("interrupted; finished designs are cached, and the next --list continues from there", file=sys.stderr)
         raise typer.Exit(INTERRUPTED) from None
@@ -75,11 +85,13 @@ def _design(
     aircraft: str, out: Path | None, altitude: float, reversals: int | None, overrides: list[str], *, no_report: bool
 ) -> None:
     from aircraft.fleet.find import find_spec
+    from aircraft.simulation.user_check import check_user_aircraft
     from reports.build import build_reports, check_settings, print_design
 
     check_settings(overrides)
 
     spec = find_spec(aircraft)
+    check_user_aircraft(spec)
     out = out or Path("runs") / f"design-{spec.name}"
     _refuse_another_run(out)
 
@@ -102,7 +114,7 @@ def _design(
     write_script(found.design.schedule, root)
     if reversals:
         record = _with_repeated_search(found, root, reversals)
-    write_json(out / DESIGN_RECORD, record)
+    write_json(out / DESIGN_RECORD, record, indent=None)
     command = command_line("innerloop.design", sys.argv[1:])
     write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started, command=command))
     print_design(record)

@@ -49,6 +49,9 @@ def command(
     memory_limit: Annotated[float | None, typer.Option(help="Memory limit of a process, in GiB; default none.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue the unfinished run in --out.")] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
+    aircraft_dir: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to fly one of.")
+    ] = None,
     flightgear: Annotated[
         str | None, typer.Option(metavar="HOST:PORT", help="Replay a flight in real time, shown by FlightGear at this address.")
     ] = None,
@@ -72,7 +75,7 @@ def command(
             executor_factory = ExecutorFactory(
                 jobs=jobs or os.cpu_count() or 1, executor=executor, scheduler=scheduler, limits=limits
             )
-            status = _run(name, out, executor_factory, seed, overrides or [], resume, no_report, flightgear)
+            status = _run(name, out, executor_factory, seed, overrides or [], resume, no_report, flightgear, aircraft_dir)
     except InputError as error:
         status = refuse(error)
     except KeyboardInterrupt:
@@ -100,6 +103,7 @@ def _run(
     resume: bool,
     no_report: bool,
     flightgear: str | None,
+    aircraft_dir: Path | None,
 ) -> int:
     from scenarios.errors import InputError
     from scenarios.schema.load import catalog, is_flight, load_study
@@ -119,6 +123,10 @@ def _run(
             f"'{name}' is a flight, which is replayed unchanged; leave out --set and --seed, or fly its scenario instead"
         )
     viewer = _viewer(flightgear, replayed=replayed)
+    if aircraft_dir is not None and not replayed:
+        from scenarios.schema.aircraft_folder import aircraft_from
+
+        overrides = aircraft_from(aircraft_dir, name, overrides)
     # Before any slow import: most mistakes in the input are found here.
     scenario = None if replayed else load_study(name, overrides)
 
@@ -131,7 +139,7 @@ def _run(
             from scenarios.engine.runner import fly_study
             from scenarios.studies.replay import Replay
 
-            study = Replay(name, viewer)
+            study = Replay(name, viewer, aircraft_dir=aircraft_dir)
             result = fly_study(study, directory, executor_factory=executor_factory, resume=resume, progress=progress, command=given)
         else:
             from scenarios.studies.registry import run_study

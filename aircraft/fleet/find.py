@@ -1,9 +1,11 @@
-"""Find an aircraft by name: registered ones first, then those that come with JSBSim."""
+"""Find an aircraft by name: registered ones first, then those that come with JSBSim; or by the path of its folder."""
 
 from aircraft.errors import AircraftError
+from aircraft.fleet.folder import folder_spec
 from aircraft.fleet.registry import AIRCRAFT
 from aircraft.fleet.stock import stock_names, stock_spec
 from aircraft.spec import AircraftSpec
+from common.files import is_path
 from common.registry import PluginError, is_file_part
 from common.spelling import did_you_mean
 
@@ -15,7 +17,7 @@ def aircraft_names() -> list[str]:
 
 
 def find_spec(name: str) -> AircraftSpec:
-    """Return the aircraft called ``name``, or that of a file, ``FILE.py:NAME``.
+    """Return the aircraft called ``name``, or that of a file, ``FILE.py:NAME``, or of a folder, ``DIR/NAME``.
 
     Raises
     ------
@@ -25,8 +27,10 @@ def find_spec(name: str) -> AircraftSpec:
         return _registered(name)
     if name in stock_names():
         return stock_spec(name)
+    if is_path(name):
+        return folder_spec(name)
     guess = did_you_mean(name, aircraft_names()) or ";"
-    listed = "`python -m innerloop.design --list` lists the known ones, or give a file as FILE.py:NAME"
+    listed = "`python -m innerloop.design --list` lists the known ones, or give a folder as DIR/NAME, or a file as FILE.py:NAME"
     raise AircraftError(f"unknown aircraft '{name}'{guess} {listed}")
 
 

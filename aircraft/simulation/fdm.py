@@ -63,7 +63,7 @@ class Fdm:
         self.time_step = time_step
         if root is None:
             with tempfile.TemporaryDirectory() as copy:
-                copy_model(spec.root, spec.model, Path(copy), play=False)
+                copy_model(spec.files, Path(copy), play=False)
                 self._exec = self._load(Path(copy))
         else:
             self._exec = self._load(root)

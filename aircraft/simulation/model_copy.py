@@ -1,20 +1,20 @@
-"""A copy of a JSBSim model without its own outputs, sockets and autopilots."""
+"""A copy of a JSBSim model without its own outputs, sockets and autopilots, and a hash of it."""
 
+import hashlib
 import re
 import shutil
+import tempfile
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from aircraft.errors import AircraftError
+from aircraft.model_files import SHARED, ModelFiles
 
 _OWN_AUTOPILOT = re.compile(r"(^|[^a-z])(ap|autopilot|autothrottle)([^a-z]|$)")
-_FOLDERS = {"engine": "engine", "thruster": "engine", "system": "systems", "autopilot": "systems"}
-"""Folder of a JSBSim root where files of an element stand."""
-
 _PLAY = ("hysteresis_width", "deadband_width")
 
 
-def copy_model(root: Path, model: str, directory: Path, *, play: bool = True) -> Path:
+def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path:
     """Copy a model with all it refers to into a JSBSim root of its own, and return the copy's model file.
 
     Outputs and inputs (files, sockets) are left out. So is every autopilot: ``<autopilot>`` elements and systems that
@@ -23,8 +23,7 @@ def copy_model(root: Path, model: str, directory: Path, *, play: bool = True) ->
 
     Parameters
     ----------
-    root : JSBSim root that holds the model; it is not changed
-    model : its name
+    files : of the model; they are not changed
     directory : where to write the copy
     play : whether servos keep their hysteresis and dead bands; a linear model has none
 
@@ -32,22 +31,21 @@ def copy_model(root: Path, model: str, directory: Path, *, play: bool = True) ->
     ------
     AircraftError : the model's file is missing or not XML
     """
-    source = root / "aircraft" / model
-    if not (source / f"{model}.xml").is_file():
-        raise AircraftError(f"no model file {source / model}.xml; check the JSBSim root directory")
-    target = directory / "aircraft" / model
-    shutil.copytree(source, target, dirs_exist_ok=True)
-    model_file = target / f"{model}.xml"
+    if not files.file.is_file():
+        raise AircraftError(f"no model file {files.file}; check the JSBSim root directory")
+    target = directory / "aircraft" / files.model
+    shutil.copytree(files.folder, target, dirs_exist_ok=True, ignore=_not_read)
+    model_file = target / f"{files.model}.xml"
     try:
         document = ET.parse(model_file)
     except ET.ParseError as error:
-        raise AircraftError(f"model file {source / model}.xml is not valid XML: {error}; correct it") from None
+        raise AircraftError(f"model file {files.file} is not valid XML: {error}; correct it") from None
     config = document.getroot()
-    at_rest = [*_take_out(config, root, source), *_of_another_program(config, root, source)]
+    at_rest = [*_take_out(config, files), *_of_another_program(config, files)]
     if at_rest:
         before = next((i for i, element in enumerate(config) if element.tag == "flight_control"), len(config))
         config.insert(before, _properties_at_rest(at_rest))
-    _copy_referenced(config, root, source, directory)
+    _copy_referenced(config, files, directory)
     if not play:
         for folder in (target, directory / "systems"):
             for path in folder.rglob("*.xml"):
@@ -57,22 +55,43 @@ def copy_model(root: Path, model: str, directory: Path, *, play: bool = True) ->
     return model_file
 
 
-def _take_out(config: ET.Element, root: Path, source: Path) -> list[str]:
+def model_hash(files: ModelFiles) -> str:
+    """Return a hash of a model: of every file that its copy has.
+
+    Raises
+    ------
+    AircraftError : the model's file is missing or not XML
+    """
+    digest = hashlib.sha256()
+    with tempfile.TemporaryDirectory() as folder:
+        copy_model(files, Path(folder))
+        for path in sorted(path for path in Path(folder).rglob("*") if path.is_file()):
+            digest.update(path.relative_to(folder).as_posix().encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def _not_read(folder: str, names: list[str]) -> list[str]:
+    """Return the files that JSBSim does not read: pictures and sounds beside a model can be large."""
+    return [name for name in names if not (name.endswith((".xml", ".toml")) or Path(folder, name).is_dir())]
+
+
+def _take_out(config: ET.Element, files: ModelFiles) -> list[str]:
     """Remove outputs, inputs and autopilots; return the properties that the autopilots had."""
     names: list[str] = []
     for element in list(config):
         if element.tag in ("output", "input"):
             config.remove(element)
         elif _is_autopilot(element):
-            names += _properties(_content(element, root, source))
+            names += _properties(_content(element, files))
             config.remove(element)
     return list(dict.fromkeys(names))
 
 
-def _of_another_program(config: ET.Element, root: Path, source: Path) -> list[str]:
+def _of_another_program(config: ET.Element, files: ModelFiles) -> list[str]:
     """Return the properties that the model reads from FlightGear's tree, such as ``/sim/model/pushback``: JSBSim alone
     does not have them."""
-    parts = [config, *(_content(element, root, source) for element in config.iter() if element.get("file"))]
+    parts = [config, *(_content(element, files) for element in config.iter() if element.get("file"))]
     words = (word.lstrip("-") for part in parts for element in part.iter() for word in (element.text or "").split())
     return list(dict.fromkeys(word for word in words if re.fullmatch(r"/[A-Za-z_][\w.\-/\[\]]*", word)))
 
@@ -84,21 +103,10 @@ def _is_autopilot(element: ET.Element) -> bool:
     return element.tag == "system" and any(_OWN_AUTOPILOT.search(name.lower()) for name in names)
 
 
-def _content(element: ET.Element, root: Path, source: Path) -> ET.Element:
+def _content(element: ET.Element, files: ModelFiles) -> ET.Element:
     """Return the element itself, or the root of the file that it names."""
-    found = _find(element, root, source)
+    found = files.find(element)
     return ET.parse(found).getroot() if found else element
-
-
-def _find(element: ET.Element, root: Path, source: Path) -> Path | None:
-    """Return the file that an element names, searched as JSBSim does."""
-    if not (file := element.get("file")):
-        return None
-    name = file if file.endswith(".xml") else f"{file}.xml"
-    folders = [source, source / "Engines", source / "Systems", source / "systems"]
-    if element.tag in _FOLDERS:
-        folders.append(root / _FOLDERS[element.tag])
-    return next((folder / name for folder in folders if (folder / name).is_file()), None)
 
 
 def _properties(autopilot: ET.Element) -> list[str]:
@@ -118,13 +126,15 @@ def _properties_at_rest(names: list[str]) -> ET.Element:
     return system
 
 
-def _copy_referenced(config: ET.Element, root: Path, source: Path, directory: Path) -> None:
-    """Copy the engines, thrusters and systems in the root's common folders; the model's own files are copied
-    already."""
+def _copy_referenced(config: ET.Element, files: ModelFiles, directory: Path) -> None:
+    """Copy the engines, thrusters and systems of the roots' common folders, and engines that stand beside the model itself, where
+    JSBSim does not look for them; the model's other files are copied already."""
     for element in config.iter():
-        if element.tag not in _FOLDERS or not (found := _find(element, root, source)) or found.is_relative_to(source):
+        if element.tag not in SHARED or not (found := files.find(element)):
             continue
-        folder = directory / _FOLDERS[element.tag]
+        if found.is_relative_to(files.folder) and not (SHARED[element.tag] == "engine" and found.parent == files.folder):
+            continue
+        folder = directory / SHARED[element.tag]
         folder.mkdir(parents=True, exist_ok=True)
         shutil.copy(found, folder / found.name)
 

@@ -88,7 +88,7 @@ class PlumeEstimate:
     ----------
     height, height_deviation : of the axis above the sea [m]
     offset, offset_deviation : of the axis to the right of the predicted one [m]
-    spread : of one realisation in height [m]
+    spread, spread_across : of one realisation in height and across [m]
     innovation : mean normalised innovation squared [-]
     """
 
@@ -97,6 +97,7 @@ class PlumeEstimate:
     offset: float = math.nan
     offset_deviation: float = math.nan
     spread: float = math.nan
+    spread_across: float = math.nan
     innovation: float = math.nan
 
 
@@ -183,7 +184,7 @@ class SearchedAxis:
             found = self._estimator
             self.estimate = PlumeEstimate(
                 found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z,
-                found.innovation,
+                found.sigma_y, found.innovation,
             )  # fmt: skip
 
 

@@ -5,9 +5,10 @@ the exact exponential) and of the autopilot. With every loop closed, the sensiti
 L is the loop opened there and closed elsewhere; so L = 1/S - 1 follows for all breaks from one inverse.
 """
 
+import copy
 import functools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import control
@@ -87,9 +88,22 @@ class Loops:
         self._rows = [aircraft.output_labels.index(name) for name in self.measurements]
         self._columns = [aircraft.input_labels.index(name) for name in self.controls]
         self._reads = [autopilot.input_labels.index(name) for name in self.measurements]
-        plant = _response(aircraft, frequencies)[:, self._rows][:, :, self._columns]
-        plant = plant * np.exp(-1j * frequencies * delay)[:, None, None]
-        law = -_response(autopilot, frequencies)[:, :, self._reads]
+        self._plant = _response(aircraft, frequencies)[:, self._rows][:, :, self._columns]
+        self._law = -_response(autopilot, frequencies)[:, :, self._reads]
+        self._close()
+
+    def with_aircraft(self, aircraft: control.StateSpace, delay: float) -> "Loops":
+        """Return the loops of a changed aircraft, or of another delay, under the same autopilot, whose response is known."""
+        loops = copy.copy(self)
+        loops._aircraft, loops._delay = aircraft, delay
+        if aircraft is not self._aircraft:
+            loops._plant = _response(aircraft, self.frequencies)[:, self._rows][:, :, self._columns]
+        loops._close()
+        return loops
+
+    def _close(self) -> None:
+        """Close every loop."""
+        plant, law = self._plant * np.exp(-1j * self.frequencies * self._delay)[:, None, None], self._law
         self._sensitivity = np.linalg.inv(np.eye(len(self.controls)) + law @ plant)
         # At the measurements S = 1 - P (1 + K P)^-1 K; only its diagonal is needed.
         self._at_measurements = 1.0 - np.einsum("fik,fki->fi", plant @ self._sensitivity, law)
@@ -108,17 +122,15 @@ class Loops:
         """Return where loops are opened: at each control and at each regulated measurement."""
         return (*self.controls, *(name for name in SENSOR_BREAKS if name in self.measurements))
 
-    def margins(self, *, together: bool = True) -> list[Margin]:
-        """Return the margins at each of ``breaks`` and, if ``together``, at all controls at once."""
-        margins = [loop_margin(BREAK_NAMES.get(name, name), self.opened(name), self.frequencies) for name in self.breaks]
-        if not together:
-            return margins
+    def margins(self) -> list[Margin]:
+        """Return the margins at each of ``breaks``."""
+        return [loop_margin(BREAK_NAMES.get(name, name), self.opened(name), self.frequencies) for name in self.breaks]
+
+    def margin_at_all_controls(self) -> Margin:
+        """Return the disk margins for independent changes in all controls at once."""
         gain_db, phase_deg = self._disk_at_all_controls()
         nan = math.nan
-        return [
-            *margins,
-            Margin(loop=ALL_CONTROLS, gain_db=nan, phase_deg=nan, crossover=nan, disk_gain_db=gain_db, disk_phase_deg=phase_deg),
-        ]
+        return Margin(loop=ALL_CONTROLS, gain_db=nan, phase_deg=nan, crossover=nan, disk_gain_db=gain_db, disk_phase_deg=phase_deg)
 
     @property
     def stable(self) -> bool:
@@ -128,12 +140,10 @@ class Loops:
     def poles(self) -> Complex:
         """Return the poles of the closed loop [1/s], the delay as a second-order Pade approximation."""
         plant, law = self._aircraft, self._autopilot
-        pade = _pade(self._delay)
-        n_controls = len(self.controls)
         # Law, delays, aircraft, one after the other; the aircraft's outputs come back to the law.
-        delayed = (np.kron(np.eye(n_controls), m) for m in (pade.A, pade.B, pade.C, pade.D))
         chain = _series(
-            delayed, (plant.A, plant.B[:, self._columns], plant.C[self._rows], plant.D[np.ix_(self._rows, self._columns)])
+            _delays(self._delay, len(self.controls)),
+            (plant.A, plant.B[:, self._columns], plant.C[self._rows], plant.D[np.ix_(self._rows, self._columns)]),
         )
         a, b, c, d = _series((law.A, law.B[:, self._reads], law.C, law.D[:, self._reads]), chain)
         return np.asarray(np.linalg.eigvals(a + b @ np.linalg.solve(np.eye(len(d)) - d, c)))
@@ -164,7 +174,15 @@ def _pade(delay: float) -> control.StateSpace:
     return control.ss(control.tf(*control.pade(delay, 2)))
 
 
-def _series(first: Iterable[Array], then: Matrices) -> Matrices:
+@functools.cache
+def _delays(delay: float, channels: int) -> Matrices:
+    """Return A, B, C, D of the same delay [s] in each of some channels."""
+    pade = _pade(delay)
+    a, b, c, d = (np.kron(np.eye(channels), m) for m in (pade.A, pade.B, pade.C, pade.D))
+    return a, b, c, d
+
+
+def _series(first: Matrices, then: Matrices) -> Matrices:
     """Return A, B, C, D of one system behind another."""
     a1, b1, c1, d1 = first
     a2, b2, c2, d2 = then

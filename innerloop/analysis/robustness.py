@@ -1,8 +1,8 @@
 """Margins at every operating point of a design, between them, and with a perturbed aircraft."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import control
 
@@ -176,15 +176,33 @@ def check_design(schedule: Schedule, *, changed: bool = True) -> list[Check]:
 
 
 def _checks(law: ControlLaw, point: OperatingPoint, cases: "dict[str, tuple[Change, int]]") -> Iterator[Check]:
-    autopilot = linear_controller(law, point.trim)
+    as_modelled = _loops(law, point)
     for case, (change, late) in cases.items():
-        delay = loop_delay(law.schedule.period, late)
-        loops = Loops(change(point.model, point.trim), autopilot, delay)
+        loops = as_modelled.with_aircraft(change(point.model, point.trim), loop_delay(law.schedule.period, late))
         yield Check(
             case=case,
             airspeed=point.trim.airspeed,
             bank=point.bank,
             between=point.between,
             stable=loops.stable,
-            margins=tuple(loops.margins(together=case == NOMINAL and not point.between)),
+            margins=tuple(loops.margins()),
         )
+
+
+def _loops(law: ControlLaw, point: OperatingPoint) -> Loops:
+    return Loops(point.model, linear_controller(law, point.trim), law.schedule.delay)
+
+
+def with_all_controls(schedule: Schedule, checks: Sequence[Check]) -> list[Check]:
+    """Return the checks of a design, to those of the grid's points as modelled added the disk margins at all controls at once.
+
+    Nothing is required of those, and they take as long as all other margins.
+    """
+    law = ControlLaw(schedule)
+    of_grid = iter([point for point in operating_points(schedule) if not point.between])
+    return [
+        replace(check, margins=(*check.margins, _loops(law, next(of_grid)).margin_at_all_controls()))
+        if check.case == NOMINAL and not check.between
+        else check
+        for check in checks
+    ]

@@ -8,13 +8,12 @@ import platform
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import aircraft
 import common
 import innerloop
 from aircraft.errors import AircraftError
-from aircraft.simulation.model_copy import copy_model
+from aircraft.simulation.model_copy import model_hash
 from aircraft.spec import AircraftSpec
 from common.files import write_whole
 from innerloop.designs.designer import Design, DesignError, design_autopilot
@@ -74,13 +73,13 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
     if found.refused is not None or found.made is None:
         refused = found.refused or _Refused(message=f"aircraft '{spec.name}' has no design", is_margins=False)
         raise (DesignError if refused.is_margins else AircraftError)(refused.message)
-    return _at(spec.root, found.made)
+    return _at(spec, found.made)
 
 
-def _at(root: Path, found: Designed) -> Designed:
-    """Return a design whose model is in ``root``: the same files may have been elsewhere when it was made."""
+def _at(spec: AircraftSpec, found: Designed) -> Designed:
+    """Return a design whose model is where that of ``spec`` is: the same files may have been elsewhere when it was made."""
     schedule = found.design.schedule
-    schedule = replace(schedule, spec=replace(schedule.spec, root=root))
+    schedule = replace(schedule, spec=schedule.spec.placed(spec))
     return replace(found, design=replace(found.design, schedule=schedule))
 
 
@@ -88,25 +87,19 @@ def design_key(spec: AircraftSpec, altitude: float) -> str:
     """Return the hash of everything a design depends on."""
     digest = hashlib.sha256()
     for text in (
-        repr(replace(spec, root=Path())),
+        repr(replace(spec, root=Path(), folder=None, other_roots=())),
         repr(altitude),
         platform.python_version(),
+        model_hash(spec.files),
         *(f"{package} {importlib.metadata.version(package)}" for package in _PACKAGES),
     ):
         digest.update(text.encode())
     for package in (aircraft, common, innerloop):
         for folder in package.__path__:
-            _add_files(digest, Path(folder), "*.py")
-    with tempfile.TemporaryDirectory() as copy:
-        copy_model(spec.root, spec.model, Path(copy))
-        _add_files(digest, Path(copy), "*.xml")
+            for path in sorted(Path(folder).rglob("*.py")):
+                digest.update(str(path.relative_to(folder)).encode())
+                digest.update(path.read_bytes())
     return digest.hexdigest()
-
-
-def _add_files(digest: Any, folder: Path, pattern: str) -> None:
-    for path in sorted(folder.rglob(pattern)):
-        digest.update(str(path.relative_to(folder)).encode())
-        digest.update(path.read_bytes())
 
 
 def _design(spec: AircraftSpec, altitude: float) -> _Entry:

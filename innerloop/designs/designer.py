@@ -16,7 +16,7 @@ from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec, Envelope
 from innerloop.analysis.margins import ALL_CONTROLS
 from innerloop.analysis.perturbations import NOMINAL
-from innerloop.analysis.robustness import REQUIRED, Check, check_design
+from innerloop.analysis.robustness import REQUIRED, Check, check_design, with_all_controls
 from innerloop.synthesis.gains import design_gains
 from innerloop.synthesis.rate import PERIODS
 from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL, LEVEL_GAINS, TRIM_BANKS, Schedule, table_banks
@@ -95,7 +95,7 @@ def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
         short = [check for check in checks if not check.met]
         if not short:
             schedule, checks = _computed_seldom(schedule, checks)
-            return Design(schedule=schedule, bandwidths=bandwidths, checks=tuple(checks))
+            return Design(schedule=schedule, bandwidths=bandwidths, checks=tuple(with_all_controls(schedule, checks)))
         bandwidths = _slowed(bandwidths, short)
     worst = min(short, key=lambda check: check.shortfall)
     raise DesignError(

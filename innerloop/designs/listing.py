@@ -2,13 +2,13 @@
 
 import math
 import multiprocessing
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 
 from aircraft.errors import AircraftError
-from aircraft.fleet.find import aircraft_names, find_spec
+from aircraft.fleet.find import find_spec
 from common.interrupt import follow_parent
 from innerloop.analysis.perturbations import NOMINAL
 from innerloop.designs.cache import designed
@@ -31,15 +31,15 @@ class Discovered:
     text: str
 
 
-def discover(altitude: float, jobs: int) -> Iterator[Discovered]:
-    """Yield every known aircraft in the order of ``aircraft_names``, as soon as it is known whether it flies.
+def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Discovered]:
+    """Yield aircraft in the order of ``names``, each as soon as it is known whether it flies.
 
     Parameters
     ----------
+    names : of known aircraft, or paths of their folders
     altitude : of the designs [m]
     jobs : processes; an aircraft that JSBSim cannot survive costs its process, not the list
     """
-    names = aircraft_names()
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=follow_parent)
     try:

@@ -17,7 +17,7 @@ def write_root(schedule: Schedule, directory: Path) -> Path:
     left out (``aircraft.simulation.model_copy``); its servos keep their play.
     """
     spec = schedule.spec
-    model_file = copy_model(spec.root, spec.model, directory)
+    model_file = copy_model(spec.files, directory)
     model = ET.parse(model_file)
     root = model.getroot()
     systems = directory / "systems"

@@ -161,6 +161,7 @@ def _verdict(runs: Sequence[Run], compared: Sequence[Compared]) -> Verdict:
         detail=" ".join(f"{of.pairs.other.title}: {' '.join(pairing_sentences(of.pairs))}" for of in compared),
         failures=[line for of in compared for line in _lines(of)],
         figures=[card for of in compared for card in _cards(of, alone=len(compared) == 1)],
+        judges=False,
     )
 
 
@@ -208,17 +209,15 @@ def _cards(compared: Compared, *, alone: bool) -> list[Card]:
     pairs = compared.pairs
     first, other = pairs.first.letter, pairs.other.letter
     cards = [
-        Card(f"Flights paired, {other} with {first}", f"{len(pairs):,}", judged=False),
-        Card(
-            f"Met in {first} alone, in {other} alone", f"{count(pairs.no_longer_met):,}, {count(pairs.newly_met):,}", judged=False
-        ),
+        Card(f"Flights paired, {other} with {first}", f"{len(pairs):,}"),
+        Card(f"Met in {first} alone, in {other} alone", f"{count(pairs.no_longer_met):,}, {count(pairs.newly_met):,}"),
     ]
     violations = [f"{total(rows, 'keepout_violations'):,}" for rows in (pairs.before, pairs.after)]
-    cards.append(Card(f"Keep-out violations of paired flights in {first}, in {other}", ", ".join(violations), judged=False))
+    cards.append(Card(f"Keep-out violations of paired flights in {first}, in {other}", ", ".join(violations)))
     if not alone:
         return cards
     for difference in [compared.found[name] for name in _CARDS if name in compared.found][:_CARDS_MAX]:
         figure = difference.figure
         value = f"{signed(difference.median, figure.digits)} {figure.unit}"
-        cards.append(Card(f"{figure.name}: median of {other} − {first}", value, judged=False))
+        cards.append(Card(f"{figure.name}: median of {other} − {first}", value))
     return cards

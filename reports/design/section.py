@@ -21,10 +21,10 @@ def innerloop_section(record: Record) -> Section:
         anchor="innerloop",
         title="Autopilot",
         blocks=[
-            responses,
             step_table(design),
             Heading("Margins at the middle design airspeed"),
             _margin_table(design),
+            responses,
             *others,
             Heading(f"Equilibria: level, and at {bank:.3g} degrees of bank"),
             trim_table(trims),

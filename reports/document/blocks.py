@@ -77,7 +77,7 @@ class FlightContent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlightPicker:
-    """Flights, one at a time: picked on the screen, and a page each at the end of what is printed. A report has one at most."""
+    """Flights, one at a time: picked on the screen, and a page each in print. A report has one at most."""
 
     flights: list[FlightContent]
 
@@ -109,20 +109,19 @@ class Section:
 class Card(NamedTuple):
     """A figure that is judged or told: its name, its value, what is required of it, and whether that is met.
 
-    No limit, and None for ``met``, where nothing is required; not ``judged`` where nothing could be, as in a comparison.
+    No limit, and None for ``met``, where nothing is required.
     """
 
     name: str
     value: str
     limit: str = ""
     met: bool | None = None
-    judged: bool = True
 
     @property
     def judgement(self) -> str:
         """Return what its criterion says, in words and with a sign: colour alone says nothing in grey."""
         if self.met is None:
-            return self.limit or "no criterion" * self.judged
+            return self.limit or "no criterion"
         return f"{'✓ met' if self.met else '✗ not met'}, required {self.limit}"
 
 
@@ -137,6 +136,7 @@ class Verdict:
     headline, detail : in words
     failures : a line for each failure
     figures : what it rests on, the most important first: page 1 shows these
+    judges : whether figures have criteria, unlike those of a comparison
     """
 
     holds: bool
@@ -145,6 +145,7 @@ class Verdict:
     detail: str
     failures: list[str]
     figures: list[Card]
+    judges: bool = True
 
     @property
     def tone(self) -> str:

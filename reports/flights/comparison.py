@@ -22,6 +22,9 @@ _SHOWN_TURNS = 45.5
 _SHOWN_BANDS = 1.2
 """Largest distance that a panel shows, over the settling band [-]."""
 
+_HEIGHT = 1.1
+"""Height of all panels at most, over the width of the page: with heading and caption they stand on one."""
+
 _FLIGHTS_MAX = 4
 """Flights that have a panel with their comparisons."""
 
@@ -84,7 +87,7 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
             )
     caption = "Distance to the reference from settling on, of flights of the study and with parts changed."
     name = f"{trial.name}-comparison"
-    return Chart(name=name, caption=caption, panels=panels, panel_height=0.34) if panels else None
+    return Chart(name=name, caption=caption, panels=panels, panel_height=min(0.34, _HEIGHT / len(panels))) if panels else None
 
 
 def _error_line(run: RunData, row: "pd.Series[Any]", colour: str, duration: float) -> list[Line]:

@@ -3,6 +3,7 @@
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Findings, Section, Text
 from reports.document.chart import Chart
+from reports.finding.flights import finding_sections
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import closest_and_typical, flights_in_words
 from reports.flights.names import flight_name
@@ -28,6 +29,7 @@ def flights_content(run: RunData) -> Findings:
     sections = [
         *monte_carlo_sections(run),
         *falsification_sections(run),
+        *finding_sections(run, trials),
         *sulphur_sections(run),
         _overview(trials),
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),

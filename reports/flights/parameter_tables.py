@@ -14,7 +14,7 @@ from reports.run.run_data import RunData
 from reports.run.trials import Parameters, Trial
 
 _HEAD = ["Parameter", "Value", "Default", "Unit", "Meaning and equation"]
-_WIDTHS = [2.9, 2.1, 1.1, 0.5, 2.9]
+_WIDTHS = [2.5, 1.5, 0.9, 0.5, 4.1]
 
 
 def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:

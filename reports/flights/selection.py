@@ -32,15 +32,16 @@ def flight_section(trials: list[Trial]) -> Section:
         telling = {str(row["flight_id"]): why for _, row, why in picked}
         flights = [_of_sweep(trials[0], row, telling.get(str(row["flight_id"]), "")) for _, row in trials[0].rows.iterrows()]
         text = (
-            f"Every flight of the sweep. In print {len(telling)} have a page at the end: {', '.join(telling.values())};"
+            f"Every flight of the sweep. In print {len(telling)} have a page of their own: {', '.join(telling.values())};"
             " reports.build --all-flights prints all."
         )
     else:
         flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked]
         text = (
-            f"{len(flights)} flights: of each trial those with the deepest keep-out violation and with a criterion that is not met,"
-            " if there are such, the closest approach, and the one whose closest approach is the median."
-            " In print each has a page at the end."
+            "Of each trial the flights with the deepest keep-out violation and with a criterion that is not met, if there are such,"
+            " the closest approach, and the one whose closest approach is the median. In print each has a page of its own."
+            if len(flights) > 1
+            else "In print it has a page of its own."
         )
     blocks: list[Block] = [Text(text), FlightPicker(flights=flights)]
     return Section(anchor="flights", title="Single flights", nav_title="Flights", blocks=blocks if flights else [])

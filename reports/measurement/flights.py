@@ -130,7 +130,7 @@ def _told(row: "pd.Series[Any]") -> str:
     return (
         f"{called}: it holds {row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} % sulphur (95 %), and with a"
         f" probability of {percent(probability)} more than the limit. Quality {row['sulphur_quality']}"
-        + (f": {row['sulphur_reason']}." if row["sulphur_reason"] else ".")
+        + (f": {row['sulphur_reason']}." if row["sulphur_reason"] and pd.notna(row["sulphur_reason"]) else ".")
         + f" The fuel's own content is {row['fsc_fuel_percent']:.3f} %, of which a perfect instrument reads"
         f" {row['fsc_expected_percent']:.3f} %."
     )

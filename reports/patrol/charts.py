@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.patrol.data import Patrol, Patrols
@@ -16,6 +16,10 @@ _MINUTE = 60.0
 
 _EDGE = 0.7
 """Room beyond the first and the last row of a time line, in rows."""
+
+
+_ABOVE = 0.03
+"""How far above a ship her number stands, over the height of what ships sail."""
 
 
 def patrol_chart(patrol: Patrol) -> Chart:
@@ -47,15 +51,19 @@ def time_lines(patrols: Patrols) -> Chart:
 
 
 def _map(patrol: Patrol) -> Panel:
-    lines, notes = [], []
+    lines: list[Line] = []
+    notes: list[Note] = []
+    tracks = [patrol.track(ship) for _, ship in patrol.ships.iterrows()]
+    room = _ABOVE * float(np.ptp(np.concatenate([north for north, _ in tracks])))
     for _, ship in patrol.ships.iterrows():
         north, east = patrol.track(ship)
+        served = pd.notna(ship["position"])
         lines.append(Line(x=east, y=north, label="ship", colour=Meaning.SHIP, style="thin"))
-        if pd.isna(ship["position"]):
-            lines.append(Line(x=east[:1], y=north[:1], label="not served", colour=Meaning.SHIP, style="cross"))
-        notes.append(Note(x=float(east[0]), y=float(north[0]), text=f"   {ship['ship']}", align="left"))
-    way = patrol.phases[patrol.phases["phase"] == "transit"]
-    for _, leg in way.iterrows():
+        label = "" if served else "not served"
+        style: Style = "dots" if served else "cross"
+        lines.append(Line(x=east[:1], y=north[:1], label=label, colour=Meaning.SHIP, style=style))
+        notes.append(Note(x=float(east[0]), y=float(north[0]) + room, text=str(ship["ship"])))
+    for _, leg in patrol.phases.iterrows():
         x, y = (np.array([leg[f"from_{axis}_m"], leg[f"to_{axis}_m"]], dtype=np.float64) for axis in ("east", "north"))
         lines.append(Line(x=x, y=y, label="UAV", colour=Meaning.FLOWN))
     measured = patrol.phases[patrol.phases["phase"] == "measuring"]

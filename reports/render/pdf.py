@@ -33,7 +33,7 @@ def write_pdf(report: Content, path: Path, *, all_flights: bool = False) -> None
 def _data(report: Content, directory: Path, *, all_flights: bool) -> Data:
     pickers = [block for section in report.sections for block in section.blocks if isinstance(block, FlightPicker)]
     sections = [_section(section, directory) for section in report.sections]
-    # Flights have pages of their own before the provenance, and their figures the numbers after all others.
+    # Flights have pages of their own before parameters and provenance, and their figures the numbers after all others.
     numbers = count(figures_in(report.picture, report.sections) + 1)
     flights = [flight for picker in pickers for flight in picker.flights if all_flights or flight.printed]
     head, verdict = report.letterhead, report.verdict
@@ -51,7 +51,7 @@ def _data(report: Content, directory: Path, *, all_flights: bool) -> Data:
         "flown": report.flown,
         "verdict": {"tone": verdict.tone, "sign": verdict.sign, "headline": verdict.headline, "detail": verdict.detail},
         "failures": verdict.first_failures,
-        "cards": [{**card._asdict(), "judgement": card.judgement} for card in verdict.cards],
+        "cards": [{**card._asdict(), "judgement": card.judgement if verdict.judges else ""} for card in verdict.cards],
         "picture": _image(report.picture, directory) if report.picture else None,
         "sections": [section for section in sections if section["blocks"]],
         "flights": [_flight(flight, directory, numbers) for flight in flights],

@@ -43,6 +43,7 @@ class PlumeShape:
     distance : from the funnel along the sea, increasing from 0 [m]
     height : of the axis above the sea [m]
     half_width, half_height : of the tube across and up [m]
+    spread_across, spread_up : of one realisation about its own centre, without its meander [m]
     smoke : whether the model has a width; of an axis alone it is ``LINE_HALF_WIDTH``
     """
 
@@ -50,6 +51,8 @@ class PlumeShape:
     height: Array
     half_width: Array
     half_height: Array
+    spread_across: Array
+    spread_up: Array
     smoke: bool
 
 
@@ -72,7 +75,10 @@ def plume_shape(config: Config, *, speed: float, wind: float, apparent_wind: flo
             pass
     climb = math.tan(math.radians(float(config["plume"].get("elevation_deg", 0.0))))
     height, width = float(config["plume"]["source_height_m"]) + climb * distance, np.full(_SECTIONS, LINE_HALF_WIDTH)
-    return PlumeShape(distance=distance, height=height, half_width=width, half_height=width, smoke=False)
+    own = width / SPREADS
+    return PlumeShape(
+        distance=distance, height=height, half_width=width, half_height=width, spread_across=own, spread_up=own, smoke=False
+    )
 
 
 def _smoke(config: Config, distance: Array, *, speed: float, wind: float, apparent_wind: float) -> PlumeShape:
@@ -92,5 +98,7 @@ def _smoke(config: Config, distance: Array, *, speed: float, wind: float, appare
         height=np.interp(age, ages, table.height[0]),
         half_width=SPREADS * np.interp(age, ages, across),
         half_height=SPREADS * np.interp(age, ages, up),
+        spread_across=np.interp(age, ages, table.relative_y[0]),
+        spread_up=np.interp(age, ages, table.relative_z[0]),
         smoke=True,
     )

@@ -174,4 +174,5 @@ def _table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
     for name in ("message", "outcome"):
         if name in frame:
             frame[name] = ["" if pd.isna(value) else str(value) for value in frame[name]]
-    return frame
+    # In one piece: pandas warns of a frame whose many columns were replaced one by one.
+    return frame.copy()

@@ -163,9 +163,9 @@ class RunDirectory:
         path.parent.mkdir(parents=True, exist_ok=True)
         return path
 
-    def write_json(self, path: Path, value: Mapping[str, Any]) -> None:
-        """Write a JSON file, completely or not at all."""
-        write_json(path, value)
+    def write_json(self, path: Path, value: Mapping[str, Any], *, indent: int | None = 1) -> None:
+        """Write a JSON file, completely or not at all; with an ``indent`` of None on one line."""
+        write_json(path, value, indent=indent)
 
     def write_frame(self, name: str, frame: "pd.DataFrame") -> None:
         """Write a table to ``name``, a CSV or Parquet file by its suffix, completely or not at all."""

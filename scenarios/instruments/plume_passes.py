@@ -1,17 +1,14 @@
 """Passes through a plume: how well it was hit, and for how long."""
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
 
 from measurement.plume.fluctuating_plume import PlumeSample
+from measurement.plume.passes import HIT, passes
 
 Array = npt.NDArray[np.float64]
-
-HIT = 0.6
-"""Concentration at the peak of a pass, over that on the plume's own axis, from which it counts as a hit [-]."""
 
 INSIDE = math.exp(-2.0)
 """Concentration over that of the axis from which a place counts as inside the plume [-]: two spreads from the axis."""
@@ -27,22 +24,6 @@ def fraction_of_axis(plume: PlumeSample) -> Array:
     """Return the concentration over that in the centre of the plume's cross-section; 0 where there is no plume."""
     inside = plume.axis_dilution > 0.0
     return np.divide(plume.dilution, plume.axis_dilution, out=np.zeros_like(plume.dilution), where=inside)
-
-
-def passes(across: Array) -> Iterator[slice]:
-    """Yield the samples of each pass: from half-way since the last change of sides to half-way to the next.
-
-    Parameters
-    ----------
-    across : distance from the plume's axis, positive on one side, not a number where there is no plume, shape (n,) [m]
-    """
-    change = np.flatnonzero(across[:-1] * across[1:] < 0.0)
-    if not len(change):
-        return
-    middle = (change[:-1] + change[1:]) // 2 + 1
-    begins = [max(0, 2 * change[0] - middle[0]) if len(middle) else 0, *middle]
-    ends = [*middle, min(len(across), 2 * change[-1] - middle[-1]) if len(middle) else len(across)]
-    yield from (slice(int(begin), int(end)) for begin, end in zip(begins, ends, strict=True))
 
 
 def pass_figures(across: Array, above: Array, fraction: Array, excess_co2: Array, *, time_step: float) -> dict[str, float]:

@@ -7,9 +7,9 @@ import numpy.typing as npt
 import pandas as pd
 
 from gnc.mission.mode import Mode
+from measurement.plume.passes import HIT, passes
 from scenarios.engine.task import Row
 from scenarios.instruments.air_samples import CLEAN_AIR
-from scenarios.instruments.plume_passes import HIT, passes
 from scenarios.schema.flight import FlightConfig
 
 Array = npt.NDArray[np.float64]

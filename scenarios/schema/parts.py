@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from common.files import is_data_file
+from common.files import is_data_file, is_path
 from common.registry import is_file_part
 from scenarios.schema.scenario import Scenario
 
@@ -15,13 +15,16 @@ _WORDS = ("title", "description", "author", "organisation")
 _DATA = ("track", "table")
 """Last words of keys whose values may be files of data."""
 
+_AIRCRAFT = "aircraft"
+"""Key, and last word of keys, whose value may be a folder."""
+
 _PICTURE = "logo"
 """Last word of the key whose value is the file of a picture."""
 
 
 def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
     """Yield the key and the name of each part of a scenario, those that its random variables may choose among them."""
-    yield "aircraft", scenario.aircraft
+    yield _AIRCRAFT, scenario.aircraft
     yield "reference.shape", scenario.reference.shape
     yield "guidance.law", scenario.guidance.law
     yield "vessel.track", scenario.vessel.track
@@ -39,7 +42,7 @@ def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
 
 
 def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
-    """Return a document, or a value of one, in which the files of parts and of data have absolute paths.
+    """Return a document, or a value of one, in which the files of parts and of data, and folders of aircraft, have absolute paths.
 
     Parameters
     ----------
@@ -58,9 +61,17 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
         return [with_absolute_files(below, folder, key) for below in value]
     if isinstance(value, str) and value and last == _PICTURE:
         return os.path.normpath(folder.absolute() / value)
-    if isinstance(value, str) and "=" not in value and (is_file_part(value) or (last in _DATA and is_data_file(value))):
+    named_by_file = isinstance(value, str) and (
+        is_file_part(value) or (last in _DATA and is_data_file(value)) or names_folder(last, value)
+    )
+    if named_by_file and "=" not in value:
         return os.path.normpath(folder.absolute() / value)
     return value
+
+
+def names_folder(key: str, name: str) -> bool:
+    """Return whether the name of the part of a key is that of a folder with an aircraft, DIR/NAME."""
+    return key == _AIRCRAFT and is_path(name) and not is_file_part(name)
 
 
 def names_file(name: str) -> bool:

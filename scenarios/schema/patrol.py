@@ -7,7 +7,7 @@ from pydantic import Field
 from scenarios.schema.section import NonNegative, Positive, Section
 
 SHIPS_MAX = 12
-"""Most ships of a patrol; the oracle tries every order."""
+"""Most ships of a patrol: the order of as many takes a second."""
 
 
 class PatrolConfig(Section):

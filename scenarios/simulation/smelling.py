@@ -73,7 +73,7 @@ class PlumeBelief:
 
     COLUMNS = (
         "axis_height_estimated_m", "axis_height_deviation_m", "axis_offset_estimated_m", "axis_offset_deviation_m",
-        "axis_spread_estimated_m", "axis_measurable", "axis_innovation",
+        "axis_spread_estimated_m", "axis_spread_across_estimated_m", "axis_measurable", "axis_innovation",
     )  # fmt: skip
 
     def __init__(self, axis: SearchedAxis) -> None:
@@ -86,8 +86,8 @@ class PlumeBelief:
         if time >= self._next:
             self._measurable, self._next = self._axis.measurable(), time + _SELDOM
         return (
-            found.height, found.height_deviation, found.offset, found.offset_deviation, found.spread, self._measurable,
-            found.innovation,
+            found.height, found.height_deviation, found.offset, found.offset_deviation, found.spread,
+            found.spread_across, self._measurable, found.innovation,
         )  # fmt: skip
 
 

@@ -8,6 +8,8 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic_core import to_jsonable_python
 
+from aircraft.fleet.find import find_spec
+from aircraft.simulation.model_copy import model_hash
 from common.provenance import provenance
 from common.registry import file_hash
 from common.run_layout import FORMAT, LOGO
@@ -16,12 +18,15 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.schema.documented_parts import DIMENSIONLESS, split_unit
 from scenarios.schema.effect import unused
 from scenarios.schema.load import AnyStudy
-from scenarios.schema.parts import names_file, part_names
+from scenarios.schema.parts import names_file, names_folder, part_names
 from scenarios.schema.report import ReportConfig, read_logo, report_entry
 from scenarios.schema.scenario import Scenario
 from scenarios.world.ais.reports import AisReports
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.world import vessel_of
+
+_HASH_LENGTH = 16
+"""Digits of the hash of an aircraft's files, as many as ``file_hash`` has."""
 
 
 def initial_manifest(scenario: AnyStudy, name: str, overrides: Sequence[str]) -> dict[str, Any]:
@@ -69,9 +74,12 @@ def write_logo(report: ReportConfig, run: RunDirectory) -> None:
 
 
 def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
-    """Return a hash of each file that scenarios take parts from, by the part: a resumed run and a replay have to find the same."""
-    names = dict.fromkeys(name for scenario in scenarios for _, name in part_names(scenario))
-    return {name: file_hash(name) for name in names if names_file(name)}
+    """Return a hash of each file, and of the files of each aircraft, that scenarios take parts from, by the part: a resumed run
+    and a replay have to find the same.
+    """
+    names = dict.fromkeys(named for scenario in scenarios for named in part_names(scenario))
+    folders = {name: model_hash(find_spec(name).files)[:_HASH_LENGTH] for key, name in names if names_folder(key, name)}
+    return {name: file_hash(name) for _, name in names if names_file(name)} | folders
 
 
 def vessel_files(scenarios: Iterable[Scenario]) -> dict[str, AisReports]:

@@ -15,7 +15,9 @@ from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
+from scenarios.schema.aircraft_folder import folder_of
 from scenarios.schema.load import checked
+from scenarios.schema.parts import names_folder
 from scenarios.schema.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.registry import study_of
@@ -35,13 +37,14 @@ class Replay(SingleFlight):
     ----------
     name : ``RUN_DIR/flights/ID``, with or without the suffix of its time history
     viewer : host and port of a FlightGear that is to show it, in real time; none if not given
+    aircraft_dir : directory in which the folder of the user's own aircraft is now, if it was moved since
 
     Raises
     ------
     InputError : there is no such flight, or the run cannot be read
     """
 
-    def __init__(self, name: str, viewer: tuple[str, int] | None = None) -> None:
+    def __init__(self, name: str, viewer: tuple[str, int] | None = None, *, aircraft_dir: Path | None = None) -> None:
         self._viewer = viewer
         self._flight_id = Path(name).name.removesuffix(HISTORY_SUFFIX)
         self._from = Path(name).parents[1]
@@ -52,7 +55,7 @@ class Replay(SingleFlight):
         if viewer and self._row.get("fidelity") != "six_dof":
             raise InputError(f"--flightgear shows aircraft in six degrees of freedom; '{self._flight_id}' is a kinematic flight")
         try:
-            study = self._restored(manifest)
+            study = self._restored(self._moved(manifest, aircraft_dir) if aircraft_dir else manifest)
         except (LookupError, TypeError, AttributeError, ValueError) as error:
             if isinstance(error, InputError):
                 raise
@@ -84,6 +87,18 @@ class Replay(SingleFlight):
         finally:
             journal.close()
         raise InputError(f"'{self._from}' has no flight '{self._flight_id}'; its {SUMMARY} lists them")
+
+    def _moved(self, manifest: dict[str, Any], directory: Path) -> dict[str, Any]:
+        """Return the manifest with the aircraft of its flights where it is now, in ``directory``; the row says so, too."""
+        then = str(manifest["trials"][self._row["trial"]]["aircraft"])
+        if not names_folder("aircraft", then):
+            raise InputError(f"'{self._from}' flew the aircraft '{then}', which is of no directory; leave out --aircraft-dir")
+        now = folder_of(directory, Path(then).name)
+        if self._row.get("aircraft") == then:
+            self._row = {**self._row, "aircraft": now}
+        trials = {name: config | {"aircraft": now} for name, config in manifest["trials"].items()}
+        plugins = {now if name == then else name: digest for name, digest in manifest["plugins"].items()}
+        return manifest | {"trials": trials, "plugins": plugins}
 
     def _restored(self, manifest: dict[str, Any]) -> Study:
         """Return the study of the run, or of the one trial of it that the flight belongs to.

@@ -10,6 +10,7 @@ import numpy as np
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
+from aircraft.simulation.user_check import check_user_aircraft
 from aircraft.spec import AircraftSpec, Envelope
 from common.files import write_tree
 from innerloop.designs.cache import Designed, designed
@@ -95,12 +96,14 @@ def spec_of(scenario: Scenario) -> AircraftSpec | None:
 
     Raises
     ------
-    InputError : there is no such aircraft, or no autopilot can be designed for it
+    InputError : there is no such aircraft, or no autopilot can be designed for it, or JSBSim refuses the user's own
     """
     if scenario.fidelity == "kinematic" and scenario.aircraft == DEFAULT_AIRCRAFT:
         return None
     try:
-        return find_spec(scenario.aircraft)
+        spec = find_spec(scenario.aircraft)
+        check_user_aircraft(spec)
+        return spec
     except AircraftError as error:
         raise InputError(f"aircraft: {error}") from None
 
@@ -140,7 +143,8 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
     schedule = found.design.schedule
     with tempfile.TemporaryDirectory() as folder:
         write_tree(write_root(schedule, Path(folder)), run.model)
-    run.write_json(run.innerloop, found.record)
+    # A megabyte of numbers.
+    run.write_json(run.innerloop, found.record, indent=None)
     start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.altitude, schedule.level(schedule.middle))
     turns = schedule.trims[schedule.middle]
     reversal = found.record["turn_reversal"]

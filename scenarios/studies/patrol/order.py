@@ -1,7 +1,7 @@
 """The order in which ships are served: the largest expected number of verdicts within the endurance."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,8 +12,14 @@ from scenarios.studies.patrol.legs import Air, Mover, straight_leg
 _SOONER = 1e-3
 """Verdicts that an end sooner by the whole endurance is worth: of orders with as many verdicts the quickest is taken."""
 
+_LATEST = 10.0
+"""End that counts at most, over the endurance: a ship out of reach is never done."""
+
+EXACT_MAX = 8
+"""Ships of which every order is tried: it takes half a second at the most, and for fewer less than the insertion."""
+
 _GAIN = 0.02
-"""Least expected number of verdicts for which a ship is called on [-]."""
+"""Least expected number of verdicts for which a ship is inserted [-]."""
 
 
 class _State(NamedTuple):
@@ -23,6 +29,14 @@ class _State(NamedTuple):
     time: float
     served: int
     verdicts: float
+
+
+class Order(NamedTuple):
+    """Ships in the order in which they are served, the verdicts expected, and when the last one is done [s]."""
+
+    ships: tuple[int, ...]
+    verdicts: float
+    ends: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,49 +75,63 @@ class Prospect:
         left, spread = self.endurance - ends, self.deviation * math.sqrt(served)
         return float(ndtr(left / spread)) if spread > 0.0 else float(left >= 0.0)
 
-    def score(self, state: _State) -> float:
-        """Return what a patrol is worth: its expected verdicts, and a little for an early end."""
-        return state.verdicts - _SOONER * min(state.time / self.endurance, 10.0)
+    def judged(self, start: complex, time: float, ships: Sequence[int]) -> Order:
+        """Return what comes of serving ships in some order, from a place at a time [m, s]."""
+        state = _State(start, time, 0, 0.0)
+        for ship in ships:
+            state = self.after(state, ship)
+        return Order(tuple(ships), state.verdicts, state.time)
+
+    def score_of(self, order: Order) -> float:
+        """Return what an order is worth: its expected verdicts, and a little for an early end."""
+        return self.score(order.verdicts, order.ends)
+
+    def score(self, verdicts: float, ends: float) -> float:
+        """Return the same of expected verdicts and of the end [s]."""
+        return verdicts - _SOONER * min(ends / self.endurance, _LATEST)
 
 
-class Order(NamedTuple):
-    """Ships in the order in which they are served, the verdicts expected, and when the last one is done [s]."""
-
-    ships: tuple[int, ...]
-    verdicts: float
-    ends: float
+def best_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
+    """Return the best of all orders from a place at a time [m, s]; of many ships a good one, by insertion."""
+    return (exact_order if len(ships) <= EXACT_MAX else inserted_order)(prospect, start, time, ships)
 
 
 def inserted_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
     """Return an order by insertion and improvement, from a place at a time [m, s].
 
-    From each ship as the first, the ship and the place in the order that gain most are inserted, until none gains; then parts of up
-    to three ships are moved, and parts turned round, as long as the order gets better. The best of these orders is taken.
+    From each ship as the first, the ship and the place in the order that gain most are inserted until none gains; then parts of up
+    to three ships are moved, parts turned round and ships exchanged for others as long as the order gets better. The best of these
+    orders is taken.
     """
-    best = _judged(prospect, start, time, ())
+    best = prospect.judged(start, time, ())
     for first in ships:
-        found = _improved(prospect, start, time, _filled(prospect, start, time, (first,), ships))
+        found = prospect.judged(start, time, (first,))
+        while True:
+            filled = _improved(prospect, start, time, _filled(prospect, start, time, found, ships), ships)
+            if filled == found:
+                break
+            found = filled
         best = _better(prospect, best, found)
     return best
 
 
 def exact_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
     """Return the best of all orders, of some ships or of all of them; the effort grows as the factorial of their number."""
-    begin = _State(start, time, 0, 0.0)
-    best: tuple[_State, tuple[int, ...]] = begin, ()
+    best = prospect.judged(start, time, ())
 
     def extend(state: _State, order: tuple[int, ...], left: frozenset[int]) -> None:
         nonlocal best
-        if prospect.score(state) > prospect.score(best[0]):
-            best = state, order
+        score = prospect.score(state.verdicts, state.time)
+        if score > prospect.score_of(best):
+            best = Order(order, state.verdicts, state.time)
         # Not even with a verdict of each ship that is left, at once.
-        if prospect.score(state) + sum(prospect.chance[ship] for ship in left) <= prospect.score(best[0]):
+        if score + sum(prospect.chance[ship] for ship in left) <= prospect.score_of(best):
             return
         for ship in sorted(left):
             extend(prospect.after(state, ship), (*order, ship), left - {ship})
 
-    extend(begin, (), frozenset(ships))
-    return Order(best[1], best[0].verdicts, best[0].time)
+    extend(_State(start, time, 0, 0.0), (), frozenset(ships))
+    return best
 
 
 def ends_of(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> list[float]:
@@ -115,51 +143,45 @@ def ends_of(prospect: Prospect, start: complex, time: float, ships: Sequence[int
     return ends
 
 
-def _judged(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
-    state = _State(start, time, 0, 0.0)
-    for ship in ships:
-        state = prospect.after(state, ship)
-    return Order(tuple(ships), state.verdicts, state.time)
-
-
 def _better(prospect: Prospect, one: Order, other: Order) -> Order:
     """Return the better one of two orders, the first where they are alike."""
-    return other if _score(prospect, other) > _score(prospect, one) + 1e-12 else one
+    return other if prospect.score_of(other) > prospect.score_of(one) + 1e-12 else one
 
 
-def _score(prospect: Prospect, order: Order) -> float:
-    return prospect.score(_State(0j, order.ends, len(order.ships), order.verdicts))
-
-
-def _filled(prospect: Prospect, start: complex, time: float, order: tuple[int, ...], ships: Sequence[int]) -> Order:
-    best = _judged(prospect, start, time, order)
-    while left := [ship for ship in ships if ship not in best.ships]:
+def _filled(prospect: Prospect, start: complex, time: float, best: Order, ships: Sequence[int]) -> Order:
+    while True:
         tried = best
-        for ship in left:
-            for i in range(len(best.ships) + 1):
-                tried = _better(prospect, tried, _judged(prospect, start, time, (*best.ships[:i], ship, *best.ships[i:])))
-        if tried is best or tried.verdicts < best.verdicts + _GAIN:
-            break
+        for ship in ships:
+            if ship not in best.ships:
+                for i in range(len(best.ships) + 1):
+                    tried = _better(prospect, tried, prospect.judged(start, time, (*best.ships[:i], ship, *best.ships[i:])))
+        if tried.verdicts < best.verdicts + _GAIN:
+            return best
         best = tried
-    return best
 
 
-def _improved(prospect: Prospect, start: complex, time: float, order: Order) -> Order:
+def _improved(prospect: Prospect, start: complex, time: float, order: Order, ships: Sequence[int]) -> Order:
     while True:
         best = order
-        for ships in _neighbours(order.ships):
-            best = _better(prospect, best, _judged(prospect, start, time, ships))
+        for neighbour in _neighbours(order.ships, ships):
+            best = _better(prospect, best, prospect.judged(start, time, neighbour))
         if best is order:
             return order
         order = best
 
 
-def _neighbours(ships: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """Return the orders in which a part of up to three ships stands elsewhere, or a part is turned round."""
-    count = len(ships)
-    found = [(*ships[:i], *ships[i:j][::-1], *ships[j:]) for i in range(count) for j in range(i + 2, count + 1)]
+def _neighbours(order: tuple[int, ...], ships: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Yield the orders in which a part is turned round, up to three ships stand elsewhere, or one is exchanged for one left out."""
+    count = len(order)
+    for i in range(count):
+        for j in range(i + 2, count + 1):
+            yield (*order[:i], *order[i:j][::-1], *order[j:])
+        for ship in ships:
+            if ship not in order:
+                yield (*order[:i], ship, *order[i + 1 :])
     for size in (1, 2, 3):
         for i in range(count - size + 1):
-            part, rest = ships[i : i + size], (*ships[:i], *ships[i + size :])
-            found += [(*rest[:k], *part, *rest[k:]) for k in range(len(rest) + 1) if k != i]
-    return found
+            part, rest = order[i : i + size], (*order[:i], *order[i + size :])
+            for k in range(len(rest) + 1):
+                if k != i:
+                    yield (*rest[:k], *part, *rest[k:])

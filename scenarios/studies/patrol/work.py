@@ -21,12 +21,11 @@ from scenarios.simulation.failure import failure
 from scenarios.simulation.outcome import Outcome
 from scenarios.studies.patrol.beside import phases, start_beside, taken
 from scenarios.studies.patrol.legs import Leg, nearest_on, route
-from scenarios.studies.patrol.order import Prospect, ends_of, exact_order, inserted_order
+from scenarios.studies.patrol.order import Prospect, best_order, ends_of
 from scenarios.studies.patrol.ships import Patrol, sampled_patrol
 from scenarios.studies.patrol.tables import (
     LOST,
     TRANSIT,
-    flight_name,
     patrol_figures,
     phase_row,
     ship_row,
@@ -124,7 +123,7 @@ class PatrolWork(FlightWork):
         prospect = self._prospect(patrol, [config.service_s] * count, [1.0] * count, deviation=config.service_deviation_s)
         clearance = self._scenario.keepout.radius_m + config.clearance_m
         while left and not uav.lost:
-            order = inserted_order(prospect, uav.place, uav.time, left).ships
+            order = best_order(prospect, uav.place, uav.time, left).ships
             if not order:
                 break
             ship = order[0]
@@ -178,21 +177,23 @@ class PatrolWork(FlightWork):
         return _Flown(row, pd.read_parquet(io.BytesIO(histories[0])) if histories else None)
 
     def _oracle(self, patrol: Patrol, ships: list[Row]) -> Row:
-        """Complete the ships' rows by what an oracle does: it knows how long each ship takes when told where her plume is."""
+        """Complete the ships' rows by what an oracle does: it knows how long each ship takes, told where her plume is or not."""
         service, chance = [], []
         told = {"following.plume": "told", "flight.duration_max_s": self._scenario.patrol.patience_s, "start.range_m": self._reach}
         for ship, row in enumerate(ships):
-            flown = self._flown(patrol, ship, f"{flight_name(patrol, ship)}_told", told).row
+            flown = self._flown(patrol, ship, f"{row['flight_id']}_told", told).row
             verdict = verdict_of(flown)
-            row["told_verdict"] = verdict
-            row["told_service_s"] = flown.get("duration_s")
-            service.append(float(flown.get("duration_s", math.inf)))
-            chance.append(float(verdict == row["truth"]))
+            row |= {"told_verdict": verdict, "told_service_s": flown.get("duration_s")}
+            known = [flown["duration_s"]] if verdict == row["truth"] else []
+            # Where the flight of the patrol took less time, the oracle knows that, too.
+            known += [row["ended_s"] - row["reached_s"]] if row.get("correct") else []
+            service.append(min(known, default=math.inf))
+            chance.append(float(bool(known)))
         prospect = self._prospect(patrol, service, chance)
-        best = exact_order(prospect, 0j, 0.0, [ship for ship, worth in enumerate(chance) if worth])
+        best = best_order(prospect, 0j, 0.0, [ship for ship, worth in enumerate(chance) if worth])
         for position, (ship, ends) in enumerate(zip(best.ships, ends_of(prospect, 0j, 0.0, best.ships), strict=True)):
             ships[ship] |= {"oracle_position": position, "oracle_ended_s": ends}
-        return {"oracle_verdicts": round(best.verdicts), "told_verdicts": round(sum(chance))}
+        return {"oracle_verdicts": round(best.verdicts), "told_verdicts": sum(row["told_verdict"] == row["truth"] for row in ships)}
 
 
 def limit_percent(scenario: Scenario) -> float:

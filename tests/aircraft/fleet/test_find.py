@@ -95,6 +95,11 @@ def test_an_unknown_name_is_refused_with_its_nearest_neighbour_and_where_names_a
     assert "did you mean" not in reason("zzz")
 
 
-@pytest.mark.parametrize("name", ["", "..", "../aircraft/c172x", "c172x/", "/"])
-def test_what_is_no_name_is_unknown_and_no_path(name):
+@pytest.mark.parametrize("name", ["", "..", "."])
+def test_what_is_no_name_is_unknown(name):
     assert "unknown aircraft" in reason(name)
+
+
+@pytest.mark.parametrize("name", ["../aircraft/c172x", "c172x/", "none/c172x"])
+def test_a_path_is_that_of_a_folder_and_no_name_of_jsbsims_own(name):
+    assert f"aircraft '{name}': there is no such directory" in reason(name)

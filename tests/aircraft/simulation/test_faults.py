@@ -18,7 +18,7 @@ def failable(tmp_path):
 
     def make(name, airspeed):
         spec = find_spec(name)
-        copy_model(spec.root, spec.model, tmp_path / "own")
+        copy_model(spec.files, tmp_path / "own")
         fdm = Fdm(spec, failable_root(spec, tmp_path / "own", tmp_path / "failable"))
         faults = Faults(fdm)
         fdm.command({"elevator": 0.1, "aileron": 0.05, "rudder": -0.1, "throttle": 0.8})
@@ -84,7 +84,7 @@ def test_the_names_are_those_of_what_each_aircraft_has():
 
 
 def test_an_actuator_that_nothing_reads_is_refused(tmp_path):
-    copy_model(X8.root, X8.model, tmp_path / "own")
+    copy_model(X8.files, tmp_path / "own")
     fields = {name: getattr(X8, name) for name in AircraftSpec.__slots__}
     odd = AircraftSpec(**fields | {"own_actuators": (Actuator(name="flap", commands=("fcs/flap-cmd-rad",)),)})
     with pytest.raises(AircraftError, match="no <actuator> of its model reads 'fcs/flap-cmd-rad'"):

@@ -9,6 +9,7 @@ import pytest
 
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
+from aircraft.model_files import ModelFiles
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.model_copy import copy_model
 from aircraft.spec import MODELS
@@ -48,8 +49,12 @@ def probe(tmp_path):
     return tmp_path / "root"
 
 
+def files(root, model):
+    return ModelFiles(model=model, folder=root / "aircraft" / model, roots=(root,))
+
+
 def copied(root, model, directory, **options):
-    return ET.parse(copy_model(root, model, directory, **options)).getroot()
+    return ET.parse(copy_model(files(root, model), directory, **options)).getroot()
 
 
 def digest(folder):
@@ -105,13 +110,13 @@ def test_play_is_taken_out_of_the_systems_files_too(probe, tmp_path):
     text = f'<system name="servo"><channel name="c">{actuator}</channel></system>'
     file = probe / "aircraft" / "probe" / "Systems" / "servo.xml"
     file.write_text(text, encoding="utf-8")
-    copy_model(probe, "probe", tmp_path / "copy", play=False)
+    copy_model(files(probe, "probe"), tmp_path / "copy", play=False)
     assert "hysteresis" not in (tmp_path / "copy" / "aircraft" / "probe" / "Systems" / "servo.xml").read_text(encoding="utf-8")
     assert file.read_text(encoding="utf-8") == text
 
 
 def test_engines_propellers_and_systems_of_the_common_folders_come_along(tmp_path):
-    copy_model(ROOT, "c310", tmp_path)
+    copy_model(files(ROOT, "c310"), tmp_path)
     model = ET.parse(tmp_path / "aircraft" / "c310" / "c310.xml").getroot()
     for element in model.iterfind("propulsion/engine"):
         for part in (element, element.find("thruster")):

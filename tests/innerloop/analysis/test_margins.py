@@ -45,8 +45,8 @@ def margins(systems):
     found = {}
     for condition, pair in systems.items():
         loops = Loops(*pair)
-        names = (*loops.breaks, "all controls")
-        found |= {(condition, name): margin for name, margin in zip(names, loops.margins(), strict=True)}
+        found |= {(condition, name): margin for name, margin in zip(loops.breaks, loops.margins(), strict=True)}
+        found[condition, "all controls"] = loops.margin_at_all_controls()
     return found
 
 

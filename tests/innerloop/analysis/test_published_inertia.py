@@ -32,7 +32,7 @@ def worst_margins(schedule, root):
         for bank in (schedule.gain_banks[0], 0.0, schedule.gain_banks[-1]):
             point = trim(fdm, airspeed=airspeed, altitude=100.0, bank=bank)
             loops = Loops(linearise(fdm, point), linear_controller(law, point), schedule.delay)
-            margins = loops.margins(together=False)
+            margins = loops.margins()
             stable.append(loops.stable)
             gains.append(min(margin.gain_db for margin in margins))
             phases.append(min(margin.phase_deg for margin in margins))

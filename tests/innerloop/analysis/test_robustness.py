@@ -167,8 +167,8 @@ def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_line
         there = trim(fdm, airspeed=point.trim.airspeed, altitude=100.0, bank=bank)
         # Half a step of the grid is 1.25 m/s or 11 degrees; the bend of alpha over either, second order, is 7 % of it.
         assert point.trim.alpha == pytest.approx(there.alpha, abs=0.006)
-        linearised = Loops(linearise(fdm, there), linear_controller(law, there), x8_schedule.delay).margins(together=False)
-        interpolated = Loops(point.model, linear_controller(law, point.trim), x8_schedule.delay).margins(together=False)
+        linearised = Loops(linearise(fdm, there), linear_controller(law, there), x8_schedule.delay).margins()
+        interpolated = Loops(point.model, linear_controller(law, point.trim), x8_schedule.delay).margins()
         for found, expected in zip(interpolated, linearised, strict=True):
             # A few per cent of loop gain: 0.4 dB is 5 %, of 27 dB 3 %; of phase 1.5 degrees is 0.026 rad. What is required leaves
             # far more.

@@ -11,6 +11,7 @@ PRINTED = {
     "one_flight": ("nu_0.50", "30 crossings", "rad"),
     "own_law": ("criteria_met", "0.3", "True"),
     "ship_from_ais": ("from 2026-06-01T10:00:00", "keep-out violations: 0"),
+    "aircraft_directory": ("fleet/heavy", "0.3", "0.6", "True"),
     "monte_carlo": ("0 of 8 flights", "at 95% confidence", "median of the closest approach"),
 }
 
@@ -18,6 +19,7 @@ WRITTEN = {
     "one_flight": {"flight.png", "flight.kmz", "flight.parquet"},
     "own_law": set(),
     "ship_from_ais": {"wind.csv", "flight.kmz"},
+    "aircraft_directory": {"fleet"},
     "monte_carlo": {"report.html"},
 }
 

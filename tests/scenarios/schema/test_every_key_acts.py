@@ -17,6 +17,8 @@ title = "short"
 fidelity = "kinematic"
 seed = 3
 flight.duration_max_s = 120.0
+guidance.rate_hz = 10.0
+flight.log_rate_hz = 5.0
 criteria.tracking_error_rms_m = 1e-4
 """
 
@@ -128,7 +130,7 @@ VALUES = {
     "flight.until": "verdict", "flight.altitude_m": 50.0,
     "start.distance_m": [350.0, 400.0], "start.spread_deg": 90.0, "start.range_m": 350.0, "start.aspect_deg": 20.0,
     "start.course_deg": 30.0, "start.place_m": [-300.0, 50.0],
-    "flight.crossings": 4, "flight.duration_max_s": 20.0, "flight.settling_band_m": 0.5, "flight.log_rate_hz": 20.0,
+    "flight.crossings": 4, "flight.duration_max_s": 20.0, "flight.settling_band_m": 0.5, "flight.log_rate_hz": 10.0,
     "criteria.required": "keep_out",
     "criteria.settles": False, "criteria.tracking_error_rms_m": 1e-6, "criteria.airspeed_error_rms_mps": 1e-9,
     "criteria.altitude_error_max_m": 1e-9, "criteria.crossing_interval_error": 1e-9, "criteria.tracking_error_end_m": 1e-15,

@@ -1,0 +1,99 @@
+"""What a file beside a JSBSim model, NAME.toml, may say of the aircraft. What it leaves out is found."""
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+
+from aircraft.errors import AircraftError
+from common.spelling import did_you_mean
+
+_Property = Annotated[str, Field(pattern=r"^[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*$")]
+_Commands = tuple[_Property, ...]
+_Airspeed = Annotated[float, Field(gt=0.0, le=400.0)]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class EnvelopeSettings(_Table):
+    """Where the autopilot may fly the aircraft."""
+
+    airspeed_min_mps: _Airspeed
+    """Slowest commanded true airspeed [m/s]."""
+    airspeed_max_mps: _Airspeed
+    """Fastest commanded true airspeed [m/s]."""
+    airspeed_mps: _Airspeed
+    """Default airspeed of a study [m/s]."""
+    bank_deg: Annotated[float, Field(ge=5.0, le=60.0)]
+    """Bank of the steepest turn that the guidance may demand [deg]."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if not self.airspeed_min_mps < self.airspeed_mps < self.airspeed_max_mps:
+            raise ValueError(
+                f"airspeed_mps is {self.airspeed_mps:g}; it must lie between airspeed_min_mps, {self.airspeed_min_mps:g},"
+                f" and airspeed_max_mps, {self.airspeed_max_mps:g}"
+            )
+        return self
+
+
+class ModelSettings(_Table):
+    """The whole file. Each key may be left out."""
+
+    title: Annotated[str, Field(min_length=1, max_length=80)] | None = None
+    """Name in reports; the model's own name for itself if it is not given."""
+    elevator: Annotated[_Commands, Field(min_length=1)] | None = None
+    """JSBSim properties that take the elevator command, -1 to 1; fcs/elevator-cmd-norm if not given."""
+    aileron: Annotated[_Commands, Field(min_length=1)] | None = None
+    """The same of the ailerons; fcs/aileron-cmd-norm if not given."""
+    rudder: _Commands | None = None
+    """The same of the rudder; fcs/rudder-cmd-norm if not given, and false for an aircraft that has none."""
+    throttle: Annotated[_Commands, Field(min_length=1)] | None = None
+    """JSBSim properties that take the throttle command, 0 to 1; that of each engine if not given."""
+    settle_time_s: Annotated[float, Field(ge=0.1, le=120.0)] | None = None
+    """Time in which servos and engines come to rest while the aircraft is held; 20 s if not given [s]."""
+    envelope: EnvelopeSettings | None = None
+    """Airspeeds and bank; found by trimming if not given."""
+    properties: dict[_Property, float] = {}
+    """JSBSim properties and their values in every flight, beside gear up and fuel held."""
+
+    @field_validator("elevator", "aileron", "rudder", "throttle", mode="before")
+    @classmethod
+    def _one_or_more(cls, given: Any) -> Any:
+        return (given,) if isinstance(given, str) else () if given is False else given
+
+
+def read_settings(path: Path) -> ModelSettings:
+    """Return what a file says.
+
+    Raises
+    ------
+    AircraftError : it is not TOML, or has a key that is unknown or out of range
+    """
+    try:
+        return ModelSettings.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise AircraftError(f"{path}: not valid TOML: {error}; fix the file") from None
+    except OSError as error:
+        raise AircraftError(f"{path}: cannot be read: {error.strerror}; check its permissions") from None
+    except ValidationError as error:
+        raise AircraftError(f"{path}: {_explained(error)}") from None
+
+
+def _explained(error: ValidationError) -> str:
+    """Return the first thing that is wrong, in a line."""
+    first = error.errors()[0]
+    *tables, key = [str(part) for part in first["loc"]] or [""]
+    name = ".".join([*tables, key])
+    if first["type"] == "extra_forbidden":
+        known = (EnvelopeSettings if tables else ModelSettings).model_fields
+        return f"unknown key '{name}'{did_you_mean(key, known) or ';'} known are {', '.join(known)}"
+    if first["type"] == "missing":
+        return f"key '{name}' is missing; give it, or leave out the whole table"
+    if first["type"] == "string_pattern_mismatch":
+        return f'{name} is {first["input"]!r}; give a JSBSim property, as in "fcs/elevator-cmd-norm"'
+    message = first["msg"].removeprefix("Value error, ")
+    return message if first["type"] == "value_error" else f"{name} is {first['input']!r}; {message[0].lower()}{message[1:]}"

@@ -1,0 +1,42 @@
+"""Where the files of a JSBSim model are found: its own folder, and the folders that models share."""
+
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from pathlib import Path
+
+SHARED = {"engine": "engine", "thruster": "engine", "system": "systems", "autopilot": "systems"}
+"""Folder of a JSBSim root where files of an element stand."""
+
+_OWN = ("", "Engines", "Systems", "systems")
+"""Folders of a model in which JSBSim looks for files, in order."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModelFiles:
+    """The files of one model.
+
+    Attributes
+    ----------
+    model : its name
+    folder : with the model file, ``MODEL.xml``
+    roots : JSBSim roots whose engines and systems the model may name; the first that has a file is taken
+    """
+
+    model: str
+    folder: Path
+    roots: tuple[Path, ...]
+
+    @property
+    def file(self) -> Path:
+        """Return the model file."""
+        return self.folder / f"{self.model}.xml"
+
+    def find(self, element: ET.Element) -> Path | None:
+        """Return the file that an element of the model names, searched as JSBSim does; None if there is none."""
+        if not (file := element.get("file")):
+            return None
+        name = file if file.endswith(".xml") else f"{file}.xml"
+        folders = [self.folder / own for own in _OWN]
+        if element.tag in SHARED:
+            folders += [root / SHARED[element.tag] for root in self.roots]
+        return next((folder / name for folder in folders if (folder / name).is_file()), None)

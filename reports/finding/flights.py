@@ -1,0 +1,69 @@
+"""Sections on flights that searched for their plume: all of them beside their comparisons, and the least and the most typical."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from reports.document.blocks import Block, Heading, Section, Text
+from reports.finding.flight_charts import height_chart, section_chart
+from reports.finding.search_view import SearchView, search_view
+from reports.run.columns import column
+from reports.run.run_data import RunData
+from reports.run.trials import Trial
+
+_LATE = "axis_height_error_3min_m"
+
+
+def finding_sections(run: RunData, trials: list[Trial]) -> list[Section]:
+    """Return the sections of a run whose flights searched for a plume, and none of any other."""
+    blocks = [block for trial in trials if len(searched(trial.rows)) for block in _single(run, trial)]
+    return [Section(anchor="searches", title="Searches one by one", nav_title="Searches", blocks=blocks)] if blocks else []
+
+
+def searched(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the flights that reached their orbit and had an estimate of the plume."""
+    return rows[rows["axis_height_end_m"].notna()] if "axis_height_end_m" in rows else rows.iloc[:0]
+
+
+def _single(run: RunData, trial: Trial) -> list[Block]:
+    """Return the figures of a typical search and of the one with the largest error."""
+    blocks: list[Block] = []
+    for row, why in _picked(run, searched(trial.rows)):
+        view = search_view(run, row)
+        if view is not None:
+            name = str(row["flight_id"])
+            blocks += [Heading(f"{name}: {why}"), Text(_told(row)), *_charts(view, name.replace("_", "-"))]
+    return blocks
+
+
+def _charts(view: SearchView, name: str) -> list[Block]:
+    section = section_chart(view, name)
+    return [height_chart(view, name), *([section] if section is not None else [])]
+
+
+def _picked(run: RunData, rows: pd.DataFrame) -> list[tuple["pd.Series[Any]", str]]:
+    """Return the flights to be shown, of those with a time history, and why each is: none twice."""
+    kept = rows[[run.has_history(str(flight_id)) for flight_id in rows["flight_id"]]]
+    errors = np.abs(column(kept, _LATE))
+    judged = kept[np.isfinite(errors)]
+    if not len(judged):
+        return [(kept.iloc[0], "the first with a time history")] if len(kept) else []
+    order = np.argsort(errors[np.isfinite(errors)], kind="stable")
+    typical, worst = int(order[(len(order) - 1) // 2]), int(order[-1])
+    picked = [(judged.iloc[typical], "the median error of the height after 3 minutes")]
+    return picked + ([(judged.iloc[worst], "the largest error of the height after 3 minutes")] if worst != typical else [])
+
+
+def _told(row: "pd.Series[Any]") -> str:
+    """Return when the plume was found and what was believed of it, in words."""
+    time, error = float(row.get("time_to_find_s", np.nan)), float(row.get(_LATE, np.nan))
+    words = [f"Found {time:.0f} s after the orbit was reached" if np.isfinite(time) else "The plume was not found"]
+    if np.isfinite(error):
+        believed = f"believed {error:+.1f} m off, ± {1.96 * row['axis_height_deviation_3min_m']:.1f} m (95 %)"
+        words.append(f"after 3 minutes its height of {row['axis_height_3min_m']:.1f} m was {believed}")
+    if np.isfinite(hits := float(row.get("hit_rate_found", np.nan))):
+        words.append(f"{100.0 * hits:.0f} % of the passes since then hit it")
+    enough = row.get("enough")
+    words += [f"the flight ended with {enough}"] if isinstance(enough, str) and enough else []
+    return f"{'; '.join(words)}."

@@ -1,0 +1,204 @@
+"""Aircraft of the user: a folder with a JSBSim model. What is found of it, what its settings say, and what is refused."""
+
+import math
+import re
+import shutil
+from pathlib import Path
+
+import jsbsim
+import pytest
+
+from aircraft.errors import AircraftError
+from aircraft.fleet.find import find_spec
+from aircraft.fleet.folder import folder_names, folder_path
+from aircraft.fleet.settings import ModelSettings
+from aircraft.simulation.fdm import Fdm
+from aircraft.simulation.model_copy import model_hash
+from aircraft.simulation.user_check import check_user_aircraft
+
+STOCK = Path(jsbsim.get_default_root_dir())
+WEIGHT = '<emptywt unit="LBS"> 1500'  # of the c172p, in its model file
+HEAVIER = WEIGHT.replace("1500", "1650")
+
+
+@pytest.fixture
+def heavy(tmp_path):
+    """A heavier copy of JSBSim's c172p."""
+    folder = tmp_path / "fleet" / "heavy"
+    folder.mkdir(parents=True)
+    text = (STOCK / "aircraft" / "c172p" / "c172p.xml").read_text(encoding="utf-8")
+    assert WEIGHT in text
+    (folder / "heavy.xml").write_text(text.replace(WEIGHT, HEAVIER), encoding="utf-8")
+    return folder
+
+
+def refused(name):
+    with pytest.raises(AircraftError) as caught:
+        find_spec(str(name))
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def edited(folder, old, new):
+    path = folder / "heavy.xml"
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+def said(folder, text):
+    (folder / "heavy.toml").write_text(text, encoding="utf-8")
+    return find_spec(str(folder))
+
+
+def test_a_folder_is_read_as_jsbsims_own_model_is(heavy):
+    mine, stock = find_spec(str(heavy)), find_spec("c172p")
+    assert (mine.name, mine.model) == ("heavy", "heavy")
+    for name in ("inputs", "configuration", "engine_flags", "settle_time", "envelope", "actuators"):
+        assert getattr(mine, name) == getattr(stock, name)
+
+
+def test_jsbsim_flies_it_with_its_own_weight_and_with_engine_and_propeller_of_jsbsim(heavy):
+    # 150 lb more than the original, which is otherwise the same.
+    mine, stock = Fdm(find_spec(str(heavy))), Fdm(find_spec("c172p"))
+    for fdm in (mine, stock):
+        fdm.step(3)
+    assert mine.read("inertia/empty-weight-lbs") - stock.read("inertia/empty-weight-lbs") == pytest.approx(150.0, abs=1e-9)
+
+
+# As JSBSim searches: the model's folder and its Engines, then the root beside it; JSBSim's own only where there is none.
+@pytest.mark.parametrize("place", ["fleet/heavy", "fleet/heavy/Engines", "engine"])
+def test_engines_are_found_in_the_folder_in_its_engines_and_beside_the_directory(heavy, tmp_path, place):
+    (tmp_path / place).mkdir(exist_ok=True)
+    copy = tmp_path / place / "own_io320.xml"
+    shutil.copy(STOCK / "engine" / "eng_io320.xml", copy)
+    edited(heavy, 'file="eng_io320"', 'file="own_io320"')
+    spec = find_spec(str(heavy))
+    Fdm(spec).step(3)
+    before = model_hash(spec.files)
+    copy.write_text(re.sub(r"(<displacement[^>]*>)[^<]*", r"\g<1>300.0", copy.read_text(encoding="utf-8")), encoding="utf-8")
+    assert model_hash(spec.files) != before
+
+
+def test_the_only_model_of_a_folder_may_have_another_name(heavy):
+    (heavy / "heavy.xml").rename(heavy / "c172.xml")
+    (heavy / "reset00.xml").write_text('<initialize name="reset00"/>', encoding="utf-8")
+    spec = find_spec(str(heavy))
+    assert (spec.name, spec.model) == ("heavy", "c172")
+    Fdm(spec).step(3)
+
+
+def test_pictures_and_sounds_beside_the_model_are_not_copied_and_do_not_count(heavy):
+    before = model_hash(find_spec(str(heavy)).files)
+    (heavy / "Models").mkdir()
+    (heavy / "Models" / "cessna.ac").write_bytes(b"3" * 1000)
+    (heavy / "README").write_text("words", encoding="utf-8")
+    # An empty folder is no file.
+    assert model_hash(find_spec(str(heavy)).files) == before
+    (heavy / "heavy.toml").write_text("settle_time_s = 10", encoding="utf-8")
+    assert model_hash(find_spec(str(heavy)).files) != before
+
+
+def test_settings_say_title_commands_properties_and_envelope(heavy):
+    spec = said(
+        heavy,
+        'title = "Heavy\\n Cessna"\nelevator = "fcs/elevator-cmd-norm"\nrudder = false\nthrottle = ["fcs/throttle-cmd-norm"]\n'
+        "settle_time_s = 12.5\n[properties]\n'fcs/flap-cmd-norm' = 0.5\n'propulsion/fuel_freeze' = 0\n"
+        "[envelope]\nairspeed_min_mps = 40\nairspeed_mps = 45\nairspeed_max_mps = 55\nbank_deg = 30",
+    )
+    assert (spec.title, spec.settle_time) == ("Heavy Cessna", 12.5)
+    assert [i.name for i in spec.inputs] == ["elevator", "aileron", "throttle"]
+    assert dict(spec.configuration)["fcs/flap-cmd-norm"] == 0.5
+    assert dict(spec.configuration)["propulsion/fuel_freeze"] == 0.0  # in place of the usual 1
+    assert spec.envelope is not None
+    assert (spec.envelope.airspeed_min, spec.envelope.airspeed, spec.envelope.airspeed_max) == (40.0, 45.0, 55.0)
+    assert spec.envelope.bank == math.radians(30.0)
+    check_user_aircraft(spec)
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("elevatr = 'a'", r"unknown key 'elevatr'; did you mean 'elevator'\?"),
+        ("elevator = 'a b'", r"elevator.0 is 'a b'; give a JSBSim property"),
+        ("elevator = 'fcs/not-there'", "its controls take no elevator command"),
+        ("elevator = []", "elevator is"),
+        ("settle_time_s = inf", "settle_time_s is inf; input should be"),
+        ("[envelope]\nairspeed_mps = 45", "key 'envelope.airspeed_min_mps' is missing"),
+        (
+            "[envelope]\nairspeed_min_mps=50\nairspeed_mps=45\nairspeed_max_mps=55\nbank_deg=30",
+            "airspeed_mps is 45; it must lie between",
+        ),
+        ("[envelope]\nairspeed = 45", r"unknown key 'envelope.airspeed'|is missing"),
+        ("title = ", r"heavy\.toml: not valid TOML"),
+    ],
+)
+def test_settings_that_are_wrong_are_refused_in_a_line(heavy, text, why):
+    (heavy / "heavy.toml").write_text(text, encoding="utf-8")
+    assert re.search(why, refused(heavy))
+
+
+def test_every_key_of_the_settings_is_documented():
+    page = (Path(__file__).parents[3] / "docs" / "aircraft.md").read_text(encoding="utf-8")
+    for key in ModelSettings.model_fields:
+        assert f"`{key}`" in page, key
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ('file="eng_io320"', 'file="eng_none"', "engine file 'eng_none' is not in .*heavy', .*engine'; put it there"),
+        ('file="prop_75in2f"', 'file="prop_none"', "thruster file 'prop_none' is not in"),
+        ('file="eng_io320"', 'file="../../../eng_io320"', "engine file '../../../eng_io320' leads out of the aircraft's folders"),
+        ('file="eng_io320"', 'file="/etc/passwd"', "engine file '/etc/passwd' leads out"),
+        ('file="eng_io320"', r'file="C:\eng_io320"', "leads out"),
+        ("<fdm_config", "<fdm", "heavy.xml: not valid XML"),
+        ("fcs/aileron-cmd-norm", "fcs/other-cmd", "its controls take no aileron command"),
+    ],
+)
+def test_a_model_that_cannot_be_flown_is_refused_in_a_line(heavy, old, new, why):
+    edited(heavy, old, new)
+    assert re.search(why, refused(heavy))
+
+
+def test_a_folder_without_a_model_or_with_two_is_refused(heavy, tmp_path):
+    assert "there is no such directory" in refused(tmp_path / "fleet" / "light")
+    (tmp_path / "fleet" / "light").mkdir()
+    assert "has no JSBSim model; put it there as light.xml" in refused(tmp_path / "fleet" / "light")
+    for name in ("a", "b"):
+        shutil.copy(heavy / "heavy.xml", tmp_path / "fleet" / "light" / f"{name}.xml")
+    assert "has 2 models, a.xml, b.xml; call one of them light.xml" in refused(tmp_path / "fleet" / "light")
+    heavy.rename(tmp_path / "fleet" / "hea vy")
+    (tmp_path / "fleet" / "hea vy" / "heavy.xml").rename(tmp_path / "fleet" / "hea vy" / "hea vy.xml")
+    assert "'hea vy' is no name of an aircraft" in refused(tmp_path / "fleet" / "hea vy")
+
+
+def test_a_directory_tells_which_aircraft_it_holds(heavy, tmp_path):
+    fleet = tmp_path / "fleet"
+    assert folder_names(fleet) == ["heavy"]
+    assert folder_path(fleet, None) == folder_path(fleet, "heavy") == str(heavy)
+    shutil.copytree(heavy, fleet / "second")
+    for name, why in [
+        (None, "holds 2 aircraft; name one of them: heavy, second"),
+        ("heavi", "did you mean 'heavy'"),
+        ("../fleet/heavy", "is a path; leave out --aircraft-dir"),
+        ("..", "holds no aircraft '..'"),
+    ]:
+        with pytest.raises(AircraftError, match=re.escape(why)):
+            folder_path(fleet, name)
+    with pytest.raises(AircraftError, match="there is no such directory"):
+        folder_names(tmp_path / "none")
+    with pytest.raises(AircraftError, match="holds no aircraft"):
+        folder_names(tmp_path / "fleet" / "heavy")
+
+
+def test_a_model_that_ends_jsbsims_process_and_a_property_that_does_not_exist_are_refused_in_a_line(heavy):
+    spec = said(heavy, "[properties]\n'fcs/flap-comd-norm' = 1")
+    with pytest.raises(AircraftError, match="has no JSBSim property 'fcs/flap-comd-norm'"):
+        check_user_aircraft(spec)
+    (heavy / "heavy.toml").unlink()
+    function = '<axis name="DRAG"><function name="aero/x"><property>no/such</property></function></axis>'
+    edited(heavy, "<aerodynamics>", f"<aerodynamics>{function}")
+    with pytest.raises(AircraftError, match=r"JSBSim ends the whole process with its model: .*no/such") as caught:
+        check_user_aircraft(find_spec(str(heavy)))
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,89 @@
+"""Figures of a flight that searched for its plume, against its time history."""
+
+import math
+
+import numpy as np
+import pytest
+from report_parts import assert_axes_read_quantity_and_unit, blocks_of, named_charts
+
+from reports.document.blocks import Text
+from reports.finding.search_view import search_view
+from reports.registry import content
+from reports.run.run_data import read_run
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+
+QUICK = (
+    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "start.course_deg=-90",
+    "wind.speed_mps=3", "wind.from_deg=40", "vessel.speed_mps=8", "emission.sulphur_percent=1.5", "emission.load=0.6",
+    "payload.sensor=fast", "flight.altitude_m=60", "flight.after_settling_s=60",
+    "following={source_height_m=[20.0, 60.0], load=[0.2, 0.9], climb_gradient=0.08, plume='estimated'}",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    directory = tmp_path_factory.mktemp("search") / "run"
+    run_study(load_study("sulphur", QUICK), "sulphur", directory)
+    return read_run(directory)
+
+
+@pytest.fixture(scope="module")
+def view(run):
+    return search_view(run, run.summary.iloc[0])
+
+
+def test_a_search_is_shown_in_height_and_in_cross_section(run):
+    report = content(run)
+    charts = {name: chart for name, chart in named_charts(report).items() if name.startswith("search-")}
+    assert [name.rsplit("-", 1)[0].removeprefix("search-") for name in charts] == ["height-sulphur", "section-sulphur"]
+    assert_axes_read_quantity_and_unit(charts.values())
+    (height, section) = charts.values()
+    assert {"believed, 95 %", "believed, mean", "flown"} <= set(height.labels)
+    assert section.scale_label == "CO2 read [ppm]"
+    told = blocks_of(report, Text, "searches")[0].text
+    assert told.startswith(f"Found {run.summary['time_to_find_s'].iloc[0]:.0f} s after the orbit was reached")
+
+
+def test_the_bands_are_the_modes_of_the_flight_without_gaps_in_each(run, view):
+    modes = run.manifest["modes"]
+    shown = sum(band.end - band.start for band in view.modes())
+    known = {modes.index(band.label) for band in view.modes()}
+    step = view.time[1] - view.time[0]
+    # A band ends where the next mode begins: a sample less than there are of the last one.
+    assert shown == pytest.approx(step * np.count_nonzero(view.history["mode"].isin(known)), abs=1.5 * step)
+    assert "found" in {band.label for band in view.modes()}
+
+
+def test_the_largest_reading_lies_within_the_plume_once_its_delay_is_taken_off(view):
+    right, height, co2 = view.readings()
+    x, y, across, up = view.true_plume()
+    peak = int(np.argmax(co2))
+    # At one moment the plume's centre is off its mean axis by its meander: three spreads hold both.
+    assert math.hypot((right[peak] - x) / across, (height[peak] - y) / up) < 3.0
+    assert len(right) == len(height) == len(co2)
+
+
+def test_the_estimated_plume_is_that_of_the_time_history(view):
+    _, height, across, up = view.estimated_plume()
+    last = view.history.iloc[-1]
+    assert (height, across, up) == tuple(
+        last[name] for name in ("axis_height_estimated_m", "axis_spread_across_estimated_m", "axis_spread_estimated_m")
+    )
+
+
+def test_the_true_axis_is_where_the_passes_cross_it(view):
+    x, y, _, _ = view.true_plume()
+    # Behind a ship that keeps her course the axis is where the apparent wind takes it: the model's parcels are straight.
+    assert x == pytest.approx(0.0, abs=1.0)
+    last = view.history.iloc[view.crossings[-1]]
+    assert y == last["altitude_m"] - last["plume_above_m"]
+
+
+def test_a_flight_that_is_told_nothing_of_a_search_has_no_such_section(tmp_path):
+    run_study(
+        load_study("sulphur", (*QUICK, "following.plume=predicted", "flight.after_settling_s=20")), "sulphur", tmp_path / "run"
+    )
+    run = read_run(tmp_path / "run")
+    assert search_view(run, run.summary.iloc[0]) is None
+    assert not {"searches", "finding"} & {section.anchor for section in content(run).sections}

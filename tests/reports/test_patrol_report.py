@@ -1,0 +1,69 @@
+"""What the report of patrols shows, of one of the kinematic vehicle with a ship that is served and one that cannot be."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reports.patrol.charts import patrol_chart, time_lines
+from reports.patrol.content import patrol_content
+from reports.patrol.data import read_patrols
+from reports.patrol.tables import oracle_table, ship_table
+from reports.run.run_data import read_run
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+
+QUICK = (
+    "fidelity=kinematic", "flights=1", "patrol.ships=2", "patrol.area_m=9000", "patrol.endurance_s=450", "patrol.separation_m=2000",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    out = tmp_path_factory.mktemp("patrol") / "run"
+    run_study(load_study("patrol", QUICK), "patrol", out, overrides=QUICK)
+    return read_run(out)
+
+
+def test_the_verdict_compares_with_the_oracle(run):
+    found = patrol_content(run).verdict
+    figures = {card.name: card for card in found.figures}
+    (row,) = run.summary.to_dict("records")
+    assert figures["Correct verdicts, over the oracle's"].value == f"{row['correct']} of {row['oracle_verdicts']}"
+    assert figures["Keep-out violations"].value == "0"
+    assert found.holds
+    # 80 % and 5 % are the catalog's.
+    assert figures["Correct verdicts, over the oracle's"].met == (row["correct"] >= 0.8 * row["oracle_verdicts"])
+
+
+def test_bars_are_as_long_as_the_stretches_and_stand_in_the_ships_rows(run):
+    patrols = read_patrols(run)
+    (patrol,) = patrols.patrols
+    _, times = patrol_chart(patrol).panels
+    for line in (line for line in times.lines if line.style == "broad"):
+        own = patrol.phases[patrol.phases["phase"] == line.label]
+        lasts = np.nansum(np.diff(line.x.reshape(-1, 3)[:, :2], axis=1))
+        # Minutes in the figure, seconds in the table.
+        assert lasts == pytest.approx((own["ends_s"] - own["begins_s"]).sum() / 60.0, rel=1e-9), line.label
+        assert set(line.y[np.isfinite(line.y)]) == set(2.0 - own["ship"])
+    assert {line.label for line in time_lines(patrols).panels[0].lines} == set(patrol.phases["phase"]) | {"leaving", "measuring"}
+
+
+def test_the_map_has_every_ship_and_marks_those_that_are_not_served(run):
+    (patrol,) = read_patrols(run).patrols
+    shown, _ = patrol_chart(patrol).panels
+    assert sum(line.label == "ship" for line in shown.lines) == 2
+    assert sum(line.label == "not served" for line in shown.lines) == patrol.ships["position"].isna().sum() == 1
+    assert {note.text for note in shown.notes} >= {"0", "1", "N"}
+    served = ship_table(patrol).rows[int(patrol.ships["position"].notna().to_numpy().argmax())]
+    assert "correct" in served[6] or "open" in served[6]
+
+
+def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):
+    failed = pd.DataFrame([{"flight_id": "patrol_00001", "criteria_met": False, "outcome": "failed", "message": "no room"}])
+    both = type(run)(**{name: getattr(run, name) for name in run.__dataclass_fields__} | {
+        "summary": pd.concat([run.summary, failed], ignore_index=True),
+    })  # fmt: skip
+    assert oracle_table(read_patrols(both)).rows[1][1:] == ["–"] * 13
+    found = patrol_content(both)
+    assert found.verdict.failures == ["patrol_00001: no room"]
+    assert not found.verdict.complete

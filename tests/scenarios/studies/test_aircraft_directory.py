@@ -1,0 +1,114 @@
+"""An aircraft of the user's own directory through the command line: flown, reported, resumed, replayed, listed, refused.
+
+The aircraft is that of docs/scripts/aircraft_directory.py, so that its design is made once.
+"""
+
+import json
+import runpy
+import shutil
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from scenarios.schema.load import load_document
+from tests.in_process import assert_refused, run_command
+
+SCRIPT = Path(__file__).parents[3] / "docs" / "scripts" / "aircraft_directory.py"
+SWEEP = ["--set", "sweep.nu=[0.3, 0.6]", "--set", "flight.crossings=10", "--set", "comparison.variants=[]", "--set", "histories=2"]
+
+
+@pytest.fixture(scope="module")
+def heavy(tmp_path_factory):
+    """A Cessna that is heavier by 150 lb, in a directory."""
+    write = runpy.run_path(str(SCRIPT))["write_heavy_cessna"]
+    return write(tmp_path_factory.mktemp("hangar") / "fleet")
+
+
+@pytest.fixture(scope="module")
+def flown(heavy):
+    """The run of a short sweep with it, and how the command ended."""
+    out = heavy.parents[1] / "run"
+    ended = run_command("scenarios.run", "sweep_nu", "--aircraft-dir", heavy.parent, *SWEEP, "--out", out, "--jobs", 1)
+    return out, ended
+
+
+def read_manifest(out):
+    return json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+
+
+def test_a_sweep_with_it_meets_every_criterion_and_names_it_in_report_and_manifest(flown, heavy):
+    out, ended = flown
+    assert ended.status == 0, ended
+    rows = pd.read_csv(out / "summary.csv")
+    assert rows["criteria_met"].tolist() == [True, True]
+    assert rows["aircraft"].tolist() == [str(heavy)] * 2
+    manifest = read_manifest(out)
+    assert manifest["config"]["aircraft"] == str(heavy)
+    assert len(manifest["plugins"][str(heavy)]) == 16
+    assert "Heavy Cessna" in (out / "report.html").read_text(encoding="utf-8")
+    # The run has the model that it flew, with its weight.
+    assert "1650" in (out / "model" / "aircraft" / "heavy" / "heavy.xml").read_text(encoding="utf-8")
+
+
+def test_it_is_resumed_and_replayed_as_it_was_and_where_it_is_now_but_not_changed(flown, heavy, tmp_path):
+    out, _ = flown
+    same = ("scenarios.run", "sweep_nu", "--aircraft-dir", heavy.parent, *SWEEP, "--out", out, "--resume", "--no-report")
+    assert run_command(*same).status == 0
+    flight = out / "flights" / "nu_0.30"
+    moved = shutil.copytree(heavy.parent, tmp_path / "moved")
+    again = run_command("scenarios.run", flight, "--aircraft-dir", moved, "--out", tmp_path / "again", "--no-report")
+    assert again.status == 0, again
+    assert "agrees to the last bit" in again.out
+    model = moved / "heavy" / "heavy.xml"
+    model.write_text(model.read_text(encoding="utf-8").replace("1650", "1660"), encoding="utf-8")
+    changed = run_command("scenarios.run", flight, "--aircraft-dir", moved, "--out", tmp_path / "changed", "--no-report")
+    assert_refused(changed, "heavy' has changed since the run; replay it")
+    shutil.copyfile(moved / "heavy" / "heavy.toml", tmp_path / "before")
+    (heavy / "heavy.toml").write_text('title = "Heavier Cessna"', encoding="utf-8")
+    assert_refused(run_command(*same), "was run with another configuration")
+    shutil.copyfile(tmp_path / "before", heavy / "heavy.toml")
+
+
+def test_the_directory_is_designed_for_and_listed(flown, heavy, tmp_path):
+    # At the height of the sweep, whose design is cached.
+    place = ("--aircraft-dir", heavy.parent, "--altitude", read_manifest(flown[0])["config"]["plume"]["source_height_m"])
+    ended = run_command("innerloop.design", *place, "--out", tmp_path / "design", "--no-report")
+    assert ended.status == 0, ended
+    assert (tmp_path / "design" / "model" / "aircraft" / "heavy" / "heavy.xml").is_file()
+    listed = run_command("innerloop.design", "--list", *place)
+    (line,) = listed.out.splitlines()
+    assert line.startswith(f"flies {heavy} ")
+
+
+def test_a_scenario_file_names_it_relative_to_itself_and_the_command_line_to_where_it_is(heavy, monkeypatch):
+    path = heavy.parents[1] / "own.toml"
+    path.write_text('title = "own"\naircraft = "fleet/heavy"\nsweep.nu = [0.5]\n', encoding="utf-8")
+    assert load_document(str(path))["aircraft"] == str(heavy)
+    monkeypatch.chdir(heavy.parent)
+    assert load_document("sweep_nu", ["aircraft=./heavy"])["aircraft"] == str(heavy)
+    # What is no path stays a name.
+    assert load_document("sweep_nu", ["aircraft=heavy"])["aircraft"] == "heavy"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--aircraft-dir", "none"), "aircraft directory 'none': there is no such directory"),
+        (("--aircraft-dir", "empty"), "aircraft directory 'empty' holds no aircraft"),
+        (("--aircraft-dir", "two"), "holds 2 aircraft; name one of them: a, b"),
+        (("--aircraft-dir", "two", "--set", "aircraft=c"), "holds no aircraft 'c'"),
+        (("--aircraft-dir", "two", "--set", "aircraft=../two/a"), "'../two/a' is a path"),
+        (("--set", "aircraft=two/c"), "two/c': there is no such directory"),
+        (("--set", "aircraft=two/a"), "aircraft 'a' cannot be flown: it has no engine"),
+        (("--set", "aircraft=broken/x"), "x.xml: not valid XML"),
+    ],
+)
+def test_what_is_no_aircraft_is_refused_in_a_line(tmp_path, monkeypatch, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    for name, text in {"two/a": '<fdm_config name="a"/>', "two/b": '<fdm_config name="b"/>', "broken/x": "<fdm_config"}.items():
+        Path(name).mkdir(parents=True)
+        Path(name, f"{Path(name).name}.xml").write_text(text, encoding="utf-8")
+    Path("empty").mkdir()
+    assert_refused(run_command("scenarios.run", "sweep_nu", *arguments, "--out", "run"), words)
+    assert not Path("run").exists()

@@ -1,0 +1,135 @@
+"""A patrol of two ships on the kinematic vehicle: served, recorded, repeated, and what is refused."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from scenarios.engine.task import Task
+from scenarios.errors import InputError
+from scenarios.experiment.requests import Experiment
+from scenarios.planning.spreads import PredictedSpreads
+from scenarios.schema.load import load_study, with_values
+from scenarios.studies.patrol.ships import sampled_patrol
+from scenarios.studies.patrol.work import PatrolWork
+from scenarios.studies.registry import run_study
+from tests.in_process import assert_refused, run_command
+from tests.run_tables import rows_of
+
+QUICK = (
+    "fidelity=kinematic",
+    "flights=1",
+    "patrol.ships=2",
+    "patrol.area_m=8000",
+    "patrol.endurance_s=1500",
+    "patrol.separation_m=2000",
+)
+
+
+def patrol(*overrides):
+    return load_study("patrol", [*QUICK, *overrides])
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    out = tmp_path_factory.mktemp("patrol") / "run"
+    return run_study(patrol(), "patrol", out), out
+
+
+def test_both_ships_are_served_with_the_right_verdict_and_the_run_is_met(run):
+    result, out = run
+    (row,) = rows_of(out)
+    assert (row["ships"], row["served"], row["correct"], row["wrong"], row["oracle_verdicts"]) == (2, 2, 2, 0, 2)
+    assert row["kept_out"]
+    assert row["keepout_violations"] == 0
+    assert result.all_met
+    ships = rows_of(out, "ships.csv")
+    assert sorted(ship["position"] for ship in ships) == [0, 1]
+    for ship in ships:
+        # The catalog's limit between compliant fuel and the others.
+        assert ship["verdict"] == ship["truth"] == ("above" if ship["fsc_fuel_percent"] > 0.15 else "below")
+        # r_min of the keep-out sphere, by default.
+        assert min(ship["min_distance_m"], ship["others_distance_min_m"]) > 200.0
+
+
+def test_stretches_follow_each_other_in_time_and_place_and_fit_into_the_endurance(run):
+    _, out = run
+    phases = pd.read_csv(out / "phases.csv")
+    assert phases["begins_s"].iloc[0] == 0.0
+    for end, begin in (("ends_s", "begins_s"), ("to_north_m", "from_north_m"), ("to_east_m", "from_east_m")):
+        # Each stretch begins with the very sample that the one before it ends with; a flight at the place that its start is
+        # turned into and back: rounding.
+        assert np.allclose(phases[end].iloc[:-1], phases[begin].iloc[1:], rtol=0.0, atol=1e-6), end
+    assert phases["ends_s"].iloc[-1] <= 1500.0
+    assert set(phases["phase"]) == {"transit", "approach", "searching", "measuring", "leaving"}
+
+
+def test_a_flight_begins_where_the_way_to_the_ship_ends(run):
+    _, out = run
+    phases = pd.read_csv(out / "phases.csv")
+    for ship in rows_of(out, "ships.csv"):
+        own = phases[phases["ship"] == ship["ship"]]
+        leg = own[own["phase"] == "transit"].iloc[-1]
+        course = math.radians(ship["vessel_course_deg"])
+        way = ship["vessel_speed_mps"] * ship["reached_s"]
+        north, east = ship["north_m"] + way * math.cos(course), ship["east_m"] + way * math.sin(course)
+        # start.distance_m ends at 800 m; tables have all digits.
+        assert math.hypot(leg["to_north_m"] - north, leg["to_east_m"] - east) == pytest.approx(800.0, abs=1e-6)
+
+
+def test_the_same_patrol_is_flown_again_to_the_last_bit(run, tmp_path):
+    _, out = run
+    run_study(patrol(), "patrol", tmp_path / "again")
+    for name in ("ships.csv", "phases.csv"):
+        assert (tmp_path / "again" / name).read_bytes() == (out / name).read_bytes()
+
+
+def test_a_complete_run_that_is_resumed_flies_nothing(run):
+    _, out = run
+    assert not run_study(patrol(), "patrol", out, resume=True).changed
+
+
+def test_ships_stay_apart_in_one_wind_and_every_patrol_has_others():
+    scenario = patrol("patrol.ships=6", "patrol.area_m=40000", "patrol.endurance_s=5400", "patrol.separation_m=3000")
+    first, second = (sampled_patrol("patrol", scenario, number) for number in (0, 1))
+    assert first.movers != second.movers
+    assert first == sampled_patrol("patrol", scenario, 0)
+    assert len({(ship.scenario.wind.speed_mps, ship.scenario.wind.from_deg) for ship in first.ships}) == 1
+    assert len({ship.scenario.flight_seed for ship in first.ships}) == 6
+    for i, ship in enumerate(first.movers):
+        # The range of the catalog's speed_ratio.
+        assert 0.25 <= abs(ship.velocity - first.air.wind) / first.air.speed <= 0.9
+        for other in first.movers[:i]:
+            for time in range(0, 5401, 60):
+                assert abs(ship.at(time) - other.at(time)) >= 3000.0
+
+
+def test_a_patrol_that_fails_is_a_row_with_its_reason():
+    # Two ships that are to stay farther apart than the square is wide, found when the patrol is flown.
+    scenario = with_values(patrol(), {"patrol.separation_m": 20_000.0})
+    work = PatrolWork(experiments=(Experiment("patrol", scenario),), histories=1, setup=None, spreads=PredictedSpreads())
+    (row,) = work.fly(Task(number=0)).tables["summary.csv"]
+    assert (row["outcome"], row["criteria_met"]) == ("failed", False)
+    assert row["message"].startswith("patrol.separation_m is 20000 m")
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("patrol.ships=0", ("patrol.ships", "greater than or equal to 1")),
+        ("patrol.endurance_s=60", ("patrol.endurance_s is 60 s", "patrol.service_s = 165 s")),
+        ("patrol.separation_m=9000", ("patrol.separation_m is 9000 m", "patrol.area_m")),
+        ("flight.until=flown", ("flight.until is 'flown'", "'verdict'")),
+        ("sweep.keepout.radius_m=[200,210]", ("beside a sweep",)),
+        ("vessel.manoeuvres=[{at_s=20.0,turn_deg=30.0}]", ("vessel.manoeuvres",)),
+    ],
+)
+def test_what_is_no_patrol_is_refused_in_one_line(override, words, tmp_path):
+    overrides = [part for given in (*QUICK, override) for part in ("--set", given)]
+    assert_refused(run_command("scenarios.run", "patrol", *overrides, "--out", tmp_path / "run", "--no-report"), *words)
+
+
+def test_keys_of_a_patrol_are_refused_elsewhere():
+    with pytest.raises(InputError, match="several ships"):
+        load_study("sweep_nu", ["patrol.ships=3"])
