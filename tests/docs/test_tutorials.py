@@ -11,7 +11,7 @@ TUTORIALS = Path(__file__).parents[2] / "docs" / "tutorials"
 
 PRINTED = {
     "first_flight": ("nu_0.50 met", "min_distance_m", "steepest bank", "did you mean 'wind.from_deg'?"),
-    "own_law": ("met\n", "pursuit, less lead"),
+    "own_law": ("met\n", "less lead"),
     "ship_from_ais": ("411 of 417 rows", "keep-out violations: 0", "flight.kmz"),
     "measure_a_plume": ("passes", "fuel sulphur content", "limit 0.1 %: "),
 }
