@@ -266,7 +266,8 @@ INSTRUMENT_MEANINGS = {
     "axis_height_deviation_m": "its standard deviation",
     "axis_offset_estimated_m": "place of the axis across that predicted, as believed",
     "axis_offset_deviation_m": "its standard deviation",
-    "axis_spread_estimated_m": "spread of the plume as believed",
+    "axis_spread_estimated_m": "vertical spread of the plume as believed",
+    "axis_spread_across_estimated_m": "horizontal spread of the plume as believed",
     "axis_measurable": "probability, as believed, that the plume can be crossed within the limits of the altitude",
     "axis_innovation": "mean normalised innovation squared of the passes, 1 where the filter is consistent",
 }
