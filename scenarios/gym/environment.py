@@ -150,6 +150,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         episode = self._episode
         if episode.over:
             raise InputError("the episode is over; reset the environment")
+        if np.shape(action) != self._actions.shape or not np.isfinite(action).all():
+            raise InputError(f"the action is {action}; give heading rate [rad/s] and airspeed [m/s], both finite")
         heading_rate, airspeed = np.clip(action, self._actions.low, self._actions.high).tolist()
         if (heading_rate, airspeed) != episode.commands:
             episode.loop.guidance.overruled(heading_rate, airspeed)

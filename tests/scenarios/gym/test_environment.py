@@ -1,6 +1,7 @@
 """The gymnasium environment: gymnasium's own check, the paper's guidance as a policy, rewards, and what is refused."""
 
 import math
+import re
 import tomllib
 import warnings
 from pathlib import Path
@@ -167,6 +168,8 @@ def test_actions_outside_the_space_are_cut_and_the_guidance_knows_what_was_flown
     kinematic.unwrapped.step(10.0 * high)
     assert loop.vehicle.motion()[4] == high[0]
     assert loop.vehicle.air_data()[0] == high[1]
+    with pytest.raises(InputError, match=r"the action is .*; give heading rate"):
+        kinematic.unwrapped.step(np.array([math.nan, 19.0]))
     kinematic.unwrapped.step(0.5 * high)
     assert loop.vehicle.motion()[4] == 0.5 * high[0]
 
@@ -188,6 +191,18 @@ def test_what_cannot_be_an_environment_is_refused_in_a_line(keys, words):
 def test_an_unknown_flight_is_refused_with_the_names_of_those_there_are(kinematic):
     with pytest.raises(InputError, match=r"no flight 'nu_0\.5'; its flights are nu_0\.30, nu_0\.60"):
         kinematic.reset(options={"flight_id": "nu_0.5"})
+
+
+@pytest.mark.usefixtures("x8_design")
+def test_the_example_of_the_page_runs_as_it_stands_and_is_short(capsys):
+    register_environment()
+    page = (PROJECT / "docs" / "gym.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+    assert len(example.splitlines()) <= 15
+    exec(compile(example, "gym.md", "exec"), {})
+    printed = capsys.readouterr().out
+    assert "crossings in" in printed
+    assert "COMPLETED" in printed
 
 
 def test_every_entry_of_the_observation_is_documented_with_its_unit():
