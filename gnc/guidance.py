@@ -116,3 +116,8 @@ class Guidance:
             self.airspeed_command = self._airspeed(0.0, own, True)
         else:
             self.airspeed_command = mission.airspeed
+
+    def overruled(self, heading_rate: float, airspeed: float) -> None:
+        """Take note of commands that are flown in place of the last ones [rad/s, m/s]: what is predicted follows them."""
+        self.heading_rate_command, self.airspeed_command = heading_rate, airspeed
+        self.mission.tracker.heading_rate_command = heading_rate * self.own.air_ratio

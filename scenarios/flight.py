@@ -108,10 +108,10 @@ class FlightWork:
             plan = self.plan(request)
             row |= plan_row(plan)
             tables[DRAWS][0]["nu"] = row.get("nu")
-            instruments = _payload(request, plan)
+            instruments = payload_of(request, plan)
             read = [instrument for instrument in instruments if isinstance(instrument, Instrument)]
-            vehicle = release(plan, self._setup(request), self.viewer)
-            record = fly(plan, vehicle, read, reader=_reader(plan, instruments), every_step=task.every_step)
+            vehicle = release(plan, self.setup_of(request), self.viewer)
+            record = fly(plan, vehicle, read, reader=reader_of(plan, instruments), every_step=task.every_step)
             history = flight_history(plan, record)
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)
@@ -150,14 +150,15 @@ class FlightWork:
         InfeasibleError : it has no solution
         """
         return plan_flight(
-            request.scenario, flight_id=request.flight_id, seed=request.noise, setup=self._setup(request), spreads=self.spreads
+            request.scenario, flight_id=request.flight_id, seed=request.noise, setup=self.setup_of(request), spreads=self.spreads
         )
 
     def more_tables(self, request: FlightRequest, plan: FlightPlan, record: FlightRecord, row: Row) -> _Tables:  # noqa: ARG002
         """Return rows of tables that a study of its own adds to a flight's row, by the file name of the table."""
         return {}
 
-    def _setup(self, request: FlightRequest) -> VehicleSetup:
+    def setup_of(self, request: FlightRequest) -> VehicleSetup:
+        """Return what a flight needs of its vehicle."""
         kinematic = self.setup is None or request.scenario.fidelity == "kinematic"
         return kinematic_setup(request.scenario) if kinematic or self.setup is None else self.setup
 
@@ -217,13 +218,13 @@ def _measured_from(request: FlightRequest, record: FlightRecord) -> float:
     return record.settled_at if measured is None else float(record.column("time_s")[-1]) - measured
 
 
-def _payload(request: FlightRequest, plan: FlightPlan) -> list[Instrument | EvaluatedInstrument]:
+def payload_of(request: FlightRequest, plan: FlightPlan) -> list[Instrument | EvaluatedInstrument]:
     """Return the flight's instruments, fresh."""
     generator = own_generator(request.noise, PAYLOAD)
     return [PAYLOADS.get(name)(request.scenario, plan.world, generator) for name in plan.payload]
 
 
-def _reader(plan: FlightPlan, instruments: list[Instrument | EvaluatedInstrument]) -> GasReader | None:
+def reader_of(plan: FlightPlan, instruments: list[Instrument | EvaluatedInstrument]) -> GasReader | None:
     """Return the instrument that is read in flight, of a flight that reads one."""
     if plan.sensing is None or not plan.sensing.smells:
         return None

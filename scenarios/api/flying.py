@@ -53,7 +53,7 @@ def fly(
 
     loaded = load(scenario).set(**keys)
     with lent(loaded.parts), _directory(out) as (directory, keeping), _shown(progress=progress) as tell:
-        study = _study_of(loaded)
+        study = flights_of(loaded)
         name = flight_id or _only_flight(study, loaded)
         single = SingleFlight.of(study, name)
         if single is None:
@@ -106,8 +106,13 @@ def run(
         return _finished(result, keeping)
 
 
-def _study_of(loaded: Scenario) -> "FlightStudy":
-    """Return the study of a scenario, one flight of which can be flown."""
+def flights_of(loaded: Scenario) -> "FlightStudy":
+    """Return the study of a scenario, single flights of which can be flown.
+
+    Raises
+    ------
+    InputError : it has no such flights
+    """
     from scenarios.studies.flight_study import FlightStudy
     from scenarios.studies.registry import study_of
 

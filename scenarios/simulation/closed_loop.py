@@ -1,7 +1,7 @@
 """The closed loop: a vehicle, what is sensed, the guidance at its own rate, and the record. It is closed here only."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 
 from gnc.compose import compose
 from gnc.guidance import Guidance
@@ -19,6 +19,105 @@ from scenarios.simulation.settling import Settling
 from scenarios.simulation.smelling import PlumeBelief, Smelling, axis_of
 from scenarios.vehicles.vehicle import Vehicle
 
+Commands = tuple[float, float]
+"""Heading rate [rad/s] and airspeed [m/s]."""
+
+
+class ClosedLoop:
+    """One flight under way: a vehicle that stands at its start, and the guidance of its plan.
+
+    Parameters
+    ----------
+    plan, vehicle : the flight
+    payload : instruments on board
+    reader : sniffer that is read in flight, or none
+    every_step : whether every step of the guidance is recorded, beside the samples; it changes nothing of the flight
+
+    Attributes
+    ----------
+    plan, vehicle, guidance : of the flight
+    settling : says when it has settled, and how often it has crossed since
+    ending : says how it ended
+    """
+
+    def __init__(
+        self,
+        plan: FlightPlan,
+        vehicle: Vehicle,
+        payload: Sequence[Instrument] = (),
+        *,
+        reader: GasReader | None = None,
+        every_step: bool = False,
+    ) -> None:
+        self.plan, self.vehicle, self._every_step = plan, vehicle, every_step
+        self.guidance = guidance = compose(plan.guidance)
+        self.settling = Settling(
+            band=plan.settling_band, period=plan.settling_period, crossings=plan.crossings, after=plan.after_settling
+        )
+        axis = axis_of(guidance)
+        beliefs = (PlumeBelief(axis),) if isinstance(axis, SearchedAxis) else ()
+        self._recorder = Recorder(guidance, vehicle, plan.world, (*payload, *beliefs), self.settling)
+        self._sensing = _sensing(plan, vehicle, guidance, reader)
+        self.ending = Ending(plan, vehicle, guidance, self.settling, _judge(plan, guidance, reader, self.settling))
+
+    def steps(self) -> Generator[Commands, Commands, FlightRecord]:
+        """Fly: yield at each step what the guidance commands, take what is to be flown for it, and return the record at the end.
+
+        The flight ends one sample after the last crossing that it is to fly, so that every crossing lies inside the record; when
+        its time is up; when it has left with a verdict; on the water; or out of control.
+        """
+        # Names of their own: this is the innermost loop of every flight.
+        plan, guidance, sensing, recorder, ending = self.plan, self.guidance, self._sensing, self._recorder, self.ending
+        mission, target, guard = guidance.mission, guidance.target, guidance.guard
+        guide, motion_of, advance, reference_of = guidance.step, self.vehicle.motion, self.vehicle.advance, recorder.reference
+        time_step, log_interval = plan.time_step, plan.log_interval
+        record_interval = 1 if self._every_step else log_interval
+        demand_max = command_max = airspeed_error = 0.0
+        saturated = step = 0
+        guarding: list[tuple[int, float, bool]] = []
+        for step in range(round(plan.duration_max / time_step) + 1):
+            time, motion = step * time_step, motion_of()
+            recorded = step % record_interval == 0
+            # The guidance moves the reference on as it computes its commands.
+            reference = reference_of() if recorded else None
+            if sensing is None:
+                guide(time, motion)
+            else:
+                guide(time, sensing.read(step, time, motion))
+                sensing.act(step, time, motion)
+                airspeed_error = sensing.airspeed_error
+            tracker = mission.tracker
+            demand, command = abs(tracker.heading_rate_demand), guidance.heading_rate_command
+            demand_max = demand if demand > demand_max else demand_max
+            size = abs(command)
+            command_max = size if size > command_max else command_max
+            saturated += tracker.saturated
+            if guidance.guarding and guard is not None:
+                guarding.append((step, math.hypot(motion[0] - target.north, motion[1] - target.east), guard.lost))
+            if recorded:
+                sampled = step % log_interval == 0
+                sample, complete = recorder.record(time, motion, reference or reference_of() or (math.nan,) * 4, judged=sampled)
+                if sampled and ending.reached(time, motion, sample, complete=complete):
+                    break
+            command, airspeed = yield command, guidance.airspeed_command
+            advance(command, airspeed - airspeed_error)
+        rows = recorder.rows()
+        return FlightRecord(
+            outcome=ending.outcome,
+            message=ending.message,
+            mode=ending.mode,
+            enough=ending.enough,
+            settled_at=self.settling.at,
+            interventions=interventions(guarding, time_step),
+            columns=recorder.columns,
+            history=rows[::log_interval] if self._every_step else rows,
+            every_step=rows,
+            saturation_fraction=saturated / max(1, step),
+            heading_rate_demand_max=demand_max,
+            heading_rate_command_max=command_max,
+            guard_time=len(guarding) * time_step,
+        )
+
 
 def fly(
     plan: FlightPlan,
@@ -28,67 +127,16 @@ def fly(
     reader: GasReader | None = None,
     every_step: bool = False,
 ) -> FlightRecord:
-    """Fly ``plan`` with a vehicle that stands at its start, and with a sniffer as ``reader`` where it is read in flight.
-
-    The flight ends one sample after the last crossing that it is to fly, so that every crossing lies inside the record; when its
-    time is up; when it has left with a verdict; on the water; or out of control. To record ``every_step`` of the guidance, beside
-    the samples, changes nothing of the flight.
-    """
-    guidance = compose(plan.guidance)
-    settling = Settling(band=plan.settling_band, period=plan.settling_period, crossings=plan.crossings, after=plan.after_settling)
-    axis = axis_of(guidance)
-    beliefs = (PlumeBelief(axis),) if isinstance(axis, SearchedAxis) else ()
-    recorder = Recorder(guidance, vehicle, plan.world, (*payload, *beliefs), settling)
-    sensing = _sensing(plan, vehicle, guidance, reader)
-    mission, target, guard = guidance.mission, guidance.target, guidance.guard
-    guide, motion_of, advance, reference_of = guidance.step, vehicle.motion, vehicle.advance, recorder.reference
-    time_step, log_interval = plan.time_step, plan.log_interval
-    record_interval = 1 if every_step else log_interval
-    ending = Ending(plan, vehicle, guidance, settling, _judge(plan, guidance, reader, settling))
-    demand_max = command_max = airspeed_error = 0.0
-    saturated = step = 0
-    guarding: list[tuple[int, float, bool]] = []
-    for step in range(round(plan.duration_max / time_step) + 1):
-        time, motion = step * time_step, motion_of()
-        recorded = step % record_interval == 0
-        # The guidance moves the reference on as it computes its commands.
-        reference = reference_of() if recorded else None
-        if sensing is None:
-            guide(time, motion)
-        else:
-            guide(time, sensing.read(step, time, motion))
-            sensing.act(step, time, motion)
-            airspeed_error = sensing.airspeed_error
-        tracker = mission.tracker
-        demand, command = abs(tracker.heading_rate_demand), guidance.heading_rate_command
-        demand_max = demand if demand > demand_max else demand_max
-        size = abs(command)
-        command_max = size if size > command_max else command_max
-        saturated += tracker.saturated
-        if guidance.guarding and guard is not None:
-            guarding.append((step, math.hypot(motion[0] - target.north, motion[1] - target.east), guard.lost))
-        if recorded:
-            sampled = step % log_interval == 0
-            sample, complete = recorder.record(time, motion, reference or reference_of() or (math.nan,) * 4, judged=sampled)
-            if sampled and ending.reached(time, motion, sample, complete=complete):
-                break
-        advance(command, guidance.airspeed_command - airspeed_error)
-    rows = recorder.rows()
-    return FlightRecord(
-        outcome=ending.outcome,
-        message=ending.message,
-        mode=ending.mode,
-        enough=ending.enough,
-        settled_at=settling.at,
-        interventions=interventions(guarding, time_step),
-        columns=recorder.columns,
-        history=rows[::log_interval] if every_step else rows,
-        every_step=rows,
-        saturation_fraction=saturated / max(1, step),
-        heading_rate_demand_max=demand_max,
-        heading_rate_command_max=command_max,
-        guard_time=len(guarding) * time_step,
-    )
+    """Fly ``plan`` with a vehicle that stands at its start as its guidance commands; parameters as of ``ClosedLoop``."""
+    steps = ClosedLoop(plan, vehicle, payload, reader=reader, every_step=every_step).steps()
+    follow = steps.send
+    try:
+        commands = next(steps)
+        while True:
+            commands = follow(commands)
+    except StopIteration as over:
+        record: FlightRecord = over.value
+        return record
 
 
 def _sensing(plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, reader: GasReader | None) -> OnboardSensing | None:

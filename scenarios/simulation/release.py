@@ -9,7 +9,18 @@ from scenarios.vehicles.vehicle import Vehicle
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 
-def release(plan: FlightPlan, setup: VehicleSetup, viewer: tuple[str, int] | None = None) -> Vehicle:
+def failable(plan: FlightPlan) -> bool:
+    """Return whether a part of the aircraft may fail in a flight."""
+    return plan.world is not None and plan.world.fault.of_aircraft()
+
+
+def release(
+    plan: FlightPlan,
+    setup: VehicleSetup,
+    viewer: tuple[str, int] | None = None,
+    *,
+    flown: AutopilotedAircraft | None = None,
+) -> Vehicle:
     """Return the vehicle at the start of a flight.
 
     Parameters
@@ -17,6 +28,7 @@ def release(plan: FlightPlan, setup: VehicleSetup, viewer: tuple[str, int] | Non
     plan : the flight
     setup : of the aircraft, or of the kinematic vehicle
     viewer : host and port of a FlightGear that is to show the aircraft, in real time; none if not given
+    flown : an aircraft that has flown before, to be used again; a fresh one if not given
     """
     start, world = plan.start, plan.world
     where = {"north": start.north, "east": start.east, "altitude": plan.altitude, "course": start.course}
@@ -24,8 +36,7 @@ def release(plan: FlightPlan, setup: VehicleSetup, viewer: tuple[str, int] | Non
     if aircraft is None:
         wind = world.weather.wind if world else CALM
         return KinematicVehicle(**where, speed=plan.guidance.speed, time_step=plan.time_step, lag=setup.lag, wind=wind)
-    failable = world is not None and world.fault.of_aircraft()
-    flown = AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable)
+    flown = flown or AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable(plan))
     if viewer is not None:
         flown.fdm.show(*viewer)
     # Still air needs no weather of its own.

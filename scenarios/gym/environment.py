@@ -1,0 +1,220 @@
+"""Flights of a scenario as a gymnasium environment: the agent commands heading rate and airspeed in place of the guidance."""
+
+import math
+import shutil
+import tempfile
+import weakref
+from collections.abc import Generator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, SupportsFloat
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from scenarios.api.flying import flights_of
+from scenarios.api.scenario import Given, load
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.task import Task
+from scenarios.errors import InputError
+from scenarios.experiment.requests import FlightRequest
+from scenarios.flight import FlightWork, payload_of, reader_of
+from scenarios.gym.observation import Array, Observer, observation_space
+from scenarios.gym.reward import LOST, VIOLATION, CrossingReward
+from scenarios.instruments.instrument import Instrument
+from scenarios.simulation.closed_loop import ClosedLoop, Commands
+from scenarios.simulation.outcome import Outcome
+from scenarios.simulation.record import FlightRecord
+from scenarios.simulation.release import failable, release
+
+_SEEDS = 2**32
+
+
+@dataclass(slots=True)
+class _Episode:
+    """A flight under way.
+
+    Attributes
+    ----------
+    loop, steps : the flight, and its steps
+    commands : of the guidance, at the last step
+    observer, reward : of the agent
+    step : number of the last step
+    over : whether the episode has ended
+    record : of the flight, where that has ended
+    """
+
+    loop: ClosedLoop
+    steps: Generator[Commands, Commands, FlightRecord]
+    commands: Commands
+    observer: Observer
+    reward: CrossingReward
+    step: int = 0
+    over: bool = False
+    record: FlightRecord | None = None
+
+    @property
+    def time(self) -> float:
+        """Return the time since the start [s]."""
+        return self.step * self.loop.plan.time_step
+
+    @property
+    def inside(self) -> bool:
+        """Return whether the vehicle was in the keep-out area when it was last observed."""
+        plan, height = self.loop.plan, 0.0
+        if plan.keepout_shape == "sphere":
+            height = self.loop.vehicle.sample()[0] - plan.source_height
+        return math.hypot(self.observer.distance, height) < plan.keepout_radius
+
+
+class PlumeCrossing(gymnasium.Env[Array, Array]):
+    """A vessel, her plume, and a vehicle that is to cross it near her and to keep out of the area around her.
+
+    Actions are heading rate [rad/s] and airspeed [m/s] that the autopilot is commanded for one step of the guidance; observations
+    are those of ``scenarios.gym.observation.MEANINGS``, rewards those of ``scenarios.gym.reward``. An episode is terminated when
+    the keep-out area is entered, the aircraft is lost, or every crossing is flown; it is truncated when its time is up.
+
+    Parameters
+    ----------
+    scenario : as of ``scenarios.fly``
+    keys : to set, as of ``scenarios.fly``
+
+    Raises
+    ------
+    InputError : the scenario cannot be flown, has no vessel, or objects as parts, or commands without a limit; one line
+    """
+
+    metadata = {"render_modes": []}  # noqa: RUF012 - as gymnasium has it
+
+    def __init__(self, scenario: Given = "sweep_nu", *, keys: dict[str, object] | None = None, render_mode: None = None) -> None:
+        loaded = load(scenario).set(**keys or {})
+        if loaded.parts:
+            raise InputError("an environment takes parts by name or by FILE.py:NAME, not as objects")
+        study = flights_of(loaded)
+        directory = Path(tempfile.mkdtemp(prefix="plume-flight-gym-"))
+        weakref.finalize(self, shutil.rmtree, directory, ignore_errors=True)
+        self.render_mode = render_mode
+        self._work: FlightWork = study.work(RunDirectory(directory))
+        if self._work.refusal:
+            raise InputError(self._work.refusal)
+        self._numbers = {self._name(number): number for number in range(study.planned)}
+        self._aircraft: dict[bool, AutopilotedAircraft] = {}
+        self._episode = self._begin(self._work.request(Task(number=0)))
+        self._actions = self._action_box()
+        self.action_space = self._actions
+        self.observation_space = observation_space()
+
+    @property
+    def flight_ids(self) -> tuple[str, ...]:
+        """Return the names of the scenario's flights."""
+        return tuple(self._numbers)
+
+    @property
+    def record(self) -> FlightRecord:
+        """Return the record of the flight, once its episode has run to its end by itself.
+
+        Raises
+        ------
+        InputError : it is still under way, or was ended by a violation
+        """
+        if self._episode.record is None:
+            raise InputError("the episode has no record yet; fly it to its end")
+        return self._episode.record
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+        """Begin a flight.
+
+        Parameters
+        ----------
+        seed : of which flight it is, of its start, its air and its errors; further episodes follow from it
+        options : ``{"flight_id": ...}`` begins that flight of the scenario with the seed that a run of it has, in a simulation of
+            its own, so that it is the run's to the last bit; other episodes use one simulation again, which is true to 1e-9 m
+        """
+        super().reset(seed=seed)
+        name = (options or {}).get("flight_id")
+        if name is None:
+            number = int(self.np_random.integers(len(self._numbers)))
+            task = Task(number=number, seed=int(self.np_random.integers(_SEEDS)))
+        elif name in self._numbers:
+            task = Task(number=self._numbers[name])
+            self._aircraft.clear()
+        else:
+            raise InputError(f"the scenario has no flight '{name}'; its flights are {', '.join(self._numbers)}")
+        self._episode = self._begin(self._work.request(task))
+        return self._episode.observer.observe(0.0), self._info()
+
+    def step(self, action: Array) -> tuple[Array, SupportsFloat, bool, bool, dict[str, Any]]:
+        """Fly one step of the guidance with an action; one outside the action space is cut at its bounds."""
+        episode = self._episode
+        if episode.over:
+            raise InputError("the episode is over; reset the environment")
+        if np.shape(action) != self._actions.shape or not np.isfinite(action).all():
+            raise InputError(f"the action is {action}; give heading rate [rad/s] and airspeed [m/s], both finite")
+        heading_rate, airspeed = np.clip(action, self._actions.low, self._actions.high).tolist()
+        if (heading_rate, airspeed) != episode.commands:
+            episode.loop.guidance.overruled(heading_rate, airspeed)
+        episode.step += 1
+        lost = truncated = False
+        try:
+            episode.commands = episode.steps.send((heading_rate, airspeed))
+        except StopIteration as ended:
+            record: FlightRecord = ended.value
+            lost = record.outcome in (Outcome.DIVERGED, Outcome.AIRCRAFT_LOST)
+            truncated = record.outcome in (Outcome.NOT_SETTLED, Outcome.INCOMPLETE)
+            episode.record, episode.over = record, True
+        observed = episode.observer.observe(episode.time)
+        entered = episode.inside
+        reward = episode.reward.update(episode.observer.along, episode.observer.across) + LOST * lost + VIOLATION * entered
+        truncated = truncated and not entered
+        terminated = (episode.over or entered) and not truncated
+        episode.over = terminated or truncated
+        return observed, reward, terminated, truncated, self._info()
+
+    def close(self) -> None:
+        """Let the simulation go."""
+        self._episode.steps.close()
+        self._aircraft.clear()
+
+    def _name(self, number: int) -> str:
+        experiment, own = self._work.located(number)
+        return experiment.named(own)[0]
+
+    def _begin(self, request: FlightRequest) -> "_Episode":
+        """Place the vehicle at the start of a flight, and have the guidance compute its first commands."""
+        plan, setup = self._work.plan(request), self._work.setup_of(request)
+        if plan.world is None:
+            raise InputError(f"flight '{plan.flight_id}' has no vessel; an environment needs one")
+        flown = None
+        if setup.aircraft is not None:
+            may_fail = failable(plan)
+            if may_fail not in self._aircraft:
+                aircraft = setup.aircraft
+                self._aircraft[may_fail] = AutopilotedAircraft(aircraft.spec, aircraft.model, failable=may_fail)
+            flown = self._aircraft[may_fail]
+        instruments = payload_of(request, plan)
+        read = [instrument for instrument in instruments if isinstance(instrument, Instrument)]
+        vehicle = release(plan, setup, flown=flown)
+        loop = ClosedLoop(plan, vehicle, read, reader=reader_of(plan, instruments))
+        steps = loop.steps()
+        commands = next(steps)
+        return _Episode(loop, steps, commands, Observer(loop), CrossingReward(plan.keepout_radius))
+
+    def _action_box(self) -> "spaces.Box[np.float64]":
+        """Return what every flight of the scenario may be commanded."""
+        setup = self._work.setup_of(self._work.request(Task(number=0)))
+        turn = self._episode.loop.plan.guidance.tracking.heading_rate_max
+        if not math.isfinite(turn):
+            raise InputError("guidance.command_limit is false; an environment needs a limit of the heading rate")
+        return spaces.Box(np.array([-turn, setup.airspeed_min]), np.array([turn, setup.airspeed_max]), dtype=np.float64)
+
+    def _info(self) -> dict[str, Any]:
+        episode = self._episode
+        return {
+            "flight_id": episode.loop.plan.flight_id,
+            "time_s": episode.time,
+            "guidance": np.array(episode.commands),
+            "crossings": episode.reward.crossings,
+            "settled": not math.isnan(episode.loop.settling.at),
+        }
