@@ -1,5 +1,6 @@
 """Fuels and ships that are data: tables beside this file."""
 
+import functools
 import tomllib
 from importlib.resources import files
 from typing import Any
@@ -25,5 +26,6 @@ def preset_names(file: str) -> tuple[str, ...]:
     return tuple(_tables(file))
 
 
+@functools.cache
 def _tables(file: str) -> dict[str, dict[str, Any]]:
     return tomllib.loads(files("measurement.emission").joinpath(file).read_text(encoding="utf-8"))

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import typst
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 
 from reports.document.blocks import Block, Content, FlightContent, FlightPicker, Section
 from reports.document.chart import Chart
@@ -75,5 +76,9 @@ def _flight(flight: FlightContent, directory: Path, numbers: Iterator[int]) -> D
 
 def _image(chart: Chart, directory: Path, prefix: str = "") -> Data:
     file = f"{prefix}{chart.name}.svg"
-    draw(chart).savefig(directory / file, dpi=200)
+    figure = draw(chart)
+    # What is drawn as pixels has 200 to the inch. `savefig` would draw all twice, the first time to lay it out alone.
+    figure.set_dpi(200)
+    canvas: Any = FigureCanvasSVG(figure)
+    canvas.print_svg(directory / file)
     return {"file": file, "number": chart.number, "caption": chart.caption}

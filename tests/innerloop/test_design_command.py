@@ -32,8 +32,8 @@ def test_the_command_leaves_a_directory_that_can_be_reported_on_again(tmp_path):
 
 
 def test_the_search_over_reversals_can_be_repeated_with_more_of_them(tmp_path):
-    done = design_command("x8", "--out", tmp_path / "x8", "--reversals", 3)
-    assert done.returncode == 0, done.stderr
+    ended = run_command("innerloop.design", "x8", "--out", tmp_path / "x8", "--reversals", 3)
+    assert ended.status == 0, ended.errors
     own = json.loads((tmp_path / "x8" / "innerloop.json").read_text(encoding="utf-8"))["turn_reversal"]
     found = own["repeated_search"]
     assert found["reversals"] == 3
@@ -41,24 +41,24 @@ def test_the_search_over_reversals_can_be_repeated_with_more_of_them(tmp_path):
     # Other random numbers than the design's own search has, which stays as it was.
     assert found["deviation_max_m"] != own["deviation_max_m"]
     assert own["reversals"] == 100
-    assert f"3 of 3 reversals, largest deviation {found['deviation_max_m']:.2f} m" in done.stderr
-    assert f"{found['deviation_max_m']:.2f} m nearer" in " ".join(done.stdout.split())
+    assert f"3 of 3 reversals, largest deviation {found['deviation_max_m']:.2f} m" in ended.errors
+    assert f"{found['deviation_max_m']:.2f} m nearer" in " ".join(ended.out.split())
     assert f"{found['deviation_max_m']:.2f} m nearer" in (tmp_path / "x8" / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("reversals", ["0", "-5", "many", "2000000"])
 def test_a_number_of_reversals_that_cannot_be_flown_is_refused(tmp_path, reversals):
-    refused = design_command("x8", "--out", tmp_path / "x8", "--reversals", reversals)
-    assert refused.returncode == 2
-    assert "--reversals" in refused.stderr
+    refused = run_command("innerloop.design", "x8", "--out", tmp_path / "x8", "--reversals", reversals)
+    assert refused.status == 2
+    assert "--reversals" in refused.errors
     assert not (tmp_path / "x8").exists()
 
 
 def test_the_command_does_not_write_over_flights(tmp_path):
     (tmp_path / "manifest.json").write_text('{"study": "flights"}', encoding="utf-8")
-    refused = design_command("x8", "--out", tmp_path)
-    assert refused.returncode == 2
-    assert "holds another run; choose another --out" in refused.stderr
+    refused = run_command("innerloop.design", "x8", "--out", tmp_path)
+    assert refused.status == 2
+    assert "holds another run; choose another --out" in refused.errors
     assert [p.name for p in tmp_path.iterdir()] == ["manifest.json"]
 
 

@@ -17,7 +17,7 @@ from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
 SETTINGS = [
-    "flights=24",
+    "flights=12",
     "turbulence.gusts=2",
     "turbulence.gust_length_s=2.0",
     "histories=5",
@@ -72,12 +72,12 @@ def test_a_study_that_loses_a_worker_in_the_middle_has_the_rows_of_a_local_one(t
         killed = []
 
         def kill_in_the_middle(doing, done, _):
-            if done == 6 and not killed:
+            if done == 4 and not killed:
                 killed.append(done)
                 os.killpg(first.pid, signal.SIGKILL)
 
         result = fly(tmp_path / "dask", executor="dask", scheduler=address, progress=kill_in_the_middle)
-    assert killed == [6]
+    assert killed == [4]
     assert result.all_met
     for table in ("summary.csv", "crossings.csv", "interventions.csv", "draws.csv"):
         local, remote = (

@@ -29,7 +29,7 @@ speed_ratio = [0.3, 0.5]
 [guidance]
 keepout_guard = false
 [subset]
-flights_per_level = 60
+flights_per_level = 50
 conditional_probability = 0.2
 repeats = 3
 [reports]
@@ -99,7 +99,7 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
     levels = [level for simulation in found["simulations"] for level in simulation["levels"]]
     assert len(summary) == result.summary.done == sum(level["flights"] for level in levels) == result.planned
     assert list(summary["flight_id"]) == [f"short_{i:05d}" for i in range(len(summary))]
-    assert found["violation"]["first_levels"]["flights"] == 180
+    assert found["violation"]["first_levels"]["flights"] == 150
     for simulation in found["simulations"]:
         first, *others = simulation["levels"]
         assert first["below_m"] is None
