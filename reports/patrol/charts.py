@@ -19,16 +19,15 @@ _EDGE = 0.7
 
 
 _ABOVE = 0.03
-"""How far above a ship her number stands, over the height of what ships sail."""
+"""How far above a ship her number stands, over the height of the map."""
 
 
 def patrol_chart(patrol: Patrol) -> Chart:
     """Return the map of a patrol, and what was done beside which ship when."""
     return Chart(
         name=patrol.name,
-        caption="Left: where ships went, numbered where they began, and the UAV, which began at the ring. Right: what it did beside"
-        " or on the way to which ship. A diamond is when an oracle would be done with her, which knows every plume and how long"
-        " each ship takes.",
+        caption="Left: where ships went, numbered where they began and until they were measured, and the UAV, which began at the"
+        " ring. Right: what it did beside or on the way to which ship. A diamond is when an oracle would be done with her.",
         panels=[_map(patrol), _ship_times(patrol)],
         columns=2,
         panel_height=0.5,
@@ -51,27 +50,30 @@ def time_lines(patrols: Patrols) -> Chart:
 
 
 def _map(patrol: Patrol) -> Panel:
-    lines: list[Line] = []
-    notes: list[Note] = []
-    tracks = [patrol.track(ship) for _, ship in patrol.ships.iterrows()]
-    room = _ABOVE * float(np.ptp(np.concatenate([north for north, _ in tracks])))
+    ships, starts = [], []
     for _, ship in patrol.ships.iterrows():
         north, east = patrol.track(ship)
         served = pd.notna(ship["position"])
-        lines.append(Line(x=east, y=north, label="ship", colour=Meaning.SHIP, style="thin"))
-        label = "" if served else "not served"
         style: Style = "dots" if served else "cross"
-        lines.append(Line(x=east[:1], y=north[:1], label=label, colour=Meaning.SHIP, style=style))
-        notes.append(Note(x=float(east[0]), y=float(north[0]) + room, text=str(ship["ship"])))
+        ships.append(Line(x=east, y=north, label="ship", colour=Meaning.SHIP, style="thin"))
+        label = "" if served else "not served"
+        starts.append(Line(x=east[:1], y=north[:1], label=label, colour=Meaning.SHIP, style=style))
+    flown = [Line(x=np.zeros(1), y=np.zeros(1), label="start", colour=Meaning.FLOWN, style="ring")]
     for _, leg in patrol.phases.iterrows():
         x, y = (np.array([leg[f"from_{axis}_m"], leg[f"to_{axis}_m"]], dtype=np.float64) for axis in ("east", "north"))
-        lines.append(Line(x=x, y=y, label="UAV", colour=Meaning.FLOWN))
+        flown.append(Line(x=x, y=y, label="UAV", colour=Meaning.FLOWN))
     measured = patrol.phases[patrol.phases["phase"] == "measuring"]
     x, y = column(measured, "to_east_m"), column(measured, "to_north_m")
-    lines.append(Line(x=x, y=y, label="measured", colour=Meaning.CROSSING, style="square"))
-    lines.append(Line(x=np.zeros(1), y=np.zeros(1), label="start", colour=Meaning.FLOWN, style="ring"))
-    panel = Panel(x_label="East [m]", y_label="North [m]", title="Map", lines=lines, notes=notes)
-    return on_map(panel, north=0.0, wind=patrol.wind)
+    flown.append(Line(x=x, y=y, label="measured", colour=Meaning.CROSSING, style="square"))
+    # Ships that are not served may go far beyond the page.
+    shown = [*starts, *flown]
+    room = _ABOVE * float(np.ptp(np.concatenate([line.y for line in shown])))
+    notes = [
+        Note(x=float(line.x[0]), y=float(line.y[0]) + room, text=str(number))
+        for number, line in zip(patrol.ships["ship"], starts, strict=True)
+    ]
+    panel = Panel(x_label="East [m]", y_label="North [m]", title="Map", lines=[*ships, *shown], notes=notes)
+    return on_map(panel, north=0.0, wind=patrol.wind, shown=shown)
 
 
 def _ship_times(patrol: Patrol) -> Panel:

@@ -15,8 +15,9 @@ _SHOWN = 12
 """Patrols of which map and ships are shown."""
 
 _ORACLE = (
-    "The oracle flies beside each ship once, told where her plume is, so that it knows how long she takes. Of all orders it takes"
-    " the one with the most verdicts within the endurance, and of those the quickest. It does not go round other ships."
+    "The oracle knows how long each ship takes: as long as a flight beside her that is told where her plume is, or as the patrol's"
+    " own where that took less. Of all orders it takes the one with the most verdicts within the endurance, and of those the"
+    " quickest. It does not go round other ships."
 )
 
 
@@ -24,7 +25,7 @@ def patrol_content(run: RunData) -> Findings:
     """Return the findings of patrols."""
     patrols = read_patrols(run)
     flown = [(i, patrol) for i, patrol in enumerate(patrols.patrols) if len(patrol.phases)]
-    charts = [(i, patrol_chart(patrol), ship_table(patrol)) for i, patrol in flown[:_SHOWN]]
+    charts = [(i, patrol_chart(patrol), ship_table(patrol, i)) for i, patrol in flown[:_SHOWN]]
     sections = [
         Section(
             anchor="patrols",

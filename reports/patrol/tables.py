@@ -43,10 +43,11 @@ def oracle_table(patrols: Patrols) -> Table:
     )  # fmt: skip
 
 
-def ship_table(patrol: Patrol) -> Table:
-    """Return the verdict on each ship of a patrol, and when it came."""
+def ship_table(patrol: Patrol, index: int) -> Table:
+    """Return the verdict on each ship of a patrol, by its number, and when it came."""
     rows = [_ship(ship) for _, ship in patrol.ships.iterrows()]
     return Table(
+        caption=f"Ships of patrol {index}: verdicts, and when they came. Turns are places in the order.",
         head=[
             "Ship", "Speed [m/s]", "ν", "Stack [m]", "Sulphur, true [%]", "measured [%]", "Verdict", "Reached [min]",
             "Time to find [s]", "Beside her [s]", "told [s]", "Turn", "Oracle's turn",

@@ -54,7 +54,7 @@ def test_the_map_has_every_ship_and_marks_those_that_are_not_served(run):
     assert sum(line.label == "ship" for line in shown.lines) == 2
     assert sum(line.label == "not served" for line in shown.lines) == patrol.ships["position"].isna().sum() == 1
     assert {note.text for note in shown.notes} >= {"0", "1", "N"}
-    served = ship_table(patrol).rows[int(patrol.ships["position"].notna().to_numpy().argmax())]
+    served = ship_table(patrol, 0).rows[int(patrol.ships["position"].notna().to_numpy().argmax())]
     assert "correct" in served[6] or "open" in served[6]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from scenarios.studies.patrol.legs import Air, Leg, Mover, keeps_clear, nearest_on, route, straight_leg, time_to_reach
-from scenarios.studies.patrol.order import Prospect, ends_of, exact_order, inserted_order
+from scenarios.studies.patrol.order import EXACT_MAX, Prospect, best_order, ends_of, exact_order, inserted_order
 
 V_R = 20.0
 RADIUS = 800.0
@@ -179,6 +179,13 @@ def test_without_time_for_any_ship_the_order_is_empty():
     air = Air(0j, V_R)
     served = prospect([Mover(9000 + 0j, 0j)], air, endurance=100.0)
     assert inserted_order(served, 0j, 0.0, [0]).ships == exact_order(served, 0j, 0.0, [0]).ships == ()
+
+
+def test_of_few_ships_every_order_is_tried_and_of_many_some():
+    air = Air(6 - 2j, V_R)
+    for count, made in ((4, exact_order), (EXACT_MAX + 1, inserted_order)):
+        served = prospect(ships(6, count, air=air), air)
+        assert best_order(served, 0j, 0.0, range(count)) == made(served, 0j, 0.0, range(count))
 
 
 def test_a_leg_without_a_length_stays_where_it_is():
