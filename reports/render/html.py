@@ -43,7 +43,14 @@ def _panels(picture: Chart) -> list[Chart]:
     """Return a chart for each panel of page 1's picture: beside each other in a wide window, below each other in a narrow one."""
     height = picture.panel_height if picture.columns == 1 else _PANEL_HEIGHT / picture.rows
     return [
-        replace(picture, name=f"{picture.name}{i}", panels=[panel], columns=1, panel_height=height)
+        replace(
+            picture,
+            name=f"{picture.name}{i}",
+            panels=[panel],
+            columns=1,
+            panel_height=picture.last_height if picture.is_wide(i) else height,
+            last_height=0.0,
+        )
         for i, panel in enumerate(picture.panels)
     ]
 

@@ -1,11 +1,13 @@
 """Reports of every kind that has a replay, opened from disk in a browser that has no network."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from browser import PROGRAM, Browser
 
+from reports.document.blocks import FlightPicker
 from reports.registry import content
 from reports.render.html import write_html
 from reports.run.run_data import read_run
@@ -15,12 +17,25 @@ pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no chromium is installe
 KINDS = ("sweep_nu", "monte_carlo", "sulphur", "paper", "trials")
 """Those with a replay. The page of the last one stays open for the tests after it."""
 
+WHOLE = "sweep_nu"
+"""The one whose page has all its charts."""
+
 
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory):
     opened = Browser(tmp_path_factory.mktemp("profile"))
     yield opened
     opened.close()
+
+
+def with_flights_alone(report):
+    """Return a report whose sections hold nothing but the flights to be picked, each with one chart."""
+    sections = []
+    for section in report.sections:
+        pickers = [block for block in section.blocks if isinstance(block, FlightPicker)]
+        flights = [FlightPicker(flights=[replace(flight, charts=flight.charts[:1]) for flight in of.flights]) for of in pickers]
+        sections.append(replace(section, blocks=flights))
+    return replace(report, picture=None, sections=[section for section in sections if section.blocks])
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +46,9 @@ def page_of(run_of, tmp_path_factory):
     def page(name):
         if name not in pages:
             run = read_run(run_of(name))
-            write_html(content(run), directory / f"{name}.html")
+            # One page is whole. Of the others the flights stay: charts take most of the time.
+            report = content(run) if name == WHOLE else with_flights_alone(content(run))
+            write_html(report, directory / f"{name}.html")
             pages[name] = run
         return pages[name], directory / f"{name}.html"
 
@@ -113,6 +130,12 @@ def test_the_keyboard_moves_time_camera_and_play(browser, page_of):
     browser.press(" ")
     assert browser.run("window.replay.playing") is False
     assert browser.errors == []
+
+
+def test_the_navigation_leads_to_the_replay(browser, page_of):
+    _, page = page_of("trials")
+    show(browser, page)
+    assert browser.run("document.querySelector('nav a[href=\"#replay\"]').hash === '#' + document.querySelector('.replay').id")
 
 
 def test_the_page_is_not_wider_than_a_small_screen(browser, page_of):
