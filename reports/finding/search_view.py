@@ -109,7 +109,7 @@ class SearchView:
     def _delay(self) -> float:
         """Return how much later the sensor reads than its air was taken in [s]; 0 of one that is not known."""
         try:
-            channel = sensor_preset(str(self._row["sensor"])).channel("co2")
+            channel = sensor_preset(str(self._row.get("sensor"))).channel("co2")
         except MeasurementError:
             return 0.0
         return channel.delay_s + channel.t90_s / math.log(10.0) if channel is not None else 0.0

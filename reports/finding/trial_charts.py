@@ -23,6 +23,11 @@ _STRETCH = 30.0
 _TWO_SIDED = 1.96
 """Standard deviations of a 95 % interval [-]."""
 
+_ERROR_TOLD = (
+    "Error of the axis' height after 3 minutes over its stated standard deviation: between the dashed lines the 95 % interval holds"
+    " the truth."
+)
+
 
 def finding_charts(trial: Trial, variants: list[Variant]) -> list[Chart]:
     """Return the figures of the searches of a trial, of those that have something to show."""
@@ -38,18 +43,13 @@ def finding_charts(trial: Trial, variants: list[Variant]) -> list[Chart]:
             panel_height=0.38,
         )
     ]
-    known = [panel for panel in (_times_panel(variants[0]), _error_panel(variants)) if panel is not None]
+    times, error = _times_panel(variants[0]), _error_panel(variants)
+    known = [panel for panel in (times, error) if panel is not None]
     if known:
-        charts.append(
-            Chart(
-                name=f"{trial.name}-search-errors",
-                caption="Time to find the plume, and error of the axis' height after 3 minutes over its stated standard deviation;"
-                " between the dashed lines the 95 % interval holds the truth.",
-                panels=known,
-                columns=len(known),
-                panel_height=0.38,
-            )
-        )
+        told = ["Time to find the plume."] if times is not None else []
+        told += [_ERROR_TOLD] if error is not None else []
+        name = f"{trial.name}-search-errors"
+        charts.append(Chart(name=name, caption=" ".join(told), panels=known, columns=len(known), panel_height=0.38))
     return charts
 
 
@@ -57,13 +57,12 @@ def _found_panel(variants: list[Variant]) -> Panel:
     lines = []
     for variant in variants:
         times = np.sort(variant.times)
-        share = np.arange(1, len(times) + 1) / len(times)
         within = times <= FOUND_WITHIN
-        found = share[within]
         # A step at each flight, and level up to the end.
+        found = int(np.count_nonzero(within))
+        share = np.linspace(0.0, found / len(times), found + 1)
         x = np.concatenate([[0.0], np.repeat(times[within], 2), [FOUND_WITHIN]])
-        y = np.repeat(np.append(0.0, found), 2)
-        lines.append(Line(x=x, y=y, label=variant.name, colour=variant.colour))
+        lines.append(Line(x=x, y=np.repeat(share, 2), label=variant.name, colour=variant.colour))
     return Panel(
         x_label="Time since the orbit was reached [s]",
         y_label="Plume found [-]",
@@ -78,10 +77,9 @@ def _hits_panel(trial: Trial, variants: list[Variant]) -> Panel | None:
     for variant in variants:
         times, hits = hits_over_time(trial, variant.rows)
         if len(times):
-            stretch = np.floor(times / _STRETCH)
-            shares = pd.Series(hits).groupby(stretch).mean()
-            middle = _STRETCH * (shares.index.to_numpy(dtype=np.float64) + 0.5)
-            lines.append(Line(x=middle, y=shares.to_numpy(dtype=np.float64), label=variant.name, colour=variant.colour))
+            middle = _STRETCH * (np.floor(times / _STRETCH) + 0.5)
+            shares = pd.DataFrame({"middle": middle, "hit": hits}).groupby("middle", as_index=False).mean()
+            lines.append(Line(x=column(shares, "middle"), y=column(shares, "hit"), label=variant.name, colour=variant.colour))
     return (
         Panel(x_label="Time since the orbit was reached [s]", y_label="Passes that hit [-]", lines=lines, y_range=(0.0, 1.03))
         if lines
