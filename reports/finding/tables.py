@@ -7,15 +7,13 @@ import numpy as np
 from common.binomial import percent, upper_bound
 from reports.document.blocks import Table
 from reports.document.tables import number
+from reports.finding.search_view import TWO_SIDED
 from reports.finding.trial_charts import FOUND_WITHIN
 from reports.finding.variants import Variant
 from reports.run.columns import Array, column
 
 _TOLD = "told"
 """Variant that knows the axis, if the run has it."""
-
-_TWO_SIDED = 1.96
-"""Standard deviations of a 95 % interval [-]."""
 
 
 def search_table(variants: list[Variant]) -> Table:
@@ -53,7 +51,7 @@ def height_table(variants: list[Variant]) -> Table | None:
         known = np.isfinite(error) & np.isfinite(deviation)
         if not known.any():
             continue
-        flights, held = int(np.count_nonzero(known)), int(np.count_nonzero(np.abs(error) <= _TWO_SIDED * deviation))
+        flights, held = int(np.count_nonzero(known)), int(np.count_nonzero(np.abs(error) <= TWO_SIDED * deviation))
         # Two one-sided bounds of 97.5 % each (Clopper and Pearson).
         low, high = 1.0 - upper_bound(flights - held, flights, 0.975), upper_bound(held, flights, 0.975)
         rows.append([

@@ -7,6 +7,7 @@ from measurement.plume.passes import HIT, passes
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.document.panels import histogram
+from reports.finding.search_view import TWO_SIDED
 from reports.finding.variants import Variant
 from reports.run.columns import Array, column
 from reports.run.trials import Trial
@@ -19,9 +20,6 @@ _HISTORIES_MAX = 40
 
 _STRETCH = 30.0
 """Time over which the hits of all flights are counted together [s]."""
-
-_TWO_SIDED = 1.96
-"""Standard deviations of a 95 % interval [-]."""
 
 _ERROR_TOLD = (
     "Error of the axis' height after 3 minutes over its stated standard deviation: between the dashed lines the 95 % interval holds"
@@ -118,7 +116,7 @@ def _error_panel(variants: list[Variant]) -> Panel | None:
             most = max(most, 1.05 * float(np.max(deviation[known])))
     ends = np.array([0.0, most])
     interval = [
-        Line(x=ends, y=side * _TWO_SIDED * ends, label="95 % interval", colour=Meaning.LIMIT, style="dash") for side in (1.0, -1.0)
+        Line(x=ends, y=side * TWO_SIDED * ends, label="95 % interval", colour=Meaning.LIMIT, style="dash") for side in (1.0, -1.0)
     ]
     return (
         Panel(x_label="Stated standard deviation [m]", y_label="Height believed less true [m]", lines=[*lines, *interval])
