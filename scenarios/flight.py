@@ -226,7 +226,7 @@ def payload_of(request: FlightRequest, plan: FlightPlan) -> list[Instrument | Ev
 
 def reader_of(plan: FlightPlan, instruments: list[Instrument | EvaluatedInstrument]) -> GasReader | None:
     """Return the instrument that is read in flight, of a flight that reads one."""
-    if plan.sensing is None or not plan.sensing.smells:
+    if plan.sensing is None or not plan.sensing.reads_plume:
         return None
     return next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None)
 

@@ -1,4 +1,4 @@
-"""Where a plume is, how wide and how strong, from what is smelt of it and from what is not."""
+"""Where a plume is, how wide and how strong, from readings that show it and from readings that do not."""
 
 import math
 from enum import Enum
@@ -16,7 +16,7 @@ __all__ = ["GasSensor", "PlumeEstimator", "PlumePrior", "PlumeState", "SensorSta
 Array = npt.NDArray[np.float64]
 
 SIGNAL_TO_NOISE = 5.0
-"""Peak of the readings over their noise from which a pass smells the plume [-] (Kattner 2015, of CO2)."""
+"""Peak of the readings over their noise from which a pass detects the plume [-] (Kattner 2015, of CO2)."""
 
 _FORGET = 1800.0
 """Time in which a posterior falls back to the prior, if nothing is read [s]: a ship may change her load."""
@@ -144,7 +144,7 @@ class PlumeEstimator:
         return float(np.sum(weights * chances[0]))
 
     def prospects(self, altitudes: Array) -> tuple[Array, Array]:
-        """Return the probability of each of some cells, shape (h, c), and that a pass then smells the plume, shape (n, h, c).
+        """Return the probability of each of some cells, shape (h, c), and that a pass then detects the plume, shape (n, h, c).
 
         Parameters
         ----------
@@ -280,7 +280,7 @@ class PlumeEstimator:
 
     @property
     def measurable(self) -> float:
-        """Probability that a pass at the best altitude within the limits smells the plume more often than not [-]."""
+        """Probability that a pass at the best altitude within the limits detects the plume more often than not [-]."""
         best = np.clip(self.grid.coarse_heights(self._heights), self.prior.lowest, self.prior.highest)
         weights, chances = self.prospects(best[np.newaxis])
         return float(np.sum(weights * (chances[0] > 0.5)))

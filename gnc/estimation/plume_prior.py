@@ -1,4 +1,4 @@
-"""What is taken for granted of a plume, and of the sensor that smells it, before anything is read."""
+"""What is taken for granted of a plume, and of the sensor that detects it, before anything is read."""
 
 import math
 from dataclasses import dataclass

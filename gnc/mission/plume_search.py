@@ -54,7 +54,7 @@ class HeightSearch:
     """Maximises the probability of detection per time; once the plume is found, narrows its height down, and then stays.
 
     While it searches, each height is weighed by the passes that lie on the way to it and at it: the sum over them of the
-    probability that the plume has been smelt by then is the largest for the height with the least expected time to find. Misses
+    probability that the plume has been detected by then is the largest for the height with the least expected time to find. Misses
     that have a plume in common are not independent; given a cell of the estimate they are.
 
     Parameters

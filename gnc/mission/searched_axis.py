@@ -1,4 +1,4 @@
-"""A plume's axis that is searched for, and followed by what is smelt of it."""
+"""A plume's axis that is searched for, and followed by what is read of it."""
 
 import math
 from collections.abc import Sequence
@@ -102,7 +102,7 @@ class PlumeEstimate:
 
 
 class SearchedAxis:
-    """The axis as it is estimated from what is smelt, once the reference is tracked; attributes as of ``PlumeAxis``, and more.
+    """The axis as it is estimated from readings, once the reference is tracked; attributes as of ``PlumeAxis``, and more.
 
     Attributes
     ----------

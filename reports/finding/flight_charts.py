@@ -4,7 +4,7 @@ import numpy as np
 
 from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.palette import Meaning
-from reports.finding.search_view import ESTIMATED, Ellipse, SearchView
+from reports.finding.search_view import ESTIMATED, TWO_SIDED, Ellipse, SearchView
 from reports.run.columns import column
 
 _POINTS_MAX = 1500
@@ -12,9 +12,6 @@ _POINTS_MAX = 1500
 
 _READINGS_MAX = 3000
 """Readings in the cross-section at most."""
-
-_TWO_SIDED = 1.96
-"""Standard deviations of a 95 % interval [-]."""
 
 _REACH = 5.0
 """Half the width of the cross-section, over the plume's spread across [-]."""
@@ -26,7 +23,7 @@ def height_chart(view: SearchView, name: str) -> Chart:
     rows = view.history.iloc[::step]
     time, height, deviation = (column(rows, of) for of in ("time_s", ESTIMATED, "axis_height_deviation_m"))
     known = np.isfinite(height)
-    time, height, reach = time[known], height[known], _TWO_SIDED * deviation[known]
+    time, height, reach = time[known], height[known], TWO_SIDED * deviation[known]
     lines = [
         Line(x=np.append(time, time[::-1]), y=np.append(height - reach, (height + reach)[::-1]), label="believed, 95 %",
              colour="black", style="thin", fill=True),
@@ -38,7 +35,8 @@ def height_chart(view: SearchView, name: str) -> Chart:
     panel = Panel(x_label="Time [s]", y_label="Height above the sea [m]", lines=lines, bands=view.modes())
     caption = (
         "Height of the plume's axis as it was believed after each pass, with its 95 % interval, and as it was; the altitude that"
-        " was flown. Tinted: what the guidance was doing."
+        " was flown. Tinted: what the guidance was doing; untinted it was"
+        " on its way to the orbit, or in a mode without a part in the search."
     )
     return Chart(name=f"search-height-{name}", caption=caption, panels=[panel], panel_height=0.42)
 

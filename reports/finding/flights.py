@@ -1,4 +1,4 @@
-"""Sections on flights that searched for their plume: all of them beside their comparisons, and the least and the most typical."""
+"""Sections on flights that searched for their plume: all of them beside their comparisons, and a typical and the worst one."""
 
 from typing import Any
 
@@ -8,22 +8,53 @@ import pandas as pd
 from reports.document.blocks import Block, Heading, Section, Text
 from reports.finding.flight_charts import height_chart, section_chart
 from reports.finding.search_view import SearchView, search_view
+from reports.finding.tables import height_table, search_table
+from reports.finding.trial_charts import FOUND_WITHIN, finding_charts
+from reports.finding.variants import variants_of
 from reports.run.columns import column
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
 _LATE = "axis_height_error_3min_m"
+"""Error of the axis' height by which flights are chosen."""
+
+_NAMED_MAX = 12
+"""Flights without their plume that are named."""
 
 
 def finding_sections(run: RunData, trials: list[Trial]) -> list[Section]:
     """Return the sections of a run whose flights searched for a plume, and none of any other."""
-    blocks = [block for trial in trials if len(searched(trial.rows)) for block in _single(run, trial)]
-    return [Section(anchor="searches", title="Searches one by one", nav_title="Searches", blocks=blocks)] if blocks else []
+    found = [trial for trial in trials if len(searched(trial.rows))]
+    whole = [block for trial in found for block in _whole(trial, only=len(found) == 1)]
+    single = [block for trial in found for block in _single(run, trial)]
+    sections = [
+        Section(anchor="finding", title="Search for the plume", nav_title="Search", blocks=whole),
+        Section(anchor="searches", title="Searches one by one", nav_title="Searches", blocks=single),
+    ]
+    return [section for section in sections if section.blocks]
 
 
 def searched(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the flights that reached their orbit and had an estimate of the plume."""
     return rows[rows["axis_height_end_m"].notna()] if "axis_height_end_m" in rows else rows.iloc[:0]
+
+
+def _whole(trial: Trial, *, only: bool) -> list[Block]:
+    """Return figures and tables of all flights of a trial, beside its comparisons."""
+    variants = variants_of(trial)
+    if not variants:
+        return []
+    heights = height_table(variants)
+    missed = variants[0].rows[variants[0].times > FOUND_WITHIN]
+    unfound = f"Not found within {FOUND_WITHIN:g} s: {', '.join(map(str, missed['flight_id'][:_NAMED_MAX]))}"
+    more = f" and {len(missed) - _NAMED_MAX} more" if len(missed) > _NAMED_MAX else ""
+    return [
+        *([] if only else [Heading(trial.title)]),
+        search_table(variants),
+        *([heights] if heights is not None else []),
+        *finding_charts(trial, variants),
+        *([Text(f"{unfound}{more}.")] if len(missed) else []),
+    ]
 
 
 def _single(run: RunData, trial: Trial) -> list[Block]:

@@ -19,6 +19,9 @@ from reports.run.time_history import about_the_plume
 ESTIMATED = "axis_height_estimated_m"
 """Column of the time history that a flight has if it searched."""
 
+TWO_SIDED = 1.96
+"""Standard deviations of a 95 % interval [-]."""
+
 _MODES = {
     "searching": "orange", "found": "sky", "lost again": "plum", "sensor failed": "black", "departing": "green",
     "holding off": "grey",
@@ -109,7 +112,7 @@ class SearchView:
     def _delay(self) -> float:
         """Return how much later the sensor reads than its air was taken in [s]; 0 of one that is not known."""
         try:
-            channel = sensor_preset(str(self._row["sensor"])).channel("co2")
+            channel = sensor_preset(str(self._row.get("sensor"))).channel("co2")
         except MeasurementError:
             return 0.0
         return channel.delay_s + channel.t90_s / math.log(10.0) if channel is not None else 0.0

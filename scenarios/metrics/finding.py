@@ -21,7 +21,7 @@ FINDING_FIGURES = (
 """Columns of the summary of flights that search, are told, or end with a verdict."""
 
 SIGNAL_TO_NOISE = 5.0
-"""Of a reading, from which the plume counts as smelt [-] (Kattner 2015, of CO2)."""
+"""Of a reading, from which the plume counts as detected [-] (Kattner 2015, of CO2)."""
 
 KNOWN_AFTER = 180.0
 """Time on the orbit after which the height of the axis is judged [s]."""
@@ -59,15 +59,15 @@ def finding_figures(history: pd.DataFrame, flight: FlightConfig, *, noise: float
     if not len(on_orbit):
         return row
     begins = float(time[on_orbit[0]])
-    smelt = np.flatnonzero(_smelt(history, noise, step) & (time >= begins))
-    found_at = float(time[smelt[0]]) if len(smelt) else math.inf
+    detected = np.flatnonzero(_detected(history, noise, step) & (time >= begins))
+    found_at = float(time[detected[0]]) if len(detected) else math.inf
     to_find = found_at - begins
     row |= {"orbit_at_s": begins, "found": to_find <= FOUND_WITHIN}
-    row |= {"time_to_find_s": to_find, "hit_rate_found": _hit_rate(history, time >= found_at)} if len(smelt) else {}
+    row |= {"time_to_find_s": to_find, "hit_rate_found": _hit_rate(history, time >= found_at)} if len(detected) else {}
     return row | _height_known(history, time, begins + KNOWN_AFTER)
 
 
-def _smelt(history: pd.DataFrame, noise: float, step: float) -> npt.NDArray[np.bool_]:
+def _detected(history: pd.DataFrame, noise: float, step: float) -> npt.NDArray[np.bool_]:
     """Return at which samples the reading shows the plume, of which there was some shortly before."""
     reading = history["co2_reading_ppm"]
     base = reading.rolling(max(1, round(_BASE_WINDOW / step)), min_periods=1, center=True).quantile(_BASE_QUANTILE)

@@ -24,12 +24,12 @@ class Sensing:
     ----------
     received : reports of the vessel and when each is received [s]; none where the vessel is known exactly
     errors : of the sensors
-    smells, told : whether a sniffer is read in flight, and whether the flight is told where the plume is
+    reads_plume, told : whether a sniffer is read in flight, and whether the flight is told where the plume is
     """
 
     received: list[tuple[float, VesselReport]] | None
     errors: SensorErrors
-    smells: bool = False
+    reads_plume: bool = False
     told: bool = False
 
 

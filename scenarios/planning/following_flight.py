@@ -138,7 +138,7 @@ def following_flight(
         sensing=Sensing(
             received=received,
             errors=SensorErrors(scenario.sensors, steps=steps, time_step=1.0 / g.rate_hz, generator=generators.sensors),
-            smells=f.plume == "estimated" or flight.until == "verdict",
+            reads_plume=f.plume == "estimated" or flight.until == "verdict",
             told=f.plume == "told",
         ),
         oscillation=orbit,

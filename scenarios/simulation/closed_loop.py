@@ -13,10 +13,10 @@ from scenarios.simulation.ending import Ending
 from scenarios.simulation.interventions import interventions
 from scenarios.simulation.judge import Judge
 from scenarios.simulation.onboard import OnboardSensing
+from scenarios.simulation.plume_readings import PlumeBelief, PlumeReadings, axis_of
 from scenarios.simulation.record import FlightRecord
 from scenarios.simulation.recorder import Recorder
 from scenarios.simulation.settling import Settling
-from scenarios.simulation.smelling import PlumeBelief, Smelling, axis_of
 from scenarios.vehicles.vehicle import Vehicle
 
 Commands = tuple[float, float]
@@ -144,10 +144,10 @@ def _sensing(plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, reader: Gas
     sensing, world, axis = plan.sensing, plan.world, axis_of(guidance)
     if sensing is None or world is None:
         return None
-    smelling = None
+    readings = None
     if axis is not None and (reader is not None or sensing.told):
-        smelling = Smelling(reader, world, vehicle, axis, interval=plan.log_interval, told=sensing.told)
-    return OnboardSensing(sensing, world, vehicle, guidance, altitude=plan.altitude, smelling=smelling)
+        readings = PlumeReadings(reader, world, vehicle, axis, interval=plan.log_interval, told=sensing.told)
+    return OnboardSensing(sensing, world, vehicle, guidance, altitude=plan.altitude, readings=readings)
 
 
 def _judge(plan: FlightPlan, guidance: Guidance, reader: GasReader | None, settling: Settling) -> Judge | None:

@@ -92,7 +92,7 @@ class Judge:
         if isinstance(axis, SearchedAxis):
             if axis.sensor is not SensorState.WORKING:
                 return Enough.SENSOR
-            # Off its orbit a flight smells nothing, wherever the plume is.
+            # Off its orbit a flight detects nothing, wherever the plume is.
             if self._mission.in_place and axis.mode is not Mode.FOUND and axis.measurable() < _MEASURABLE:
                 return Enough.OUT_OF_REACH
         if math.isnan(self._settling.at):

@@ -6,7 +6,7 @@ from gnc.estimation.target_motion import ReportedTarget
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.guidance import Guidance
 from scenarios.planning.flight_plan import Sensing
-from scenarios.simulation.smelling import Smelling
+from scenarios.simulation.plume_readings import PlumeReadings
 from scenarios.vehicles.vehicle import Vehicle
 from scenarios.world.faults import SATELLITES, VESSEL_DATA
 from scenarios.world.world import World
@@ -21,7 +21,7 @@ class OnboardSensing:
     world : what is true, and what fails
     vehicle, guidance : under way; reports go straight to the filter of its target, at each plan where the vessel is known exactly
     altitude : that the vehicle holds at the start [m]
-    smelling : passes on what is learnt of the plume, or none
+    readings : passes on what is learnt of the plume, or none
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class OnboardSensing:
     """
 
     __slots__ = (
-        "_altitude", "_errors", "_exact", "_fault", "_guidance", "_held", "_received", "_report", "_smelling", "_vehicle",
+        "_altitude", "_errors", "_exact", "_fault", "_guidance", "_held", "_readings", "_received", "_report", "_vehicle",
         "_vessel", "airspeed_error", "failing",
     )  # fmt: skip
 
@@ -41,13 +41,13 @@ class OnboardSensing:
         guidance: Guidance,
         *,
         altitude: float,
-        smelling: Smelling | None = None,
+        readings: PlumeReadings | None = None,
     ) -> None:
         if not isinstance(guidance.target, ReportedTarget):
             raise TypeError("the guidance knows its target exactly, and has no use for reports; give it a filter")
         self._errors, self._fault, self._vessel = sensing.errors, world.fault, world.vessel
         self._exact, self._received = sensing.received is None, list(reversed(sensing.received or []))
-        self._vehicle, self._guidance, self._smelling = vehicle, guidance, smelling
+        self._vehicle, self._guidance, self._readings = vehicle, guidance, readings
         self._report = guidance.target.report
         self._altitude, self._held, self.failing = altitude, False, world.fault.of_aircraft()
         self.airspeed_error = 0.0
@@ -73,10 +73,10 @@ class OnboardSensing:
         return position, measured, measured_heading, roll, motion[4], self._vehicle.servo_error()
 
     def act(self, step: int, time: float, motion: Motion) -> None:
-        """Pass on what the guidance has decided beside heading rate and airspeed, and to it what has been smelt."""
+        """Pass on what the guidance has decided beside heading rate and airspeed, and to it what has been read."""
         guidance = self._guidance
-        if self._smelling is not None:
-            self._smelling.pass_on(step, time, motion, guidance)
+        if self._readings is not None:
+            self._readings.pass_on(step, time, motion, guidance)
         if guidance.altitude_command != self._altitude:
             self._altitude = guidance.altitude_command
             self._vehicle.command_altitude(self._altitude)

@@ -153,7 +153,7 @@ def _expectation(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, f
 def _co2_sensor(scenario: Scenario) -> GasSensor:
     """Return the CO2 channel of the sniffer on board, by its data sheet."""
     if "sniffer" not in scenario.payload.instruments:
-        raise InfeasibleError("following.plume is 'estimated', and nothing smells it: put 'sniffer' into payload.instruments")
+        raise InfeasibleError("following.plume is 'estimated', and nothing measures it: put 'sniffer' into payload.instruments")
     spec = sensor_preset(scenario.payload.settings(SnifferOnBoard).sensor)
     channel = spec.known("co2")
     return GasSensor(

@@ -25,7 +25,7 @@ def test_a_search_begins_where_the_plume_is_most_likely() -> None:
     assert demand.offset == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_search_leaves_a_height_at_which_nothing_was_smelt() -> None:
+def test_a_search_leaves_a_height_at_which_nothing_was_detected() -> None:
     estimator = PlumeEstimator(PRIOR)
     MadePlume(height=65.0, peak=0.0).fly(estimator, [65.0] * 4)
     assert abs(_search().next_demand(estimator, 65.0, PASS_TIME).altitude - 65.0) > 8.0

@@ -1,4 +1,4 @@
-"""A plume that is searched for: what the guidance does before, while and after it smells something."""
+"""A plume that is searched for: what the guidance does before, while and after it detects something."""
 
 import math
 from dataclasses import replace

@@ -56,7 +56,7 @@ def test_a_flight_at_every_limit_has_met_them():
         ({"outcome": "incomplete", "message": "flew 12 of 30 crossings"}, {"settles": False}, "flew 12 of 30 crossings"),
         ({"mode_at_end": "outrun"}, {"modes_at_end": ("tracking", "holding off")}, "ended outrun"),
         ({"time_to_find_s": 301.0}, {"time_to_find_s": 300.0}, "time to find the plume 301.00 s above 300 s"),
-        # A plume that was never smelt has no time.
+        # A plume that was never detected has no time.
         ({}, {"time_to_find_s": 300.0}, "time to find the plume nan s"),
         ({"altitude_outside_s": 0.1}, {"within_altitudes": True}, "0.1 s outside"),
     ],

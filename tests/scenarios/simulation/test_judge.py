@@ -75,7 +75,7 @@ def test_before_the_flight_has_settled_no_reading_counts(monkeypatch):
     assert judge.enough is None
 
 
-def test_off_its_orbit_and_where_it_is_smelt_no_plume_is_out_of_reach(monkeypatch):
+def test_off_its_orbit_and_where_it_is_detected_no_plume_is_out_of_reach(monkeypatch):
     judge, mission = judged(monkeypatch, ["open"] * 9, axis=Axis(measurable=0.01))
     mission.in_place = False
     looks(judge, 3)

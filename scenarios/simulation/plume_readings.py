@@ -17,7 +17,7 @@ _SELDOM = 15.0
 """Time between looks at what is costly to compute [s]."""
 
 
-class Smelling:
+class PlumeReadings:
     """Passes on what a sniffer reads, and what a flight is told of its plume.
 
     Parameters

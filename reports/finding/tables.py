@@ -1,0 +1,102 @@
+"""Tables of the searches of a trial, a row per variant."""
+
+import math
+
+import numpy as np
+
+from common.binomial import percent, upper_bound
+from reports.document.blocks import Table
+from reports.document.tables import number
+from reports.finding.search_view import TWO_SIDED
+from reports.finding.trial_charts import FOUND_WITHIN
+from reports.finding.variants import Variant
+from reports.run.columns import Array, column
+
+_TOLD = "told"
+"""Variant that knows the axis, if the run has it."""
+
+
+def search_table(variants: list[Variant]) -> Table:
+    """Return how soon each variant found its plumes, how often it hit them, and what it measured of the fuel."""
+    told = next((variant for variant in variants if variant.name == _TOLD), None)
+    return Table(
+        caption="How soon plumes were found, how often they were hit, and what was measured of the sulphur. Over told: beside the"
+        " same cases told where the axis is, median of the pairs.",
+        head=[
+            "Variant", "Flights", f"Found within {FOUND_WITHIN / 60.0:g} min", "Time to find, median [s]", "95 % [s]",
+            "Hits after found", "FSC error, rms [% m/m]", "FSC 1σ stated, median [% m/m]", "1σ over told", "Its noise over told",
+        ],
+        rows=[
+            [
+                variant.name,
+                f"{len(variant.rows):,}",
+                percent(variant.share_found(FOUND_WITHIN)),
+                *(_time(variant.times, q) for q in (0.5, 0.95)),
+                _share(column(variant.rows, "hit_rate_found")),
+                number(_rms(column(variant.rows, "fsc_percent") - column(variant.rows, "fsc_expected_percent")), "{:.4f}"),
+                number(_median(column(variant.rows, "fsc_uncertainty_percent")), "{:.4f}"),
+                *(_over(variant, told, f"fsc_{of}_percent") for of in ("uncertainty", "noise")),
+            ]
+            for variant in variants
+        ],
+        widths=[1.5, 0.7, 1.0, 1.0, 0.8, 0.9, 1.0, 1.2, 0.8, 0.9],
+    )  # fmt: skip
+
+
+def height_table(variants: list[Variant]) -> Table | None:
+    """Return how well the height of the axis was known after 3 minutes; none where no flight has an estimate then."""
+    rows = []
+    for variant in variants:
+        error, deviation = (column(variant.rows, f"axis_height_{of}_3min_m") for of in ("error", "deviation"))
+        known = np.isfinite(error) & np.isfinite(deviation)
+        if not known.any():
+            continue
+        flights, held = int(np.count_nonzero(known)), int(np.count_nonzero(np.abs(error) <= TWO_SIDED * deviation))
+        # Two one-sided bounds of 97.5 % each (Clopper and Pearson).
+        low, high = 1.0 - upper_bound(flights - held, flights, 0.975), upper_bound(held, flights, 0.975)
+        rows.append([
+            variant.name,
+            f"{flights:,}",
+            number(float(np.mean(error[known])), "{:+.1f}"),
+            number(_rms(error), "{:.1f}"),
+            number(_median(deviation), "{:.1f}"),
+            percent(held / flights),
+            f"{percent(low)} to {percent(high)}",
+        ])  # fmt: skip
+    return (
+        Table(
+            caption="Height of the axis after 3 minutes on the orbit: error, and how often the stated 95 % interval held it.",
+            head=["Variant", "Flights", "Bias [m]", "Error, rms [m]", "Stated 1σ, median [m]", "Covered", "Interval of that"],
+            rows=rows,
+            widths=[1.5, 0.7, 0.8, 1.0, 1.2, 0.8, 1.4],
+        )
+        if rows
+        else None
+    )
+
+
+def _time(times: Array, quantile: float) -> str:
+    """Return a quantile of times of which some may be infinite: that of a flight, not between two."""
+    value = float(np.quantile(times, quantile, method="inverted_cdf"))
+    return f"{value:.0f}" if math.isfinite(value) else "not found"
+
+
+def _share(shares: Array) -> str:
+    known = shares[np.isfinite(shares)]
+    return percent(float(np.mean(known))) if len(known) else "–"
+
+
+def _rms(values: Array) -> float | None:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if len(known) else None
+
+
+def _median(values: Array) -> float | None:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if len(known) else None
+
+
+def _over(variant: Variant, told: Variant | None, name: str) -> str:
+    if told is None or name not in variant.rows or name not in told.rows:
+        return "–"
+    return number(_median(variant.beside(told, name)), "{:.2f}")

@@ -1,0 +1,125 @@
+"""Figures of the searches of a trial: how soon plumes were found, how often they were hit, and how well their height was known."""
+
+import numpy as np
+import pandas as pd
+
+from measurement.plume.passes import HIT, passes
+from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import Meaning
+from reports.document.panels import histogram
+from reports.finding.search_view import TWO_SIDED
+from reports.finding.variants import Variant
+from reports.run.columns import Array, column
+from reports.run.trials import Trial
+
+FOUND_WITHIN = 300.0
+"""Time on the orbit within which a plume has to be found, as of the column ``found`` [s]."""
+
+_HISTORIES_MAX = 40
+"""Flights of a variant whose passes are counted at most: their time histories are read for it."""
+
+_STRETCH = 30.0
+"""Time over which the hits of all flights are counted together [s]."""
+
+_ERROR_TOLD = (
+    "Error of the axis' height after 3 minutes over its stated standard deviation: between the dashed lines the 95 % interval holds"
+    " the truth."
+)
+
+
+def finding_charts(trial: Trial, variants: list[Variant]) -> list[Chart]:
+    """Return the figures of the searches of a trial, of those that have something to show."""
+    panels = [_found_panel(variants), _hits_panel(trial, variants)]
+    shown = [panel for panel in panels if panel is not None]
+    charts = [
+        Chart(
+            name=f"{trial.name}-detection",
+            caption="Share of flights that have found their plume over the time since they reached their orbit, and share of the"
+            f" passes that hit it, peak above {HIT:g} of the plume's axis, in stretches of {_STRETCH:g} s.",
+            panels=shown,
+            columns=len(shown),
+            panel_height=0.38,
+        )
+    ]
+    times, error = _times_panel(variants[0]), _error_panel(variants)
+    known = [panel for panel in (times, error) if panel is not None]
+    if known:
+        told = ["Time to find the plume."] if times is not None else []
+        told += [_ERROR_TOLD] if error is not None else []
+        name = f"{trial.name}-search-errors"
+        charts.append(Chart(name=name, caption=" ".join(told), panels=known, columns=len(known), panel_height=0.38))
+    return charts
+
+
+def _found_panel(variants: list[Variant]) -> Panel:
+    lines = []
+    for variant in variants:
+        times = np.sort(variant.times)
+        within = times <= FOUND_WITHIN
+        # A step at each flight, and level up to the end.
+        found = int(np.count_nonzero(within))
+        share = np.linspace(0.0, found / len(times), found + 1)
+        x = np.concatenate([[0.0], np.repeat(times[within], 2), [FOUND_WITHIN]])
+        lines.append(Line(x=x, y=np.repeat(share, 2), label=variant.name, colour=variant.colour))
+    return Panel(
+        x_label="Time since the orbit was reached [s]",
+        y_label="Plume found [-]",
+        lines=lines,
+        x_range=(0.0, FOUND_WITHIN),
+        y_range=(0.0, 1.03),
+    )
+
+
+def _hits_panel(trial: Trial, variants: list[Variant]) -> Panel | None:
+    lines = []
+    for variant in variants:
+        times, hits = hits_over_time(trial, variant.rows)
+        if len(times):
+            middle = _STRETCH * (np.floor(times / _STRETCH) + 0.5)
+            shares = pd.DataFrame({"middle": middle, "hit": hits}).groupby("middle", as_index=False).mean()
+            lines.append(Line(x=column(shares, "middle"), y=column(shares, "hit"), label=variant.name, colour=variant.colour))
+    return (
+        Panel(x_label="Time since the orbit was reached [s]", y_label="Passes that hit [-]", lines=lines, y_range=(0.0, 1.03))
+        if lines
+        else None
+    )
+
+
+def hits_over_time(trial: Trial, rows: pd.DataFrame) -> tuple[Array, Array]:
+    """Return the time of each pass since the orbit was reached [s], and 1 if it hit the plume, else 0; of flights with a record."""
+    kept = rows[[trial.run.has_history(str(flight_id)) for flight_id in rows["flight_id"]]]
+    times, hits = [], []
+    for _, row in kept.iloc[:: max(1, -(-len(kept) // _HISTORIES_MAX))].iterrows():
+        history = trial.run.history(str(row["flight_id"]))
+        if history is None:
+            continue
+        orbit = history[history["time_s"] >= float(row["orbit_at_s"])]
+        time, fraction = column(orbit, "time_s") - float(row["orbit_at_s"]), column(orbit, "plume_fraction")
+        for at in passes(column(orbit, "plume_across_m")):
+            times.append(float(time[(at.start + at.stop) // 2 if at.stop < len(time) else -1]))
+            hits.append(float(np.max(fraction[at]) > HIT))
+    return np.array(times), np.array(hits)
+
+
+def _times_panel(variant: Variant) -> Panel | None:
+    times = variant.times
+    return histogram([(times[np.isfinite(times)], variant.name, variant.colour)], "Time to find the plume [s]")
+
+
+def _error_panel(variants: list[Variant]) -> Panel | None:
+    lines, most = [], 0.0
+    for variant in variants:
+        error, deviation = (column(variant.rows, f"axis_height_{of}_3min_m") for of in ("error", "deviation"))
+        known = np.isfinite(error) & np.isfinite(deviation)
+        if known.any():
+            lines.append(Line(x=deviation[known], y=error[known], label=variant.name, colour=variant.colour, style="points"))
+            most = max(most, 1.05 * float(np.max(deviation[known])))
+    ends = np.array([0.0, most])
+    interval = [
+        Line(x=ends, y=side * TWO_SIDED * ends, label="95 % interval", colour=Meaning.LIMIT, style="dash") for side in (1.0, -1.0)
+    ]
+    return (
+        Panel(x_label="Stated standard deviation [m]", y_label="Height believed less true [m]", lines=[*lines, *interval])
+        if lines
+        else None
+    )

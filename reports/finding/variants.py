@@ -1,0 +1,69 @@
+"""The flights of a trial that searches, and the same flights with a part changed."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from reports.document.palette import SERIES, Meaning
+from reports.run.columns import Array, column
+from reports.run.trials import Trial
+
+STUDY = "as in the study"
+"""What the study's own flights are called beside their comparisons."""
+
+_COLOURS = tuple(colour for colour in SERIES if colour != Meaning.FLOWN)
+"""Of the comparisons: not that of the study's own flights."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Variant:
+    """Flights that differ in their cases alone.
+
+    Attributes
+    ----------
+    name, colour : in tables and in figures
+    rows : of the flights that reached their orbit
+    """
+
+    name: str
+    colour: str
+    rows: pd.DataFrame
+
+    @property
+    def times(self) -> Array:
+        """Time to find of each flight from reaching its orbit [s], infinite where it never found the plume."""
+        return np.nan_to_num(column(self.rows, "time_to_find_s"), nan=math.inf)
+
+    def share_found(self, within: float) -> float:
+        """Return the share of flights that found the plume within a time [s]; at least one flight is needed."""
+        return float(np.mean(self.times <= within))
+
+    def beside(self, other: "Variant", name: str) -> Array:
+        """Return a figure over that of the same case in another variant, of the cases that both have; at least a pair each."""
+        mine, theirs = (of.rows.set_index("seed")[name] for of in (self, other))
+        pairs = pd.concat([mine, theirs], axis=1, join="inner").dropna()
+        ratio: Array = pairs.iloc[:, 0].to_numpy(dtype=np.float64) / pairs.iloc[:, 1].to_numpy(dtype=np.float64)
+        return ratio
+
+
+def variants_of(trial: Trial) -> list[Variant]:
+    """Return the study's own flights, and those of each comparison; none of a variant without a flight on its orbit."""
+    compared = trial.run.comparison
+    names: list[str] = []
+    if len(compared):
+        compared = compared[compared["trial"] == trial.key]
+        names = [str(name) for name in dict.fromkeys(compared["variant"])]
+    own = Variant(name=STUDY, colour=Meaning.FLOWN, rows=_on_orbit(trial.rows))
+    others = [
+        Variant(
+            name=name.replace("_", " "), colour=_COLOURS[i % len(_COLOURS)], rows=_on_orbit(compared[compared["variant"] == name])
+        )
+        for i, name in enumerate(names)
+    ]
+    return [variant for variant in (own, *others) if len(variant.rows)]
+
+
+def _on_orbit(rows: pd.DataFrame) -> pd.DataFrame:
+    return rows[rows["orbit_at_s"].notna()] if "orbit_at_s" in rows else rows.iloc[:0]

@@ -1,0 +1,119 @@
+"""Tables and figures of searches that are made up, so that every number of them is known."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reports.finding.tables import height_table, search_table
+from reports.finding.trial_charts import finding_charts, hits_over_time
+from reports.finding.variants import Variant, variants_of
+from reports.run.run_data import RunData
+from reports.run.trials import Trial
+
+ROWS = pd.DataFrame({
+    "flight_id": [f"search_{number:05d}" for number in range(4)],
+    "trial": "search",
+    "variant": "study",
+    "seed": [11, 12, 13, 14],
+    "orbit_at_s": [20.0, 20.0, 30.0, math.nan],
+    "time_to_find_s": [10.0, 50.0, math.nan, math.nan],
+    "hit_rate_found": [0.5, 0.7, math.nan, math.nan],
+    "fsc_percent": [0.12, 0.08, 0.10, math.nan],
+    "fsc_expected_percent": 0.10,
+    "fsc_uncertainty_percent": [0.02, 0.03, 0.04, math.nan],
+    "fsc_noise_percent": [0.002, 0.004, 0.006, math.nan],
+    "axis_height_error_3min_m": [3.0, -4.0, 12.0, math.nan],
+    "axis_height_deviation_3min_m": [2.0, 3.0, 4.0, math.nan],
+})  # fmt: skip
+"""Three flights on their orbit, of which one never found its plume, and one that never came there."""
+
+TOLD = ROWS.iloc[[1, 0]].assign(
+    variant="told", flight_id=["told_00001", "told_00000"], fsc_uncertainty_percent=[0.01, 0.02], fsc_noise_percent=[0.002, 0.001],
+    axis_height_error_3min_m=math.nan, axis_height_deviation_3min_m=math.nan,
+)  # fmt: skip
+"""The first two cases, in the other order."""
+
+
+class Histories(RunData):
+    """A run whose time histories are made up: a pass every 10 s, of which every second one hits."""
+
+    def has_history(self, flight_id):
+        return flight_id == "search_00000"
+
+    def history(self, flight_id):
+        if not self.has_history(flight_id):
+            return None
+        time = 0.1 * np.arange(1201)
+        across = 50.0 * np.sin(math.pi * time / 10.0 + 1e-3)
+        peak = np.where((time / 10.0).round() % 2 == 0, 0.9, 0.3)
+        return pd.DataFrame({"time_s": time, "plume_across_m": across, "plume_fraction": np.where(np.abs(across) < 5.0, peak, 0.0)})
+
+
+@pytest.fixture
+def trial(tmp_path):
+    empty = pd.DataFrame()
+    run = Histories(
+        path=tmp_path, manifest={}, summary=ROWS, comparison=TOLD, crossings=empty, innerloop=None, statistics=None, draws=empty
+    )
+    return Trial(run=run, key="search", name="trial1", config={"title": "Search"}, rows=ROWS)
+
+
+def test_a_flight_that_never_reached_its_orbit_does_not_count(trial):
+    assert [(variant.name, len(variant.rows)) for variant in variants_of(trial)] == [("as in the study", 3), ("told", 2)]
+
+
+def test_a_plume_that_was_not_found_counts_against_the_share(trial):
+    study = variants_of(trial)[0]
+    assert study.share_found(300.0) == pytest.approx(2.0 / 3.0)
+    row = search_table([study]).rows[0]
+    # Of 10 s, 50 s and never the second is the median, and the last the 95 % quantile.
+    assert row[3:5] == ["50", "not found"]
+
+
+def test_flights_are_compared_with_those_of_the_same_case(trial):
+    study, told = variants_of(trial)
+    # Seed 11: 0.02/0.02, seed 12: 0.03/0.01; the third has no pair.
+    assert sorted(study.beside(told, "fsc_uncertainty_percent")) == pytest.approx([1.0, 3.0])
+    rows = search_table([study, told]).rows
+    # Errors +0.02, -0.02 and 0: rms 0.02 sqrt(2/3). Medians of 1 and 3, and of the noise 2 and 2.
+    assert [row[6:] for row in rows] == [["0.0163", "0.0300", "2.00", "2.00"], ["0.0200", "0.0150", "1.00", "1.00"]]
+
+
+def test_without_a_variant_that_is_told_nothing_is_compared_with_it(trial):
+    assert search_table(variants_of(trial)[:1]).rows[0][-2:] == ["–", "–"]
+
+
+def test_the_height_is_covered_where_its_error_is_within_two_standard_deviations(trial):
+    table = height_table(variants_of(trial))
+    # 3 of 2 and -4 of 3 are within 1.96, 12 of 4 is not: two of three, whose exact interval is 9.43 to 99.16 % (Clopper, Pearson).
+    # Bias (3 - 4 + 12)/3; rms sqrt((9 + 16 + 144)/3).
+    per_cent = "\N{NO-BREAK SPACE}%"
+    assert table.rows == [["as in the study", "3", "+3.7", "7.5", "3.0", f"66.7{per_cent}", f"9.43{per_cent} to 99.16{per_cent}"]]
+    assert height_table(variants_of(trial)[1:]) is None
+
+
+def test_the_share_found_steps_up_at_each_flight_and_stays_below_one(trial):
+    (detection, errors) = finding_charts(trial, variants_of(trial))
+    found = detection.panels[0].lines[0]
+    assert found.x.tolist() == [0.0, 10.0, 10.0, 50.0, 50.0, 300.0]
+    assert found.y.tolist() == pytest.approx([0.0, 0.0, 1 / 3, 1 / 3, 2 / 3, 2 / 3])
+    # Too few for a distribution of the times.
+    assert [panel.y_label for panel in errors.panels] == ["Height believed less true [m]"]
+
+
+def test_hits_count_from_the_orbit_on(trial):
+    times, hits = hits_over_time(trial, ROWS.iloc[:1])
+    # 100 s on the orbit, a pass each 10 s, of which every second one hits.
+    assert len(times) in (9, 10, 11)
+    assert np.mean(hits) == pytest.approx(0.5, abs=0.06)
+    assert times.min() >= 0.0
+    assert times.max() <= 100.0
+
+
+def test_a_run_without_comparisons_has_its_own_flights_alone(trial):
+    alone = replace(trial, run=replace(trial.run, comparison=pd.DataFrame(columns=["flight_id"])))
+    assert [variant.name for variant in variants_of(alone)] == ["as in the study"]
+    assert isinstance(variants_of(alone)[0], Variant)
