@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from common.run_layout import REPORT_HTML
 from scenarios.api.html import picture, table
 from scenarios.api.statistics import Statistics, statistics_of
 from scenarios.errors import InputError
@@ -102,7 +103,7 @@ class Run:
                 write_report(self._data, Path(path), all_flights=all_flights)
                 return str(path)
             with tempfile.TemporaryDirectory() as folder:
-                page = Path(folder) / "report.html"
+                page = Path(folder) / REPORT_HTML
                 write_report(self._data, page)
                 return page.read_text(encoding="utf-8")
 

@@ -5,6 +5,8 @@ Units are the ends of the names. "Settled" is said of the flight from its settli
 
 from collections.abc import Mapping
 
+from common.run_layout import COMPARISON, CROSSINGS, DRAWS, INTERVENTIONS, SULPHUR_TABLE, SUMMARY
+
 _OF_FLIGHT = {
     "flight_id": "name of the flight",
     "trial": "the scenario that the flight is of",
@@ -160,9 +162,9 @@ _OF_SEARCH = {
 _FLIGHTS = {**_OF_POINT, **_PLANNED, **_MEASURED, **_OF_SNIFFER, **_OF_SEARCH}
 
 MEANINGS: Mapping[str, Mapping[str, str]] = {
-    "summary.csv": _FLIGHTS,
-    "comparison.csv": _FLIGHTS,
-    "crossings.csv": {
+    SUMMARY: _FLIGHTS,
+    COMPARISON: _FLIGHTS,
+    CROSSINGS: {
         **_OF_POINT,
         "crossing": "number of the crossing, from 1",
         "time_s": "when",
@@ -171,19 +173,19 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
         "angle_deg": "angle between path and axis, as seen from the vessel",
         "height_m": "height above the axis",
     },
-    "interventions.csv": {
+    INTERVENTIONS: {
         **_OF_FLIGHT,
         "time_s": "when the keep-out guard began to change commands",
         "duration_s": "for how long it did",
         "distance_min_m": "how near the vessel was taken to be",
         "lost": "whether no turn away held the guard's radius for certain",
     },
-    "draws.csv": {
+    DRAWS: {
         **_OF_POINT,
         "search_method": "method that proposed the flight",
         "confirms": "flight that it repeats with fresh noise",
     },
-    "sulphur.csv": {
+    SULPHUR_TABLE: {
         **_OF_FLIGHT,
         "elapsed_s": "time since settling",
         "fsc_percent": "fuel sulphur content as known by then",
