@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from plume_cases import SENSOR
+from exhaust_cases import SENSOR
 
 from gnc.estimation.plume_prior import expected_plume, rise
 from measurement.emission.emission import emission_of

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from plume_cases import PRIOR, SENSOR, MadePlume, estimated
+from exhaust_cases import PRIOR, SENSOR, MadePlume, estimated
 
 from gnc.errors import InfeasibleError
 from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState, SensorState

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from plume_cases import PRIOR
+from exhaust_cases import PRIOR
 
 from gnc.estimation.plume_grid import STRENGTH_STEP, PlumeGrid
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from plume_cases import SENSOR
+from exhaust_cases import SENSOR
 
 from gnc.estimation.plume_passes import PassCollector, PassReader, Path, Place
 

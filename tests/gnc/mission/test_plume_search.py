@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from plume_cases import PRIOR, MadePlume, estimated
+from exhaust_cases import PRIOR, MadePlume, estimated
 
 from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState
 from gnc.mission.plume_search import HeightSearch, LadderSearch

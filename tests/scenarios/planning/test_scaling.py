@@ -53,7 +53,7 @@ NOT_SCALED = {
     "flight.after_settling_s", "flight.measured_s", "flight.altitude_min_m", "flight.altitude_max_m",
     "guidance.heading_rate_max_rad_s", "start.place_m", "start.range_m",
     "criteria.tracking_error_end_m", "criteria.crossing_interval_s",
-    "criteria.crossing_distance_m",
+    "criteria.crossing_distance_m", "following.source_height_m", "flight.altitude_m", "criteria.time_to_find_s",
 }  # fmt: skip
 """Keys with a length or a time in them that are what they are for every aircraft."""
 

@@ -158,7 +158,7 @@ def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_res
         ("ensemble.trajectories=0", ["ensemble.trajectories", "greater than or equal to 1"]),
         ("guidance.heading_rate_max_rad_s=0.4", ["heading_rate_max_rad_s", "0.4", "greater than 0.5"]),
         ("fidelity=six_dof", ["fidelity", "'six_dof'", "kinematic"]),
-        ("keepout.radius_m=200", ["unknown key 'keepout'; known are study, title", "ensemble, guidance"]),
+        ("keepout.radius_m=200", ["unknown key 'keepout'"]),
     ],
 )
 def test_bad_values_are_refused_in_one_line(override, words):

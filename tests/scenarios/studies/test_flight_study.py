@@ -164,7 +164,7 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
         ('trials = ["sea_wind"]\nshare = 0.0', "share: value is 0.0"),
         (
             'trials = ["sea_wind"]\nset = ["fidelity=kinematic", "fault.kind=engine"]',
-            "fault.kind is 'engine'; .*what can fail is none, satellite_navigation, vessel_data",
+            "fault.kind is 'engine'; .*what can fail is none, satellite_navigation, sniffer_dead, sniffer_saturated, vessel_data",
         ),
         ('trials = ["sea_wind"]\nset = ["fault.at_s=[300, 100]"]', r"at_s is \[300.0, 100.0\]; its first value must not exceed"),
         ('trials = ["sea_wind"]\nset = ["speed_ratio=[0.9, 0.1]"]', r"speed_ratio is \[0.9, 0.1\]; its first value"),
@@ -184,7 +184,7 @@ def test_bad_trials_are_refused_in_one_line_before_anything_is_written(line, wor
 def test_trials_that_need_different_autopilots_are_refused(tmp_path):
     listed = written(tmp_path)
     (tmp_path / "two.toml").write_text(TRIAL + "[plume]\nsource_height_m = 80.0\n", encoding="utf-8")
-    with pytest.raises(InputError, match=r"flights differ in .* plume.source_height_m; give each a run of its own"):
+    with pytest.raises(InputError, match=r"flights differ in .*plume.source_height_m\); give each a run of its own"):
         run(listed, tmp_path / "run")
 
 
