@@ -46,7 +46,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def write_json(path: Path, value: Mapping[str, Any], *, indent: int | None = 1) -> None:
-    """Write a JSON file, completely or not at all; with an ``indent`` of None on one line, which takes a tenth of the time.
+    """Write a JSON file, completely or not at all; with an ``indent`` of None on one line.
 
     Raises
     ------

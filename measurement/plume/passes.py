@@ -9,6 +9,9 @@ from measurement.plume.arrays import Array
 HIT = 0.6
 """Concentration at the peak of a pass, over that on the plume's own axis, from which it counts as a hit [-]."""
 
+FOUND_WITHIN = 300.0
+"""Time on the orbit within which the plume has to be found [s]."""
+
 
 def passes(across: Array) -> Iterator[slice]:
     """Yield the samples of each pass: from half-way since the last change of sides to half-way to the next.

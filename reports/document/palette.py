@@ -48,6 +48,9 @@ class Meaning(StrEnum):
 SERIES = ("blue", "orange", "green", "sky", "plum", "black", "grey")
 """Colours of categories, in their order: without those of limits and of the guard."""
 
+VARIANTS = tuple(colour for colour in SERIES if colour != Meaning.FLOWN)
+"""Colours of comparisons, in their order: not that of the study's own flights."""
+
 SCALE = "Cividis"
 """Colour scale of values, light for the least: of even steps for all eyes. Matplotlib writes it in small letters."""
 

@@ -5,11 +5,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from measurement.plume.passes import FOUND_WITHIN
 from reports.document.blocks import Block, Heading, Section, Text
 from reports.finding.flight_charts import height_chart, section_chart
 from reports.finding.search_view import SearchView, search_view
 from reports.finding.tables import height_table, search_table
-from reports.finding.trial_charts import FOUND_WITHIN, finding_charts
+from reports.finding.trial_charts import finding_charts
 from reports.finding.variants import variants_of
 from reports.run.columns import column
 from reports.run.run_data import RunData

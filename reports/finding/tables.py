@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from common.binomial import percent, upper_bound
+from measurement.plume.passes import FOUND_WITHIN
 from reports.document.blocks import Table
 from reports.document.tables import number
 from reports.finding.search_view import TWO_SIDED
-from reports.finding.trial_charts import FOUND_WITHIN
 from reports.finding.variants import Variant
 from reports.run.columns import Array, column
 

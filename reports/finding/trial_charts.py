@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from measurement.plume.passes import HIT, passes
+from measurement.plume.passes import FOUND_WITHIN, HIT, passes
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.document.panels import histogram
@@ -11,9 +11,6 @@ from reports.finding.search_view import TWO_SIDED
 from reports.finding.variants import Variant
 from reports.run.columns import Array, column
 from reports.run.trials import Trial
-
-FOUND_WITHIN = 300.0
-"""Time on the orbit within which a plume has to be found, as of the column ``found`` [s]."""
 
 _HISTORIES_MAX = 40
 """Flights of a variant whose passes are counted at most: their time histories are read for it."""

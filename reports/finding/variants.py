@@ -6,15 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from reports.document.palette import SERIES, Meaning
+from reports.document.palette import VARIANTS, Meaning
 from reports.run.columns import Array, column
-from reports.run.trials import Trial
-
-STUDY = "as in the study"
-"""What the study's own flights are called beside their comparisons."""
-
-_COLOURS = tuple(colour for colour in SERIES if colour != Meaning.FLOWN)
-"""Of the comparisons: not that of the study's own flights."""
+from reports.run.trials import AS_IN_THE_STUDY, Trial
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,10 +49,10 @@ def variants_of(trial: Trial) -> list[Variant]:
     if len(compared):
         compared = compared[compared["trial"] == trial.key]
         names = [str(name) for name in dict.fromkeys(compared["variant"])]
-    own = Variant(name=STUDY, colour=Meaning.FLOWN, rows=_on_orbit(trial.rows))
+    own = Variant(name=AS_IN_THE_STUDY, colour=Meaning.FLOWN, rows=_on_orbit(trial.rows))
     others = [
         Variant(
-            name=name.replace("_", " "), colour=_COLOURS[i % len(_COLOURS)], rows=_on_orbit(compared[compared["variant"] == name])
+            name=name.replace("_", " "), colour=VARIANTS[i % len(VARIANTS)], rows=_on_orbit(compared[compared["variant"] == name])
         )
         for i, name in enumerate(names)
     ]

@@ -7,14 +7,14 @@ import pandas as pd
 
 from reports.document.blocks import Block, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel
-from reports.document.palette import SERIES, Meaning
+from reports.document.palette import VARIANTS, Meaning
 from reports.document.tables import number
 from reports.flights.names import flight_name
 from reports.flights.trial_tables import flight_table
 from reports.run.columns import clearance, column, largest, measured, met, total
 from reports.run.run_data import RunData
 from reports.run.time_history import tracking_error
-from reports.run.trials import Trial
+from reports.run.trials import AS_IN_THE_STUDY, Trial
 
 _SHOWN_TURNS = 45.5
 """How much of a flight a panel shows after settling, over the time to turn by one radian at omega_max [-]."""
@@ -30,11 +30,6 @@ _FLIGHTS_MAX = 4
 
 _ROWS_MAX = 60
 """Flights that are listed one by one; of more there is a row for each variant."""
-
-_COLOURS = tuple(colour for colour in SERIES if colour != Meaning.FLOWN)
-"""Of the variants: not that of the study's own flight."""
-
-_STUDY = "as in the study"
 
 
 def comparison_section(run: RunData, trials: list[Trial]) -> Section:
@@ -57,7 +52,7 @@ def _pairs(rows: pd.DataFrame, compared: pd.DataFrame) -> pd.DataFrame:
     bases = [str(row["flight_id"]).removesuffix(f"_{row['variant']}") for _, row in compared.iterrows()]
     names = [str(variant).replace("_", " ") for variant in compared["variant"]]
     study = rows[rows["flight_id"].isin(bases)]
-    study = study.assign(base=study["flight_id"], variant=_STUDY)
+    study = study.assign(base=study["flight_id"], variant=AS_IN_THE_STUDY)
     return pd.concat([study, compared.assign(base=bases, variant=names)]).sort_values("base", kind="stable")
 
 
@@ -67,12 +62,12 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
     turn = 1.0 / float(pairs["heading_rate_limit_rad_s"].max())
     shown = float(f"{_SHOWN_TURNS * turn:.2g}")
     band = _SHOWN_BANDS * float(trial.setting("flight.settling_band_m"))
-    variants = [variant for variant in dict.fromkeys(pairs["variant"]) if variant != _STUDY]
-    colours = {variant: _COLOURS[i % len(_COLOURS)] for i, variant in enumerate(variants)} | {_STUDY: Meaning.FLOWN}
+    variants = [variant for variant in dict.fromkeys(pairs["variant"]) if variant != AS_IN_THE_STUDY]
+    colours = {variant: VARIANTS[i % len(VARIANTS)] for i, variant in enumerate(variants)} | {AS_IN_THE_STUDY: Meaning.FLOWN}
     panels: list[Panel] = []
     for _, flights in pairs.groupby("base", sort=False):
         # The study's own flight lies over the others.
-        ordered = flights.sort_values("variant", key=lambda names: names == _STUDY, kind="stable")
+        ordered = flights.sort_values("variant", key=lambda names: names == AS_IN_THE_STUDY, kind="stable")
         lines = [line for _, row in ordered.iterrows() for line in _error_line(trial.run, row, colours[row["variant"]], shown)]
         if lines and len(panels) < _FLIGHTS_MAX:
             panels.append(

@@ -52,14 +52,14 @@ def colours() -> dict[str, str]:
     return {name: COLOURS[meaning] for name, meaning in _MEANINGS.items()}
 
 
-def wanted(picker: FlightPicker) -> bool:
+def has_replay(picker: FlightPicker) -> bool:
     """Return whether any of the flights can be replayed: a page without one has no use for the library."""
     return any(flight.scene for flight in picker.flights)
 
 
 def within(section: Section) -> bool:
     """Return whether a section has a replay."""
-    return any(isinstance(block, FlightPicker) and wanted(block) for block in section.blocks)
+    return any(isinstance(block, FlightPicker) and has_replay(block) for block in section.blocks)
 
 
 def library() -> str:

@@ -24,6 +24,10 @@ class Kind(Enum):
     GENERAL = "general"
 
 
+AS_IN_THE_STUDY = "as in the study"
+"""What the study's own flights are called beside their comparisons."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trial:
     """One trial of a run: flights of one scenario.

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from gnc.mission.mode import Mode
-from measurement.plume.passes import HIT, passes
+from measurement.plume.passes import FOUND_WITHIN, HIT, passes
 from scenarios.engine.task import Row
 from scenarios.instruments.air_samples import CLEAN_AIR
 from scenarios.schema.flight import FlightConfig
@@ -25,9 +25,6 @@ SIGNAL_TO_NOISE = 5.0
 
 KNOWN_AFTER = 180.0
 """Time on the orbit after which the height of the axis is judged [s]."""
-
-FOUND_WITHIN = 300.0
-"""Time on the orbit within which the plume has to be found [s]."""
 
 _BASE_WINDOW, _BASE_QUANTILE = 60.0, 0.25
 """Stretch of readings, and quantile of them, that are taken for clean air [s, -]."""
