@@ -8,7 +8,9 @@ than fit into memory. Every result has a checksum; a journal in which one does n
 import csv
 import hashlib
 import json
+import random
 import sqlite3
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
@@ -19,6 +21,15 @@ from scenarios.errors import InputError
 
 _LARGEST = 2**63 - 1
 """SQLite's largest integer."""
+
+_BUSY = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_PROTOCOL)
+"""SQLite's codes of a file that another connection has."""
+
+_ATTEMPTS = 6
+"""Attempts to open a journal: of two programs that open one in the same millisecond, SQLite may refuse both."""
+
+_WAIT = 0.05
+"""Longest wait between two attempts [s]; drawn at random, so that the two do not meet again."""
 
 _COLUMNS = ("number", "point", "items", "lost", "tables", "checksum")
 
@@ -45,31 +56,23 @@ class Journal:
         self._path = path
         # A log beside it is of a program that was killed, or that is writing now: SQLite has to see to it.
         closed = reading and not path.with_name(f"{path.name}-wal").exists()
+        for attempt in range(1, _ATTEMPTS + 1):
+            try:
+                self._database = _opened(path, writing=not closed)
+                break
+            except sqlite3.DatabaseError as error:
+                if _code(error) not in _BUSY:
+                    raise damaged(path) if is_damaged(error) else error from None
+                if attempt == _ATTEMPTS:
+                    raise InputError(
+                        f"another program is writing to '{path.parent}'; wait until it has ended, or choose another --out"
+                    ) from None
+                time.sleep(random.SystemRandom().uniform(0.0, _WAIT))
         try:
-            self._database = sqlite3.connect(
-                f"{path.absolute().as_uri()}?immutable=1" if closed else path, uri=closed, isolation_level=None, timeout=0.0
-            )
-        except sqlite3.Error as error:
-            raise InputError(f"'{path}' cannot be opened: {error}; choose another --out") from None
-        # What is not text is found by its checksum.
-        self._database.text_factory = lambda text: text.decode(errors="replace")
-        try:
-            if not closed:
-                # Exclusive: two programs that fly the same study would overwrite each other's results.
-                self._database.execute("PRAGMA locking_mode = EXCLUSIVE")
-                self._database.execute("PRAGMA journal_mode = WAL")
-                self._database.execute("PRAGMA synchronous = NORMAL")
-                self._database.execute(_SCHEMA)
             self._check()
         except sqlite3.DatabaseError as error:
             self._database.close()
-            if _code(error) in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_PROTOCOL):
-                raise InputError(
-                    f"another program is writing to '{path.parent}'; wait until it has ended, or choose another --out"
-                ) from None
-            if not is_damaged(error):
-                raise
-            raise damaged(path) from None
+            raise damaged(path) if is_damaged(error) else error from None
         except InputError:
             self._database.close()
             raise
@@ -135,6 +138,29 @@ class Journal:
         for count, row in enumerate(self.rows(table), start=1):  # noqa: B007 - the last one is returned
             writer.writerow([cell(row.get(name)) for name in columns])
         return count
+
+
+def _opened(path: Path, *, writing: bool) -> sqlite3.Connection:
+    """Return a connection to a journal, which no other program can open while it is writing."""
+    try:
+        database = sqlite3.connect(
+            path if writing else f"{path.absolute().as_uri()}?immutable=1", uri=not writing, isolation_level=None, timeout=0.0
+        )
+    except sqlite3.Error as error:
+        raise InputError(f"'{path}' cannot be opened: {error}; choose another --out") from None
+    # What is not text is found by its checksum.
+    database.text_factory = lambda text: text.decode(errors="replace")
+    if writing:
+        try:
+            # Exclusive: two programs that fly the same study would overwrite each other's results.
+            database.execute("PRAGMA locking_mode = EXCLUSIVE")
+            database.execute("PRAGMA journal_mode = WAL")
+            database.execute("PRAGMA synchronous = NORMAL")
+            database.execute(_SCHEMA)
+        except sqlite3.DatabaseError:
+            database.close()
+            raise
+    return database
 
 
 def is_full(error: sqlite3.DatabaseError) -> bool:

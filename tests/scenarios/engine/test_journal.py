@@ -1,6 +1,7 @@
 import csv
 import io
 import math
+import multiprocessing
 import sqlite3
 import subprocess
 import sys
@@ -159,6 +160,33 @@ def test_a_second_program_is_refused_in_a_line_until_the_first_is_gone(tmp_path)
     journal = Journal(path)
     assert rows(journal) == [{"a": 0.1}]
     journal.close()
+
+
+def opens(path, barrier, results, rounds):
+    for _ in range(rounds):
+        barrier.wait()
+        try:
+            journal = Journal(path)
+        except InputError:
+            journal = None
+        results.put(journal is not None)
+        barrier.wait()
+        if journal:
+            journal.close()
+
+
+def test_of_two_that_open_it_at_the_same_moment_one_has_it(tmp_path):
+    path = tmp_path / "journal.sqlite"
+    Journal(path).close()
+    rounds = 12  # without a second attempt, both were refused in one of five
+    context = multiprocessing.get_context("fork")
+    barrier, results = context.Barrier(2), context.Queue()
+    both = [context.Process(target=opens, args=(path, barrier, results, rounds)) for _ in range(2)]
+    for process in both:
+        process.start()
+    assert sum(results.get(timeout=30) for _ in range(2 * rounds)) == rounds
+    for process in both:
+        process.join()
 
 
 def test_a_file_that_is_no_journal_is_refused_in_a_line(tmp_path):
