@@ -52,7 +52,7 @@ class HealthMonitor:
     fault : what is wrong with the vehicle; once found, it stays
     """
 
-    __slots__ = ("_health", "_speed", "_until_check", "fault")
+    __slots__ = ("_commanded", "_health", "_speed", "_steps", "fault")
 
     def __init__(self, parameters: HealthParameters) -> None:
         p = parameters
@@ -65,16 +65,20 @@ class HealthMonitor:
             patience=PATIENCE,
             servo_patience=SERVO_PATIENCE,
         )
-        self._speed, self._until_check = p.speed, 0
+        self._speed, self._steps, self._commanded = p.speed, CHECK_INTERVAL - 1, 0.0
         self.fault = Fault.NONE
 
     def check(self, readings: Readings, airspeed_command: float, heading_rate_command: float) -> bool:
         """Return whether a fault is found now; called once per guidance step, with the last commands [m/s, rad/s]."""
-        if self._until_check:
-            self._until_check -= 1
+        # The mean of the commands since the last check: of one that changes its sign at every step, single ones would all have
+        # the same sign, and the vehicle would seem not to follow.
+        self._commanded += heading_rate_command
+        self._steps += 1
+        if self._steps < CHECK_INTERVAL:
             return False
-        self._until_check = CHECK_INTERVAL - 1
+        commanded = self._commanded / CHECK_INTERVAL
+        self._steps, self._commanded = 0, 0.0
         _, airspeed, _, _, heading_rate, servo_error = readings
         lack = min(airspeed_command, self._speed) - airspeed
-        self.fault = self._health.check(lack, airspeed, heading_rate, heading_rate_command, servo_error)
+        self.fault = self._health.check(lack, airspeed, heading_rate, commanded, servo_error)
         return self.fault is not Fault.NONE

@@ -63,3 +63,12 @@ def test_it_looks_every_few_steps_alone():
     answers = [made.check(readings(servo_error=0.9), SPEED, 0.0) for _ in range(3 * CHECK_INTERVAL)]
     assert any(answers)
     assert all(step % CHECK_INTERVAL == 0 for step, answer in enumerate(answers) if answer)
+
+
+def test_a_command_that_changes_its_sign_at_every_step_asks_for_no_turn():
+    # At 20 Hz no aircraft follows that; it flies straight on, as its mean tells it to.
+    made = monitor()
+    for step in range(round(60.0 / TIME_STEP)):
+        command = HEADING_RATE_MAX if step % 2 else -HEADING_RATE_MAX
+        assert not made.check(readings(airspeed=SPEED - 0.001 * step), SPEED - 0.001 * step, command)
+    assert made.fault is Fault.NONE
