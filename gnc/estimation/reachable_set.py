@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from gnc.estimation.vessel_filter import VesselReport
 
-_KEPT = 3
+KEPT = 3
 """Newest reports that discs are made of: an older one could be nearer the truth only by its luck [-]."""
 
 
@@ -125,7 +125,7 @@ class ReachableSet:
 
     def report(self, report: VesselReport) -> None:
         """Take in a report, which may be older than others."""
-        self._reports = sorted([*self._reports, report], key=lambda of: -of.time)[:_KEPT]
+        self._reports = sorted([*self._reports, report], key=lambda of: -of.time)[:KEPT]
 
     def tubes(self, time: float) -> Sequence[Tube]:
         """Return the discs of the reports that are kept at ``time`` [s], that of the newest first."""

@@ -9,7 +9,10 @@ import math
 from gnc.numeric import wrap
 
 _OUTWARD = 0.6
-"""How far the way leans outwards for a vehicle at the centre of the circle that it should keep out of [rad]."""
+"""How far the way leans outwards for a vehicle a turn radius or more inside of the circle by which to go round [rad].
+
+By less, a vehicle near the keep-out area would go along it all the way round, and the guard would turn it away all the time.
+"""
 
 
 class Transit:
@@ -64,7 +67,7 @@ class Transit:
             if distance > round_radius:
                 lean = math.asin(round_radius / distance)
             else:
-                lean = 0.5 * math.pi + _OUTWARD * (1.0 - distance / round_radius)
+                lean = 0.5 * math.pi + _OUTWARD * min(1.0, (round_radius - distance) / self._turn_radius)
             if self.side == 0:
                 self.side = self._shorter_side(bearing, lean, math.atan2(target_y, target_x), course, round_radius)
             way = bearing + math.pi - self.side * lean

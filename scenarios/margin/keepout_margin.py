@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from gnc.estimation.reachable_set import Tube, VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.parameters import FilterParameters
+from scenarios.margin.report_scatter import scatter_allowance
 from scenarios.margin.tracking_spread import CALM_AIR_SPREAD, SpreadTable, planned_margin
 from scenarios.schema.equipment import VesselReportsConfig
 from scenarios.schema.scenario import Scenario
@@ -73,13 +74,26 @@ def vessel_limits(scenario: Scenario, horizon: float) -> VesselLimits:
 def widest_tube(limits: VesselLimits, reports: VesselReportsConfig, *, plan_period: float) -> Tube:
     """Return the disc about a vessel whose newest report is as old as it becomes where none is missing, centre in the origin.
 
+    It is as much larger as discs reach farther because reports scatter (``scenarios.margin.report_scatter``).
+
     Parameters
     ----------
     limits, reports : what vessel and reports keep within, and how often reports come
     plan_period : time between looks at them [s]
     """
     age = plan_period + (0.0 if reports.exact else reports.interval_s[1] + reports.latency_max_s)
-    return tube(VesselReport(-age, 0.0, 0.0, 0.0, 0.0), limits, 0.0)
+    oldest = tube(VesselReport(-age, 0.0, 0.0, 0.0, 0.0), limits, 0.0)
+    if reports.exact:
+        return oldest
+    allowance = scatter_allowance(
+        limits,
+        filter_parameters(reports),
+        reports.interval_s,
+        reports.latency_max_s,
+        plan_period=plan_period,
+        planned=oldest.reach(limits.horizon),
+    )
+    return oldest._replace(radius=oldest.radius + allowance)
 
 
 def tracking_level(scenario: Scenario, spreads: SpreadTable | None, nu: float) -> tuple[float, float]:

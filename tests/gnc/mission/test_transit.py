@@ -137,9 +137,12 @@ def test_following_it_leads_round_a_moving_disc_to_the_target_and_never_inside(b
     assert closest >= BLOCKED - 1e-6
 
 
-def test_inside_the_circle_it_leads_outwards():
-    transit = Transit(TURN_RADIUS)
-    for distance in (10.0, 100.0, 200.0):
-        place = polar(distance, 0.4)
-        way = relative(course_of(transit, place, (-TARGET_DISTANCE, 0.0)), (0.0, 0.0))
-        assert place[0] * way[0] + place[1] * way[1] > 0.0
+@pytest.mark.parametrize(
+    ("distance", "outwards"),
+    # Of the relative velocity, sin 0.6 leads outwards until a turn radius is left to the circle, then proportionally less.
+    [(10.0, 0.5646), (100.0, 0.5646), (ROUND - TURN_RADIUS, 0.5646), (ROUND - 0.5 * TURN_RADIUS, 0.2955), (ROUND - 1e-6, 0.0)],
+)
+def test_inside_the_circle_it_leads_outwards(distance, outwards):
+    place = polar(distance, 0.4)
+    way = relative(course_of(Transit(TURN_RADIUS), place, (-TARGET_DISTANCE, 0.0)), (0.0, 0.0))
+    assert (place[0] * way[0] + place[1] * way[1]) / (distance * SPEED) == pytest.approx(outwards, abs=1e-4)
