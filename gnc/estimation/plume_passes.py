@@ -91,6 +91,11 @@ class Path:
         along = self.along[i + 1] - self.along[i - 1] - apparent_wind * (self.time[i + 1] - self.time[i - 1])
         return float(abs(along) / max(abs(self.across[i + 1] - self.across[i - 1]), _BESIDE * abs(along)))
 
+    def covers(self, places: Array) -> Array:
+        """Return 1 for each place across that the way goes over, and 0 for others, shape as given [-]."""
+        result: Array = ((places >= self.across.min()) & (places <= self.across.max())).astype(np.float64)
+        return result
+
     def _nearest(self, across: float) -> int:
         return int(np.abs(self.across - across).argmin())
 
@@ -246,7 +251,7 @@ class PassReader:
         return Evidence(
             slope=slope.reshape(len(spreads), -1),
             bend=bend.reshape(len(spreads), -1),
-            response=float(templates[len(places) : 2 * len(places)].max()),
+            response=float(templates[len(spreads) // 2 * len(places) :][: len(places)].max()),
             strength=strength,
             at=at,
             spread=spread,

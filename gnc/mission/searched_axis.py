@@ -33,6 +33,8 @@ class Expectation:
 
     source_height: float
     source_deviation: float
+    stack_diameter: float
+    exhaust_speed: float
     momentum_flux: float
     buoyancy_flux: float
     co2_rate: float
