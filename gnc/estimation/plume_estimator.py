@@ -177,13 +177,13 @@ class PlumeEstimator:
         """
         heights = self.grid.coarse_heights(self._heights)
         off = heights - (altitudes[:, np.newaxis] if altitudes.ndim == 1 else altitudes)
-        return self._weights, self.grid.chances(off, self._looks, self._least)
+        return self._weights, self.grid.chances(off, self._looks, self._least, self._spread)
 
     def expected_deviation(self, altitudes: Array) -> Array:
         """Return what the standard deviation of the height is expected to be after a pass at each altitude [m], shape (n,)."""
         heights = self.grid.coarse_heights(self._heights)
         off = heights - altitudes[:, np.newaxis]
-        return self.grid.expected_deviation(self._weights, heights, off, self._looks)
+        return self.grid.expected_deviation(self._weights, heights, off, self._looks, self._spread)
 
     def _diffuse(self, time: float) -> None:
         """Let the axis wander for ``time`` [s], and let some of what is known be forgotten."""
@@ -265,6 +265,8 @@ class PlumeEstimator:
         self._weights = grid.coarse(self.cells)
         of_spreads = self.cells.sum(axis=2)
         of_heights = of_spreads.sum(axis=0)
+        # Spread of each axis as it is believed of all of them together.
+        self._spread: Array = grid.coarse_heights(of_spreads.sum(axis=1) @ grid.sigma_z)
         self._heights: Array = prior.height_at(grid.height, self._distance, self._wind)
         self.height = float(of_heights @ self._heights)
         step = float(self._heights[1] - self._heights[0])

@@ -133,16 +133,17 @@ class PlumeGrid:
         reach = self._edges * self.sigma_z[..., np.newaxis]
         return np.diff(self._within(reach, (height - altitude)[:, np.newaxis], looks), axis=-1, prepend=0.0)
 
-    def chances(self, off: Array, looks: float, least: float) -> Array:
-        """Return how likely a pass reads a strength of at least ``least`` [ppm], of the expected spread, shape (..., h', c).
+    def chances(self, off: Array, looks: float, least: float, sigma_z: Array) -> Array:
+        """Return how likely a pass reads a strength of at least ``least`` [ppm], shape (..., h', c).
 
         Parameters
         ----------
         off : height of each axis of ``coarse`` above the pass, shape (..., h') [m]
         looks : as of ``fading``
+        sigma_z : spread in height of each axis, shape (h',) [m]
         """
         reach = np.sqrt(2.0 * np.log(np.maximum(self.strength / least, 1.0)))
-        return self._within(reach * self.sigma_z[_MIDDLE, ::_COARSE, np.newaxis], off[..., np.newaxis], looks)
+        return self._within(reach * sigma_z[:, np.newaxis], off[..., np.newaxis], looks)
 
     def coarse(self, cells: Array) -> Array:
         """Return the probability of every second height and each strength, shape (h', c), of cells (w, h, c)."""
@@ -161,7 +162,7 @@ class PlumeGrid:
         result: Array = 1.0 - (1.0 - ndtr(far - middle) + ndtr(-far - middle)) ** looks
         return result
 
-    def expected_deviation(self, weights: Array, heights: Array, off: Array, looks: float) -> Array:
+    def expected_deviation(self, weights: Array, heights: Array, off: Array, looks: float, sigma_z: Array) -> Array:
         """Return the standard deviation of the height that is expected after a pass whose strength is read [m], shape (n,).
 
         Parameters
@@ -169,9 +170,9 @@ class PlumeGrid:
         weights : probability of each height and strength of ``coarse``, shape (h', c)
         heights : of the axes, shape (h',) [m]
         off : heights above each of the passes, shape (n, h') [m]
-        looks : as of ``fading``
+        looks, sigma_z : as of ``chances``
         """
-        reach = self._edges * self.sigma_z[_MIDDLE, ::_COARSE, np.newaxis]
+        reach = self._edges * sigma_z[:, np.newaxis]
         fading = np.diff(self._within(reach, off[..., np.newaxis], looks), axis=-1, prepend=0.0)
         # By height and reading, summed over the strengths that lead to it.
         padded = np.pad(weights, ((0, 0), (_FADE - 1, _FADE - 1)))

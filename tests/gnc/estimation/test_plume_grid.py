@@ -13,6 +13,8 @@ GRID = PlumeGrid(PRIOR)
 MIDDLE = len(GRID.sigma_z) // 2
 """The expected spread."""
 
+SPREAD = GRID.coarse_heights(GRID.sigma_z[MIDDLE])
+
 
 def test_the_prior_has_the_moments_that_it_was_given() -> None:
     assert GRID.prior.sum() == pytest.approx(1.0)
@@ -54,7 +56,7 @@ def test_a_plume_far_from_the_pass_is_not_read() -> None:
 
 def test_chances_rise_with_strength_and_fall_with_the_distance() -> None:
     off = (GRID.coarse_heights(GRID.height) - 65.0)[np.newaxis]
-    chances = GRID.chances(off, 1.0, 4.0)[0]
+    chances = GRID.chances(off, 1.0, 4.0, SPREAD)[0]
     assert np.all(np.diff(chances, axis=1) >= -1e-12)
     nearest = int(np.abs(off).argmin())
     assert np.all(np.diff(chances[nearest:], axis=0) <= 1e-12)
@@ -64,7 +66,7 @@ def test_a_pass_is_never_expected_to_widen_the_height() -> None:
     """The law of total variance."""
     weights, heights = GRID.coarse(GRID.prior), GRID.coarse_heights(GRID.height)
     altitudes = np.array([-500.0, 40.0, 65.0, 90.0, 500.0])
-    expected = GRID.expected_deviation(weights, heights, heights - altitudes[:, np.newaxis], 1.0)
+    expected = GRID.expected_deviation(weights, heights, heights - altitudes[:, np.newaxis], 1.0, SPREAD)
     of_heights = weights.sum(axis=1)
     now = float(np.sqrt(of_heights @ heights**2 - (of_heights @ heights) ** 2))
     assert np.all(expected <= now + 1e-9)
