@@ -10,13 +10,13 @@ from gnc.estimation.plume_prior import PlumePrior
 
 Array = npt.NDArray[np.float64]
 
-STRENGTH_STEP = 0.4
-"""Step of the logarithm of strengths [-]: half of it is 20 %, about what the shape of a plume leaves open."""
+STRENGTH_STEP = 0.5
+"""Step of the logarithm of strengths [-]: half of it is 25 %, about what the shape of a plume leaves open."""
 
-_FADE = 16
-"""Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.4 of the centre."""
+_FADE = 13
+"""Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.3 of the centre."""
 
-_HEIGHTS, _BEARINGS, _PLACES = 45, 25, 27
+_HEIGHTS, _BEARINGS, _PLACES = 45, 25, 21
 """Cells over height and bearing, and places of the centre across at one moment [-]."""
 
 _REACH = 3.0
@@ -27,9 +27,6 @@ _LOWEST = 5.0
 
 _SPREADS, _SPREAD_STEP = 5, 0.8
 """Cells of spread, an odd number, and their step in deviations of its logarithm [-]: together they have 0.94 of the deviation."""
-
-_WIDTHS_BESIDE = 1
-"""Widths of pulses that are narrower than the narrowest spread, and as many wider than the widest, by the same step each [-]."""
 
 _MIDDLE, _COARSE = _SPREADS // 2, 2
 """The expected spread among all, and cells of height that count as one where passes to come are weighed [-]."""
@@ -59,7 +56,7 @@ class PlumeGrid:
     ----------
     height, strength, bearing : of the cells, shapes (h,), (c,), (b,) [m, ppm, rad]
     sigma_y, sigma_z : of the cells, shape (w, h) [m]
-    widths : spreads of pulses, at the expected height, shape (v,) [m]: those of the cells, and some that are beside them
+    widths : spreads of pulses, at the expected height, shape (v,) [m]: as many as cells of spread
     faint : strengths from the faintest that a cell may be read with up to the strongest, shape (p,) [ppm]
     places : of the centre across at one moment, shape (j,) [m]
     prior, bearing_prior : probability of each cell, shapes (w, h, c) and (b,)
@@ -77,14 +74,15 @@ class PlumeGrid:
         scales = np.exp(self._scales)[:, np.newaxis]
         self.sigma_y: Array = scales * np.sqrt(np.maximum(prior.sigma_y**2 + squares, (_SPREAD_MIN * prior.sigma_y) ** 2))
         self.sigma_z: Array = scales * np.sqrt(np.maximum(prior.sigma_z**2 + squares, (_SPREAD_MIN * prior.sigma_z) ** 2))
-        self._widths = step * (np.arange(_SPREADS + 2 * _WIDTHS_BESIDE) - _MIDDLE - _WIDTHS_BESIDE)
-        self.widths: Array = prior.sigma_y * np.exp(self._widths)
+        self.widths: Array = prior.sigma_y * np.exp(self._scales)
         median = np.log(prior.peak * prior.sigma_y * prior.sigma_z / (self.sigma_y * self.sigma_z))
         reach = _REACH * prior.peak_deviation
         logs = np.arange(median.min() - reach, median.max() + reach + STRENGTH_STEP, STRENGTH_STEP)
         self.strength: Array = np.exp(logs)
         self.faint: Array = np.exp(logs[0] + STRENGTH_STEP * np.arange(1 - _FADE, len(logs)))
         self._index = _FADE - 1 + np.arange(len(logs)) - np.arange(_FADE)[:, np.newaxis]
+        # Which of the faint strengths a step less than a strength is.
+        self._fainter: Array = np.eye(len(self.faint))[self._index.ravel()]
         self._edges: Array = np.sqrt(2.0 * STRENGTH_STEP * (np.arange(_FADE) + 0.5))
         weight = np.exp(-0.5 * ((logs - median[..., np.newaxis]) / prior.peak_deviation) ** 2)
         of_spreads = np.exp(-0.5 * (_SPREAD_STEP * (np.arange(_SPREADS) - _MIDDLE)) ** 2)
@@ -114,7 +112,7 @@ class PlumeGrid:
         ----------
         error : deviation of the logarithm of the width of one pass [-]
         """
-        result: Array = np.exp(-0.5 * ((self._widths - self._scales[:, np.newaxis]) / error) ** 2)
+        result: Array = np.exp(-0.5 * ((self._scales - self._scales[:, np.newaxis]) / error) ** 2)
         result /= result.sum(axis=1, keepdims=True)
         return result
 
@@ -144,6 +142,10 @@ class PlumeGrid:
         """
         reach = np.sqrt(2.0 * np.log(np.maximum(self.strength / least, 1.0)))
         return self._within(reach * sigma_z[:, np.newaxis], off[..., np.newaxis], looks)
+
+    def hits(self, off: Array, looks: float, sigma_z: Array, fraction: float) -> Array:
+        """Return how likely a pass reads a ``fraction`` of a plume's own strength at least, shape (..., h'); arguments as above."""
+        return self._within(math.sqrt(-2.0 * math.log(fraction)) * sigma_z, off, looks)
 
     def coarse(self, cells: Array) -> Array:
         """Return the probability of every second height and each strength, shape (h', c), of cells (w, h, c)."""
@@ -177,11 +179,11 @@ class PlumeGrid:
         # By height and reading, summed over the strengths that lead to it.
         padded = np.pad(weights, ((0, 0), (_FADE - 1, _FADE - 1)))
         windows = np.lib.stride_tricks.sliding_window_view(padded, _FADE, axis=1)
-        joint = np.einsum("nhf,hof->nho", fading, windows)
+        joint = fading.transpose(1, 0, 2) @ windows.transpose(0, 2, 1)
         nothing = weights.sum(axis=1) * (1.0 - fading.sum(axis=-1))
-        joint = np.concatenate([joint, nothing[..., np.newaxis]], axis=-1)
-        total = np.maximum(joint.sum(axis=1), _TINY)
-        mean = np.einsum("nho,h->no", joint, heights)
+        joint = np.concatenate([joint, nothing.T[..., np.newaxis]], axis=-1)
+        total = np.maximum(joint.sum(axis=0), _TINY)
+        mean = np.tensordot(heights, joint, 1)
         square = float(weights.sum(axis=1) @ heights**2)
         result: Array = np.sqrt(np.maximum(square - (mean**2 / total).sum(axis=1), 0.0))
         return result
@@ -199,10 +201,7 @@ class PlumeGrid:
         fading : of that pass, shape (w, h, f)
         """
         read = fading.transpose(0, 2, 1) @ cells
-        result, count = np.zeros((len(read), len(self.faint))), len(self.strength)
-        for step in range(_FADE):
-            first = _FADE - 1 - step
-            result[:, first : first + count] += read[:, step]
+        result: Array = read.reshape(len(read), -1) @ self._fainter
         return result
 
 
