@@ -16,7 +16,7 @@ STRENGTH_STEP = 0.5
 _FADE = 13
 """Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.3 of the centre."""
 
-_HEIGHTS, _BEARINGS, _PLACES = 45, 25, 21
+_HEIGHTS, _BEARINGS, _PLACES = 35, 25, 21
 """Cells over height and bearing, and places of the centre across at one moment [-]."""
 
 _REACH = 3.0

@@ -17,10 +17,10 @@ _STEP = 6.0
 _HORIZON = 8
 """Passes that are looked ahead [-]."""
 
-_KNOWN = 0.2
+_KNOWN = 0.3
 """Deviation of the height over the spread of a pass [-], below which nothing is gained by flying anywhere else."""
 
-_REACH, _PROBES = 2.0, 13
+_REACH, _PROBES = 1.6, 9
 """How far off the estimated height is flown to, over its deviation, and heights that are weighed [-, -]."""
 
 _AHEAD = 3.0
@@ -80,7 +80,7 @@ class HeightSearch:
         return Demand(self._hitting(estimator), estimator.offset)
 
     def _hitting(self, estimator: PlumeEstimator) -> float:
-        """Return the height that lets expect the most hits: in the next pass, and in those after it by what it says of the height."""
+        """Return the height that lets expect the most hits: now, and later by what the pass says of the height."""
         height, deviation = estimator.height, estimator.height_deviation
         spread, meander = estimator.sigma_z, estimator.prior.meander_z
         if deviation < _KNOWN * math.hypot(spread, meander):
