@@ -31,25 +31,15 @@ _MEMORY = 10.0
 _CHANCE = 0.02
 """Least chance of a hit or a miss that innovations are judged with [-]: models are not better than that."""
 
-_STRENGTH_ERROR, _STRENGTH_OBLIQUE = 0.25, 0.2
-"""Error of the strength of a pass, over itself: of one square to the plume, and how much a way along it over across adds [-].
-
-Of 972 passes with known strength the scatter beyond that of the meander was 0.27 square to the plume, and 0.45 at 1 to 2.
-"""
-
-_WIDTH_ERROR, _WIDTH_OBLIQUE = 0.15, 0.25
-"""Error of the logarithm of the width of a pass: of one square to the plume, and how much a way along it over across adds [-].
-
-The centre moves while the vehicle crosses. Of the same passes the scatter was 0.14 square to the plume, 0.2 at 0.6 to 1, 0.32 at 1
-to 2 and 0.69 at 2 to 4.
-"""
-
 _BELIEVED = 0.75
 """Share of what a pass says that is believed [-]: passes have errors of the model in common. Of 0.65, 0.8 and 1 this is about where
 the true heights of 80 flights were likeliest."""
 
 HIT = 0.6
 """Concentration in a pass over that in the plume's centre from which it hits [-]."""
+
+_UNLIKELY = 1e-5
+"""Probability of a height below which it does not count where passes to come are weighed [-]: 1 cm in the deviation."""
 
 _LOOK = 2.0
 """Way along the plume to an independent centre, over the correlation length of the meander [-]: its integral scale."""
@@ -188,9 +178,10 @@ class PlumeEstimator:
 
     def expected_deviation(self, altitudes: Array) -> Array:
         """Return what the standard deviation of the height is expected to be after a pass at each altitude [m], shape (n,)."""
-        heights = self.grid.coarse_heights(self._heights)
+        likely = self._weights.sum(axis=1) > _UNLIKELY
+        heights = self.grid.coarse_heights(self._heights)[likely]
         off = heights - altitudes[:, np.newaxis]
-        return self.grid.expected_deviation(self._weights, heights, off, self._looks, self._spread)
+        return self.grid.expected_deviation(self._weights[likely], heights, off, self._looks, self._spread[likely])
 
     def hits(self, altitudes: Array) -> Array:
         """Return the probability that a pass at each altitude [m] hits the plume in height, shape (n,)."""
@@ -231,12 +222,9 @@ class PlumeEstimator:
         significant = evidence.significance > SIGNAL_TO_NOISE
         drawn_out = path.drawn_out(float(grid.places[evidence.at]) if significant else self.offset, self._wind)
         self._looks = 1.0 + 2.0 * prior.sigma_y * drawn_out / (_LOOK * prior.meander_length)
-        exponent = over_nothing(
-            evidence.slope, evidence.bend, grid.faint, math.hypot(_STRENGTH_ERROR, _STRENGTH_OBLIQUE * drawn_out)
-        )
+        exponent = over_nothing(evidence.slope, evidence.bend, grid.faint, drawn_out)
         largest = max(0.0, float(exponent.max()))
-        of_widths = grid.of_widths(math.hypot(_WIDTH_ERROR, _WIDTH_OBLIQUE * drawn_out))
-        return _Scene(np.tensordot(of_widths, np.exp(exponent - largest), 1), math.exp(-largest), altitude)
+        return _Scene(np.tensordot(grid.of_widths(drawn_out), np.exp(exponent - largest), 1), math.exp(-largest), altitude)
 
     def _beside(self, path: Path) -> Array:
         """Return how likely the centre is at each place, given each bearing, shape (b, j).
