@@ -24,7 +24,7 @@ docs: .venv/.docs
 	@echo "documentation: docs/_build/html/index.html"
 
 bench: .venv/.developer
-	@$(BIN)/python -m benchmarks.closed_loop
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.closed_loop
 
 .venv: .venv/.installed
 

@@ -1,33 +1,44 @@
-"""Computing time of a step of the guidance, in both compositions.
+"""Computing time of a step of the guidance, in both compositions, and with the search for a plume.
 
-Two flights are flown and recorded at the rate of the guidance: one beside a steady vessel in still air, which has the
-paper's composition, and one that follows a plume in wind, by sensors and reports. What is measured in each is then sent
-to its guidance, step by step, both in turn for several rounds.
+Flights are flown and recorded at the rate of the guidance: one beside a steady vessel in still air, which has the
+paper's composition, one that follows a plume in wind, by sensors and reports, and that one again as it searches for its
+plume, beside a slow and a fast ship. What is measured in each is then sent to its guidance, step by step, all in turn
+for several rounds; what a search costs is compared with the same way without it.
 """
 
 import io
 import statistics
+import tempfile
 import time
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from aircraft.fleet.x8 import X8
 from common.run_layout import SUMMARY, time_history_path
 from gnc.compose import compose
 from gnc.estimation.target_motion import ReportedTarget
 from gnc.guidance import Guidance
+from gnc.mission.searched_axis import SearchedAxis
+from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.schema.equipment import VesselReportsConfig
+from scenarios.schema.equipment import PayloadConfig, VesselReportsConfig
 from scenarios.schema.flight import FlightConfig, StartConfig
+from scenarios.schema.guidance import FollowingConfig
 from scenarios.schema.scenario import Scenario
-from scenarios.schema.world import VesselConfig, WindConfig
-from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.schema.world import EmissionConfig, PlumeConfig, VesselConfig, WindConfig
+from scenarios.simulation.plume_readings import axis_of
+from scenarios.vehicles.vehicle_setup import VehicleSetup, aircraft_setup, design_of
+
+ROUNDS = 9
+"""Rounds of the benchmark alone."""
 
 SETTLED = 150.0
 """Time from which steps are timed: the UAV is on its orbit [s]."""
@@ -47,8 +58,17 @@ FOLLOWING = Scenario(
     flight=_FLIGHT,
 )
 
+_EVERY = 2
+"""Steps between those at which the search is told a place: of a flight that is recorded 10 times a second [-]."""
+
+_INTERVAL, _PARCEL = 4, 2
+"""Steps between the readings of the fast sniffer, and readings that are passed on together [-]."""
+
 Measured = Sequence[tuple[float, Any]]
 """Time, and what is measured then, in the form that the guidance takes."""
+
+Heard = Sequence[tuple[float, tuple[tuple[float, float], ...]] | None]
+"""For each step the altitude [m], and times [s] and CO2 [ppm] of the readings that have come; none where nobody is told."""
 
 
 def report_guidance(rounds: int, setup: VehicleSetup) -> None:
@@ -59,7 +79,7 @@ def report_guidance(rounds: int, setup: VehicleSetup) -> None:
     rounds : number of rounds
     setup : of the aircraft
     """
-    paper, following = (_flown(scenario, setup) for scenario in (TRACKING, FOLLOWING))
+    paper, following = (_flown(scenario, setup)[:2] for scenario in (TRACKING, FOLLOWING))
     pairs = [(_step_time(*paper), _step_time(*following)) for _ in range(rounds)]
     of_paper, of_following = (statistics.median(times) for times in zip(*pairs, strict=True))
     added = statistics.median((b - a) / a for a, b in pairs)
@@ -67,40 +87,98 @@ def report_guidance(rounds: int, setup: VehicleSetup) -> None:
         f"a step of the guidance: {of_paper:.1f} us in the paper's composition, {of_following:.1f} us in the one that follows a"
         f" plume, {100.0 * added:.0f} % more"
     )
+    for name, speed in (("slow", 3.0), ("fast", 12.0)):
+        predicted, _, _ = _flown(searching(speed, "predicted"), setup)
+        plan, measured, heard = _flown(searching(speed, "estimated"), setup)
+        pairs = [(_step_time(predicted, measured), _step_time(plan, measured, heard)) for _ in range(rounds)]
+        without, with_it = (statistics.median(times) for times in zip(*pairs, strict=True))
+        ratio = statistics.median(b / a for a, b in pairs)
+        print(f"  beside a {name} ship: {without:.1f} us without a search, {with_it:.1f} us with one, {ratio:.2f} times as long")
 
 
-def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measured]:
-    """Return the plan of a flight, and what its guidance measures at each step."""
+def searching(vessel_speed: float, plume: str) -> Scenario:
+    """Return a flight beside a ship with exhaust, in wind from abeam, whose plume is ``estimated`` or ``predicted``."""
+    return FOLLOWING.model_copy(
+        update={
+            "vessel": VesselConfig(speed_mps=vessel_speed),
+            "plume": PlumeConfig(model="fluctuating", source_height_m=35.0),
+            "emission": EmissionConfig(ship="container", load=0.6),
+            "payload": PayloadConfig.model_validate({"instruments": ("sniffer",), "sensor": "fast"}),
+            "following": FollowingConfig.model_validate({"plume": plume, "source_height_m": (20.0, 60.0), "load": (0.2, 0.9)}),
+            "flight": FlightConfig.model_validate({**_FLIGHT.model_dump(exclude_unset=True), "altitude_m": 60.0}),
+        }
+    )
+
+
+def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measured, Heard]:
+    """Return the plan of a flight, what its guidance measures at each step, and what a search would be told."""
     work = FlightWork(experiments=(Experiment("bench", scenario),), histories=1, setup=setup, spreads=PredictedSpreads())
     plan, result = work.plan(work.request(Task(number=0))), work.fly(Task(number=0))
     history = pd.read_parquet(io.BytesIO(result.files[time_history_path(result.tables[SUMMARY][0]["flight_id"])]))
     names = ["time_s", "north_m", "east_m", "velocity_north_mps", "velocity_east_mps", "heading_rate_rad_s"]
     motions = history[names].itertuples(index=False, name=None)
     if plan.sensing is None or plan.world is None:
-        return plan, [(at, motion) for at, *motion in motions]
+        return plan, [(at, motion) for at, *motion in motions], []
     wind = plan.world.weather.wind.at(history["time_s"], history["altitude_m"])
     v_north, v_east = (history[f"velocity_{axis}_mps"] - of_air for axis, of_air in zip(("north", "east"), wind, strict=True))
     air_data = zip(history["airspeed_mps"], np.arctan2(v_east, v_north), history["roll_rad"], strict=True)
-    return plan, [(at, (place, *read, rate, 0.0)) for (at, *place, rate), read in zip(motions, air_data, strict=True)]
+    measured = [(at, (place, *read, rate, 0.0)) for (at, *place, rate), read in zip(motions, air_data, strict=True)]
+    return plan, measured, _heard(history)
+
+
+def _heard(history: pd.DataFrame) -> Heard:
+    """Return what a search is told at each step of a flight, in parcels as the sniffer passes them on."""
+    if "co2_reading_ppm" not in history:
+        return []
+    result: list[tuple[float, tuple[tuple[float, float], ...]] | None] = []
+    waiting: list[tuple[float, float]] = []
+    for i, (at, altitude, co2) in enumerate(
+        history[["time_s", "altitude_m", "co2_reading_ppm"]].itertuples(index=False, name=None)
+    ):
+        if i % _INTERVAL == 0:
+            waiting.append((at, co2))
+        parcel = tuple(waiting) if len(waiting) == _PARCEL else ()
+        waiting = [] if parcel else waiting
+        result.append((altitude, parcel) if i % _EVERY == 0 or parcel else None)
+    return result
 
 
 def _reports(plan: FlightPlan) -> list[Any]:
     return list(reversed((plan.sensing.received if plan.sensing else None) or []))
 
 
-def _step_time(plan: FlightPlan, measured: Measured) -> float:
-    """Return the time of a step of a settled flight [us]."""
+def _step_time(plan: FlightPlan, measured: Measured, heard: Heard = ()) -> float:
+    """Return the CPU time of a step of a settled flight [us]."""
     guidance, reports = compose(plan.guidance), _reports(plan)
     first = next(i for i, (at, _) in enumerate(measured) if at >= SETTLED)
-    _step_through(guidance, measured[:first], reports)
-    began = time.perf_counter()
-    _step_through(guidance, measured[first:], reports)
-    return 1e6 * (time.perf_counter() - began) / (len(measured) - first)
+    _step_through(guidance, measured[:first], reports, heard[:first])
+    began = time.process_time()
+    _step_through(guidance, measured[first:], reports, heard[first:])
+    return 1e6 * (time.process_time() - began) / (len(measured) - first)
 
 
-def _step_through(guidance: Guidance, measured: Measured, reports: list[Any]) -> None:
-    target = guidance.target
-    for at, measurement in measured:
+def _step_through(guidance: Guidance, measured: Measured, reports: list[Any], heard: Heard) -> None:
+    target, axis = guidance.target, axis_of(guidance)
+    for i, (at, measurement) in enumerate(measured):
         while reports and reports[-1][0] <= at and isinstance(target, ReportedTarget):
             target.report(reports.pop()[1])
         guidance.step(at, measurement)
+        told = heard[i] if heard else None
+        if told is not None and isinstance(axis, SearchedAxis):
+            axis.flown = told[0]
+            axis.heed(at, told[1])
+
+
+def main() -> None:
+    """Print the benchmark alone."""
+    with tempfile.TemporaryDirectory() as folder:
+        design, refusal = design_of(X8, FOLLOWING.plume.source_height_m)
+        if design is None:
+            raise SystemExit(f"error: {refusal}")
+        run_directory = RunDirectory(Path(folder) / "run")
+        run_directory.open("", resume=False)
+        report_guidance(ROUNDS, aircraft_setup(design, FOLLOWING, run_directory))
+
+
+if __name__ == "__main__":
+    main()

@@ -114,6 +114,8 @@ def prior_of(case: Case, sensor: GasSensor, distance: float) -> PlumePrior:
         wind_deviation=WIND_ERROR,
         source_height=0.5 * sum(STACKS),
         source_deviation=(STACKS[1] - STACKS[0]) / math.sqrt(12.0),
+        stack_diameter=usual.stack_diameter,
+        exhaust_speed=usual.exhaust_speed,
         momentum_flux=usual.momentum_flux,
         buoyancy_flux=usual.buoyancy_flux,
         co2_rate=usual.rates[_CO2],

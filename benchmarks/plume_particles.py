@@ -26,9 +26,9 @@ class ParticleEstimator(PlumeEstimator):
     def __init__(self, prior: PlumePrior) -> None:
         super().__init__(prior)
         self._generator = np.random.default_rng(0)
-        cells = self.grid.prior
-        drawn = self._generator.choice(cells.size, COUNT, p=cells.ravel())
-        w, h, c, b = np.unravel_index(drawn, cells.shape)
+        cells, bearings = self.grid.prior, self.grid.bearing_prior
+        w, h, c = np.unravel_index(self._generator.choice(cells.size, COUNT, p=cells.ravel()), cells.shape)
+        b = self._generator.choice(len(bearings), COUNT, p=bearings)
         values = [w.astype(float), self.grid.height[h], np.log(self.grid.strength[c]), self.grid.bearing[b]]
         self._particles = np.array(values)
         self._steps = np.array([1.0] + [axis[1] - axis[0] for axis in self._axes()])
@@ -43,24 +43,21 @@ class ParticleEstimator(PlumeEstimator):
 
     def _correct(self, path: Path, evidence: Evidence) -> None:
         prior, grid, generator = self.prior, self.grid, self._generator
-        self._distance, altitude = path.at(self.offset)
-        self._looks = self._seen(path, evidence)
-        w = np.clip(np.rint(self._particles[0]).astype(int), 0, 2)
+        scene = self._scene(path, evidence)
+        w = np.clip(np.rint(self._particles[0]).astype(int), 0, len(grid.sigma_y) - 1)
         heights = prior.height_at(self._particles[1], self._distance, self._wind)
         looks = generator.standard_normal((max(1, round(self._looks)), COUNT))
-        off = np.abs(heights + prior.meander_z * looks - altitude).min(axis=0)
+        off = np.abs(heights + prior.meander_z * looks - scene.altitude).min(axis=0)
         nearest = np.clip(np.rint((self._particles[1] - grid.height[0]) / self._steps[1]).astype(int), 0, len(grid.height) - 1)
         strength = np.exp(self._particles[2] - 0.5 * (off / grid.sigma_z[w, nearest]) ** 2)
         across = self._distance * self._particles[3] + prior.meander_y * generator.standard_normal(COUNT)
         step = grid.places[1] - grid.places[0]
         j = np.rint((across - grid.places[0]) / step).astype(int)
         inside = (j >= 0) & (j < len(grid.places))
-        table = self._over_nothing(evidence)
         p = np.clip((np.log(np.maximum(strength, 1e-9) / grid.faint[0])) / self._steps[2], 0.0, len(grid.faint) - 1.0)
-        log_weight = np.where(inside, table[w, np.clip(j, 0, len(grid.places) - 1), np.rint(p).astype(int)], 0.0)
-        self._least = 5.0 * prior.sensor.noise / evidence.response
-        self._judge(evidence, altitude)
-        weight = np.exp(log_weight - log_weight.max())
+        of = scene.likelihood[w, np.clip(j, 0, len(grid.places) - 1), np.rint(p).astype(int)]
+        weight = np.where(inside, of, scene.nothing)
+        self._judge(evidence, self.detection(scene.altitude))
         self._resample(weight / weight.sum())
 
     def _resample(self, weight: np.ndarray) -> None:
@@ -72,12 +69,13 @@ class ParticleEstimator(PlumeEstimator):
         shrunk = mean + math.sqrt(1.0 - _SHRINK**2) * (chosen - mean)
         width = _SHRINK * np.maximum(np.minimum(chosen.std(axis=1), spread), 0.2 * self._steps)
         self._particles = shrunk + width[:, np.newaxis] * generator.standard_normal(chosen.shape)
-        self.cells = self._counted()
+        self._count()
 
-    def _counted(self) -> np.ndarray:
-        indices = [np.clip(np.rint(self._particles[0]).astype(int), 0, 2)]
+    def _count(self) -> None:
+        indices = [np.clip(np.rint(self._particles[0]).astype(int), 0, len(self.cells) - 1)]
         for values, axis in zip(self._particles[1:], self._axes(), strict=True):
             indices.append(np.clip(np.rint((values - axis[0]) / (axis[1] - axis[0])).astype(int), 0, len(axis) - 1))
-        counts = np.bincount(np.ravel_multi_index(tuple(indices), self.cells.shape), minlength=self.cells.size)
-        result: np.ndarray = counts.reshape(self.cells.shape) / COUNT
-        return result
+        *of_cells, of_bearings = indices
+        counts = np.bincount(np.ravel_multi_index(tuple(of_cells), self.cells.shape), minlength=self.cells.size)
+        self.cells = counts.reshape(self.cells.shape) / COUNT
+        self.bearings = np.bincount(of_bearings, minlength=len(self.bearings)) / COUNT

@@ -31,8 +31,14 @@ _WIND_MIN = 0.5
 _SURFACE_SCALE = 0.72
 """Length over height at which the sea stops the spread in height [-] (AERMOD, elevated part)."""
 
-_OWN_SHARE = 0.42
-"""Spread about the moving centre over that about the axis, by turbulence [-]: 0.37 to 0.5 of the plume model at 200 m."""
+_OWN_SHARE, _OWN_HEIGHT, _OWN_FRICTION = 0.42, 40.0, 0.3
+"""Spread about the moving centre over that about the axis, across and by turbulence [-], of a source that is so high [m] in wind of
+this friction velocity [m/s]; it goes with the root of the root of each, inversely. A fit to the plume model, to 5 % of it, at 240
+to 330 m behind sources of 20 to 60 m, in 3 to 12 m/s: dissipation is less higher up, and the 4/3 law lags behind the meander."""
+
+_OWN_UP = 0.9
+"""The same in height is that across, but neither is more than so much of the spread about the axis [-]: eddies of the plume's own
+size are the same in each direction, and the sea stops the larger ones."""
 
 _SOURCE_SPREAD = 4.0
 """Spread at the funnel, in the wake of the superstructure [m]: 0 to 8 m, of which no measurement is known."""
@@ -63,6 +69,17 @@ def rise(momentum_flux: float, buoyancy_flux: float, distance: float, apparent_w
     u = max(apparent_wind, _SPEED_MIN)
     momentum, buoyancy = 3.0 * momentum_flux * distance / u**2, 1.5 * buoyancy_flux * distance**2 / u**3
     return math.cbrt((momentum + buoyancy) / _ENTRAINMENT**2)
+
+
+def downwash(stack_diameter: float, exhaust_speed: float, apparent_wind: float) -> float:
+    """Return how far the funnel's tip draws the plume down [m]: 2 d (1.5 - w/U), not below 0 (AERMOD, HSPRIM).
+
+    Parameters
+    ----------
+    stack_diameter, exhaust_speed : of the funnel's mouth [m], and w of the exhaust in it [m/s]
+    apparent_wind : U past the ship [m/s]
+    """
+    return 2.0 * stack_diameter * max(0.0, 1.5 - exhaust_speed / max(apparent_wind, _SPEED_MIN))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,7 +116,7 @@ class PlumePrior:
     Attributes
     ----------
     distance, apparent_wind : behind the funnel, and past the ship, that the other values are for [m, m/s]
-    source_height, source_deviation : of the funnel's mouth above the sea [m]
+    source_height, source_deviation : from where the plume rises, above the sea [m]
     height, height_deviation : of the axis above the sea, from stack, load and rise [m]
     bearing_deviation : of the axis from the one that the wind lets expect [rad]
     sigma_y, sigma_z : spreads about the centre at one moment, at the expected height [m]
@@ -108,7 +125,7 @@ class PlumePrior:
     meander_length : correlation length of the meander in height, along the plume [m]
     meander_time : integral scale of the lateral meander, as the ship meets it [s]
     peak, peak_deviation : CO2 above the background in the centre at one moment [ppm], its median, and the deviation of
-        its logarithm [-]; both at the expected height and spread
+        its logarithm [-]; both at the expected height and spread, so that the error of the spread is not in it
     sensor : what reads it
     lowest, highest : altitudes that may be flown, above the sea [m]
     height_drift, bearing_drift : how far the axis wanders in a second [m, rad]; it grows with the root of time
@@ -133,7 +150,7 @@ class PlumePrior:
     sensor: GasSensor
     lowest: float
     highest: float
-    height_drift: float = 0.2
+    height_drift: float = 0.1
     bearing_drift: float = 0.002
 
     def __post_init__(self) -> None:
@@ -186,6 +203,8 @@ def expected_plume(
     wind_deviation: float,
     source_height: float,
     source_deviation: float,
+    stack_diameter: float,
+    exhaust_speed: float,
     momentum_flux: float,
     buoyancy_flux: float,
     co2_rate: float,
@@ -205,7 +224,8 @@ def expected_plume(
     apparent_wind, wind_speed : past the ship, and over the sea at 10 m [m/s]
     wind_deviation : of each component of the apparent wind, as it is estimated on board [m/s]
     source_height, source_deviation : of the funnel's mouth [m]
-    momentum_flux, buoyancy_flux, co2_rate : of the exhaust at the load that is expected [m^4/s^2, m^4/s^3, mol/s]
+    stack_diameter, exhaust_speed : of the funnel's mouth [m], and of the exhaust in it at the load that is expected [m/s]
+    momentum_flux, buoyancy_flux, co2_rate : of the exhaust at that load [m^4/s^2, m^4/s^3, mol/s]
     load_deviation : of the logarithm of the two latter [-]
     sensor : for CO2
     lowest, highest : altitudes that may be flown [m]
@@ -215,17 +235,21 @@ def expected_plume(
     wind_share, age = wind_deviation / wind, distance / wind
     # The rise goes with the cube root of the flux, and with 1/U.
     rise_deviation = climbed * math.hypot(load_deviation / 3.0, wind_share, _MODEL_ERROR)
-    height = source_height + climbed
+    mouth = source_height - downwash(stack_diameter, exhaust_speed, wind)
+    height = mouth + climbed
     friction = max(wind_speed, _WIND_MIN) * (_DRAG + _DRAG_SLOPE * wind_speed)
     path = _SIGMA_W * friction * age
     across, up = _SIGMA_V * friction * age, path / math.sqrt(1.0 + path / (_SURFACE_SCALE * height))
     own = math.hypot(_SOURCE_SPREAD, _BUOYANT * climbed)
-    sigma_y, sigma_z = math.hypot(own, _OWN_SHARE * across), math.hypot(own, _OWN_SHARE * up)
-    rest = math.sqrt(1.0 - _OWN_SHARE**2)
+    own_across = across * min(_OWN_UP, _OWN_SHARE * (_OWN_HEIGHT * _OWN_FRICTION / (source_height * friction)) ** 0.25)
+    own_up = min(own_across, _OWN_UP * up)
+    sigma_y, sigma_z = math.hypot(own, own_across), math.hypot(own, own_up)
+    # Twice the load is twice the gas, and makes what buoyancy has of the spreads 2^(1/3) times as wide.
+    by_load = 1.0 - (_BUOYANT * climbed) ** 2 * (1.0 / sigma_y**2 + 1.0 / sigma_z**2) / 3.0
     return PlumePrior(
         distance=distance,
         apparent_wind=wind,
-        source_height=source_height,
+        source_height=mouth,
         source_deviation=source_deviation,
         height=height,
         height_deviation=math.hypot(source_deviation, rise_deviation),
@@ -233,12 +257,12 @@ def expected_plume(
         sigma_y=sigma_y,
         sigma_z=sigma_z,
         sigma_deviation=_SPREAD_ERROR,
-        meander_y=max(rest * across, _MEANDER_MIN),
-        meander_z=max(rest * up, _MEANDER_MIN),
+        meander_y=max(math.sqrt(across**2 - own_across**2), _MEANDER_MIN),
+        meander_z=max(math.sqrt(up**2 - own_up**2), _MEANDER_MIN),
         meander_length=_MEANDER_HEIGHT * source_height,
         meander_time=_MEANDER_LENGTH * source_height / wind,
         peak=1e6 * co2_rate / (2.0 * math.pi * wind * sigma_y * sigma_z * _AIR_DENSITY),
-        peak_deviation=math.hypot(load_deviation, wind_share, _SPREAD_ERROR),
+        peak_deviation=math.hypot(by_load * load_deviation, wind_share, _MODEL_ERROR),
         sensor=sensor,
         lowest=lowest,
         highest=highest,

@@ -5,8 +5,9 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import ndtr
 
-from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState
+from gnc.estimation.plume_estimator import HIT, PlumeEstimator, PlumeState
 
 Array = npt.NDArray[np.float64]
 
@@ -16,11 +17,14 @@ _STEP = 6.0
 _HORIZON = 8
 """Passes that are looked ahead [-]."""
 
-_KNOWN = 0.5
-"""Deviation of the height over the spread of a pass [-], down to which the plume's height is probed."""
+_KNOWN = 0.3
+"""Deviation of the height over the spread of a pass [-], below which nothing is gained by flying anywhere else."""
 
-_PROBE, _PROBES = 1.0, 9
-"""How far off the estimated height it is probed, over the spread of a pass, and heights that are weighed [-, -]."""
+_REACH, _PROBES = 1.6, 9
+"""How far off the estimated height is flown to, over its deviation, and heights that are weighed [-, -]."""
+
+_AHEAD = 3.0
+"""Passes that what is learned in this one is good for [-]: after those the others have told as much."""
 
 
 class Demand(NamedTuple):
@@ -73,17 +77,19 @@ class HeightSearch:
         """Return where to cross next; arguments as of ``Search``."""
         if estimator.state is not PlumeState.FOUND:
             return Demand(self._soonest(estimator, altitude, self._climb_rate * pass_time), estimator.offset)
-        spread = math.hypot(estimator.sigma_z, estimator.prior.meander_z)
-        height = estimator.height
-        if estimator.height_deviation > _KNOWN * spread:
-            height = self._narrowest(estimator, _PROBE * spread)
-        return Demand(min(max(height, self._lowest), self._highest), estimator.offset)
+        return Demand(self._hitting(estimator), estimator.offset)
 
-    def _narrowest(self, estimator: PlumeEstimator, reach: float) -> float:
-        """Return the height within ``reach`` [m] of the estimated one at which a pass says most of the axis' height."""
-        low, high = (min(max(estimator.height + side * reach, self._lowest), self._highest) for side in (-1.0, 1.0))
+    def _hitting(self, estimator: PlumeEstimator) -> float:
+        """Return the height that lets expect the most hits: now, and later by what the pass says of the height."""
+        height, deviation = estimator.height, estimator.height_deviation
+        spread, meander = estimator.sigma_z, estimator.prior.meander_z
+        if deviation < _KNOWN * math.hypot(spread, meander):
+            return min(max(height, self._lowest), self._highest)
+        low, high = (min(max(height + side * _REACH * deviation, self._lowest), self._highest) for side in (-1.0, 1.0))
         altitudes = np.linspace(low, high, _PROBES)
-        return float(altitudes[int(estimator.expected_deviation(altitudes).argmin())])
+        off = np.hypot(estimator.expected_deviation(altitudes), meander)
+        later = 2.0 * ndtr(math.sqrt(-2.0 * math.log(HIT)) * spread / off) - 1.0
+        return float(altitudes[int((estimator.hits(altitudes) + _AHEAD * later).argmax())])
 
     def _soonest(self, estimator: PlumeEstimator, altitude: float, climb: float) -> float:
         """Return the height with the least expected time to find, where ``climb`` [m] is what a pass leaves time for."""

@@ -33,6 +33,8 @@ class Expectation:
 
     source_height: float
     source_deviation: float
+    stack_diameter: float
+    exhaust_speed: float
     momentum_flux: float
     buoyancy_flux: float
     co2_rate: float
@@ -199,8 +201,10 @@ def _seen_along(situation: Situation) -> tuple[float, float]:
 
 def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float]:
     """Return the place at a time [s] between those that are known, of which there is one at least."""
-    later = next((i for i, place in enumerate(places) if place[0] >= time), len(places) - 1)
-    (then, *after), (before, *last) = places[later], places[max(0, later - 1)]
-    share = min(max((time - before) / (then - before), 0.0), 1.0) if then > before else 1.0
-    along, across, altitude = (a + share * (b - a) for a, b in zip(last, after, strict=True))
-    return along, across, altitude
+    later = len(places) - 1
+    while later > 0 and places[later - 1][0] >= time:
+        later -= 1
+    then, before = places[later], places[max(0, later - 1)]
+    share = min(max((time - before[0]) / (then[0] - before[0]), 0.0), 1.0) if then[0] > before[0] else 1.0
+    _, along, across, altitude = before
+    return along + share * (then[1] - along), across + share * (then[2] - across), altitude + share * (then[3] - altitude)

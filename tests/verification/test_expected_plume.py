@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from exhaust_cases import SENSOR
 
-from gnc.estimation.plume_prior import expected_plume, rise
-from measurement.emission.emission import emission_of
+from gnc.estimation.plume_prior import PlumePrior, expected_plume, rise
+from measurement.emission.emission import Emission, emission_of
 from measurement.emission.fuel import fuel_preset
 from measurement.emission.ship import ship_preset
 from measurement.gases import GASES
@@ -18,27 +18,56 @@ from measurement.plume.spread import spreads
 EMISSION = emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), power=10e6)
 
 
-@pytest.mark.parametrize(("apparent", "wind"), [(5.0, 7.0), (10.0, 10.0), (14.0, 5.0), (18.0, 8.0)])
-def test_height_spreads_and_peak_are_near_those_of_the_plume_model(apparent: float, wind: float) -> None:
-    distance = 220.0
+CO2_RATE = EMISSION.rates[GASES.index("co2")]
+
+
+@pytest.mark.parametrize("source", [20.0, 35.0, 60.0])
+@pytest.mark.parametrize(("apparent", "wind"), [(5.0, 7.0), (6.0, 12.0), (10.0, 10.0), (14.0, 5.0), (18.0, 8.0)])
+def test_height_spreads_and_peak_are_those_of_the_plume_model(apparent: float, wind: float, source: float) -> None:
+    distance = 270.0
     prior = expected_plume(
-        distance=distance, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.6, source_height=35.0, source_deviation=5.0,
-        momentum_flux=EMISSION.momentum_flux, buoyancy_flux=EMISSION.buoyancy_flux, co2_rate=EMISSION.rates[GASES.index("co2")],
+        distance=distance, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.6, source_height=source, source_deviation=5.0,
+        stack_diameter=EMISSION.stack_diameter, exhaust_speed=EMISSION.exhaust_speed,
+        momentum_flux=EMISSION.momentum_flux, buoyancy_flux=EMISSION.buoyancy_flux, co2_rate=CO2_RATE,
         load_deviation=0.3, sensor=SENSOR, lowest=20.0, highest=120.0,
     )  # fmt: skip
     age = distance / apparent
-    of = spreads(EMISSION, MarineAir(wind_speed=wind), 35.0, np.array([apparent]), age, PlumeSettings())
+    of = spreads(EMISSION, MarineAir(wind_speed=wind), source, np.array([apparent]), age, PlumeSettings())
     true = {name: float(np.interp(age, 0.1 * np.arange(getattr(of, name).shape[1]), getattr(of, name)[0])) for name in (
         "height", "relative_y", "relative_z", "meander_y", "meander_z")}  # fmt: skip
-    # The tip's downwash, at most 1 m, is left out.
-    assert prior.height == pytest.approx(true["height"], abs=1.5)
-    # Within twice the deviation that is stated, of 25 %.
-    for expected, name in (
-        (prior.sigma_y, "relative_y"), (prior.sigma_z, "relative_z"), (prior.meander_y, "meander_y"), (prior.meander_z, "meander_z")
+    # Rise and downwash are the same equations; the model's table has steps of 0.1 s.
+    assert prior.height == pytest.approx(true["height"], abs=0.01)
+    # The share of a plume's own turbulence is a fit to 5 %, and the spread of the source is 4 m instead of 3 m. The meander in
+    # height is what is left of the spread about the axis, and of a low source in a weak apparent wind little is.
+    for expected, name, limit in (
+        (prior.sigma_y, "relative_y", 0.15), (prior.sigma_z, "relative_z", 0.15), (prior.meander_y, "meander_y", 0.1)
     ):  # fmt: skip
-        assert abs(math.log(expected / true[name])) < 2.0 * 0.25, name
-    peak = 1e6 * EMISSION.rates[1] / (2.0 * math.pi * apparent * true["relative_y"] * true["relative_z"] * 42.3)
-    assert abs(math.log(prior.peak / peak)) < 2.0 * prior.peak_deviation
+        assert abs(math.log(expected / true[name])) < limit, name
+    assert prior.meander_z == pytest.approx(true["meander_z"], rel=0.3, abs=3.0)
+    peak = 1e6 * CO2_RATE / (2.0 * math.pi * apparent * true["relative_y"] * true["relative_z"] * 42.3)
+    assert abs(math.log(prior.peak / peak)) < 0.3
+
+
+@pytest.mark.parametrize("load", [0.2, 0.9])
+def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load: float) -> None:
+    """Of twice the gas, part is lost to the spread that twice the heat makes."""
+    ship, fuel = ship_preset("container"), fuel_preset("mgo", 0.1)
+    middle, other = (emission_of(ship, fuel, power=of * ship.power_max) for of in (0.45, load))
+
+    def prior(of: Emission, load_deviation: float) -> PlumePrior:
+        return expected_plume(
+            distance=270.0, apparent_wind=6.0, wind_speed=8.0, wind_deviation=0.0, source_height=40.0, source_deviation=5.0,
+            stack_diameter=of.stack_diameter, exhaust_speed=of.exhaust_speed, momentum_flux=of.momentum_flux,
+            buoyancy_flux=of.buoyancy_flux, co2_rate=of.rates[GASES.index("co2")], load_deviation=load_deviation, sensor=SENSOR,
+            lowest=20.0, highest=120.0,
+        )  # fmt: skip
+
+    off = abs(math.log(other.rates[1] / middle.rates[1]))
+    changed = abs(math.log(prior(other, 0.0).peak / prior(middle, 0.0).peak))
+    stated = math.sqrt(prior(middle, off).peak_deviation ** 2 - prior(middle, 0.0).peak_deviation ** 2)
+    assert changed < 0.8 * off
+    # The share of buoyancy in the spreads is that at the middle load; and heat and gas of an engine do not go quite alike.
+    assert stated == pytest.approx(changed, rel=0.3)
 
 
 def test_rise_by_buoyancy_is_briggs_law() -> None:

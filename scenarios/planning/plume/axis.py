@@ -32,8 +32,8 @@ _LOADS = 9
 _SOURCE_ERROR, _LOAD_ERROR = 2.0, 0.3
 """Deviation of the mouth's height [m], and of the logarithm of what is emitted [-], where neither has a range."""
 
-_WIND_ERROR = 0.5
-"""Deviation of each component of the apparent wind as it is estimated on board [m/s]."""
+_WIND_ERROR = 0.3
+"""Deviation of each component of the apparent wind as it is estimated on board [m/s]: 0.29 in 24 flights as the search began."""
 
 CO2 = GASES.index("co2")
 
@@ -139,6 +139,8 @@ def _expectation(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, f
     return Expectation(
         source_height=axis_height(scenario, vessel).source,
         source_deviation=(sources[1] - sources[0]) / math.sqrt(12.0) if sources else _SOURCE_ERROR,
+        stack_diameter=middle.stack_diameter,
+        exhaust_speed=middle.exhaust_speed,
         momentum_flux=middle.momentum_flux,
         buoyancy_flux=middle.buoyancy_flux,
         co2_rate=middle.rates[CO2],

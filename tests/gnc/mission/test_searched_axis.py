@@ -16,6 +16,8 @@ FAST = GasSensor(interval=0.2, delay=1.0, time_constant=0.43, noise=0.5, saturat
 EXPECTED = Expectation(
     source_height=35.0,
     source_deviation=8.0,
+    stack_diameter=1.5,
+    exhaust_speed=18.0,
     momentum_flux=124.0,
     buoyancy_flux=49.6,
     co2_rate=37.4,
