@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import os
+import runpy
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -54,15 +55,15 @@ def cache_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture(scope="session")
-def designs(cache_home: Path) -> Callable[[str], Designed]:
-    """A function from an aircraft's name to its design and record, made by whichever worker asks first: seconds of work."""
+def designs(cache_home: Path) -> Callable[..., Designed]:
+    """A function from an aircraft and an altitude [m] to its design and record, made by whichever worker asks first: seconds."""
     from aircraft.fleet.find import find_spec
     from innerloop.designs.cache import designed
 
     @functools.cache
-    def design(name: str) -> Designed:
-        with _alone(cache_home / f"{name}.lock"):
-            return designed(find_spec(name))
+    def design(name: str, altitude: float = 100.0) -> Designed:
+        with _alone(cache_home / f"{Path(name).name}.lock"):
+            return designed(find_spec(name), altitude)
 
     return design
 
@@ -82,9 +83,17 @@ def _alone(lock: Path) -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def x8_design(designs: Callable[[str], Designed]) -> Design:
+def x8_design(designs: Callable[..., Designed]) -> Design:
     """The X8's autopilot at its default altitude, and its margins."""
     return designs("x8").design
+
+
+@pytest.fixture(scope="session")
+def heavy_design(designs: Callable[..., Designed], tmp_path_factory: pytest.TempPathFactory) -> Designed:
+    """The autopilot of the Cessna of docs/scripts/aircraft_directory.py at the altitude at which it flies the sweep."""
+    script = Path(__file__).parents[1] / "docs" / "scripts" / "aircraft_directory.py"
+    folder = runpy.run_path(str(script))["write_heavy_cessna"](tmp_path_factory.mktemp("fleet"))
+    return designs(str(folder), 60.0)
 
 
 @pytest.fixture(scope="session")

@@ -47,10 +47,11 @@ class DocumentedSection:
     keys: tuple[DocumentedKey, ...]
 
 
-def documented_sections(kind: type[BaseModel] = Scenario) -> Iterator[DocumentedSection]:
-    """Yield the sections of a kind of scenario file, in their order; first the keys outside of any section."""
+@functools.cache
+def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSection, ...]:
+    """Return the sections of a kind of scenario file, in their order; first the keys outside of any section."""
     studies = dict(_KINDS)[kind]
-    yield from _sections(kind, "", kind.__doc__ or "", studies, listed=False)
+    return tuple(_sections(kind, "", kind.__doc__ or "", studies, listed=False))
 
 
 def documented_keys() -> list[DocumentedKey]:
