@@ -111,6 +111,17 @@ def x8_root(x8_schedule: Schedule, tmp_path_factory: pytest.TempPathFactory) -> 
 
 
 @pytest.fixture
+def sketched(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have reports printed with an empty picture in the place of each figure: to draw them takes nearly all of their time.
+
+    For tests that ask what a report says, of a kind that another test has drawn.
+    """
+    from matplotlib.figure import Figure
+
+    monkeypatch.setattr("reports.render.pdf.draw", lambda _: Figure(figsize=(1.0, 1.0)))
+
+
+@pytest.fixture
 def x8_aircraft(x8_root: Path) -> AutopilotedAircraft:
     """An X8 under its autopilot, as fresh from the factory."""
     from aircraft.fleet.x8 import X8

@@ -14,6 +14,8 @@ from scenarios.schema.report import ReportConfig
 from scenarios.studies.registry import study_of
 from tests.in_process import run_command
 
+pytestmark = pytest.mark.usefixtures("sketched")
+
 SHORT = """
 title = "Short"
 fidelity = "kinematic"

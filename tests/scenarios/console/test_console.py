@@ -55,6 +55,7 @@ def test_the_commands_are_these():
         assert f"plume-flight {word}" in console(word, "--help").out
 
 
+@pytest.mark.usefixtures("sketched")
 def test_a_run_is_flown_reported_and_exported(file, tmp_path):
     out = tmp_path / "run"
     ended = console("run", file, "--out", out, "--jobs", "1", "--no-report")
