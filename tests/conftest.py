@@ -39,6 +39,22 @@ if settings is not None:
     settings.load_profile("reproducible")
 
 
+LONGEST = (
+    "test_stock_designs.py", "test_aircraft_directory.py", "test_every_key_acts.py", "test_flights.py", "test_paper.py",
+    "test_reports.py", "test_dask_executor.py", "test_subset_study.py", "test_command_line.py", "test_falsify_study.py",
+    "test_scripts.py", "test_stock_flights.py", "test_guard_against_hunters.py", "test_extension_points.py", "test_corners.py",
+    "test_design_command.py", "test_convergence.py", "test_recomputed_figures.py", "test_tutorials.py", "test_fuzz.py",
+    "test_replay_in_browser.py", "test_arena.py", "test_survival.py",
+)  # fmt: skip
+"""Files of tests that take longest, in this order: each is run by one process, and none may begin one when the others are done."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the files that take longest."""
+    place = {name: number for number, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: place.get(item.path.name, len(LONGEST)))
+
+
 @pytest.fixture(scope="session", autouse=True)
 def cache_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A cache directory for this run and all its workers, so that tests neither read nor leave designs in the user's."""
