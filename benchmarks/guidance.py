@@ -23,10 +23,10 @@ from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.schema.equipment import VesselReportsConfig
-from scenarios.schema.flight import FlightConfig, StartConfig
 from scenarios.schema.scenario import Scenario
-from scenarios.schema.world import VesselConfig, WindConfig
+from scenarios.schema.sections.equipment import VesselReportsConfig
+from scenarios.schema.sections.flight import FlightConfig, StartConfig
+from scenarios.schema.sections.world import VesselConfig, WindConfig
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 SETTLED = 150.0

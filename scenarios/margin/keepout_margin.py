@@ -7,8 +7,8 @@ from gnc.estimation.reachable_set import Tube, VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.parameters import FilterParameters
 from scenarios.margin.tracking_spread import CALM_AIR_SPREAD, SpreadTable, planned_margin
-from scenarios.schema.equipment import VesselReportsConfig
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.equipment import VesselReportsConfig
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 
 VESSEL_ACCELERATION, VESSEL_MEMORY = 0.02, 40.0

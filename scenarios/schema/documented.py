@@ -15,12 +15,12 @@ from pydantic.fields import FieldInfo
 from pydantic_core import to_jsonable_python
 
 from common.spelling import nearest
-from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.documented_parts import FLIGHT_STUDIES, DocumentedKey, documented_part_keys, line, split_unit
 from scenarios.schema.effect import RULES, named_by, unused
-from scenarios.schema.experiment import DrawConfig, TrialList
 from scenarios.schema.keys import models_in
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.convergence import ConvergenceScenario
+from scenarios.schema.sections.experiment import DrawConfig, TrialList
 
 _KINDS: tuple[tuple[type[BaseModel], tuple[str, ...]], ...] = (
     (Scenario, FLIGHT_STUDIES),

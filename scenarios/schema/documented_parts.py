@@ -9,7 +9,7 @@ from typing import Any
 from common.registry import Registry, announced
 from gnc.laws.steering_law import STEERING_LAWS
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS
-from scenarios.schema.guidance import GuidanceConfig
+from scenarios.schema.sections.guidance import GuidanceConfig
 
 FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol")
 """Studies whose scenario files are those of flights."""

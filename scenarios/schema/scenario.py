@@ -6,8 +6,15 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
-from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, PayloadConfig, SensorsConfig, VesselReportsConfig
-from scenarios.schema.experiment import (
+from scenarios.schema.sections.equipment import (
+    REPORTS_MAX,
+    FaultConfig,
+    KinematicConfig,
+    PayloadConfig,
+    SensorsConfig,
+    VesselReportsConfig,
+)
+from scenarios.schema.sections.experiment import (
     FLIGHTS_MAX,
     ArenaConfig,
     CaseConfig,
@@ -19,12 +26,12 @@ from scenarios.schema.experiment import (
     SubsetConfig,
     SweepConfig,
 )
-from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
-from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
-from scenarios.schema.patrol import PatrolConfig
-from scenarios.schema.report import ReportConfig
-from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
-from scenarios.schema.world import (
+from scenarios.schema.sections.flight import CriteriaConfig, FlightConfig, StartConfig
+from scenarios.schema.sections.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
+from scenarios.schema.sections.patrol import PatrolConfig
+from scenarios.schema.sections.report import ReportConfig
+from scenarios.schema.sections.section import Range, Section, Seed, check_divides, check_ordered
+from scenarios.schema.sections.world import (
     EmissionConfig,
     KeepoutConfig,
     PlaceConfig,

@@ -20,8 +20,8 @@ from scenarios.schema.documented_parts import DIMENSIONLESS, split_unit
 from scenarios.schema.effect import unused
 from scenarios.schema.load import AnyStudy
 from scenarios.schema.parts import names_file, names_folder, part_names
-from scenarios.schema.report import ReportConfig, read_logo, report_entry
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.report import ReportConfig, read_logo, report_entry
 from scenarios.world.ais.reports import AisReports
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.world import vessel_of

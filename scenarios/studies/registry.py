@@ -10,10 +10,10 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Progress, RunResult, Study, fly_study
 from scenarios.engine.task import Work
 from scenarios.errors import InputError
-from scenarios.schema.convergence import ConvergenceScenario
-from scenarios.schema.experiment import TrialList
 from scenarios.schema.load import AnyStudy
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.convergence import ConvergenceScenario
+from scenarios.schema.sections.experiment import TrialList
 from scenarios.studies.study import STUDIES
 
 

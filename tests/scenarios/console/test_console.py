@@ -11,9 +11,9 @@ from scenarios.console.main import commands
 from scenarios.console.template import template
 from scenarios.schema.documented import documented_sections
 from scenarios.schema.effect import unused
-from scenarios.schema.experiment import TrialList
 from scenarios.schema.load import catalog, load_study
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.experiment import TrialList
 from tests.in_process import assert_refused, run_command
 
 SHORT = """

@@ -10,8 +10,8 @@ from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.build import build_reports
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.errors import InputError
-from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.load import load_study
+from scenarios.schema.sections.convergence import ConvergenceScenario
 from scenarios.studies.registry import run_study
 
 FEW = ["ensemble.trajectories=30", "ensemble.distance_max_m=300", "ensemble.samples=2"]
