@@ -13,7 +13,7 @@ from scenarios.errors import InputError
 from scenarios.margin.tracking_spread import SpreadTable, tracking_spread
 from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.reference import oscillation_at
-from scenarios.schema.effect import LAW_KEYS
+from scenarios.schema.effect_rules import LAW_KEYS
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig

@@ -16,7 +16,8 @@ from pydantic_core import to_jsonable_python
 
 from common.spelling import nearest
 from scenarios.schema.documented_parts import FLIGHT_STUDIES, DocumentedKey, documented_part_keys, line, split_unit
-from scenarios.schema.effect import RULES, named_by, unused
+from scenarios.schema.effect import named_by, unused
+from scenarios.schema.effect_rules import RULES
 from scenarios.schema.keys import models_in
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.convergence import ConvergenceScenario
