@@ -10,7 +10,7 @@ sweep_nu: .venv
 	@$(BIN)/python -m scenarios.run sweep_nu
 
 test: .venv/.developer
-	@$(BIN)/python -m pytest -n 2 --dist loadfile
+	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 check: .venv/.developer
 	$(BIN)/ruff check .

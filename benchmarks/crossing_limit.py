@@ -1,8 +1,8 @@
 """The shortest crossing interval of any periodic path with two crossings a period, by direct optimal control.
 
 ``python -m benchmarks.crossing_limit`` solves the problem with CasADi and IPOPT (of the ``dev`` extra), prints the table of
-docs/fastest_oscillation.md, and writes the limits that reports draw, ``scenarios/planning/crossing_limits.json``, with ``--write``,
-and the figure of the page with ``--figure FILE``.
+docs/fastest_oscillation.md, and writes the limits that reports draw, ``scenarios/planning/theory/crossing_limits.json``, with
+``--write``, and the figure of the page with ``--figure FILE``.
 
 A path is one of a point of constant speed whose bank, and whose roll rate, are limited. Seen from the vessel it is closed. It may
 turn to both sides as it likes; nothing is said of symmetry or of when it rolls. Two kinds of closed paths are solved for: those
@@ -22,8 +22,8 @@ from gnc.errors import InfeasibleError
 from gnc.reference.oscillation import bank_for_heading_rate
 from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.planning.limits import omega_max
-from scenarios.planning.theory import CROSSING_LIMITS
-from scenarios.schema.guidance import GuidanceConfig
+from scenarios.planning.theory.speed_ratio import CROSSING_LIMITS
+from scenarios.schema.sections.guidance import GuidanceConfig
 
 RATIOS = tuple(round(0.05 * i, 2) for i in range(20))
 """Speed ratios of the limit line [-]."""

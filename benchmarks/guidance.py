@@ -29,11 +29,11 @@ from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.schema.equipment import PayloadConfig, VesselReportsConfig
-from scenarios.schema.flight import FlightConfig, StartConfig
-from scenarios.schema.guidance import FollowingConfig
 from scenarios.schema.scenario import Scenario
-from scenarios.schema.world import EmissionConfig, PlumeConfig, VesselConfig, WindConfig
+from scenarios.schema.sections.equipment import PayloadConfig, VesselReportsConfig
+from scenarios.schema.sections.flight import FlightConfig, StartConfig
+from scenarios.schema.sections.guidance import FollowingConfig
+from scenarios.schema.sections.world import EmissionConfig, PlumeConfig, VesselConfig, WindConfig
 from scenarios.simulation.plume_readings import axis_of
 from scenarios.vehicles.vehicle_setup import VehicleSetup, aircraft_setup, design_of
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import os
+import runpy
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -38,6 +39,22 @@ if settings is not None:
     settings.load_profile("reproducible")
 
 
+LONGEST = (
+    "test_stock_designs.py", "test_aircraft_directory.py", "test_every_key_acts.py", "test_flights.py", "test_paper.py",
+    "test_reports.py", "test_dask_executor.py", "test_subset_study.py", "test_command_line.py", "test_falsify_study.py",
+    "test_scripts.py", "test_stock_flights.py", "test_guard_against_hunters.py", "test_extension_points.py", "test_corners.py",
+    "test_design_command.py", "test_convergence.py", "test_recomputed_figures.py", "test_tutorials.py", "test_fuzz.py",
+    "test_replay_in_browser.py", "test_arena.py", "test_survival.py",
+)  # fmt: skip
+"""Files of tests that take longest, in this order: each is run by one process, and none may begin one when the others are done."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the files that take longest."""
+    place = {name: number for number, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: place.get(item.path.name, len(LONGEST)))
+
+
 @pytest.fixture(scope="session", autouse=True)
 def cache_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A cache directory for this run and all its workers, so that tests neither read nor leave designs in the user's."""
@@ -54,15 +71,15 @@ def cache_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture(scope="session")
-def designs(cache_home: Path) -> Callable[[str], Designed]:
-    """A function from an aircraft's name to its design and record, made by whichever worker asks first: seconds of work."""
+def designs(cache_home: Path) -> Callable[..., Designed]:
+    """A function from an aircraft and an altitude [m] to its design and record, made by whichever worker asks first: seconds."""
     from aircraft.fleet.find import find_spec
     from innerloop.designs.cache import designed
 
     @functools.cache
-    def design(name: str) -> Designed:
-        with _alone(cache_home / f"{name}.lock"):
-            return designed(find_spec(name))
+    def design(name: str, altitude: float = 100.0) -> Designed:
+        with _alone(cache_home / f"{Path(name).name}.lock"):
+            return designed(find_spec(name), altitude)
 
     return design
 
@@ -82,9 +99,17 @@ def _alone(lock: Path) -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def x8_design(designs: Callable[[str], Designed]) -> Design:
+def x8_design(designs: Callable[..., Designed]) -> Design:
     """The X8's autopilot at its default altitude, and its margins."""
     return designs("x8").design
+
+
+@pytest.fixture(scope="session")
+def heavy_design(designs: Callable[..., Designed], tmp_path_factory: pytest.TempPathFactory) -> Designed:
+    """The autopilot of the Cessna of docs/scripts/aircraft_directory.py at the altitude at which it flies the sweep."""
+    script = Path(__file__).parents[1] / "docs" / "scripts" / "aircraft_directory.py"
+    folder = runpy.run_path(str(script))["write_heavy_cessna"](tmp_path_factory.mktemp("fleet"))
+    return designs(str(folder), 60.0)
 
 
 @pytest.fixture(scope="session")
@@ -99,6 +124,17 @@ def x8_root(x8_schedule: Schedule, tmp_path_factory: pytest.TempPathFactory) -> 
     from innerloop.jsbsim.root import write_root
 
     return write_root(x8_schedule, tmp_path_factory.mktemp("x8_root"))
+
+
+@pytest.fixture
+def sketched(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have reports printed with an empty picture in the place of each figure: to draw them takes nearly all of their time.
+
+    For tests that ask what a report says, of a kind that another test has drawn.
+    """
+    from matplotlib.figure import Figure
+
+    monkeypatch.setattr("reports.render.pdf.draw", lambda _: Figure(figsize=(1.0, 1.0)))
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """A typed view of JSBSim in SI that refuses property names JSBSim does not have."""
 
 import contextlib
-import os
 import re
 import tempfile
 from collections.abc import Callable, Iterator
@@ -28,6 +27,7 @@ from aircraft.simulation.properties import (
     component_names,
     initial_conditions,
 )
+from aircraft.simulation.silence import silenced
 from aircraft.simulation.state import RigidBodyState, with_wind
 from aircraft.spec import AircraftSpec
 from common.units import METRES_PER_FOOT
@@ -74,9 +74,8 @@ class Fdm:
         self._accelerations = [
             self.node(name) for name in (*component_names(ACCELERATION, "uvw"), *component_names(ANGULAR_ACCELERATION, "pqr"))
         ]
-        self._engines_run = False
-        self.cranked = False
-        """Whether an engine had to be started with its starter."""
+        self._engines_run = self.cranked = False
+        """Whether engines were started at all, and whether one of them had to be with its starter."""
         self.run: Callable[[], object] = self._exec.run
         """Advance one time step. Bound directly to JSBSim: the innermost call of every flight."""
 
@@ -85,7 +84,7 @@ class Fdm:
         model_file = root / "aircraft" / model / f"{model}.xml"
         if not model_file.is_file():
             raise AircraftError(f"aircraft '{name}': no model file {model_file}; check the JSBSim root directory")
-        with _silence():
+        with silenced():
             jsbsim.FGJSBBase().debug_lvl = 0  # type: ignore[no-untyped-call]
             executive = jsbsim.FGFDMExec(str(root))
             executive.set_debug_level(0)
@@ -103,7 +102,7 @@ class Fdm:
 
         The flight itself is the same to the last bit. Place the aircraft next: JSBSim's outputs begin with its initial conditions.
         """
-        with tempfile.TemporaryDirectory() as folder, _silence():
+        with tempfile.TemporaryDirectory() as folder, silenced():
             path = Path(folder) / "flightgear.xml"
             path.write_text(_FLIGHTGEAR.format(host=host, port=port), encoding="utf-8")
             accepted = self._exec.set_output_directive(str(path))
@@ -169,7 +168,7 @@ class Fdm:
         for node, (_, value) in zip(self._initial, initial_conditions(over_ground), strict=True):
             node.set_double_value(value)
         try:
-            with contextlib.nullcontext() if self._engines_run else _silence():
+            with contextlib.nullcontext() if self._engines_run else silenced():
                 placed = self._exec.run_ic()
         except jsbsim.BaseError as error:
             reason = " ".join(str(error).split(") ", 1)[-1].split())
@@ -190,11 +189,9 @@ class Fdm:
             node.set_double_value(value)
 
     def _start_engines(self) -> bool:
-        """Start every engine, at once or as a pilot does, and run them up, the body held; return whether that took any
-        time.
+        """Start every engine, at once or as a pilot does, and run them up, the body held; return whether that took any time.
 
-        A governed propeller that comes from idle can stay at its fine stop, windmilling; from full throttle it
-        governs.
+        A governed propeller that comes from idle can stay at its fine stop, windmilling; from full throttle it governs.
         """
         self._engines_run = True
         for name, value in START_ENGINES:
@@ -250,8 +247,7 @@ class Fdm:
                 self.write(name, value)
 
     def hold(self, state: RigidBodyState, steps: int, wind: tuple[float, float] | None = None) -> None:
-        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else
-        at rest.
+        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else at rest.
 
         Parameters
         ----------
@@ -302,18 +298,3 @@ class Fdm:
     def _vector(self, pattern: str, components: str, scale: float) -> tuple[float, float, float]:
         x, y, z = (self.read(name) * scale for name in component_names(pattern, components))
         return x, y, z
-
-
-@contextlib.contextmanager
-def _silence() -> Iterator[None]:
-    """Keep the banner and the warnings that JSBSim prints in C++ off standard output and standard error."""
-    saved = {stream: os.dup(stream) for stream in (1, 2)}
-    try:
-        with Path(os.devnull).open("w", encoding="utf-8") as sink:
-            for stream in saved:
-                os.dup2(sink.fileno(), stream)
-            yield
-    finally:
-        for stream, copy in saved.items():
-            os.dup2(copy, stream)
-            os.close(copy)

@@ -10,7 +10,7 @@ from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import VARIANTS, Meaning
 from reports.document.tables import number
 from reports.flights.names import flight_name
-from reports.flights.trial_tables import flight_table
+from reports.flights.trials.tables import flight_table
 from reports.run.columns import clearance, column, largest, measured, met, total
 from reports.run.run_data import RunData
 from reports.run.time_history import tracking_error

@@ -9,8 +9,8 @@ from reports.flights.first_page import closest_and_typical, flights_in_words
 from reports.flights.names import flight_name
 from reports.flights.parameter_tables import parameter_blocks
 from reports.flights.selection import flight_section
-from reports.flights.trial_charts import trial_charts
-from reports.flights.trial_tables import criteria_table, failed_blocks, fault_table, flight_table, trial_table
+from reports.flights.trials.charts import trial_charts
+from reports.flights.trials.tables import criteria_table, failed_blocks, fault_table, flight_table, trial_table
 from reports.flights.verdict import flight_verdict
 from reports.measurement.flights import sulphur_sections
 from reports.monte_carlo.content import monte_carlo_sections

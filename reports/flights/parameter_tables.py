@@ -8,7 +8,7 @@ import numpy as np
 from reports.document.blocks import Block, Heading, Table
 from reports.document.tables import parameter_value
 from reports.flights.names import flight_name, manoeuvre_name
-from reports.flights.trial_tables import OSCILLATION_COLUMNS, flight_table
+from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
 from reports.run.columns import column
 from reports.run.run_data import RunData
 from reports.run.trials import Parameters, Trial

@@ -8,7 +8,7 @@ import pandas as pd
 
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import length, number
-from reports.paper.charts import VEHICLES, vehicle_name
+from reports.paper.flown import VEHICLES, vehicle_name
 from reports.run.run_data import RunData
 
 INTERVAL_PRINTED, DISTANCE_PRINTED = 9.5, 214.0

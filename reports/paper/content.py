@@ -15,8 +15,9 @@ from reports.document.tables import length, number, outcome, parameter_table
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import track_picture
 from reports.paper.bounds import bounds_section
-from reports.paper.charts import VEHICLES, find_flight, sim_1_charts, sim_2_charts, sim_3_charts, vehicle_name
+from reports.paper.charts import sim_1_charts, sim_2_charts, sim_3_charts
 from reports.paper.checks import DISTANCE_PRINTED, INTERVAL_PRINTED, paper_verdict, rows_by_id, vehicles
+from reports.paper.flown import VEHICLES, find_flight, vehicle_name
 from reports.replay.flight_scene import flight_scene
 from reports.run.run_data import RunData
 from reports.run.trials import read_trials

@@ -81,6 +81,13 @@ class RunDirectory:
             raise self._unwritable(error) from None
         return {}
 
+    def plugins(self) -> dict[str, str]:
+        """Return the hash of each file that the run took parts from; none if it has no manifest that can be read."""
+        try:
+            return dict(json.loads(self.manifest.read_text(encoding="utf-8")).get("plugins", {}))
+        except (ValueError, TypeError, AttributeError, OSError, RecursionError):
+            return {}
+
     def _is_begun(self) -> bool:
         """Return whether it has nothing but the first files of a run."""
         names = [path.name for path in self.path.iterdir()] if self.path.is_dir() else []

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from common.registry import is_file_part
 from scenarios.errors import InputError
-from scenarios.schema.experiment import CaseConfig
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.experiment import CaseConfig
 
 STUDY = "study"
 """The variant of flights that count; others are comparisons."""

@@ -2,7 +2,7 @@
 
 from scenarios.experiment.requests import FlightRequest
 from scenarios.schema.effect import unused
-from scenarios.schema.experiment import SweepConfig
+from scenarios.schema.sections.experiment import SweepConfig
 
 
 def scenario_file(request: FlightRequest, *, title: str) -> bytes:

@@ -8,8 +8,8 @@ from gnc.estimation.vessel_filter import VesselReport
 from gnc.parameters import FilterParameters
 from scenarios.margin.report_scatter import scatter_allowance
 from scenarios.margin.tracking_spread import CALM_AIR_SPREAD, SpreadTable, planned_margin
-from scenarios.schema.equipment import VesselReportsConfig
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.equipment import VesselReportsConfig
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 
 VESSEL_ACCELERATION, VESSEL_MEMORY = 0.02, 40.0

@@ -3,7 +3,7 @@
 import math
 
 from scenarios.engine.task import Row
-from scenarios.schema.flight import CriteriaConfig
+from scenarios.schema.sections.flight import CriteriaConfig
 from scenarios.simulation.outcome import Outcome
 from scenarios.world.faults import NOT_OF_AIRCRAFT
 

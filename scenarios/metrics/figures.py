@@ -6,11 +6,11 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.atmosphere.wind import CALM
-from common.numeric import rms
 from gnc.mission.mode import Mode
 from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import closest_approach, keepout_figures
+from scenarios.metrics.sample import rms
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.record import FlightRecord
 from scenarios.world.ais.track import AisVessel

@@ -10,7 +10,7 @@ from gnc.mission.mode import Mode
 from measurement.plume.passes import FOUND_WITHIN, HIT, passes
 from scenarios.engine.task import Row
 from scenarios.instruments.air_samples import CLEAN_AIR
-from scenarios.schema.flight import FlightConfig
+from scenarios.schema.sections.flight import FlightConfig
 
 Array = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.schema.world import Shape
+from scenarios.schema.sections.world import Shape
 
 Array = npt.NDArray[np.float64]
 

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from common.numeric import rms
 from scenarios.engine.task import Row
 from scenarios.metrics.figures import crossings_of, in_vessel_frame
+from scenarios.metrics.sample import rms
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.record import FlightRecord

@@ -8,8 +8,8 @@ from gnc.analysis.bounds import BoundedSteering, fastest_within, heading_rate_bo
 from gnc.errors import InfeasibleError
 from gnc.laws.delta import LookAhead, look_ahead
 from gnc.laws.steering_law import STEERING_LAWS, SteeringLaw
-from scenarios.schema.guidance import GuidanceConfig
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.guidance import GuidanceConfig
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,7 +11,7 @@ from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.planning.bounded_steering import Steering
 from scenarios.planning.limits import omega_max
 from scenarios.schema.scenario import Scenario
-from scenarios.schema.world import Shape
+from scenarios.schema.sections.world import Shape
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.world.world import ApparentWind, World
 

@@ -5,7 +5,7 @@ import math
 from aircraft.spec import Envelope
 from gnc.reference.oscillation import bank_for_heading_rate, heading_rate_for_bank
 from scenarios.errors import InputError
-from scenarios.schema.guidance import GuidanceConfig
+from scenarios.schema.sections.guidance import GuidanceConfig
 
 
 def omega_max(guidance: GuidanceConfig) -> float:

@@ -11,8 +11,8 @@ from gnc.reference.joining import JoinedOrbit
 from gnc.reference.placement import PlumeAxis, distance_by_paper, distance_exact
 from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, ReferenceStart, Swing
 from scenarios.planning.limits import omega_max
-from scenarios.schema.guidance import GuidanceConfig, ReferenceConfig
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig
 
 STEPS_MIN = 6
 """Least steps of the guidance between two crossings [-]: fewer do not show the oscillation."""

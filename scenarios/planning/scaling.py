@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 from aircraft.spec import Envelope
 from gnc.reference.oscillation import heading_rate_for_bank
-from scenarios.schema.guidance import GuidanceConfig
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.guidance import GuidanceConfig
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,10 +13,10 @@ from scenarios.errors import InputError
 from scenarios.margin.tracking_spread import SpreadTable, tracking_spread
 from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.reference import oscillation_at
-from scenarios.schema.effect import LAW_KEYS
-from scenarios.schema.guidance import GuidanceConfig
+from scenarios.schema.effect_rules import LAW_KEYS
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.guidance import GuidanceConfig
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 SPREAD_RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)

@@ -10,7 +10,7 @@ from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.parameters import GuardParameters
 from scenarios.planning.flight_plan import Start
-from scenarios.schema.flight import StartConfig
+from scenarios.schema.sections.flight import StartConfig
 
 
 def sampled_start(start: StartConfig, generator: np.random.Generator, *, course: float, axis: float) -> Start:

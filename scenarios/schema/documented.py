@@ -15,12 +15,13 @@ from pydantic.fields import FieldInfo
 from pydantic_core import to_jsonable_python
 
 from common.spelling import nearest
-from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.documented_parts import FLIGHT_STUDIES, DocumentedKey, documented_part_keys, line, split_unit
-from scenarios.schema.effect import RULES, named_by, unused
-from scenarios.schema.experiment import DrawConfig, TrialList
+from scenarios.schema.effect import named_by, unused
+from scenarios.schema.effect_rules import RULES
 from scenarios.schema.keys import models_in
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.convergence import ConvergenceScenario
+from scenarios.schema.sections.experiment import DrawConfig, TrialList
 
 _KINDS: tuple[tuple[type[BaseModel], tuple[str, ...]], ...] = (
     (Scenario, FLIGHT_STUDIES),
@@ -47,10 +48,11 @@ class DocumentedSection:
     keys: tuple[DocumentedKey, ...]
 
 
-def documented_sections(kind: type[BaseModel] = Scenario) -> Iterator[DocumentedSection]:
-    """Yield the sections of a kind of scenario file, in their order; first the keys outside of any section."""
+@functools.cache
+def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSection, ...]:
+    """Return the sections of a kind of scenario file, in their order; first the keys outside of any section."""
     studies = dict(_KINDS)[kind]
-    yield from _sections(kind, "", kind.__doc__ or "", studies, listed=False)
+    return tuple(_sections(kind, "", kind.__doc__ or "", studies, listed=False))
 
 
 def documented_keys() -> list[DocumentedKey]:

@@ -1,5 +1,6 @@
 """What is known of a key; and the keys that parts bring: fields of steering laws, settings of plumes and instruments."""
 
+import functools
 import inspect
 import re
 from dataclasses import Field, dataclass, fields, replace
@@ -8,7 +9,7 @@ from typing import Any
 from common.registry import Registry, announced
 from gnc.laws.steering_law import STEERING_LAWS
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS
-from scenarios.schema.guidance import GuidanceConfig
+from scenarios.schema.sections.guidance import GuidanceConfig
 
 FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol")
 """Studies whose scenario files are those of flights."""
@@ -51,7 +52,8 @@ _REGISTRIES: dict[str, Registry[Any]] = {
 """Keys that name parts which bring keys, and where the parts are found."""
 
 
-def documented_part_keys() -> list[DocumentedKey]:
+@functools.cache
+def documented_part_keys() -> tuple[DocumentedKey, ...]:
     """Return the keys that the project's own parts bring, as far as they are not those of the schema."""
     found: dict[tuple[str, str], tuple[DocumentedKey, list[str]]] = {}
     for key_of_part, registry in _REGISTRIES.items():
@@ -62,7 +64,7 @@ def documented_part_keys() -> list[DocumentedKey]:
             for key in _part_keys(section, made) if made else ():
                 _, users = found.setdefault((key.key, repr(key.default)), (key, []))
                 users.append(f"{key_of_part} '{name}'")
-    return [replace(key, conditions=(" or ".join(users),)) for key, users in found.values()]
+    return tuple(replace(key, conditions=(" or ".join(users),)) for key, users in found.values())
 
 
 def _own_names(registry: Registry[Any]) -> list[str]:

@@ -15,14 +15,14 @@ from common.registry import announced, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.spelling import did_you_mean
 from scenarios.errors import InputError
-from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.effect import refuse_unused
-from scenarios.schema.experiment import TrialList
 from scenarios.schema.keys import suggestion
 from scenarios.schema.overrides import Document, apply_override, given_keys, merged, parse_override, set_value
 from scenarios.schema.parts import with_absolute_files
-from scenarios.schema.report import read_logo
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.convergence import ConvergenceScenario
+from scenarios.schema.sections.experiment import TrialList
+from scenarios.schema.sections.report import read_logo
 
 Study = TypeVar("Study", Scenario, ConvergenceScenario, TrialList)
 

@@ -6,8 +6,16 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
-from scenarios.schema.equipment import REPORTS_MAX, FaultConfig, KinematicConfig, PayloadConfig, SensorsConfig, VesselReportsConfig
-from scenarios.schema.experiment import (
+from scenarios.schema.experiment_checks import check_draws, check_search, check_subset
+from scenarios.schema.sections.equipment import (
+    REPORTS_MAX,
+    FaultConfig,
+    KinematicConfig,
+    PayloadConfig,
+    SensorsConfig,
+    VesselReportsConfig,
+)
+from scenarios.schema.sections.experiment import (
     FLIGHTS_MAX,
     ArenaConfig,
     CaseConfig,
@@ -19,12 +27,12 @@ from scenarios.schema.experiment import (
     SubsetConfig,
     SweepConfig,
 )
-from scenarios.schema.flight import CriteriaConfig, FlightConfig, StartConfig
-from scenarios.schema.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
-from scenarios.schema.patrol import PatrolConfig
-from scenarios.schema.report import ReportConfig
-from scenarios.schema.section import Range, Section, Seed, check_divides, check_ordered
-from scenarios.schema.world import (
+from scenarios.schema.sections.flight import CriteriaConfig, FlightConfig, StartConfig
+from scenarios.schema.sections.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
+from scenarios.schema.sections.patrol import PatrolConfig
+from scenarios.schema.sections.report import ReportConfig
+from scenarios.schema.sections.section import Range, Section, Seed, check_divides, check_ordered
+from scenarios.schema.sections.world import (
     EmissionConfig,
     KeepoutConfig,
     PlaceConfig,
@@ -35,12 +43,6 @@ from scenarios.schema.world import (
 )
 
 DEFAULT_AIRCRAFT = "x8"
-
-DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "flight.altitude_m", "plume.source_height_m")
-"""Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept.
-
-The last one can be where ``flight.altitude_m`` is given.
-"""
 
 POINTS_MAX = 10_000
 """Most points of an experiment: all are checked before the first flight, in a millisecond and 20 kB each."""
@@ -224,20 +226,6 @@ class Scenario(Section):
             raise ValueError(f"{where} {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m")
         return self
 
-    def _check_subset(self) -> None:
-        if not self.draws:
-            raise ValueError("method is 'subset' and draws is empty; give the random variables, or set method to 'plain'")
-        if self.sweep.root or self.cases or self.comparison.variants or self.fidelity == "both":
-            raise ValueError(
-                "method is 'subset' beside a sweep, cases, a comparison or two vehicles; it estimates one probability: give each"
-                " point a run of its own, or set method to 'plain'"
-            )
-        if self.statistics.stops:
-            raise ValueError(
-                "method is 'subset' beside statistics.violation_upper or statistics.distance_quantile_width_m, by which plain"
-                " sampling stops; leave them out: subset simulation ends by itself, or after subset.levels_max levels"
-            )
-
     @model_validator(mode="after")
     def _fits_into_the_flight(self) -> "Scenario":
         air, room = self.turbulence, self.flight.duration_max_s
@@ -283,38 +271,10 @@ class Scenario(Section):
         return self
 
     @model_validator(mode="after")
-    def _searched(self) -> "Scenario":
-        if self.study != "falsify":
-            return self
-        if not self.draws:
-            raise ValueError("draws is empty; give the keys to search over, each with its range")
-        if self.sweep.root or self.cases or self.comparison.variants or self.fidelity == "both":
-            raise ValueError(
-                "study is 'falsify' beside a sweep, cases, a comparison or two vehicles; it searches one point: remove them"
-            )
-        if (most := self.search.flights_max) * (1 + self.search.confirmations) > FLIGHTS_MAX:
-            raise ValueError(
-                f"search.population and search.generations make {most} flights, with search.confirmations of each numbered up to"
-                f" {most * (1 + self.search.confirmations)}; the most is {FLIGHTS_MAX}: make one of them smaller"
-            )
-        return self
-
-    @model_validator(mode="after")
     def _varied(self) -> "Scenario":
+        if self.study == "falsify":
+            check_search(self)
         if self.study == "monte_carlo" and self.method == "subset":
-            self._check_subset()
-        keys = [draw.key for draw in self.draws]
-        for key in keys:
-            if keys.count(key) > 1:
-                raise ValueError(f"draws has '{key}' {keys.count(key)} times; give a key once")
-            if "." not in key and key != "flight_seed":
-                raise ValueError(f"draws has '{key}', the same for all flights; give keys of sections, as in wind.speed_mps")
-            if key in self.sweep.root:
-                raise ValueError(f"'{key}' is in sweep and in draws; give it in one of them")
-        for key in [*keys, *self.sweep.root]:
-            if key.startswith(DESIGNED_FOR if self.flight.altitude_m is None else DESIGNED_FOR[:-1]):
-                raise ValueError(
-                    f"'{key}' varies from flight to flight; autopilot and margins are worked out once for it: give each value a run"
-                    " of its own"
-                )
+            check_subset(self)
+        check_draws(self)
         return self

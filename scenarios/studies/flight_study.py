@@ -38,9 +38,9 @@ from scenarios.metrics.finding import FINDING_FIGURES
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
-from scenarios.planning.theory import theory_over_speed_ratio
-from scenarios.schema.experiment import TrialList
+from scenarios.planning.theory.speed_ratio import theory_over_speed_ratio
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.experiment import TrialList
 from scenarios.simulation.time_history import UNFINISHED
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
 from scenarios.statistics.sulphur import sulphur_statistics

@@ -11,16 +11,17 @@ from pydantic_core import to_jsonable_python
 from aircraft.fleet.find import find_spec
 from aircraft.simulation.model_copy import model_hash
 from common.provenance import provenance
-from common.registry import file_hash
+from common.registry import file_hash, file_of
 from common.run_layout import FORMAT, LOGO
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
+from scenarios.errors import InputError
 from scenarios.schema.documented_parts import DIMENSIONLESS, split_unit
 from scenarios.schema.effect import unused
 from scenarios.schema.load import AnyStudy
 from scenarios.schema.parts import names_file, names_folder, part_names
-from scenarios.schema.report import ReportConfig, read_logo, report_entry
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.report import ReportConfig, read_logo, report_entry
 from scenarios.world.ais.reports import AisReports
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.world import vessel_of
@@ -80,6 +81,22 @@ def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
     names = dict.fromkeys(named for scenario in scenarios for named in part_names(scenario))
     folders = {name: model_hash(find_spec(name).files)[:_HASH_LENGTH] for key, name in names if names_folder(key, name)}
     return {name: file_hash(name) for _, name in names if names_file(name)} | folders
+
+
+def refuse_changed(then: Mapping[str, str], now: Mapping[str, str]) -> None:
+    """Refuse to go on with a run whose parts are not what they were, before an autopilot is designed for them.
+
+    Parameters
+    ----------
+    then, now : as ``plugins`` returned them
+
+    Raises
+    ------
+    InputError : a part has changed, or was not there
+    """
+    for name, digest in now.items():
+        if then.get(name) != digest:
+            raise InputError(f"'{file_of(name)}' has changed since the run; use it as it was then, or start a new run")
 
 
 def vessel_files(scenarios: Iterable[Scenario]) -> dict[str, AisReports]:

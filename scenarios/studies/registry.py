@@ -10,9 +10,10 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Progress, RunResult, Study, fly_study
 from scenarios.engine.task import Work
 from scenarios.errors import InputError
-from scenarios.schema.convergence import ConvergenceScenario
-from scenarios.schema.experiment import TrialList
 from scenarios.schema.load import AnyStudy
+from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.convergence import ConvergenceScenario
+from scenarios.schema.sections.experiment import TrialList
 from scenarios.studies.study import STUDIES
 
 
@@ -72,6 +73,12 @@ def run_study(
     """
     if not resume:
         RunDirectory(directory).refuse_taken()
+    elif isinstance(scenario, Scenario):
+        from scenarios.studies.manifest import plugins, refuse_changed
+
+        # Before an autopilot is designed for what is refused then.
+        then, now = RunDirectory(directory).plugins(), plugins([scenario])
+        refuse_changed(then, {name: digest for name, digest in now.items() if name in then})
     progress("preparing", 0, 1)
     study = study_of(scenario, name, overrides)
     factory = executor_factory or ExecutorFactory()

@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from common.registry import file_of
 from common.run_layout import COMPARISON, HISTORY_SUFFIX, JOURNAL, MANIFEST, SUMMARY, is_file_name
 from scenarios.engine.fingerprint import differences
 from scenarios.engine.journal import Journal
@@ -20,6 +19,7 @@ from scenarios.schema.load import checked
 from scenarios.schema.parts import names_folder
 from scenarios.schema.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.manifest import plugins, refuse_changed
 from scenarios.studies.registry import study_of
 from scenarios.studies.single_flight import SingleFlight
 
@@ -113,10 +113,11 @@ class Replay(SingleFlight):
             if not is_file_name(name) or name not in trials:
                 raise InputError(f"'{self._from}' names a trial {name!r}, which is no name of a trial; do not use this run")
         scenarios = {name: checked({**config, "study": "flights"}, Scenario) for name, config in trials.items()}
+        flown = Experiment(trial, scenarios[trial]).points
+        refuse_changed(manifest.get("plugins", {}), plugins(point.scenario for point in flown))
         study = study_of(scenarios[trial], trial)
         if len(scenarios) > 1 and isinstance(study, FlightStudy):
             study.name_by_trial()
-        _check_plugins(manifest.get("plugins", {}), study.initial_manifest()["plugins"])
         flights = {name: Experiment(name, scenario).flights for name, scenario in scenarios.items()}
         before = sum(flights[name] for name in list(trials)[: list(trials).index(trial)])
         # Of a flight that the study gave a seed of its own, the row has it.
@@ -156,9 +157,3 @@ class Replay(SingleFlight):
         """Return a possible reason."""
         changed = differences(self._original_fingerprint)
         return f"the original was flown with a different {', '.join(changed)}" if changed else "software and source are unchanged"
-
-
-def _check_plugins(then: dict[str, str], now: dict[str, str]) -> None:
-    for name, digest in now.items():
-        if then.get(name) != digest:
-            raise InputError(f"'{file_of(name)}' has changed since the run; replay it with the file as it was then")

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from scenarios.errors import InputError
 from scenarios.schema.effect import unused
-from scenarios.schema.experiment import TrialList
 from scenarios.schema.load import load_study
 from scenarios.schema.overrides import parse_override
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.experiment import TrialList
 from scenarios.studies.flight_study import FlightStudy
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.signal import lfilter
 
-from scenarios.schema.equipment import SensorsConfig
+from scenarios.schema.sections.equipment import SensorsConfig
 
 NAVIGATION_TIME = 60.0
 """Time constant with which the error of satellite navigation wanders [s]."""

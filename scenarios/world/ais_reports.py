@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from gnc.estimation.vessel_filter import VesselReport
-from scenarios.schema.equipment import VesselReportsConfig
+from scenarios.schema.sections.equipment import VesselReportsConfig
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.vessel import VesselTruth
 

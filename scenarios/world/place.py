@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from functools import cached_property
 
 from common.geodesy import LocalFrame
-from scenarios.schema.world import PlaceConfig
+from scenarios.schema.sections.world import PlaceConfig
 
 
 @dataclass(frozen=True, kw_only=True)

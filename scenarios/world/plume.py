@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from aircraft.atmosphere.wind import WindField
 from scenarios.schema.extension_points import PLUME_MODELS
-from scenarios.schema.world import PlumeConfig
+from scenarios.schema.sections.world import PlumeConfig
 from scenarios.world.vessel import TRACK_STEP, SteadyVessel, VesselTruth, sampled, track_times
 
 _AT_REST = 1e-9

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from gnc.errors import InfeasibleError
 from scenarios.schema.extension_points import VESSEL_TRACKS
-from scenarios.schema.world import VesselConfig
+from scenarios.schema.sections.world import VesselConfig
 
 TRACK_STEP = 0.05
 """Time step of a tabled track [s]; between its points the track is a parabola to 1e-5 m."""

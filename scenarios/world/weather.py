@@ -9,7 +9,7 @@ from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
 from aircraft.atmosphere.wind import CALM, WindField, constant_wind, over_the_sea
 from scenarios.schema.scenario import Scenario
-from scenarios.schema.world import WindConfig
+from scenarios.schema.sections.world import WindConfig
 from scenarios.world.place import Place
 from scenarios.world.wind_table import tabled_wind
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from aircraft.atmosphere.wind import WindField, over_the_sea
 from scenarios.errors import InputError
-from scenarios.schema.world import WindConfig
+from scenarios.schema.sections.world import WindConfig
 from scenarios.world.ais.rows import number_of, seconds_of
 from scenarios.world.place import Place, utc_text
 from scenarios.world.wind_netcdf import read_netcdf

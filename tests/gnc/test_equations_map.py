@@ -46,7 +46,7 @@ def docstrings():
 
 def names_used(file, function):
     """Return the names that a test uses, and those that the helpers use which it uses, in its file and in gnc_cases.py."""
-    trees = [ast.parse((ROOT / path).read_text(encoding="utf-8")) for path in ("tests/gnc/gnc_cases.py", file)]
+    trees = [ast.parse((ROOT / path).read_text(encoding="utf-8")) for path in ("tests/gnc/cases/gnc_cases.py", file)]
     bodies = {node.name: node for tree in trees for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
     bodies |= {
         target.id: node

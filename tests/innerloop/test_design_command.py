@@ -31,6 +31,7 @@ def test_the_command_leaves_a_directory_that_can_be_reported_on_again(tmp_path):
     assert content(read_run(tmp_path / "x8")).verdict.headline in done.stdout
 
 
+@pytest.mark.usefixtures("sketched")
 def test_the_search_over_reversals_can_be_repeated_with_more_of_them(tmp_path):
     ended = run_command("innerloop.design", "x8", "--out", tmp_path / "x8", "--reversals", 3)
     assert ended.status == 0, ended.errors

@@ -33,6 +33,7 @@ def test_the_line_of_sight_has_no_bound(directory):
     assert comparison.loc["nu_0.50_no_preview", "heading_rate_bound_rad_s"] > 0.0
 
 
+@pytest.mark.usefixtures("sketched")
 def test_the_report_says_the_laws_largest_demand_and_with_which_look_ahead(directory):
     html, _ = build_reports(directory)
     text = html.read_text(encoding="utf-8")

@@ -55,6 +55,7 @@ def test_its_airspeeds_are_named_where_the_scenario_leaves_them(t37, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.usefixtures("sketched")
 def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(t37):
     html, pdf = build_reports(t37.path)
     assert pdf.read_bytes().startswith(b"%PDF")

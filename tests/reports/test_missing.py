@@ -81,6 +81,7 @@ def test_a_file_that_is_empty_or_cut_is_named(copy, name, cut):
     assert (found, state) == (name, "cannot be read")
 
 
+@pytest.mark.usefixtures("sketched")
 def test_the_exit_status_says_that_pieces_are_missing(copy):
     (copy / "flights" / "short_00000.parquet").unlink()
     ended = run_command("reports.build", copy)

@@ -7,7 +7,7 @@ from report_parts import blocks_of
 
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart
-from scenarios.schema.experiment import TrialList
+from scenarios.schema.sections.experiment import TrialList
 from scenarios.studies.registry import run_study
 
 # Both settle and cross a few times, within some 150 s; after that the vessel of the second turns, which takes it 40 s at most.

@@ -193,8 +193,8 @@ def test_a_run_is_resumed_and_replayed_with_the_same_file_only(tmp_path):
     assert run(path, tmp_path / "run", "sweep.nu=[0.5]", resume=True).all_met
     assert replay(tmp_path / "again").all_met
     (tmp_path / "own.py").write_text(LAW.replace("1.2", "1.3"), encoding="utf-8")
-    assert "was run with another configuration" in refusal(path, tmp_path / "run", "sweep.nu=[0.5]", resume=True)
-    with pytest.raises(InputError, match=r"own\.py' has changed since the run; replay it with the file as it was then"):
+    assert "has changed since the run" in refusal(path, tmp_path / "run", "sweep.nu=[0.5]", resume=True)
+    with pytest.raises(InputError, match=r"own\.py' has changed since the run; use it as it was then, or start a new run"):
         replay(tmp_path / "changed")
 
 

@@ -10,9 +10,11 @@ from PIL import Image
 from common.run_layout import REPORT_SETTINGS
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
-from scenarios.schema.report import ReportConfig
+from scenarios.schema.sections.report import ReportConfig
 from scenarios.studies.registry import study_of
 from tests.in_process import run_command
+
+pytestmark = pytest.mark.usefixtures("sketched")
 
 SHORT = """
 title = "Short"

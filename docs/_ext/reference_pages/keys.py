@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 from reference_pages.markdown import literal, plain, table
 from scenarios.console.describe import value_text
-from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.documented import DocumentedSection, documented_sections
 from scenarios.schema.documented_parts import DIMENSIONLESS, FLIGHT_STUDIES, DocumentedKey, documented_part_keys
-from scenarios.schema.experiment import TrialList
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.convergence import ConvergenceScenario
+from scenarios.schema.sections.experiment import TrialList
 
 _HEAD = ("key", "default", "value", "meaning")
 

@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from scenarios.engine.task import Row
 from scenarios.metrics.window import MEASURED_COLUMNS
-from scenarios.planning.theory import crossing_limit
-from scenarios.schema.experiment import ArenaConfig
-from scenarios.schema.guidance import GuidanceConfig
+from scenarios.planning.theory.speed_ratio import crossing_limit
+from scenarios.schema.sections.experiment import ArenaConfig
+from scenarios.schema.sections.guidance import GuidanceConfig
 from scenarios.statistics.paired_bootstrap import paired_estimates
 from scenarios.studies.arena.entrants import TRACKING, Entrant, Refused
 

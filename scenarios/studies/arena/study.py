@@ -12,8 +12,8 @@ from scenarios.engine.task import Row, Task
 from scenarios.errors import InputError
 from scenarios.flight import FlightWork
 from scenarios.metrics.window import MEASURED_COLUMNS, WINDOW_COLUMNS
-from scenarios.schema.experiment import CaseConfig
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.experiment import CaseConfig
 from scenarios.studies.arena.entrants import cases_of, conditions_of, entrants_of
 from scenarios.studies.arena.results import estimates, limits, refused_record, tuned_record
 from scenarios.studies.arena.tuning import Tuner

@@ -18,9 +18,9 @@ from scenarios.engine.task import Row
 from scenarios.experiment.requests import Experiment
 from scenarios.metrics.window import window_figures
 from scenarios.planning.planner import plan_flight
-from scenarios.schema.experiment import ArenaConfig
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.experiment import ArenaConfig
 from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.failure import failure
 from scenarios.simulation.release import release

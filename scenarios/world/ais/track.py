@@ -11,7 +11,7 @@ import numpy.typing as npt
 from common.geodesy import LocalFrame
 from gnc.estimation.vessel_filter import VesselReport
 from scenarios.errors import InputError
-from scenarios.schema.world import VesselConfig
+from scenarios.schema.sections.world import VesselConfig
 from scenarios.world.ais.reports import AisReports, read_ais
 from scenarios.world.ais.smoothing import smooth_motion
 from scenarios.world.place import Place, utc_text

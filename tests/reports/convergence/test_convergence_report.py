@@ -144,6 +144,7 @@ def test_a_study_without_rows_or_with_next_to_none_can_be_reported_on(kept, tmp_
     assert not re.search(r"\bnan\b", shown)
 
 
+@pytest.mark.usefixtures("sketched")
 def test_a_study_in_which_nothing_ever_settles_can_be_reported_on(tmp_path):
     path = write_convergence_run(tmp_path / "run", 4, failures=[(law, i, "time_up") for law in LAWS for i in range(4)])
     html, _ = build_reports(path)

@@ -49,6 +49,7 @@ def refused(*arguments):
     return ended.errors
 
 
+@pytest.mark.usefixtures("sketched")
 def test_reports_of_a_run_that_exists_take_another_title_and_logo_and_leave_the_run_as_it_is(run_path, tmp_path):
     logo = tmp_path / "logo.jpg"
     Image.new("RGB", (40, 20), "navy").save(logo)

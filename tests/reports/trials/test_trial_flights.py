@@ -14,7 +14,7 @@ from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart, Line, Panel
 from reports.flights.selection import PICKED_MAX, picked_flights
 from reports.flights.single_flight import flight_charts
-from reports.flights.trial_charts import trial_charts
+from reports.flights.trials.charts import trial_charts
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run

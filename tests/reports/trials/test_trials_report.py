@@ -15,7 +15,7 @@ from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
 from reports.document.blocks import Table, Text
-from reports.flights.trial_tables import FAILED_MAX
+from reports.flights.trials.tables import FAILED_MAX
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import Kind, Trial, read_trials

@@ -8,7 +8,7 @@ import pytest
 
 from scenarios.errors import InputError
 from scenarios.schema.load import CATALOG
-from scenarios.schema.world import VesselConfig
+from scenarios.schema.sections.world import VesselConfig
 from scenarios.world.ais.made import MADE
 from scenarios.world.ais.smoothing import JERK_DENSITY, POSITION_SIGMA, VELOCITY_SIGMA, smooth_motion
 from scenarios.world.ais.track import ais_vessel, usual_intervals

@@ -30,7 +30,7 @@ def test_every_script_is_tested_and_short():
         assert len(path.read_text(encoding="utf-8").splitlines()) <= 25, path.name
 
 
-@pytest.mark.usefixtures("x8_design")
+@pytest.mark.usefixtures("x8_design", "heavy_design")
 @pytest.mark.parametrize("name", PRINTED)
 def test_a_script_runs_and_writes_what_it_says(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

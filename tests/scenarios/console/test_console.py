@@ -11,9 +11,9 @@ from scenarios.console.main import commands
 from scenarios.console.template import template
 from scenarios.schema.documented import documented_sections
 from scenarios.schema.effect import unused
-from scenarios.schema.experiment import TrialList
 from scenarios.schema.load import catalog, load_study
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.experiment import TrialList
 from tests.in_process import assert_refused, run_command
 
 SHORT = """
@@ -55,6 +55,7 @@ def test_the_commands_are_these():
         assert f"plume-flight {word}" in console(word, "--help").out
 
 
+@pytest.mark.usefixtures("sketched")
 def test_a_run_is_flown_reported_and_exported(file, tmp_path):
     out = tmp_path / "run"
     ended = console("run", file, "--out", out, "--jobs", "1", "--no-report")

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from scenarios.metrics.criteria import failed_criteria, kept_out
-from scenarios.schema.flight import CriteriaConfig
+from scenarios.schema.sections.flight import CriteriaConfig
 
 GOOD = {
     "outcome": "completed", "message": "", "mode_at_end": "tracking", "fault": "none", "fault_time_s": math.nan,

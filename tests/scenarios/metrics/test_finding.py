@@ -8,7 +8,7 @@ import pytest
 
 from gnc.mission.mode import Mode
 from scenarios.metrics.finding import FINDING_FIGURES, finding_figures
-from scenarios.schema.flight import FlightConfig
+from scenarios.schema.sections.flight import FlightConfig
 
 STEP, INTERVAL, ORBIT = 0.1, 10.0, 40.0
 """Between samples, between crossings, and until the orbit is reached [s]."""

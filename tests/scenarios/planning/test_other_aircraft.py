@@ -142,6 +142,7 @@ def test_no_test_touches_the_users_own_designs(cache_home):
     assert cache_directory().is_relative_to(cache_home)
 
 
+@pytest.mark.usefixtures("sketched")
 def test_the_reports_of_a_refused_aircraft_name_it(refuse, tmp_path):
     refuse(DesignError("no design has the margins"))
     run(tmp_path / "run", "aircraft=T37")

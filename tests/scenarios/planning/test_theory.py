@@ -6,9 +6,9 @@ from scipy.optimize import brentq
 
 from benchmarks.crossing_limit import designed
 from scenarios.planning.limits import omega_max
-from scenarios.planning.theory import CROSSING_LIMITS, crossing_limit, theory_over_speed_ratio
-from scenarios.schema.guidance import GuidanceConfig
+from scenarios.planning.theory.speed_ratio import CROSSING_LIMITS, crossing_limit, theory_over_speed_ratio
 from scenarios.schema.load import load_study
+from scenarios.schema.sections.guidance import GuidanceConfig
 
 GUIDANCE = GuidanceConfig()
 SOLVED = json.loads(CROSSING_LIMITS.read_text(encoding="utf-8"))

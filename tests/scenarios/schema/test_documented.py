@@ -6,13 +6,13 @@ import re
 import pytest
 from pydantic import RootModel
 
-from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.documented import documented_keys, documented_sections, similar_key
 from scenarios.schema.documented_parts import FLIGHT_STUDIES, documented_part_keys
-from scenarios.schema.experiment import TrialList
 from scenarios.schema.keys import known_keys
 from scenarios.schema.load import KINDS
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.convergence import ConvergenceScenario
+from scenarios.schema.sections.experiment import TrialList
 
 KEYS = documented_keys()
 BY_KEY = {key.key: key for key in reversed(KEYS)}

@@ -121,7 +121,7 @@ def test_a_search_around_a_point_that_has_found_a_violation_looks_for_another_on
     def depth(point, pit):
         return 100.0 * float(np.linalg.norm(point - pit)) - 10.0
 
-    _, tried = least((method,), space, lambda point: min(depth(point, pit) for pit in pits), turns=150)
+    _, tried = least((method,), space, lambda point: min(depth(point, pit) for pit in pits), turns=100)
     violating = [[depth(point, pit) < 0.0 for point in tried] for pit in pits]
     assert all(any(of) for of in violating)
     # Once a pit is known no point of it is a start any more: it takes a few flights, not most of them.

@@ -10,8 +10,8 @@ from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.build import build_reports
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.errors import InputError
-from scenarios.schema.convergence import ConvergenceScenario
 from scenarios.schema.load import load_study
+from scenarios.schema.sections.convergence import ConvergenceScenario
 from scenarios.studies.registry import run_study
 
 FEW = ["ensemble.trajectories=30", "ensemble.distance_max_m=300", "ensemble.samples=2"]
@@ -55,6 +55,7 @@ def test_both_laws_start_from_the_same_states(directory):
         assert list(starts[0][name]) == list(starts[1][name])
 
 
+@pytest.mark.usefixtures("sketched")
 def test_its_reports_are_built_and_say_what_happened(directory):
     html, pdf = build_reports(directory)
     assert "All 60 trajectories converged" in html.read_text(encoding="utf-8")
@@ -123,6 +124,7 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
     assert [report for report in told if report[0] == "flying"] == [("flying", 24, 24)]
 
 
+@pytest.mark.usefixtures("sketched")
 def test_a_study_of_cut_commands_alone_is_no_verdict_on_the_theory(tmp_path):
     # Every circle but those at the very limit converges; none of these 30 references, from near by, is one of them.
     run(study('guidance.laws=["cascade_cut"]'), tmp_path / "run")

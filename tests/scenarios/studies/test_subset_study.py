@@ -79,11 +79,11 @@ def statistics_of(out):
 
 
 def test_it_agrees_with_plain_sampling_where_both_can_see(rare, whole, tmp_path):
-    scenario = load_study(str(rare), ["method=plain", "flights=400", "sampling=random"])
+    scenario = load_study(str(rare), ["method=plain", "flights=250", "sampling=random"])
     run_study(scenario, "short", tmp_path / "plain", executor_factory=ExecutorFactory(jobs=2))
     plain = statistics_of(tmp_path / "plain")["violation"]["measured"]
     # About 2 %: neither method may see nothing.
-    assert 3 <= plain["events"] <= 25
+    assert 2 <= plain["events"] <= 16
     found = statistics_of(whole[1])["violation"]
     interval = clopper_pearson(plain["events"], plain["flights"], 0.95)
     # Two intervals of 95 % of the same probability.

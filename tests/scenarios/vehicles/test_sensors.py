@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.schema.equipment import SensorsConfig
+from scenarios.schema.sections.equipment import SensorsConfig
 from scenarios.vehicles.sensors import SensorErrors
 
 TIME_STEP = 0.05

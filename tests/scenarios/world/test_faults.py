@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.schema.equipment import FaultConfig
+from scenarios.schema.sections.equipment import FaultConfig
 from scenarios.world.faults import NO_FAULT, SATELLITES, VESSEL_DATA, sampled_fault
 
 

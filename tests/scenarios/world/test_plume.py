@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from aircraft.atmosphere.wind import constant_wind
-from scenarios.schema.world import PlumeConfig, VesselConfig
+from scenarios.schema.sections.world import PlumeConfig, VesselConfig
 from scenarios.world.plume import StraightPlume
 from scenarios.world.vessel import ManoeuvringVessel, SteadyVessel
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from flight_cases import scenario
 
-from scenarios.schema.world import WindConfig
+from scenarios.schema.sections.world import WindConfig
 from scenarios.world.place import given_place
 from scenarios.world.weather import sampled_weather, wind_ned, wind_of
 

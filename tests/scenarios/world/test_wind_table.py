@@ -9,7 +9,7 @@ from flight_cases import fly, scenario
 
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
-from scenarios.schema.world import WindConfig
+from scenarios.schema.sections.world import WindConfig
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.world.place import Place
 from scenarios.world.wind_table import first_time, tabled_wind

@@ -188,6 +188,7 @@ def test_how_to_fly_it_elsewhere_names_the_files_that_are_there(report, tmp_path
     assert len(blocks_of(content(read_run(path)), Text, "elsewhere")) == 1
 
 
+@pytest.mark.usefixtures("sketched")
 def test_a_design_recorded_before_the_grid_over_bank_can_be_reported_on(tmp_path):
     path = write_design(tmp_path / "run")
     (path / "innerloop.json").write_text(json.dumps(first_version()), encoding="utf-8")

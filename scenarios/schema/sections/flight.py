@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from scenarios.schema.section import Angle, Limit, NonNegative, Positive, Section, check_ordered
+from scenarios.schema.sections.section import Angle, Limit, NonNegative, Positive, Section, check_ordered
 
 
 class StartConfig(Section):

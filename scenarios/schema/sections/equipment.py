@@ -5,8 +5,8 @@ from typing import Annotated, Any
 from pydantic import Field, field_validator, model_validator
 
 from scenarios.schema.extension_points import PAYLOADS
-from scenarios.schema.part_section import PartSection
-from scenarios.schema.section import NonNegative, Positive, Section, check_ordered
+from scenarios.schema.sections.part_section import PartSection
+from scenarios.schema.sections.section import NonNegative, Positive, Section, check_ordered
 
 REPORTS_MAX = 200_000
 """Most reports in a flight: four times those of the longest flight by AIS, every 2 s at its fastest; with 0.4 kB each, 80 MB."""

@@ -19,8 +19,7 @@ from scenarios.schema.scenario import Scenario
 from scenarios.search.method import SearchSettings
 from scenarios.search.space import Array
 from scenarios.search.turns import methods_named, search_in_turns
-from scenarios.studies.flight_study import FlightStudy
-from scenarios.studies.search_results import (
+from scenarios.studies.falsification.results import (
     CONFIRMATION,
     UNFLOWN,
     SearchedFlight,
@@ -30,6 +29,7 @@ from scenarios.studies.search_results import (
     searched_flights,
     worst_flights,
 )
+from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.study import study
 
 _SAME_POINT = 1e-9

@@ -12,7 +12,7 @@ from reports.document.map_marks import hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
 from reports.document.panels import COUNTED_MIN, Group, capped, classes, histogram, points, quartiles, strips
 from reports.flights.names import fault_name, manoeuvre_name
-from reports.flights.panels_over import CLEARANCE, PanelsOver, by_violation
+from reports.flights.trials.panels_over import CLEARANCE, PanelsOver, by_violation
 from reports.monte_carlo.names import input_name
 from reports.run.columns import NOTICEABLE, Array, clearance, column, total
 from reports.run.ship import hull_of

@@ -9,8 +9,8 @@ from common.files import is_data_file
 from measurement.emission.fuel import SULPHUR_MAX_PERCENT, fuel_preset
 from measurement.emission.ship import ship_preset
 from scenarios.schema.extension_points import PLUME_MODELS
-from scenarios.schema.part_section import PartSection
-from scenarios.schema.section import Angle, NonNegative, Positive, Section
+from scenarios.schema.sections.part_section import PartSection
+from scenarios.schema.sections.section import Angle, NonNegative, Positive, Section
 
 Shape = Literal["sphere", "cylinder"]
 """Shapes of the keep-out area."""

@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field, field_validator, model_validator
 from common.registry import PluginError
 from common.spelling import did_you_mean
 from gnc.laws.steering_law import STEERING_LAWS
-from scenarios.schema.section import Angle, NonNegative, Positive, Section, check_divides, check_ordered
+from scenarios.schema.sections.section import Angle, NonNegative, Positive, Section, check_divides, check_ordered
 
 Share = Annotated[float, Field(gt=0.0, le=1.0)]
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from scenarios.schema.section import NonNegative, Positive, Section
+from scenarios.schema.sections.section import NonNegative, Positive, Section
 
 SHIPS_MAX = 12
 """Most ships of a patrol: the order of as many takes a second."""

@@ -104,7 +104,7 @@ def monte_carlo_study(
 ) -> FlightStudy:
     """Return the study by the scenario's method; parameters and errors are those of ``MonteCarloStudy``."""
     if scenario.method == "subset":
-        from scenarios.studies.subset_study import SubsetStudy
+        from scenarios.studies.monte_carlo.subset import SubsetStudy
 
         return SubsetStudy(scenario, name, trials, overrides=overrides)
     return MonteCarloStudy(scenario, name, trials, overrides=overrides)

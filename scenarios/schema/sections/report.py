@@ -8,7 +8,7 @@ from pydantic import Field
 from common.picture import Picture, PictureError, read_picture
 from common.run_layout import LOGO
 from scenarios.errors import InputError
-from scenarios.schema.section import Section
+from scenarios.schema.sections.section import Section
 
 Words = Annotated[str, Field(max_length=200, coerce_numbers_to_str=True)]
 

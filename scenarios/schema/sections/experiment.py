@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, RootModel, field_validator, model_validator
 
 from common.registry import PluginError
-from scenarios.schema.report import ReportConfig
-from scenarios.schema.section import Fraction, NonNegative, Positive, Range, Section, Seed, check_ordered
+from scenarios.schema.sections.report import ReportConfig
+from scenarios.schema.sections.section import Fraction, NonNegative, Positive, Range, Section, Seed, check_ordered
 from scenarios.search.method import SEARCH_METHODS
 
 Sampling = Literal["sobol", "latin_hypercube", "random"]

@@ -11,8 +11,8 @@ from gnc.reference.oscillation import bank_for_heading_rate
 from gnc.reference.placement import PlumeAxis
 from scenarios.planning.limits import omega_max
 from scenarios.planning.reference import oscillation_at, placed_distance
-from scenarios.schema.guidance import GuidanceConfig, ReferenceConfig
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig
 
 CROSSING_LIMITS = Path(__file__).parent / "crossing_limits.json"
 """Shortest crossing intervals by optimal control, written by ``python -m benchmarks.crossing_limit --write``."""

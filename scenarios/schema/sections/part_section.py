@@ -9,7 +9,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError, model_validator
 
 from common.registry import PluginError
 from common.spelling import did_you_mean
-from scenarios.schema.section import Section
+from scenarios.schema.sections.section import Section
 
 
 class PartSection(Section):

@@ -4,8 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from scenarios.schema.report import ReportConfig
-from scenarios.schema.section import Positive, Section
+from scenarios.schema.sections.report import ReportConfig
+from scenarios.schema.sections.section import Positive, Section
 
 LawName = Literal["lyapunov", "cascade", "cascade_cut"]
 

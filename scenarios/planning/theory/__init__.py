@@ -1,0 +1,1 @@
+"""What theory says over the speed ratio."""

@@ -1,0 +1,63 @@
+"""Whether the parts of an experiment go together: what is sampled, and what a search and subset simulation need."""
+
+from typing import TYPE_CHECKING
+
+from scenarios.schema.sections.experiment import FLIGHTS_MAX
+
+if TYPE_CHECKING:
+    from scenarios.schema.scenario import Scenario
+
+DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "flight.altitude_m", "plume.source_height_m")
+"""Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept.
+
+The last one can be where ``flight.altitude_m`` is given.
+"""
+
+
+def check_subset(scenario: "Scenario") -> None:
+    """Refuse subset simulation of what is not one probability."""
+    if not scenario.draws:
+        raise ValueError("method is 'subset' and draws is empty; give the random variables, or set method to 'plain'")
+    if scenario.sweep.root or scenario.cases or scenario.comparison.variants or scenario.fidelity == "both":
+        raise ValueError(
+            "method is 'subset' beside a sweep, cases, a comparison or two vehicles; it estimates one probability: give each"
+            " point a run of its own, or set method to 'plain'"
+        )
+    if scenario.statistics.stops:
+        raise ValueError(
+            "method is 'subset' beside statistics.violation_upper or statistics.distance_quantile_width_m, by which plain"
+            " sampling stops; leave them out: subset simulation ends by itself, or after subset.levels_max levels"
+        )
+
+
+def check_search(scenario: "Scenario") -> None:
+    """Refuse a search that has nothing to search over, or is not of one point."""
+    if not scenario.draws:
+        raise ValueError("draws is empty; give the keys to search over, each with its range")
+    if scenario.sweep.root or scenario.cases or scenario.comparison.variants or scenario.fidelity == "both":
+        raise ValueError(
+            "study is 'falsify' beside a sweep, cases, a comparison or two vehicles; it searches one point: remove them"
+        )
+    if (most := scenario.search.flights_max) * (1 + scenario.search.confirmations) > FLIGHTS_MAX:
+        raise ValueError(
+            f"search.population and search.generations make {most} flights, with search.confirmations of each numbered up to"
+            f" {most * (1 + scenario.search.confirmations)}; the most is {FLIGHTS_MAX}: make one of them smaller"
+        )
+
+
+def check_draws(scenario: "Scenario") -> None:
+    """Refuse random variables that are given twice, or cannot vary from flight to flight."""
+    keys = [draw.key for draw in scenario.draws]
+    for key in keys:
+        if keys.count(key) > 1:
+            raise ValueError(f"draws has '{key}' {keys.count(key)} times; give a key once")
+        if "." not in key and key != "flight_seed":
+            raise ValueError(f"draws has '{key}', the same for all flights; give keys of sections, as in wind.speed_mps")
+        if key in scenario.sweep.root:
+            raise ValueError(f"'{key}' is in sweep and in draws; give it in one of them")
+    for key in [*keys, *scenario.sweep.root]:
+        if key.startswith(DESIGNED_FOR if scenario.flight.altitude_m is None else DESIGNED_FOR[:-1]):
+            raise ValueError(
+                f"'{key}' varies from flight to flight; autopilot and margins are worked out once for it: give each value a run"
+                " of its own"
+            )

@@ -1,0 +1,5 @@
+"""Monte Carlo, by flights at random or by subset simulation, as a study."""
+
+from scenarios.studies.monte_carlo.study import MonteCarloStudy
+
+__all__ = ["MonteCarloStudy"]

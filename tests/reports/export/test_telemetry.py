@@ -1,0 +1,95 @@
+"""Telemetry of a flight, as a log and as a stream, read by pymavlink."""
+
+import math
+import os
+import socket
+import struct
+import subprocess
+import sys
+
+import pytest
+
+from reports.build import stream_run
+from reports.errors import ReportError
+from tests.in_process import assert_refused, run_command
+from tests.reports.export.placed_flight import START, TOLERANCE, exported, off, track
+
+
+def received(packets):
+    """Return the messages in bytes, as pymavlink reads them."""
+    os.environ["MAVLINK20"] = "1"
+    common = pytest.importorskip("pymavlink.dialects.v20.common", reason="pymavlink is a reader for developers")
+    link = common.MAVLink(None)
+    return [message for packet in packets for message in link.parse_buffer(packet) or []]
+
+
+def check_messages(messages, truth):
+    by_type = {}
+    for message in messages:
+        by_type.setdefault(message.get_type(), []).append(message)
+    assert "BAD_DATA" not in by_type
+    places = {name: [(m.lat / 1e7, m.lon / 1e7) for m in by_type[name]] for name in
+              ("GLOBAL_POSITION_INT", "AIS_VESSEL", "ADSB_VEHICLE")}  # fmt: skip
+    assert off(places["GLOBAL_POSITION_INT"], truth[0]) < TOLERANCE
+    for vessel in ("AIS_VESSEL", "ADSB_VEHICLE"):
+        assert off(places[vessel], truth[1][::10]) < TOLERANCE
+    assert len(by_type["HEARTBEAT"]) == len(by_type["SYSTEM_TIME"]) == 61
+    first, at = by_type["ATTITUDE"][100], by_type["GLOBAL_POSITION_INT"][100]
+    # Frame and true north differ by less than 1e-4 rad here; angles are floats.
+    assert (first.roll, first.pitch, first.yaw) == pytest.approx((0.5, 0.05, 1.0), abs=1e-3)
+    assert (at.time_boot_ms, at.alt) == (10000, round(1000.0 * (60.0 + math.sin(10.0))))
+    assert by_type["VFR_HUD"][0].throttle == 40
+    vessel = by_type["AIS_VESSEL"][0]
+    assert vessel.velocity == round(100.0 * math.hypot(5.0, 6.0))
+    assert pytest.approx(math.degrees(math.atan2(6.0, 5.0)), abs=0.02) == vessel.COG / 100.0
+
+
+def test_a_telemetry_log_is_read_by_pymavlink(run_path, truth):
+    data, packets, at = exported(run_path, "tlog").read_bytes(), [], 0
+    while at < len(data):
+        (microseconds,) = struct.unpack(">Q", data[at : at + 8])
+        length = 12 + data[at + 9]
+        packets.append(data[at + 8 : at + 8 + length])
+        at += 8 + length
+    assert microseconds == round(1e6 * (START + 60.0))
+    check_messages(received(packets), truth)
+
+
+def test_a_flight_is_streamed_in_real_time_and_received_by_a_second_process(run_path):
+    receiving = "import socket, sys\ns = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)\ns.bind(('127.0.0.1', 0))\n"
+    receiving += "print(s.getsockname()[1], flush=True)\ns.settimeout(10)\nn = 0\n"
+    receiving += "while True:\n d = s.recv(512)\n n += 1\n if d == b'end': break\n sys.stdout.write(d.hex() + '\\n')\n"
+    with subprocess.Popen([sys.executable, "-c", receiving], stdout=subprocess.PIPE, text=True) as receiver:
+        port = int(receiver.stdout.readline())
+        short = track().iloc[:6]
+        short.to_parquet(run_path / "flights" / "a, <b>.parquet")
+        name, sent, seconds = stream_run(run_path, f"udp://127.0.0.1:{port}")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+            link.sendto(b"end", ("127.0.0.1", port))
+        lines = receiver.communicate(timeout=20)[0].split()
+    assert (name, seconds) == ("a, <b>", 0.5)
+    messages = received([bytes.fromhex(line) for line in lines])
+    assert len(messages) == sent == 4 + 3 * 6
+    assert {message.get_type() for message in messages} == {
+        "HEARTBEAT", "SYSTEM_TIME", "AIS_VESSEL", "ADSB_VEHICLE", "ATTITUDE", "GLOBAL_POSITION_INT", "VFR_HUD",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("address", ["127.0.0.1:14550", "udp://127.0.0.1", "udp://127.0.0.1:99999", "tcp://127.0.0.1:1"])
+def test_an_address_that_is_none_is_refused(run_path, address):
+    with pytest.raises(ReportError, match=r"give udp://HOST:PORT"):
+        stream_run(run_path, address)
+
+
+def test_the_command_exports_several_formats_of_one_flight_and_streams_it(run_path):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
+        receiver.bind(("127.0.0.1", 0))
+        address = f"udp://127.0.0.1:{receiver.getsockname()[1]}"
+        track().iloc[:3].to_parquet(run_path / "flights" / "a, <b>.parquet")
+        ended = run_command("reports.build", run_path, "--export", "tlog,geojson", "--flight", "a, <b>", "--stream", address)
+    assert ended.out.splitlines() == [
+        f"export: {run_path / 'export' / 'made.a, <b>.tlog'}",
+        f"export: {run_path / 'export' / 'made.a, <b>.geojson'}",
+        f"stream: 13 messages of a, <b>, 0 s of flight, to {address}",
+    ]
+    assert_refused(run_command("reports.build", run_path, "--flight", "a, <b>"), "--flight is of use beside --export or --stream")
