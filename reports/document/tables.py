@@ -1,6 +1,6 @@
 """Tables that every report has, and how their cells are written."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -16,7 +16,7 @@ def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
         caption="Every parameter, with its unit and meaning.",
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
         rows=[*rows, *derived],
-        widths=[3.1, 1.2, 0.7, 3.9],
+        widths=[2.7, 1.9, 0.7, 3.6],
         left_columns=4,
         prose=True,
         breakable=True,
@@ -95,5 +95,18 @@ def parameter_value(value: Any, key: str = "") -> str:
         return "yes" if value else "no"
     if isinstance(value, list):
         # Of all lists the starting distances alone are a range.
-        return (" to " if key == "start.distance_m" else ", ").join(parameter_value(v) for v in value)
-    return "not set" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+        between = " to " if key == "start.distance_m" else ", "
+        return between.join(_entry_in_words(entry) for entry in value) or "none"
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} = {parameter_value(of, name)}" for name, of in value.items()) or "none"
+    return "not set" if value is None else f"{value:g}" if isinstance(value, float) else str(value) or "none"
+
+
+def _entry_in_words(entry: Any) -> str:
+    """Return an entry of a list: of a table by its name, of a draw by the key that is drawn and how."""
+    if not isinstance(entry, Mapping):
+        return parameter_value(entry)
+    if "name" in entry:
+        return str(entry["name"]).replace("_", " ")
+    settings = (f"{name} {parameter_value(of)}" for name, of in entry.items() if name != "key")
+    return " ".join([str(entry.get("key", "")), *settings]).strip()

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from reports.document.axes import cut_words
 from reports.document.blocks import Block, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import VARIANTS, Meaning
@@ -80,7 +81,7 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
                     y_range=(0.0, band),
                 )
             )
-    caption = "Distance to the reference from settling on, of flights of the study and with parts changed."
+    caption = f"Distance to the reference from settling on, of flights of the study and with parts changed.{cut_words(panels)}"
     name = f"{trial.name}-comparison"
     return Chart(name=name, caption=caption, panels=panels, panel_height=min(0.34, _HEIGHT / len(panels))) if panels else None
 

@@ -22,8 +22,13 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
     blocks: list[Block] = []
     if len(trials) == 1 and trials[0].swept and len(trials[0].flown):
         blocks += [
-            Heading("The reference's oscillation; equation numbers are the paper's"),
-            flight_table(trials[0].flown, "Flight", partial(flight_name, trials[0]), OSCILLATION_COLUMNS),
+            flight_table(
+                trials[0].flown,
+                "Flight",
+                partial(flight_name, trials[0]),
+                OSCILLATION_COLUMNS,
+                caption="The reference's oscillation in each flight; equation numbers are the paper's.",
+            ),
         ]
     if len(trials) == 1:
         return [*blocks, Heading("Every parameter"), _table(_rows(trials[0], every=True) + _derived(run, trials[0]))]

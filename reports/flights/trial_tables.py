@@ -45,7 +45,11 @@ OSCILLATION_COLUMNS = (
 
 
 def flight_table(
-    rows: pd.DataFrame, head: str, name: Callable[["pd.Series[Any]"], str], columns: Columns = _FLIGHT_COLUMNS
+    rows: pd.DataFrame,
+    head: str,
+    name: Callable[["pd.Series[Any]"], str],
+    columns: Columns = _FLIGHT_COLUMNS,
+    caption: str = "The flights, a row each, with their outcome.",
 ) -> Table:
     """Return a row per flight, and its outcome in words.
 
@@ -54,6 +58,7 @@ def flight_table(
     rows : of the flights
     head, name : of the first column, and what it says of a flight
     columns : title, name and pattern of the others
+    caption : what the table shows
     """
     cells = [
         [name(row), *(number(row.get(key), pattern) for _, key, pattern in columns), outcome(row)] for _, row in rows.iterrows()
@@ -61,7 +66,7 @@ def flight_table(
     first, last = (min(2.6, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, -1))
     widths = [first, *[1.05] * len(columns), last]
     return Table(
-        caption="The flights, a row each, with their outcome.",
+        caption=caption,
         head=[head, *(title for title, _, _ in columns), "Outcome"],
         rows=cells,
         widths=widths,
