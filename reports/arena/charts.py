@@ -24,8 +24,8 @@ _FAMILIES = (
 _WORD = (0.04, 0.03)
 """Width and height of a law's number, over those of a panel as wide as the page."""
 
-_MAPS_ROWS = 3
-"""Rows of tracks in a figure: of more it would be higher than a page."""
+_MAPS = 9
+"""Tracks in a figure, in three columns: more would be small, and the figure higher than a page."""
 
 _SHOWN_S = 120.0
 """End of a flight that is drawn [s]."""
@@ -209,18 +209,15 @@ def track_charts(arena: Arena, *, tracking: bool) -> list[Chart]:
         f"{what}: the last {_SHOWN_S:g} s of one flight a law, the same start for all; condition: {first}. Seen from the ship, to"
         " scale, with her plume up the page. The best on the tracking error come first."
     )
-    # Circles are all alike.
-    columns, height = (3, 0.38) if tracking else (4, 0.28)
-    most = _MAPS_ROWS * columns
     return [
         Chart(
-            name=f"{'tracks' if tracking else 'circles'}{i // most + 1}",
+            name=f"{'tracks' if tracking else 'circles'}{i // _MAPS + 1}",
             caption=caption if not i else "As before, of the other laws.",
-            panels=panels[i : i + most],
-            columns=columns,
-            panel_height=height,
+            panels=panels[i : i + _MAPS],
+            columns=3,
+            panel_height=0.33,
         )
-        for i in range(0, len(panels), most)
+        for i in range(0, len(panels), _MAPS)
     ]
 
 

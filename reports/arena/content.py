@@ -81,15 +81,14 @@ def _section(anchor: str, title: str, nav_title: str, blocks: list[Block]) -> Se
 def _tracking(arena: Arena) -> list[Block]:
     if not arena.in_task(tracking=True):
         return []
-    # Page 1 shows the first one.
     return [
         Text(_TRACKING),
-        *effort_charts(arena)[1:],
         Heading("Over all conditions"),
         Text(_BOLD),
         tracking_table(arena, tracking=True),
         Heading("Tracking error by condition, rms [m]"),
         by_condition_table(arena, ERROR, tracking=True),
+        *effort_charts(arena),
         *track_charts(arena, tracking=True),
     ]
 
@@ -113,8 +112,7 @@ def _plume(arena: Arena) -> list[Block]:
         Text(_PLUME),
         *measured,
         plume_table(arena),
-        # Without a law that tracks, page 1 shows it.
-        *([crossing_chart(arena)] if arena.in_task(tracking=True) else []),
+        crossing_chart(arena),
         *(
             block
             for figure in by_condition

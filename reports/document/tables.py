@@ -3,9 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from reports.document.blocks import Table, Verdict
+from reports.run.columns import Array
 from reports.run.run_data import RunData
 
 
@@ -73,6 +75,14 @@ def vehicle_flown(run: RunData) -> str:
 def number(value: Any, pattern: str) -> str:
     """Return a value by its pattern, and a dash if there is none."""
     return "–" if value is None or pd.isna(value) else pattern.format(float(value))
+
+
+def span(values: Array, pattern: str) -> str:
+    """Return the least and the largest of some values, or the only one; a dash without any."""
+    if not np.isfinite(values).any():
+        return "–"
+    ends = [pattern.format(np.nanmin(values)), pattern.format(np.nanmax(values))]
+    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 def outcome(row: "pd.Series[Any]") -> str:

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from reports.document.palette import VARIANTS, Meaning
-from reports.run.columns import Array, column
+from reports.run.columns import Array, column, study_flight
 from reports.run.trials import AS_IN_THE_STUDY, Trial
 
 
@@ -36,7 +36,7 @@ class Variant:
 
     def beside(self, other: "Variant", name: str) -> Array:
         """Return a figure over that of the same case in another variant, of the cases that both have; at least a pair each."""
-        mine, theirs = (of.rows.set_index("seed")[name] for of in (self, other))
+        mine, theirs = (of.rows.set_index(study_flight(of.rows))[name] for of in (self, other))
         pairs = pd.concat([mine, theirs], axis=1, join="inner").dropna()
         ratio: Array = pairs.iloc[:, 0].to_numpy(dtype=np.float64) / pairs.iloc[:, 1].to_numpy(dtype=np.float64)
         return ratio

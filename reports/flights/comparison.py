@@ -12,7 +12,7 @@ from reports.document.palette import VARIANTS, Meaning
 from reports.document.tables import number
 from reports.flights.names import flight_name
 from reports.flights.trial_tables import flight_table
-from reports.run.columns import clearance, column, largest, measured, met, total
+from reports.run.columns import clearance, column, largest, measured, met, study_flight, total
 from reports.run.run_data import RunData
 from reports.run.time_history import tracking_error
 from reports.run.trials import AS_IN_THE_STUDY, Trial
@@ -50,7 +50,7 @@ def comparison_section(run: RunData, trials: list[Trial]) -> Section:
 
 def _pairs(rows: pd.DataFrame, compared: pd.DataFrame) -> pd.DataFrame:
     """Return compared flights and those of the study; ``base`` is the name of the study's flight of each pair."""
-    bases = [str(row["flight_id"]).removesuffix(f"_{row['variant']}") for _, row in compared.iterrows()]
+    bases = study_flight(compared)
     names = [str(variant).replace("_", " ") for variant in compared["variant"]]
     study = rows[rows["flight_id"].isin(bases)]
     study = study.assign(base=study["flight_id"], variant=AS_IN_THE_STUDY)
@@ -100,7 +100,12 @@ def _table(trial: Trial, pairs: pd.DataFrame) -> Table:
     """Return a row per flight; if they are too many, one per variant."""
     if len(pairs) <= _ROWS_MAX:
         names = {base: flight_name(trial, row) for base, row in trial.rows.set_index("flight_id", drop=False).iterrows()}
-        return flight_table(pairs, "Variant, flight", lambda row: f"{row['variant']}, {names.get(row['base'], row['base'])}")
+        return flight_table(
+            pairs,
+            "Variant, flight",
+            lambda row: f"{row['variant']}, {names.get(row['base'], row['base'])}",
+            caption="The same flights with parts changed, a row each, with their outcome.",
+        )
     rows = []
     for variant, flights in pairs.groupby("variant", sort=False):
         flown = measured(flights)

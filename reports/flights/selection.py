@@ -29,7 +29,7 @@ def flight_section(trials: list[Trial]) -> Section:
     """Return the section of single flights."""
     swept = len(trials) == 1 and bool(trials[0].swept) and len(trials[0].rows) <= SWEPT_MAX
     picked = picked_flights(trials)
-    if swept:
+    if swept and len(trials[0].rows) > 1:
         telling = {str(row["flight_id"]): why for _, row, why in picked}
         flights = [_of_sweep(trials[0], row, telling.get(str(row["flight_id"]), "")) for _, row in trials[0].rows.iterrows()]
         text = (

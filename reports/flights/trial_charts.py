@@ -156,7 +156,11 @@ def _errors(trial: Trial) -> list[Chart]:
         "A marker per flight. Crossing intervals and errors are those after settling: of the tracking, of its part towards the"
         " vessel against the one that the margin was planned for, and of the estimates of wind and vessel."
     )
-    return [_chart(trial, "errors", caption, panels, 0.34)]
+    shown = [panel for panel in panels if panel is not None]
+    return [
+        _chart(trial, f"errors{i // _ROW + 1}", "As before." if i else caption, shown[i : i + _ROW], 0.34)
+        for i in range(0, len(shown), _ROW)
+    ]
 
 
 def _starts(trial: Trial) -> list[Chart]:

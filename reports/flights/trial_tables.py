@@ -9,7 +9,7 @@ import pandas as pd
 from common.binomial import CONFIDENCE, percent, upper_bound
 from common.run_layout import SUMMARY
 from reports.document.blocks import Block, Table, Text
-from reports.document.tables import ending, number, outcome
+from reports.document.tables import ending, number, outcome, span
 from reports.flights.criteria import counted, criteria_of
 from reports.flights.names import fault_name
 from reports.run.columns import clearance, column, completed, count, kept_out, lost, met, total, violated
@@ -148,7 +148,7 @@ def fault_table(trial: Trial) -> Table:
             f"{total(members, 'keepout_violations')}",
             number(float(column(members, "min_distance_m").min()), "{:.1f}"),
             number(min(known, default=None), "{:.1f}") + (f" (of {len(known)})" if known and len(known) < len(closest) else ""),
-            f"{column(members, 'end_distance_m').min():.0f} to {column(members, 'end_distance_m').max():.0f}",
+            span(column(members, "end_distance_m"), "{:.0f}"),
             counted(members["mode_at_end"]),
         ])  # fmt: skip
     head = [

@@ -83,7 +83,7 @@ def test_a_criterion_without_a_figure_counts_as_failed(run):
 
 def test_a_criterion_that_the_report_does_not_know_is_shown_all_the_same(run):
     rows = rows_of(content(with_criterion(run, "turns", "loops_per_hour", 7)), "Turns")
-    assert ["loops per hour", "7", "see the flights that failed", "0"] in rows
+    assert ["Loops per hour", "7", "see the flights that are not met", "0"] in rows
 
 
 def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run_path, tmp_path):
@@ -150,7 +150,7 @@ def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
 def test_many_comparisons_have_a_row_for_each_variant(run):
     rows = pd.concat([run.summary[run.summary["trial"] == "steady"]] * 20, ignore_index=True)
     rows["flight_id"] = [f"steady_{i:05d}" for i in range(len(rows))]
-    compared = rows.assign(flight_id=rows["flight_id"] + "_no_preview", variant="no_preview")
+    compared = rows.assign(flight_id=rows["flight_id"] + "_no_preview", variant="no_preview", beside=rows["flight_id"])
     report = content(replace(run, summary=pd.concat([rows, run.summary[run.summary["trial"] == "turns"]]), comparison=compared))
     (table,) = blocks_of(report, Table, "comparison")
     assert [row[:3] for row in table.rows] == [["as in the study", "40", "0"], ["no preview", "40", "0"]]
