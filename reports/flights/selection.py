@@ -42,10 +42,10 @@ def flight_section(trials: list[Trial]) -> Section:
             "Of each trial the flights with the deepest keep-out violation and with a criterion that is not met, if there are such,"
             " the closest approach, and the one whose closest approach is the median."
             if len(flights) > 1
-            else "The only flight."
+            else "The only flight; page 1 shows its track."
         )
     blocks: list[Block] = [Text(text), FlightPicker(flights=flights)]
-    return Section(anchor="flights", title="Single flights", nav_title="Flights", blocks=blocks if flights else [])
+    return Section(anchor="flights", title="Single flights", nav_title="Single flights", blocks=blocks if flights else [])
 
 
 def _of_sweep(trial: Trial, row: "pd.Series[Any]", why: str) -> FlightContent:

@@ -28,6 +28,9 @@ _MARKS_MAX = 8
 _APART = 0.08
 """Distance of words in a row at least, over the width of the panel."""
 
+_WORD = (0.22, 0.07)
+"""Width and height of the words beside a track, over the size of what is shown."""
+
 _NEAR_PERIODS = 2.0
 """Periods of the oscillation that are shown from near, at the end of the flight."""
 
@@ -195,12 +198,14 @@ class _Tracks:
         # In a row they have to be apart.
         beside = beside or bool(np.any(np.diff(np.sort(x)) < _APART * width))
         high = float(np.max(flown[1])) + radius
-        notes = [
-            Note(x=float(right), y=float(up), text=f"  {_duration(time)}", align="left")
-            if beside
-            else Note(x=float(right), y=high, text=_duration(time))
-            for right, up, time in zip(x, y, times.tolist(), strict=True)
-        ]
+        size = max(float(np.ptp(flown[0])), float(np.ptp(flown[1]))) + radius
+        notes: list[Note] = []
+        for right, up, time in zip(x.tolist(), y.tolist(), times.tolist(), strict=True):
+            if not beside:
+                notes.append(Note(x=right, y=high, text=_duration(time)))
+            elif not any(abs(right - of.x) < _WORD[0] * size and abs(up - of.y) < _WORD[1] * size for of in notes):
+                # One that others would hide has its mark alone.
+                notes.append(Note(x=right, y=up, text=f"  {_duration(time)}", align="left"))
         return [Line(x=x, y=y, label="", colour=Meaning.SHIP, style="dots")], notes
 
 
