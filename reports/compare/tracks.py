@@ -124,19 +124,11 @@ class _Flight:
 
 def _whole(flown: list[_Flight], about: Surroundings) -> Panel:
     """Return both tracks about the ship of the first flight; where the other has another keep-out area, that as well."""
-    tracks = [flight.curve(*about_the_plume(flight.history)) for flight in flown]
-    other = float(flown[1].row["keepout_radius_m"])
-    rings = [
-        Line(
-            x=circle(other)[0],
-            y=circle(other)[1],
-            label=f"keep-out area of {flown[1].run.letter}",
-            colour=Meaning.LIMIT,
-            style="thin",
-        )
-    ]
-    rings = rings if other != about.radius else []
-    return ship_panel(about, [*rings, *tracks], title="Whole flight", aspect=_ASPECT)
+    lines = [flight.curve(*about_the_plume(flight.history)) for flight in flown]
+    if (other := float(flown[1].row["keepout_radius_m"])) != about.radius:
+        x, y = circle(other)
+        lines.insert(0, Line(x=x, y=y, label=f"keep-out area of {flown[1].run.letter}", colour=Meaning.LIMIT, style="thin"))
+    return ship_panel(about, lines, title="Whole flight", aspect=_ASPECT)
 
 
 def _settled(flown: list[_Flight], about: Surroundings) -> Panel:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from reports.document.chart import VARIANT_STYLES, Style
 from reports.document.palette import VARIANTS, Meaning
 from reports.run.columns import Array, column, study_flight
 from reports.run.trials import AS_IN_THE_STUDY, Trial
@@ -17,13 +18,14 @@ class Variant:
 
     Attributes
     ----------
-    name, colour : in tables and in figures
+    name, colour, style : in tables and in figures
     rows : of the flights that reached their orbit
     """
 
     name: str
     colour: str
     rows: pd.DataFrame
+    style: Style = "solid"
 
     @property
     def times(self) -> Array:
@@ -52,7 +54,10 @@ def variants_of(trial: Trial) -> list[Variant]:
     own = Variant(name=AS_IN_THE_STUDY, colour=Meaning.FLOWN, rows=_on_orbit(trial.rows))
     others = [
         Variant(
-            name=name.replace("_", " "), colour=VARIANTS[i % len(VARIANTS)], rows=_on_orbit(compared[compared["variant"] == name])
+            name=name.replace("_", " "),
+            colour=VARIANTS[i % len(VARIANTS)],
+            style=VARIANT_STYLES[i % len(VARIANT_STYLES)],
+            rows=_on_orbit(compared[compared["variant"] == name]),
         )
         for i, name in enumerate(names)
     ]

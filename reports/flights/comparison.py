@@ -7,7 +7,7 @@ import pandas as pd
 
 from reports.document.axes import cut_words
 from reports.document.blocks import Block, Section, Table, Text
-from reports.document.chart import Chart, Line, Panel
+from reports.document.chart import VARIANT_STYLES, Chart, Line, Panel, Style
 from reports.document.palette import VARIANTS, Meaning
 from reports.document.tables import number
 from reports.flights.names import flight_name
@@ -64,12 +64,15 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
     shown = float(f"{_SHOWN_TURNS * turn:.2g}")
     band = _SHOWN_BANDS * float(trial.setting("flight.settling_band_m"))
     variants = [variant for variant in dict.fromkeys(pairs["variant"]) if variant != AS_IN_THE_STUDY]
-    colours = {variant: VARIANTS[i % len(VARIANTS)] for i, variant in enumerate(variants)} | {AS_IN_THE_STUDY: Meaning.FLOWN}
+    looks: dict[str, tuple[str, Style]] = {
+        variant: (VARIANTS[i % len(VARIANTS)], VARIANT_STYLES[i % len(VARIANT_STYLES)]) for i, variant in enumerate(variants)
+    }
+    looks[AS_IN_THE_STUDY] = (Meaning.FLOWN, "solid")
     panels: list[Panel] = []
     for _, flights in pairs.groupby("base", sort=False):
         # The study's own flight lies over the others.
         ordered = flights.sort_values("variant", key=lambda names: names == AS_IN_THE_STUDY, kind="stable")
-        lines = [line for _, row in ordered.iterrows() for line in _error_line(trial.run, row, colours[row["variant"]], shown)]
+        lines = [line for _, row in ordered.iterrows() for line in _error_line(trial.run, row, looks[row["variant"]], shown)]
         if lines and len(panels) < _FLIGHTS_MAX:
             panels.append(
                 Panel(
@@ -86,14 +89,15 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
     return Chart(name=name, caption=caption, panels=panels, panel_height=min(0.34, _HEIGHT / len(panels))) if panels else None
 
 
-def _error_line(run: RunData, row: "pd.Series[Any]", colour: str, duration: float) -> list[Line]:
+def _error_line(run: RunData, row: "pd.Series[Any]", look: tuple[str, Style], duration: float) -> list[Line]:
     history = run.history(str(row["flight_id"]))
     if history is None or pd.isna(row["settling_time_s"]):
         return []
     settled = history[history["time_s"] >= row["settling_time_s"]]
     time = settled["time_s"].to_numpy() - float(row["settling_time_s"])
     shown = time <= duration
-    return [Line(x=time[shown], y=tracking_error(settled)[shown], label=str(row["variant"]), colour=colour)]
+    colour, style = look
+    return [Line(x=time[shown], y=tracking_error(settled)[shown], label=str(row["variant"]), colour=colour, style=style)]
 
 
 def _table(trial: Trial, pairs: pd.DataFrame) -> Table:

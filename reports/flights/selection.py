@@ -61,7 +61,7 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
     shown = [item for item in known if item[1] not in trial.swept and not pd.isna(row.get(item[1]))]
     world = ", ".join(f"{words}{number(row[key], pattern)}" for words, key, pattern in shown)
     # Page 1 shows the tracks of a run's only flight.
-    alone = len(trial.run.summary) == 1
+    alone = len(trial.run.summary) == len(trial.flown) == 1
     view = flight_view(trial, row)
     return FlightContent(
         flight_id=str(row["flight_id"]),

@@ -3,6 +3,7 @@
 import re
 
 import numpy as np
+import pypdfium2
 import pytest
 
 from reports.document.blocks import Card, Content, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
@@ -112,3 +113,15 @@ def test_flights_that_are_not_printed_have_a_page_only_where_all_are_asked_for(t
     write_pdf(report, tmp_path / "all.pdf", all_flights=True)
     assert headings(tmp_path / "some.pdf") & {"Page a", "Page b", "Page c"} == {"Page b"}
     assert headings(tmp_path / "all.pdf") >= {"Page a", "Page b", "Page c"}
+
+
+def test_a_long_key_goes_on_over_the_next_line_and_is_copied_whole(tmp_path):
+    key = "criteria.law_beyond_heading_rate_max_rad_s"
+    write_pdf(a_report([Table(head=["Key", "Value"], rows=[[key, "no"]], widths=[1.0, 8.0])]), tmp_path / "keys.pdf")
+    document = pypdfium2.PdfDocument(tmp_path / "keys.pdf")
+    text = "".join(page.get_textpage().get_text_range() for page in document)
+    document.close()
+    lines = text[text.index("criteria.") :].split("no\r\n")[0]
+    # Line ends are where the page has them; nothing else stands between the letters.
+    assert re.sub(r"\s", "", lines).startswith(key)
+    assert key not in text
