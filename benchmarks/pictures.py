@@ -19,6 +19,7 @@ COMMANDS = {
     "paper": ("scenarios.run", "paper"),
     "trials": ("scenarios.run", "sea_trial", "--set", "share=0.02"),
     "monte_carlo": ("scenarios.run", "monte_carlo", "--set", "flights=64"),
+    "sulphur": ("scenarios.run", "sulphur"),
     "design": ("innerloop.design", "x8"),
 }
 """Module and arguments that make each run."""

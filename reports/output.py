@@ -40,13 +40,14 @@ def flight_figure(run: RunData, flight_id: str, *, tracks_alone: bool = False) -
 def _charts(run: RunData, flight_id: str) -> "list[Chart]":
     import pandas as pd
 
+    from reports.flights.flight_view import flight_view
     from reports.flights.single_flight import flight_charts
     from reports.run.trials import read_trials
 
     rows = pd.concat([table for table in (run.summary, run.comparison) if len(table)])
     row = rows[rows["flight_id"] == flight_id].iloc[0]
     trial = next(trial for trial in read_trials(run) if trial.key == row["trial"])
-    if not (charts := flight_charts(trial, row)):
+    if not (charts := flight_charts(flight_view(trial, row))):
         raise _without_history(flight_id)
     return charts
 

@@ -1,6 +1,7 @@
 """Which content a run's report has."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 from common.provenance import without_folders
 from common.registry import announced, is_file_part
@@ -9,6 +10,7 @@ from reports.arena.content import arena_content
 from reports.convergence.content import convergence_content
 from reports.design.content import design_content
 from reports.document.blocks import FAILURES_MAX, Block, Content, Findings, Heading, Section, Text, Verdict
+from reports.document.chart import Chart
 from reports.document.missing import missing_sections
 from reports.document.numbering import numbered
 from reports.document.provenance import provenance_section
@@ -59,7 +61,8 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     found = made(run)
     figures = Section(anchor="figures", title="Key figures", nav_title="Figures", blocks=_figures(found.verdict))
     # What is missing is known once everything has been asked for; it stands first.
-    sections = [*missing_sections(run), figures, *found.sections, provenance_section(run, head)]
+    shown = [_without(found.picture, section) for section in found.sections]
+    sections = [*missing_sections(run), figures, *shown, provenance_section(run, head)]
     picture, sections = numbered(found.picture, [section for section in sections if section.blocks])
     return Content(
         title=title(run, settings or {}),
@@ -70,6 +73,13 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
         verdict=found.verdict,
         picture=picture,
         sections=sections,
+    )
+
+
+def _without(picture: Chart | None, section: Section) -> Section:
+    """Return a section without the figure that page 1 shows large."""
+    return replace(
+        section, blocks=[of for of in section.blocks if not (picture and isinstance(of, Chart) and of.name == picture.name)]
     )
 
 

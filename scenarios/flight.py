@@ -165,7 +165,8 @@ class FlightWork:
     def _named(self, task: Task) -> Row:
         experiment, number = self.located(task.number)
         flight_id, variant = experiment.named(number)
-        return {"flight_id": flight_id, "trial": experiment.name, "variant": variant}
+        named = {"flight_id": flight_id, "trial": experiment.name, "variant": variant}
+        return named | ({"beside": beside} if (beside := experiment.beside(number)) else {})
 
     def _result(
         self,

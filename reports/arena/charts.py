@@ -1,8 +1,7 @@
 """Figures of an arena: error against effort, crossings per minute against what is possible, and tracks."""
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -22,6 +21,12 @@ _FAMILIES = (
 )
 """What a law makes use of, and its colour."""
 
+_WORD = (0.04, 0.03)
+"""Width and height of a law's number, over those of a panel as wide as the page."""
+
+_MAPS = 9
+"""Tracks in a figure, in three columns: more would be small, and the figure higher than a page."""
+
 _SHOWN_S = 120.0
 """End of a flight that is drawn [s]."""
 
@@ -37,7 +42,7 @@ def effort_charts(arena: Arena) -> list[Chart]:
         caption="Distance to the oscillating reference against the heading rate commanded, each as its root mean square over the"
         " end of the flights, settled or not; a mark a law, numbered as in the tables. Down and to the left is better. What tracks"
         " the reference exactly needs the reference's own heading rate.",
-        panels=[_effort_panel(arena, entrants, arena.together)],
+        panels=[_effort_panel(arena, entrants, arena.together, _WORD)],
         panel_height=0.5,
     )
     if len(arena.conditions) == 1:
@@ -45,14 +50,15 @@ def effort_charts(arena: Arena) -> list[Chart]:
     each = Chart(
         name="efforts",
         caption="The same for each condition.",
-        panels=[_effort_panel(arena, entrants, condition) for condition in arena.conditions],
+        panels=[_effort_panel(arena, entrants, condition, (3.0 * _WORD[0], 2.0 * _WORD[1])) for condition in arena.conditions],
         columns=3,
         panel_height=0.34,
     )
     return [together, each]
 
 
-def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str) -> Panel:
+def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str, word: tuple[float, float]) -> Panel:
+    """Return a mark a law; of those that are nearer to each other than ``word``, over the panel's sizes, numbers are together."""
     efforts = {entrant.name: arena.of(EFFORT, entrant, condition).mean for entrant in entrants}
     errors = {entrant.name: math.log10(max(arena.of(ERROR, entrant, condition).mean, 1e-3)) for entrant in entrants}
     lines, notes = [], []
@@ -65,10 +71,10 @@ def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str) -> 
     low, high = math.floor(min(known) - 0.1), math.ceil(max(known) + 0.1)
     reach = [value for value in efforts.values() if math.isfinite(value)] or [0.0]
     span = max(reach) - min(reach) or 0.1
-    for entrant in entrants:
-        x_mark, y_mark = efforts[entrant.name], errors[entrant.name]
-        if math.isfinite(x_mark) and math.isfinite(y_mark):
-            notes.append(Note(x=x_mark + 0.012 * span, y=y_mark + 0.02 * (high - low), text=str(entrant.number), align="left"))
+    marks = {entrant.number: (efforts[entrant.name] / (1.16 * span), errors[entrant.name] / (high - low)) for entrant in entrants}
+    for numbers, (x_mark, y_mark) in clusters(marks, word):
+        at = (1.16 * span * x_mark + 0.015 * span, (high - low) * y_mark)
+        notes.append(Note(x=at[0], y=at[1], text=", ".join(map(str, numbers)), align="left"))
     return Panel(
         x_label="Heading rate, rms [rad/s]",
         y_label="Tracking error, rms [m]",
@@ -79,6 +85,33 @@ def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str) -> 
         y_range=(float(low), float(high)),
         y_names=[(float(decade), f"{10.0**decade:g}") for decade in range(low, high + 1)],
     )
+
+
+def clusters(
+    marks: Mapping[int, tuple[float, float]], word: tuple[float, float]
+) -> Iterator[tuple[list[int], tuple[float, float]]]:
+    """Yield marks whose numbers would hide each other, together: their numbers, and the place of their words.
+
+    Parameters
+    ----------
+    marks : place of each by its number, over the width and the height of the panel; some may be not a number
+    word : width and height of a number, as the places
+    """
+    left = sorted(
+        (number for number, place in marks.items() if all(map(math.isfinite, place))), key=lambda number: marks[number][1]
+    )
+    while left:
+        cluster = [left.pop(0)]
+        for number in list(left):
+            if any(_near(marks[number], marks[other], word) for other in cluster):
+                cluster.append(number)
+                left.remove(number)
+        x, y = zip(*(marks[number] for number in cluster), strict=True)
+        yield sorted(cluster), (max(x), sum(y) / len(y))
+
+
+def _near(one: tuple[float, float], other: tuple[float, float], word: tuple[float, float]) -> bool:
+    return all(abs(a - b) < size for a, b, size in zip(one, other, word, strict=True))
 
 
 def _title(condition: str) -> str:
@@ -152,7 +185,7 @@ def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: Figure, cond
     return Panel(
         x_label=figure.title,
         y_label="Law" if named else "",
-        title=_title(condition),
+        title="" if condition == arena.together else _title(condition),
         lines=lines,
         x_range=(0.0, reach or 1.0),
         y_names=names,
@@ -166,20 +199,26 @@ def _most(arena: Arena, figure: Figure, conditions: Iterable[str]) -> float:
     return max((value for value in found if math.isfinite(value)), default=0.0)
 
 
-def track_chart(arena: Arena, *, tracking: bool) -> Chart:
+def track_charts(arena: Arena, *, tracking: bool) -> list[Chart]:
     """Return the end of the first flight of each law in the first condition, seen from the vessel with its plume up the page."""
     ranked = arena.ranked(ERROR, arena.in_task(tracking=tracking))
     panels = [panel for entrant in ranked if (panel := _track_panel(arena, entrant, tracking=tracking)) is not None]
     first = next(iter(arena.conditions.values()), "")
     what = "The oscillating reference tracked" if tracking else "The vessel circled"
-    return Chart(
-        name="tracks" if tracking else "circles",
-        caption=f"{what}: the last {_SHOWN_S:g} s of one flight a law, the same start for all; condition: {first}. Seen from the"
-        " ship, to scale, with her plume up the page. The best on the tracking error come first.",
-        panels=panels,
-        columns=4 if tracking else 5,
-        panel_height=0.27 if tracking else 0.22,
+    caption = (
+        f"{what}: the last {_SHOWN_S:g} s of one flight a law, the same start for all; condition: {first}. Seen from the ship, to"
+        " scale, with her plume up the page. The best on the tracking error come first."
     )
+    return [
+        Chart(
+            name=f"{'tracks' if tracking else 'circles'}{i // _MAPS + 1}",
+            caption=caption if not i else "As before, of the other laws.",
+            panels=panels[i : i + _MAPS],
+            columns=3,
+            panel_height=0.33,
+        )
+        for i in range(0, len(panels), _MAPS)
+    ]
 
 
 def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | None:
@@ -199,9 +238,7 @@ def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | N
     ]
     # The same part of the plume for every law, however far from it one is.
     middle, half = (1.3 * about.radius, 0.8 * about.radius) if tracking else (0.0, 1.6 * about.radius)
-    title = f"{entrant.number} {entrant.title}" if tracking else str(entrant.number)
-    panel = ship_panel(about, lines, title=title, shown=[_square(middle, half)])
-    return replace(panel, x_label="Right [m]", y_label="Along [m]")
+    return ship_panel(about, lines, title=f"{entrant.number} {entrant.title}", shown=[_square(middle, half)])
 
 
 def _square(middle: float, half: float) -> Line:

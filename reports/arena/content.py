@@ -1,9 +1,9 @@
 """The report of an arena: a reader ranks the laws at a glance, and sees what each was given."""
 
-from reports.arena.charts import crossing_chart, effort_charts, track_chart, worth_chart
+from reports.arena.charts import crossing_chart, effort_charts, track_charts, worth_chart
 from reports.arena.data import Arena, Entrant, read_arena
 from reports.arena.figures import CROSSINGS, ERROR, PLUME_TIME, SULPHUR, Figure
-from reports.arena.tables import condition_table, given_table, plume_table, refused_table, tracking_table
+from reports.arena.tables import by_condition_table, condition_table, given_table, plume_table, refused_table, tracking_table
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Card, Findings, Heading, Section, Text, Verdict
 from reports.document.tables import parameter_table
@@ -58,6 +58,7 @@ def arena_content(run: RunData) -> Findings:
         # It was interrupted: there are flights, and nothing to rank.
         return flights_content(run)
     sections = [
+        _section("conditions", "Conditions", "Conditions", [condition_table(arena)]),
         _section("tracking", "Tracking the oscillating reference", "Tracking", _tracking(arena)),
         _section("standoff", "Circling the vessel", "Circling", _standoff(arena)),
         _section("plume", "Measuring the plume", "Plume", _plume(arena)),
@@ -80,29 +81,27 @@ def _section(anchor: str, title: str, nav_title: str, blocks: list[Block]) -> Se
 def _tracking(arena: Arena) -> list[Block]:
     if not arena.in_task(tracking=True):
         return []
-    tracks = track_chart(arena, tracking=True)
     return [
         Text(_TRACKING),
-        *effort_charts(arena),
         Heading("Over all conditions"),
         Text(_BOLD),
         tracking_table(arena, tracking=True),
         Heading("Tracking error by condition, rms [m]"),
-        condition_table(arena, ERROR, tracking=True),
-        *([tracks] if tracks.panels else []),
+        by_condition_table(arena, ERROR, tracking=True),
+        *effort_charts(arena),
+        *track_charts(arena, tracking=True),
     ]
 
 
 def _standoff(arena: Arena) -> list[Block]:
     if not arena.in_task(tracking=False):
         return []
-    tracks = track_chart(arena, tracking=False)
     return [
         Text(_STANDOFF),
         tracking_table(arena, tracking=False),
         Heading("Distance to the circle by condition, rms [m]"),
-        condition_table(arena, ERROR, tracking=False),
-        *([tracks] if tracks.panels else []),
+        by_condition_table(arena, ERROR, tracking=False),
+        *track_charts(arena, tracking=False),
     ]
 
 
@@ -114,7 +113,11 @@ def _plume(arena: Arena) -> list[Block]:
         *measured,
         plume_table(arena),
         crossing_chart(arena),
-        *(block for figure in by_condition for block in (Heading(f"{figure.title}, by condition"), condition_table(arena, figure))),
+        *(
+            block
+            for figure in by_condition
+            for block in (Heading(f"{figure.title}, by condition"), by_condition_table(arena, figure))
+        ),
     ]
 
 
@@ -149,7 +152,7 @@ def _verdict(arena: Arena) -> Verdict:
             for task, entrant in best
         ),
         *(
-            Card(f"Best on {figure.title.partition(' [')[0].lower()}: {first.title}", _mean(arena, first, figure))
+            Card(f"Best on {figure.quantity.lower()}: {first.title}", f"{_mean(arena, first, figure)} {figure.unit}")
             for figure in (CROSSINGS, SULPHUR)
             if arena.has(figure)
             for first in arena.ranked(figure, arena.entrants)[:1]

@@ -39,6 +39,16 @@ class Figure:
     greater_first: bool = False
     shown: Callable[[float], float] = _as_it_is
 
+    @property
+    def quantity(self) -> str:
+        """Return the title without its unit."""
+        return self.title.partition(" [")[0]
+
+    @property
+    def unit(self) -> str:
+        """Return the unit of the title."""
+        return self.title.partition(" [")[2].removesuffix("]")
+
     def written(self, value: float) -> str:
         """Return a value as text; a dash where it is not a number."""
         if math.isnan(value):

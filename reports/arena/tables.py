@@ -6,19 +6,33 @@ from collections.abc import Sequence
 import numpy as np
 
 from reports.arena.data import ALL, Arena, Entrant, Estimate
-from reports.arena.figures import CROSSINGS, ERROR, MEASURING_FIGURES, TRACKING_FIGURES, Figure
+from reports.arena.figures import CROSSINGS, ERROR, MEASURING_FIGURES, SULPHUR, TRACKING_FIGURES, Figure
 from reports.document.blocks import Table
-from reports.document.tables import number
+from reports.document.tables import number, parameter_value
 from reports.run.columns import column, total
+
+
+def condition_table(arena: Arena) -> Table:
+    """Return the conditions, and which keys each sets."""
+    given = arena.run.manifest["config"]["arena"]["conditions"]
+    rows = [[str(of["name"]).replace("_", " "), of["title"], parameter_value(of["set"])] for of in given]
+    return Table(
+        caption="The conditions, in each of which every law is flown, and the keys that each sets.",
+        head=["Condition", "In words", "Keys"],
+        rows=rows,
+        widths=[1.0, 2.4, 5.0],
+        left_columns=3,
+        prose=True,
+    )
 
 
 def tracking_table(arena: Arena, *, tracking: bool) -> Table:
     """Return the figures of tracking of the laws of a task, over all conditions."""
     entrants = arena.ranked(ERROR, arena.in_task(tracking=tracking))
-    head = ["No.", "Law", *(figure.title for figure in TRACKING_FIGURES), "Settled", "at, median [s]", "Violations"]
+    head = ["No.", "Law", *(figure.title for figure in TRACKING_FIGURES), "Settled", "after, median [s]", "Keep-out violations"]
     extra = [_ending(entrant) for entrant in entrants]
     what = "Tracking" if tracking else "Circling"
-    widths = [0.4, 2.1, 1.8, 1.9, 1.9, 1.4, 0.8, 0.8, 0.8]
+    widths = [0.4, 2.0, 1.75, 1.95, 1.95, 1.55, 0.85, 0.75, 0.95]
     return _table(arena, entrants, TRACKING_FIGURES, head, extra, widths=widths, caption=f"{what}, over all conditions.")
 
 
@@ -40,7 +54,7 @@ def plume_table(arena: Arena) -> Table:
     head = ["No.", "Law", "Task", *(figure.title for figure in figures), "Closest approach [m]", "Keep-out violations"]
     extra = [[_closest(entrant), str(total(entrant.rows, "keepout_violations"))] for entrant in entrants]
     tasks = [["tracks" if entrant.tracks else "circles"] for entrant in entrants]
-    widths = [0.4, 2.4, 0.7, *(1.7 for _ in figures), 1.0, 0.9]
+    widths = [0.4, 2.0, 0.6, *(2.4 if figure is SULPHUR else 1.7 for figure in figures), 0.9, 0.95]
     caption = "Measuring the plume, over all conditions."
     return _table(arena, entrants, figures, head, extra, widths=widths, caption=caption, before=tasks)
 
@@ -78,7 +92,7 @@ def _interval(estimate: Estimate, figure: Figure) -> str:
     return mean if math.isnan(estimate.mean) else f"{mean} ({low}\N{EN DASH}{high})"
 
 
-def condition_table(arena: Arena, figure: Figure, *, tracking: bool | None = None) -> Table:
+def by_condition_table(arena: Arena, figure: Figure, *, tracking: bool | None = None) -> Table:
     """Return a figure by condition, a row for each law: of a task, or of both.
 
     Parameters
@@ -124,8 +138,11 @@ def given_table(arena: Arena) -> Table:
 
 
 def refused_table(arena: Arena) -> Table:
-    """Return the laws that do not take part in a task, with the reason."""
+    """Return which laws do not take part in a task, by the reason."""
     tasks = {"tracking": "track the oscillation", "standoff": "circle the vessel"}
-    rows = [[entry["law"].replace("_", " "), tasks.get(entry["task"], entry["task"]), entry["reason"]] for entry in arena.refused]
-    head = ["Law", "Cannot", "because"]
-    return Table(head=head, rows=rows, widths=[1.4, 1.2, 4.0], left_columns=3, prose=True, breakable=True)
+    laws: dict[tuple[str, str], list[str]] = {}
+    for entry in arena.refused:
+        laws.setdefault((tasks.get(entry["task"], entry["task"]), entry["reason"]), []).append(entry["law"].replace("_", " "))
+    rows = [[task, ", ".join(names), reason] for (task, reason), names in laws.items()]
+    head = ["Cannot", "Laws", "because"]
+    return Table(head=head, rows=rows, widths=[1.2, 3.0, 3.0], left_columns=3, prose=True, breakable=True)

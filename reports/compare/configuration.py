@@ -100,7 +100,7 @@ def _in_words(key: str, values: Sequence[Any]) -> Values:
 
 
 def _whole(value: Any, key: str) -> str:
-    return value_in_words(value, key) or "none"
+    return value_in_words(value, key)
 
 
 def _brief(value: Any, key: str) -> str:

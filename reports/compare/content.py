@@ -81,7 +81,7 @@ def comparison_content(runs: Sequence[Run], compared: Sequence[Compared]) -> Con
     return Content(
         title=f"Comparison of {len(runs)} runs",
         letterhead=replace(letterhead(runs[0].data, {}), run=names),
-        description=f"{described}.",
+        description="",
         changes="",
         flown=f"{described}.",
         verdict=_verdict(runs, compared),

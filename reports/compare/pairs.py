@@ -93,10 +93,11 @@ def paired(first: Run, other: Run) -> Pairs:
     same = len(set(left[0]["name"]) & set(left[1]["name"]))
     if not len(places):
         what = f"{same} agree in name but not in seed; give both the same --seed" if same else "no name is in both"
-        raise ReportError(
-            f"'{first.data.path}' ({len(rows[0])} flights) and '{other.data.path}' ({len(rows[1])} flights) have no flight in"
-            f" common: {what}"
+        one, two = (
+            f"'{run.data.path}' ({len(table)} flight{'s' * (len(table) != 1)})"
+            for run, table in zip((first, other), rows, strict=True)
         )
+        raise ReportError(f"{one} and {two} have no flight in common: {what}")
     before, after = (
         table.iloc[places[place]].reset_index(drop=True) for table, place in zip(rows, ("place_x", "place_y"), strict=True)
     )

@@ -1,7 +1,7 @@
 """The flight that differs most between two runs: both tracks in one figure."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,9 @@ from reports.compare.runs import Run
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.palette import Meaning
-from reports.document.panels import around
+from reports.document.ship_map import ship_panel, ship_words
 from reports.run.columns import Array, column
+from reports.run.surroundings import Surroundings, surroundings
 from reports.run.time_history import about_the_plume, keepout_distance, thinned, tracking_error
 
 _JUDGED = ("clearance_m", "crossing_interval_error", "tracking_error_rms_m", "settling_time_s")
@@ -24,7 +25,10 @@ _POINTS_MAX = 1300
 """Points of a curve at most."""
 
 _FAR = 1.6
-"""Least end of the distances that are shown, over r_min; so far the plume is drawn, too [-]."""
+"""Least end of the distances that are shown, over r_min [-]."""
+
+_ASPECT = 1.1
+"""Width of a map over its height [-]."""
 
 _ERROR_MIN = 0.1
 """Floor of the tracking error's logarithmic axis [m]."""
@@ -83,15 +87,23 @@ def _chart(pairs: Pairs, place: int, why: str) -> Chart | None:
             return None
         flown.append(_Flight(run=run, row=row, history=thinned(history, _POINTS_MAX), colour=colour))
     vessel = all(np.isfinite(column(flight.history, "vessel_north_m")).any() for flight in flown)
-    panels = [_from_the_vessel(flown, "Whole flight"), _settled(flown), _distances(flown)] if vessel else [_over_the_ground(flown)]
+    about = _about(flown[0]) if vessel else None
+    panels = [_whole(flown, about), _settled(flown, about), _distances(flown)] if about else [_over_the_ground(flown)]
     return Chart(
         name=f"changed{pairs.other.letter}",
         caption=f"The flight that differs most, {pairs.names[place]}: {why}."
-        + " Seen from the vessel, with the plume’s axis up the page, and over time." * vessel,
+        + (f" {ship_words(about)} Ship, plume, wind and north are as in {pairs.first.letter}." if about else ""),
         panels=[in_kilometres(panel) for panel in (*panels, _errors(flown))],
         columns=2,
         panel_height=0.42,
     )
+
+
+def _about(flight: "_Flight") -> Surroundings:
+    """Return what was about a flight at its closest approach."""
+    trial = flight.run.trial_of(str(flight.row["flight_id"]))
+    distance = keepout_distance(flight.history, trial.source_height, trial.shape)
+    return surroundings(trial.config, flight.row, flight.history, int(np.nanargmin(distance)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,28 +122,24 @@ class _Flight:
         return self.curve(column(self.history, "time_s"), y)
 
 
-def _settled(flown: list[_Flight]) -> Panel:
+def _whole(flown: list[_Flight], about: Surroundings) -> Panel:
+    """Return both tracks about the ship of the first flight; where the other has another keep-out area, that as well."""
+    lines = [flight.curve(*about_the_plume(flight.history)) for flight in flown]
+    if (other := float(flown[1].row["keepout_radius_m"])) != about.radius:
+        x, y = circle(other)
+        lines.insert(0, Line(x=x, y=y, label=f"keep-out area of {flown[1].run.letter}", colour=Meaning.LIMIT, style="thin"))
+    return ship_panel(about, lines, title="Whole flight", aspect=_ASPECT)
+
+
+def _settled(flown: list[_Flight], about: Surroundings) -> Panel:
     """Return the tracks from when both have settled; the second half of the flights if one never has."""
     settled = max(float(flight.row["settling_time_s"]) for flight in flown)
     known = math.isfinite(settled)
     begin = settled if known else 0.5 * min(float(flight.history["time_s"].iloc[-1]) for flight in flown)
-    late = [replace(flight, history=flight.history[flight.history["time_s"] >= begin]) for flight in flown]
-    panel = _from_the_vessel(late, "Once both have settled" if known else "Second half of the flight")
-    right, along = (np.concatenate(of) for of in zip(*(about_the_plume(flight.history) for flight in late), strict=True))
-    return replace(panel, x_range=around(right), y_range=around(along))
-
-
-def _from_the_vessel(flown: list[_Flight], title: str) -> Panel:
-    radii = dict.fromkeys(float(flight.row["keepout_radius_m"]) for flight in flown)
-    rings = [Line(x=x, y=y, label="r_min", colour=Meaning.LIMIT, fill=True) for x, y in map(circle, radii)]
-    plume = Line(x=np.zeros(2), y=np.array([0.0, _FAR * max(radii)]), label="plume", colour=Meaning.PLUME, style="dash")
-    return Panel(
-        x_label="Right of the plume's axis [m]",
-        y_label="Along the plume's axis [m]",
-        title=title,
-        equal=True,
-        lines=[*rings, plume, *(flight.curve(*about_the_plume(flight.history)) for flight in flown)],
-    )
+    late = [flight.history[flight.history["time_s"] >= begin] for flight in flown]
+    tracks = [flight.curve(*about_the_plume(history)) for flight, history in zip(flown, late, strict=True)]
+    title = "Once both have settled" if known else "Second half of the flight"
+    return ship_panel(about, tracks, title=title, shown=tracks, aspect=_ASPECT)
 
 
 def _over_the_ground(flown: list[_Flight]) -> Panel:
@@ -149,7 +157,7 @@ def _distances(flown: list[_Flight]) -> Panel:
     late = max(float(np.nanmax(distance[len(distance) // 2 :])) for distance in distances)
     end = max(float(flight.history["time_s"].iloc[-1]) for flight in flown)
     levels = [
-        Line(x=np.array([0.0, end]), y=np.array([level, level]), label="r_min", colour=Meaning.LIMIT, style="dash")
+        Line(x=np.array([0.0, end]), y=np.array([level, level]), label="keep-out area, r_min", colour=Meaning.LIMIT, style="dash")
         for level in dict.fromkeys(float(flight.row["keepout_radius_m"]) for flight in flown)
     ]
     return Panel(

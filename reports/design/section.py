@@ -1,7 +1,7 @@
 """The autopilot's design, as a section of a report."""
 
 from reports.design.data import Record, at_middle, bank_deg, complete, grid_trims
-from reports.design.section_charts import innerloop_charts
+from reports.design.section_charts import loop_charts, step_charts
 from reports.design.tables import step_table, trim_table
 from reports.document.blocks import Heading, Section, Table
 from reports.document.tables import number
@@ -16,16 +16,15 @@ def innerloop_section(record: Record) -> Section:
     flown = float((design.get("envelope") or {}).get("bank_deg") or _BANK_SHOWN)
     bank = min({bank_deg(t) for t in design["trims"]}, key=lambda known: abs(known - flown))
     trims = sorted((t for t in grid_trims(design) if bank_deg(t) in (0.0, bank)), key=lambda t: float(t["airspeed_mps"]))
-    responses, *others = innerloop_charts(design)
     return Section(
         anchor="innerloop",
         title="Autopilot",
         blocks=[
             step_table(design),
+            *step_charts(design),
             Heading("Margins at the middle design airspeed"),
             _margin_table(design),
-            responses,
-            *others,
+            *loop_charts(design),
             Heading(f"Equilibria: level, and at {bank:.3g} degrees of bank"),
             trim_table(trims),
         ],

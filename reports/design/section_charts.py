@@ -13,20 +13,17 @@ from reports.document.chart import Chart, Line, Panel, constant
 from reports.document.palette import Meaning
 
 _COMMANDS = {
-    "heading_rate": ("Heading rate [rad/s]", "heading-rate step"),
-    "airspeed": ("Airspeed [m/s]", "airspeed step"),
-    "altitude": ("Altitude [m]", "altitude step"),
+    "heading_rate": ("Heading rate [rad/s]", "heading rate"),
+    "airspeed": ("Airspeed [m/s]", "airspeed"),
+    "altitude": ("Altitude [m]", "altitude"),
 }
 
 
-def innerloop_charts(design: Record) -> list[Chart]:
-    """Return the figures of a complete design record, of level flight alone: responses, margins, loop shapes, poles."""
-    return [_responses(design), _margins(design), _loops(design), _poles(design)]
-
-
-def _responses(design: Record) -> Chart:
-    panels = []
+def step_charts(design: Record) -> list[Chart]:
+    """Return the responses of a complete design record to a step of each command, in level flight."""
+    charts: list[Chart] = []
     for command, (own_label, title) in _COMMANDS.items():
+        panels = []
         for channel in (command, *(name for name in ("airspeed", "altitude", "roll") if name != command))[:3]:
             label = own_label if channel == command else _COMMANDS.get(channel, ("Bank [deg]", ""))[0]
             scale = np.degrees(1.0) if channel == "roll" else 1.0
@@ -36,18 +33,19 @@ def _responses(design: Record) -> Chart:
                     kind, colour, style = RESPONSE_STYLES[response["kind"]]
                     x, y = np.array(response["time_s"]), scale * np.array(response["channels"][channel])
                     lines.append(Line(x=x, y=y, label=kind, colour=colour, style=style))
-            panels.append(Panel(x_label="Time [s]", y_label=label, lines=lines, title=title if channel == command else ""))
-    return Chart(
-        name="responses",
-        caption="Step responses about level flight: the linear design's prediction and what JSBSim flies. Columns: the commanded"
-        " quantity, and what else moves. Deviations from trim.",
-        panels=panels,
-        columns=3,
-        panel_height=0.24,
-    )
+            panels.append(Panel(x_label="Time [s]", y_label=label, lines=lines))
+        caption = f"A step of the {title} from level flight, and what else moves: deviations from trim."
+        told = " The linear design's prediction, and what JSBSim flies." if not charts else ""
+        charts.append(Chart(name=f"step{len(charts) + 1}", caption=caption + told, panels=panels, columns=3, panel_height=0.25))
+    return charts
 
 
-def _margins(design: Record) -> Chart:
+def loop_charts(design: Record) -> list[Chart]:
+    """Return the other figures of a complete design record, of level flight alone: margins, loop shapes, poles."""
+    return [*_margins(design), _loops(design), _poles(design)]
+
+
+def _margins(design: Record) -> list[Chart]:
     required = design["required"]
     level = [m for m in design["margins"] if not (bank_deg(m) or m["between"])]
 
@@ -63,20 +61,23 @@ def _margins(design: Record) -> Chart:
         lines.append(Line(x=x, y=constant(x, limit), label="required", colour=Meaning.LIMIT, style="dash"))
         return Panel(x_label="Design airspeed [m/s]", y_label=label, lines=lines, y_range=(0.0, top))
 
-    panels = [
-        panel("gain_db", "Gain margin [dB]", required["gain_db"], 40.0),
-        panel("phase_deg", "Phase margin [deg]", required["phase_deg"], 95.0),
-        panel("disk_gain_db", "Disk gain margin [dB]", required["gain_db"], 25.0),
-        panel("disk_phase_deg", "Disk phase margin [deg]", required["phase_deg"], 95.0),
-    ]
-    return Chart(
-        name="margins",
-        caption="Margins with one loop opened and all others closed, servos, engine and computing delay included; disk margins"
-        f" allow for gain and phase changing together, “all controls” for every control changing independently.{cut_words(panels)}",
-        panels=panels,
-        columns=2,
-        panel_height=0.3,
-    )
+    kinds = (
+        (
+            "margins", "", "Margins with one loop opened and all others closed, servos, engine and computing delay included.",
+            ("Gain margin [dB]", 40.0), ("Phase margin [deg]", 95.0),
+        ),
+        (
+            "diskmargins", "disk_", "Disk margins allow for gain and phase changing together, “all controls” for every control"
+            " changing independently.", ("Disk gain margin [dB]", 25.0), ("Disk phase margin [deg]", 95.0),
+        ),
+    )  # fmt: skip
+    charts = []
+    for name, prefix, caption, gain, phase in kinds:
+        panels = [
+            panel(f"{prefix}{key}", label, required[key], top) for key, (label, top) in (("gain_db", gain), ("phase_deg", phase))
+        ]
+        charts.append(Chart(name=f"level{name}", caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.3))
+    return charts
 
 
 def _loops(design: Record) -> Chart:

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -18,6 +19,9 @@ _MANTISSAS = ((1,), (1, 3), (1, 2, 5), (1, 2, 3, 4, 5, 6, 7, 8, 9))
 
 _MARKS_MIN, _MARKS_MAX = 3, 8
 """Marks of a logarithmic axis."""
+
+_LINES = 2
+"""Lines of a label at most."""
 
 _SPARE = 0.04
 """Room on both sides of the data, over their range."""
@@ -60,6 +64,16 @@ def log_axis(limits: tuple[float, float] | None, curves: Sequence[Array]) -> tup
         if len(marks) >= _MARKS_MIN:
             break
     return limits, marks[:: -(-len(marks) // _MARKS_MAX) or 1]
+
+
+def wrapped(label: str, room: float) -> list[str]:
+    """Return the lines of an axis' label: two of about the same length where it has more letters than there is room for."""
+    # Not within the brackets of a unit.
+    words = re.split(r" (?![^\[]*\])", label)
+    if len(label) <= room or len(words) < _LINES:
+        return [label]
+    halves = [(" ".join(words[:cut]), " ".join(words[cut:])) for cut in range(1, len(words))]
+    return list(min(halves, key=lambda lines: max(map(len, lines))))
 
 
 def mark_text(value: float) -> str:

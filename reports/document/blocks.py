@@ -77,7 +77,7 @@ class FlightContent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlightPicker:
-    """Flights, one at a time: picked on the screen, and a page each in print. A report has one at most."""
+    """Flights, one at a time: picked on the screen, and one after the other in print. A report has one at most."""
 
     flights: list[FlightContent]
 

@@ -12,6 +12,9 @@ from reports.run.columns import Array
 Style = Literal["solid", "thin", "broad", "dash", "dot", "points", "dots", "diamonds", "ring", "square", "cross"]
 """Lines: thin ones over a track, broad ones below it. Marks: small dots, a ring where something begins, a square where it ends."""
 
+VARIANT_STYLES: tuple[Style, ...] = ("dash", "dot", "solid")
+"""Styles of comparisons, in their order: with their colours, curves are told apart in grey. The study's own is solid."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Line:

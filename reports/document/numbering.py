@@ -19,7 +19,12 @@ def numbered(picture: Chart | None, sections: Iterable[Section]) -> tuple[Chart 
     """
     figures, tables = count(1), count(1)
     if picture:
-        picture = replace(picture, name="first", panel_height=PICTURE_HEIGHT / picture.rows, number=f"Figure {next(figures)}")
+        picture = replace(
+            picture,
+            name="first",
+            panel_height=(PICTURE_HEIGHT - picture.last_height) / picture.rows,
+            number=f"Figure {next(figures)}",
+        )
     return picture, [replace(section, blocks=_numbered(section, figures, tables)) for section in sections]
 
 

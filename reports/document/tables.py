@@ -1,11 +1,13 @@
 """Tables that every report has, and how their cells are written."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from reports.document.blocks import Table, Verdict
+from reports.run.columns import Array
 from reports.run.run_data import RunData
 
 
@@ -16,7 +18,7 @@ def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
         caption="Every parameter, with its unit and meaning.",
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
         rows=[*rows, *derived],
-        widths=[3.1, 1.2, 0.7, 3.9],
+        widths=[2.7, 1.9, 0.7, 3.6],
         left_columns=4,
         prose=True,
         breakable=True,
@@ -75,6 +77,14 @@ def number(value: Any, pattern: str) -> str:
     return "–" if value is None or pd.isna(value) else pattern.format(float(value))
 
 
+def span(values: Array, pattern: str) -> str:
+    """Return the least and the largest of some values, or the only one; a dash without any."""
+    if not np.isfinite(values).any():
+        return "–"
+    ends = [pattern.format(np.nanmin(values)), pattern.format(np.nanmax(values))]
+    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
+
+
 def outcome(row: "pd.Series[Any]") -> str:
     """Return how a flight ended, in words, and why it is not met."""
     if row["criteria_met"]:
@@ -95,5 +105,18 @@ def parameter_value(value: Any, key: str = "") -> str:
         return "yes" if value else "no"
     if isinstance(value, list):
         # Of all lists the starting distances alone are a range.
-        return (" to " if key == "start.distance_m" else ", ").join(parameter_value(v) for v in value)
-    return "not set" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+        between = " to " if key == "start.distance_m" else ", "
+        return between.join(_entry_in_words(entry) for entry in value) or "none"
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} = {parameter_value(of, name)}" for name, of in value.items()) or "none"
+    return "not set" if value is None else f"{value:g}" if isinstance(value, float) else str(value) or "none"
+
+
+def _entry_in_words(entry: Any) -> str:
+    """Return an entry of a list: of a table by its name, of a draw by the key that is drawn and how."""
+    if not isinstance(entry, Mapping):
+        return parameter_value(entry)
+    if "name" in entry:
+        return str(entry["name"]).replace("_", " ")
+    settings = (f"{name} {parameter_value(of)}" for name, of in entry.items() if name != "key")
+    return " ".join([str(entry.get("key", "")), *settings]).strip()

@@ -57,7 +57,7 @@ def _found_panel(variants: list[Variant]) -> Panel:
         found = int(np.count_nonzero(within))
         share = np.linspace(0.0, found / len(times), found + 1)
         x = np.concatenate([[0.0], np.repeat(times[within], 2), [FOUND_WITHIN]])
-        lines.append(Line(x=x, y=np.repeat(share, 2), label=variant.name, colour=variant.colour))
+        lines.append(Line(x=x, y=np.repeat(share, 2), label=variant.name, colour=variant.colour, style=variant.style))
     return Panel(
         x_label="Time since the orbit was reached [s]",
         y_label="Plume found [-]",
@@ -74,7 +74,8 @@ def _hits_panel(trial: Trial, variants: list[Variant]) -> Panel | None:
         if len(times):
             middle = _STRETCH * (np.floor(times / _STRETCH) + 0.5)
             shares = pd.DataFrame({"middle": middle, "hit": hits}).groupby("middle", as_index=False).mean()
-            lines.append(Line(x=column(shares, "middle"), y=column(shares, "hit"), label=variant.name, colour=variant.colour))
+            x, y = column(shares, "middle"), column(shares, "hit")
+            lines.append(Line(x=x, y=y, label=variant.name, colour=variant.colour, style=variant.style))
     return (
         Panel(x_label="Time since the orbit was reached [s]", y_label="Passes that hit [-]", lines=lines, y_range=(0.0, 1.03))
         if lines

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from reports.document.chart import VARIANT_STYLES, Style
 from reports.document.palette import VARIANTS, Meaning
-from reports.run.columns import Array, column
+from reports.run.columns import Array, column, study_flight
 from reports.run.trials import AS_IN_THE_STUDY, Trial
 
 
@@ -17,13 +18,14 @@ class Variant:
 
     Attributes
     ----------
-    name, colour : in tables and in figures
+    name, colour, style : in tables and in figures
     rows : of the flights that reached their orbit
     """
 
     name: str
     colour: str
     rows: pd.DataFrame
+    style: Style = "solid"
 
     @property
     def times(self) -> Array:
@@ -36,7 +38,7 @@ class Variant:
 
     def beside(self, other: "Variant", name: str) -> Array:
         """Return a figure over that of the same case in another variant, of the cases that both have; at least a pair each."""
-        mine, theirs = (of.rows.set_index("seed")[name] for of in (self, other))
+        mine, theirs = (of.rows.set_index(study_flight(of.rows))[name] for of in (self, other))
         pairs = pd.concat([mine, theirs], axis=1, join="inner").dropna()
         ratio: Array = pairs.iloc[:, 0].to_numpy(dtype=np.float64) / pairs.iloc[:, 1].to_numpy(dtype=np.float64)
         return ratio
@@ -52,7 +54,10 @@ def variants_of(trial: Trial) -> list[Variant]:
     own = Variant(name=AS_IN_THE_STUDY, colour=Meaning.FLOWN, rows=_on_orbit(trial.rows))
     others = [
         Variant(
-            name=name.replace("_", " "), colour=VARIANTS[i % len(VARIANTS)], rows=_on_orbit(compared[compared["variant"] == name])
+            name=name.replace("_", " "),
+            colour=VARIANTS[i % len(VARIANTS)],
+            style=VARIANT_STYLES[i % len(VARIANT_STYLES)],
+            rows=_on_orbit(compared[compared["variant"] == name]),
         )
         for i, name in enumerate(names)
     ]

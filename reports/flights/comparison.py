@@ -5,13 +5,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from reports.document.axes import cut_words
 from reports.document.blocks import Block, Section, Table, Text
-from reports.document.chart import Chart, Line, Panel
+from reports.document.chart import VARIANT_STYLES, Chart, Line, Panel, Style
 from reports.document.palette import VARIANTS, Meaning
 from reports.document.tables import number
 from reports.flights.names import flight_name
 from reports.flights.trials.tables import flight_table
-from reports.run.columns import clearance, column, largest, measured, met, total
+from reports.run.columns import clearance, column, largest, measured, met, study_flight, total
 from reports.run.run_data import RunData
 from reports.run.time_history import tracking_error
 from reports.run.trials import AS_IN_THE_STUDY, Trial
@@ -49,7 +50,7 @@ def comparison_section(run: RunData, trials: list[Trial]) -> Section:
 
 def _pairs(rows: pd.DataFrame, compared: pd.DataFrame) -> pd.DataFrame:
     """Return compared flights and those of the study; ``base`` is the name of the study's flight of each pair."""
-    bases = [str(row["flight_id"]).removesuffix(f"_{row['variant']}") for _, row in compared.iterrows()]
+    bases = study_flight(compared)
     names = [str(variant).replace("_", " ") for variant in compared["variant"]]
     study = rows[rows["flight_id"].isin(bases)]
     study = study.assign(base=study["flight_id"], variant=AS_IN_THE_STUDY)
@@ -63,12 +64,15 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
     shown = float(f"{_SHOWN_TURNS * turn:.2g}")
     band = _SHOWN_BANDS * float(trial.setting("flight.settling_band_m"))
     variants = [variant for variant in dict.fromkeys(pairs["variant"]) if variant != AS_IN_THE_STUDY]
-    colours = {variant: VARIANTS[i % len(VARIANTS)] for i, variant in enumerate(variants)} | {AS_IN_THE_STUDY: Meaning.FLOWN}
+    looks: dict[str, tuple[str, Style]] = {
+        variant: (VARIANTS[i % len(VARIANTS)], VARIANT_STYLES[i % len(VARIANT_STYLES)]) for i, variant in enumerate(variants)
+    }
+    looks[AS_IN_THE_STUDY] = (Meaning.FLOWN, "solid")
     panels: list[Panel] = []
     for _, flights in pairs.groupby("base", sort=False):
         # The study's own flight lies over the others.
         ordered = flights.sort_values("variant", key=lambda names: names == AS_IN_THE_STUDY, kind="stable")
-        lines = [line for _, row in ordered.iterrows() for line in _error_line(trial.run, row, colours[row["variant"]], shown)]
+        lines = [line for _, row in ordered.iterrows() for line in _error_line(trial.run, row, looks[row["variant"]], shown)]
         if lines and len(panels) < _FLIGHTS_MAX:
             panels.append(
                 Panel(
@@ -80,26 +84,32 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
                     y_range=(0.0, band),
                 )
             )
-    caption = "Distance to the reference from settling on, of flights of the study and with parts changed."
+    caption = f"Distance to the reference from settling on, of flights of the study and with parts changed.{cut_words(panels)}"
     name = f"{trial.name}-comparison"
     return Chart(name=name, caption=caption, panels=panels, panel_height=min(0.34, _HEIGHT / len(panels))) if panels else None
 
 
-def _error_line(run: RunData, row: "pd.Series[Any]", colour: str, duration: float) -> list[Line]:
+def _error_line(run: RunData, row: "pd.Series[Any]", look: tuple[str, Style], duration: float) -> list[Line]:
     history = run.history(str(row["flight_id"]))
     if history is None or pd.isna(row["settling_time_s"]):
         return []
     settled = history[history["time_s"] >= row["settling_time_s"]]
     time = settled["time_s"].to_numpy() - float(row["settling_time_s"])
     shown = time <= duration
-    return [Line(x=time[shown], y=tracking_error(settled)[shown], label=str(row["variant"]), colour=colour)]
+    colour, style = look
+    return [Line(x=time[shown], y=tracking_error(settled)[shown], label=str(row["variant"]), colour=colour, style=style)]
 
 
 def _table(trial: Trial, pairs: pd.DataFrame) -> Table:
     """Return a row per flight; if they are too many, one per variant."""
     if len(pairs) <= _ROWS_MAX:
         names = {base: flight_name(trial, row) for base, row in trial.rows.set_index("flight_id", drop=False).iterrows()}
-        return flight_table(pairs, "Variant, flight", lambda row: f"{row['variant']}, {names.get(row['base'], row['base'])}")
+        return flight_table(
+            pairs,
+            "Variant, flight",
+            lambda row: f"{row['variant']}, {names.get(row['base'], row['base'])}",
+            caption="The same flights with parts changed, a row each, with their outcome.",
+        )
     rows = []
     for variant, flights in pairs.groupby("variant", sort=False):
         flown = measured(flights)

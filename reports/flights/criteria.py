@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from reports.document.tables import limit
+from reports.document.tables import limit, parameter_value
 from reports.run.columns import Array, column, completed, count, interval_error
 from reports.run.trials import Trial
 
@@ -73,6 +73,9 @@ _MEASURES = {
 
 MEASURED = tuple(_MEASURES)
 
+_OUTSIDE = _Measure(what="Time outside the altitudes of the scenario", values=_column("altitude_outside_s"), unit="s")
+"""Of the criterion that altitudes are kept: it has no limit of its own."""
+
 
 def criteria_of(trial: Trial) -> list[Criterion]:
     """Return the criteria of a trial beside the keep-out area: to complete its mission, and those of its configuration."""
@@ -88,7 +91,10 @@ def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
         return _figure(trial, key, float(value), _MEASURES[key])
     if key == "modes_at_end":
         return _modes(trial, [str(mode) for mode in value])
-    return Criterion(key=key, what=key.replace("_", " "), limit=str(value), worst="see the flights that failed", failed=0)
+    if key == "within_altitudes":
+        return _figure(trial, key, 0.0, _OUTSIDE)
+    words = key.replace("_", " ").capitalize()
+    return Criterion(key=key, what=words, limit=parameter_value(value), worst="see the flights that are not met", failed=0)
 
 
 def _figure(trial: Trial, key: str, value: float, measure: _Measure) -> Criterion:
@@ -103,7 +109,7 @@ def _figure(trial: Trial, key: str, value: float, measure: _Measure) -> Criterio
         limit=f"≤ {limit(measure.scale * value)} {measure.unit}",
         worst=words + (f"; {missing} without" if missing and len(known) else ""),
         failed=int(np.count_nonzero(~(measured <= value))),
-        fraction=worst / value,
+        fraction=worst / value if value else float("nan"),
     )
 
 

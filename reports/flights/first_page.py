@@ -13,6 +13,9 @@ from reports.run.columns import Array, clearance, column, total
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
+_NAME_MAX = 36
+"""Letters of a flight's name that there is room for above its picture."""
+
 _CALM = 0.05
 """Speed of the wind below which air counts as still [m/s]."""
 
@@ -55,11 +58,18 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
     flights.sort(key=lambda flight: flight[0])
     places = {"Closest": 0, "Typical": len(flights) // 2} if len(flights) > 1 else {"": 0}
     several = len(trials) > 1
-    shown = []
+    shown, names = [], {}
     for what, place in places.items():
         _, trial, rows, i = flights[place]
         row = rows.iloc[i]
-        name = f"{f'{trial.title}, ' * several}{flight_name(trial, row)}"
-        shown.append((trial, row, f"{what}: {name}, {float(row['min_distance_m']):.1f} m"))
+        names[what] = f"{f'{trial.title}, ' * several}{flight_name(trial, row)}"
+        shown.append((trial, row, f"{float(row['min_distance_m']):.1f} m"))
+    # Longer names would touch above the panels.
+    long = any(len(name) > _NAME_MAX for name in names.values())
+    shown = [
+        (trial, row, f"{what}: {distance}" if long else f"{what}: {name}, {distance}")
+        for (trial, row, distance), (what, name) in zip(shown, names.items(), strict=True)
+    ]
     told = " Closest: the flight with the closest approach. Typical: the one whose closest approach is the median."
+    told += "".join(f" {what}: {name}." for what, name in names.items()) if long else ""
     return track_picture(shown, told=told * (len(shown) > 1))

@@ -3,10 +3,8 @@
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from reports.document.blocks import Block, Heading, Table
-from reports.document.tables import parameter_value
+from reports.document.tables import parameter_value, span
 from reports.flights.names import flight_name, manoeuvre_name
 from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
 from reports.run.columns import column
@@ -22,8 +20,13 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
     blocks: list[Block] = []
     if len(trials) == 1 and trials[0].swept and len(trials[0].flown):
         blocks += [
-            Heading("The reference's oscillation; equation numbers are the paper's"),
-            flight_table(trials[0].flown, "Flight", partial(flight_name, trials[0]), OSCILLATION_COLUMNS),
+            flight_table(
+                trials[0].flown,
+                "Flight",
+                partial(flight_name, trials[0]),
+                OSCILLATION_COLUMNS,
+                caption="The reference's oscillation in each flight; equation numbers are the paper's.",
+            ),
         ]
     if len(trials) == 1:
         return [*blocks, Heading("Every parameter"), _table(_rows(trials[0], every=True) + _derived(run, trials[0]))]
@@ -109,7 +112,7 @@ def _derived(run: RunData, trial: Trial) -> list[list[str]]:
             ("steering_max as searched", "steering_max_rad_s", "{:.4f}", "rad/s", where),
             ("bound on the heading-rate demand", "heading_rate_bound_rad_s", "{:.5f}", "rad/s", where),
         ]
-    rows = [[name, _range(trial, key, pattern), "", unit, meaning] for name, key, pattern, unit, meaning in derived]
+    rows = [[name, span(column(trial.rows, key), pattern), "", unit, meaning] for name, key, pattern, unit, meaning in derived]
     if run.manifest.get("guidance_lag_s") is not None:
         meaning = (
             "Lag of the heading rate behind its command (measured of an aircraft, given of a kinematic vehicle) and half a step of"
@@ -117,12 +120,3 @@ def _derived(run: RunData, trial: Trial) -> list[list[str]]:
         )
         rows.append(["guidance lag", f"{run.manifest['guidance_lag_s']:.3f}", "", "s", meaning])
     return rows
-
-
-def _range(trial: Trial, key: str, pattern: str) -> str:
-    """Return the least and the largest value, or the only one."""
-    known = column(trial.rows, key)
-    if not np.isfinite(known).any():
-        return "–"
-    ends = [pattern.format(np.nanmin(known)), pattern.format(np.nanmax(known))]
-    return ends[0] if ends[0] == ends[1] else " to ".join(ends)

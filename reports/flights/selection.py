@@ -9,6 +9,7 @@ import pandas as pd
 
 from reports.document.blocks import Block, FlightContent, FlightPicker, Section, Text
 from reports.document.tables import number, outcome
+from reports.flights.flight_view import flight_view
 from reports.flights.names import flight_name
 from reports.flights.single_flight import flight_charts
 from reports.replay.flight_scene import flight_scene
@@ -28,23 +29,23 @@ def flight_section(trials: list[Trial]) -> Section:
     """Return the section of single flights."""
     swept = len(trials) == 1 and bool(trials[0].swept) and len(trials[0].rows) <= SWEPT_MAX
     picked = picked_flights(trials)
-    if swept:
+    if swept and len(trials[0].rows) > 1:
         telling = {str(row["flight_id"]): why for _, row, why in picked}
         flights = [_of_sweep(trials[0], row, telling.get(str(row["flight_id"]), "")) for _, row in trials[0].rows.iterrows()]
         text = (
-            f"Every flight of the sweep. In print {len(telling)} have a page of their own: {', '.join(telling.values())};"
-            " reports.build --all-flights prints all."
+            f"Every flight of the sweep. In print {len(telling)} {'are' if len(telling) > 1 else 'is'} shown:"
+            f" {', '.join(telling.values())}; reports.build --all-flights prints all."
         )
     else:
         flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked]
         text = (
             "Of each trial the flights with the deepest keep-out violation and with a criterion that is not met, if there are such,"
-            " the closest approach, and the one whose closest approach is the median. In print each has a page of its own."
+            " the closest approach, and the one whose closest approach is the median."
             if len(flights) > 1
-            else "In print it has a page of its own."
+            else "The only flight; page 1 shows its track."
         )
     blocks: list[Block] = [Text(text), FlightPicker(flights=flights)]
-    return Section(anchor="flights", title="Single flights", nav_title="Flights", blocks=blocks if flights else [])
+    return Section(anchor="flights", title="Single flights", nav_title="Single flights", blocks=blocks if flights else [])
 
 
 def _of_sweep(trial: Trial, row: "pd.Series[Any]", why: str) -> FlightContent:
@@ -59,12 +60,15 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
     known = [("", "min_distance_m", "{:.1f} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", "{:.1f} m/s")]
     shown = [item for item in known if item[1] not in trial.swept and not pd.isna(row.get(item[1]))]
     world = ", ".join(f"{words}{number(row[key], pattern)}" for words, key, pattern in shown)
+    # Page 1 shows the tracks of a run's only flight.
+    alone = len(trial.run.summary) == len(trial.flown) == 1
+    view = flight_view(trial, row)
     return FlightContent(
         flight_id=str(row["flight_id"]),
         label=f"{name} · {state.split(':', maxsplit=1)[0]}",
         title=f"{name}: {state} ({world or 'not flown'})",
-        charts=flight_charts(trial, row),
-        scene=flight_scene(trial, row),
+        charts=flight_charts(view)[int(alone) :],
+        scene=flight_scene(trial, row, view.whole) if view else None,
     )
 
 

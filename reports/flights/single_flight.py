@@ -2,19 +2,17 @@
 
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning
-from reports.flights.flight_view import FlightView, flight_view
+from reports.flights.flight_view import FlightView
+from reports.flights.names import flight_name
 from reports.flights.tracks import track_chart
 from reports.run.columns import NOTICEABLE, Array, column
 from reports.run.time_history import tracking_error
-from reports.run.trials import Trial
 
 _NEAR, _FAR = 0.95, 1.6
 """Distances that the time history shows, over r_min [-]."""
@@ -28,9 +26,8 @@ _TWO_COLUMNS = 6
 _TIME = "Time [s]"
 
 
-def flight_charts(trial: Trial, row: "pd.Series[Any]") -> list[Chart]:
-    """Return the figures of one flight of a trial, given its row; none if it has no time history."""
-    view = flight_view(trial, row)
+def flight_charts(view: FlightView | None) -> list[Chart]:
+    """Return the figures of one flight; none if it has no time history."""
     return [] if view is None else [track_chart(view), _Histories(view).chart()]
 
 
@@ -46,13 +43,13 @@ class _Histories:
             self._distance_panel, self._tracking_panel, self._wind_panel, self._vessel_panel, self._rate_panel,
             self._bank_panel, self._airspeed_panel, self._altitude_panel, self._mode_panel,
         ]  # fmt: skip
-        bands = self._view.bands()
+        trial, bands = self._view.trial, self._view.bands()
         panels = [replace(in_kilometres(panel), bands=bands) for panel in (make() for make in makers) if panel is not None]
         columns = 2 if len(panels) <= _TWO_COLUMNS else 3
         return Chart(
             name="histories",
-            caption=f"Time histories. Distance is {self._view.trial.measured_from}, dashed r_min; of more than"
-            f" {_FAR:g} r_min it is off the panel. Dashed in the panel of the heading rate: ω_max."
+            caption=f"{flight_name(trial, self._view.row)}: time histories. Distance is {trial.measured_from}, dashed r_min; of"
+            f" more than {_FAR:g} r_min it is off the panel. Dashed in the panel of the heading rate: ω_max."
             + (" Tinted: the keep-out guard changed commands." if bands else ""),
             panels=panels,
             columns=columns,

@@ -28,6 +28,9 @@ _MARKS_MAX = 8
 _APART = 0.08
 """Distance of words in a row at least, over the width of the panel."""
 
+_WORD = (0.22, 0.07)
+"""Width and height of the words beside a track, over the size of what is shown."""
+
 _NEAR_PERIODS = 2.0
 """Periods of the oscillation that are shown from near, at the end of the flight."""
 
@@ -37,8 +40,9 @@ _NEAR_S = 60.0
 _NEARER = 0.5
 """Size of what is shown from near, over that of the whole, up to which it has a panel of its own."""
 
-_UPRIGHT, _BESIDE, _WIDE, _FLAT = 0.75, 1.2, 1.9, 4.8
-"""Width over height: of one of two on page 1, of one that has another beside it, of one that is alone, and over the ground."""
+_UPRIGHT, _LARGE, _BESIDE, _WIDE, _FLAT = 0.75, 1.05, 1.2, 1.9, 4.8
+"""Width over height: of one of two flights on page 1, of one of two of a flight there, of such on its own page, alone, and over
+the ground."""
 
 _AWAY = 1.0
 """Way of the ship over the size of the track about her, from which there is a panel over the ground."""
@@ -66,7 +70,7 @@ def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: st
     if not found:
         return None
     if len(found) == 1:
-        chart = found[0][0].chart()
+        chart = found[0][0].chart(_LARGE)
         return replace(chart, name=name, caption=chart.caption + told)
     drawn = [tracks.picture(title) for tracks, title in found]
     panels = [panel for panel, _ in drawn]
@@ -83,13 +87,13 @@ class _Tracks:
         self._about = surroundings(view.trial.config, view.row, view.whole, nearest) if view.vessel else None
         self._step = next((s for s in _STEPS if view.ends[1] / s <= _MARKS_MAX), _STEPS[-1])
 
-    def chart(self) -> Chart:
-        """Return where it went."""
+    def chart(self, aspect: float = _BESIDE) -> Chart:
+        """Return where it went; of two panels beside each other each has an aspect."""
         about = self._about
         if about is None:
             return Chart(name="tracks", caption="Over the ground.", panels=[in_kilometres(self.ground())], panel_height=0.42)
-        near, ground = self._near(about), self.ground() if self._way() is not None else None
-        panels = [self._whole(about, "The whole flight", _BESIDE if near else _WIDE), *([near] if near else [])]
+        near, ground = self._near(about, aspect), self.ground() if self._way() is not None else None
+        panels = [self._whole(about, "The whole flight", aspect if near else _WIDE), *([near] if near else [])]
         over = " Below, over the ground, with ship, keep-out area and plume as they were at the closest approach." if ground else ""
         return Chart(
             name="tracks",
@@ -120,7 +124,7 @@ class _Tracks:
         ]
         return ship_panel(about, lines, title=title, notes=notes, shown=[*ship_lines(about, about.axis), *lines], aspect=aspect)
 
-    def _near(self, about: Surroundings) -> Panel | None:
+    def _near(self, about: Surroundings, aspect: float) -> Panel | None:
         """Return the last of the flight from near; None where it never settled, or where the whole is no larger."""
         view, rate = self.view, float(self.view.row.get("omega_0_rad_s", math.nan))
         last = _NEAR_PERIODS * math.tau / rate if rate > 0.0 else _NEAR_S
@@ -135,7 +139,7 @@ class _Tracks:
             return None
         lines = [*late.guarded(about_the_plume), track, reference, *late.marks(about_the_plume)]
         title = f"The last {view.ends[1] - begin:.0f} s"
-        return ship_panel(about, lines, title=title, shown=[track, reference], aspect=_BESIDE)
+        return ship_panel(about, lines, title=title, shown=[track, reference], aspect=aspect)
 
     def ground(self, title: str = "") -> Panel:
         """Return the flight over the ground: along the way of a ship that goes far, else with north up the page."""
@@ -195,12 +199,14 @@ class _Tracks:
         # In a row they have to be apart.
         beside = beside or bool(np.any(np.diff(np.sort(x)) < _APART * width))
         high = float(np.max(flown[1])) + radius
-        notes = [
-            Note(x=float(right), y=float(up), text=f"  {_duration(time)}", align="left")
-            if beside
-            else Note(x=float(right), y=high, text=_duration(time))
-            for right, up, time in zip(x, y, times.tolist(), strict=True)
-        ]
+        size = max(float(np.ptp(flown[0])), float(np.ptp(flown[1]))) + radius
+        notes: list[Note] = []
+        for right, up, time in zip(x.tolist(), y.tolist(), times.tolist(), strict=True):
+            if not beside:
+                notes.append(Note(x=right, y=high, text=_duration(time)))
+            elif not any(abs(right - of.x) < _WORD[0] * size and abs(up - of.y) < _WORD[1] * size for of in notes):
+                # One that others would hide has its mark alone.
+                notes.append(Note(x=right, y=up, text=f"  {_duration(time)}", align="left"))
         return [Line(x=x, y=y, label="", colour=Meaning.SHIP, style="dots")], notes
 
 

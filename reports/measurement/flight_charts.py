@@ -21,6 +21,9 @@ _POINTS_MAX = 4000
 
 _AXES = {"crossing_interval_mean_s": "Crossing interval [s]", "crossing_distance_mean_m": "Crossing distance [m]"}
 
+_FUELS_MIN, _OF_EACH_MIN = 3, 4
+"""Fuels of an operating curve at least, and flights of each in the median: intervals of fewer fill the panel."""
+
 
 def error_chart(rows: pd.DataFrame) -> Chart:
     """Return the result of each flight against what a perfect instrument reads, by method."""
@@ -52,9 +55,9 @@ def _positive(rows: pd.DataFrame, prefix: str) -> tuple[float, float]:
 
 
 def operating_curve(statistics: Record) -> Chart | None:
-    """Return the share of ships called above the limit over their fuel's sulphur; none where there is one fuel alone."""
+    """Return the share of ships called above the limit over their fuel's sulphur; none of few fuels, or of few flights of each."""
     entries = pd.DataFrame(statistics["operating_curve"])
-    if not len(entries) or entries["fsc_fuel_percent"].nunique() < 3:
+    if not len(entries) or entries["fsc_fuel_percent"].nunique() < _FUELS_MIN or entries["flights"].median() < _OF_EACH_MIN:
         return None
     lines = []
     for number, (sensor, group) in enumerate(entries.groupby("sensor")):

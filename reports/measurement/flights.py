@@ -97,7 +97,7 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
         if record is not None and history is not None:
             samples = _samples(record, history)
             blocks: list[Block | None] = [
-                Text(_told(row)),
+                Text(_told(row) if len(measured) == 1 else f"{flight_id}. {_told(row)}"),
                 result_table(record),
                 _track(run, row, history),
                 over_time_chart(record),
@@ -106,7 +106,7 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
                 channels_chart(samples),
                 regression_chart(samples, record),
             ]
-            title = "Fuel sulphur content" if len(measured) == 1 else f"Measurement of flight {flight_id}"
+            title = "Fuel sulphur content" if len(measured) == 1 else "Measurement of one flight"
             shown = [block for block in blocks if block is not None]
             return Section(anchor="measurement", title=title, nav_title="Measurement", blocks=shown)
     return None

@@ -12,6 +12,7 @@ from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Findings, FlightContent, FlightPicker, Heading, Section, Table, Text
 from reports.document.chart import Chart
 from reports.document.tables import length, number, outcome, parameter_table
+from reports.flights.flight_view import flight_view
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import track_picture
 from reports.paper.bounds import bounds_section
@@ -225,13 +226,14 @@ def _flights(run: RunData) -> FlightPicker:
         if pd.isna(row["min_distance_m"]) or case in elsewhere:
             continue
         name = "Simulation 3" if case == "sim3" else case
+        view = flight_view(trial, row)
         flights.append(
             FlightContent(
                 flight_id=flight_id,
                 label=f"{name} · {vehicle_name(run, fidelity)}",
                 title=f"{name}: {vehicle_name(run, fidelity)}",
-                charts=flight_charts(trial, row),
-                scene=flight_scene(trial, row),
+                charts=flight_charts(view),
+                scene=flight_scene(trial, row, view.whole) if view else None,
             )
         )
     return FlightPicker(flights=flights)

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
@@ -28,7 +29,7 @@ def patrol_chart(patrol: Patrol) -> Chart:
         name=patrol.name,
         caption="Left: where ships went, numbered where they began and until they were measured, and the UAV, which began at the"
         " ring. Right: what it did beside or on the way to which ship. A diamond is when an oracle would be done with her.",
-        panels=[_map(patrol), _ship_times(patrol)],
+        panels=[in_kilometres(_map(patrol)), _ship_times(patrol)],
         columns=2,
         panel_height=0.5,
     )

@@ -41,8 +41,9 @@ def patrol_content(run: RunData) -> Findings:
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(anchor="parameters", title="Parameters", blocks=[parameter_table(run)]),
     ]
+    patrols_flown = f"{len(patrols.patrols)} patrol{'s' * (len(patrols.patrols) != 1)}"
     words = (
-        f"{len(patrols.patrols)} patrols of {vehicle_flown(run)}, {patrols.hours:.1f} h in all: {patrols.total('served')} of"
+        f"{patrols_flown} of {vehicle_flown(run)}, {patrols.hours:.1f} h in all: {patrols.total('served')} of"
         f" {patrols.total('ships')} ships were served."
     )
     return Findings(flown=words, verdict=_verdict(patrols), picture=charts[0][1] if charts else None, sections=sections)

@@ -7,7 +7,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from reports.document.axes import log_axis, mark_text
+from reports.document.axes import log_axis, mark_text, wrapped
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import BAND_OPACITY, COLOURS, INK, SCALE
 from reports.run.columns import Array
@@ -23,6 +23,12 @@ _TITLE_SIZE, _SMALL_TITLE_SIZE = 8.5, 7.0
 
 _LEGEND_ROW = 0.16
 """Height of a row of a legend [inches]."""
+
+_LETTER = 0.058
+"""Width of a letter of a label [inches]."""
+
+_MARKS = 0.45
+"""Room of the marks of an axis and of its label, beside a panel and below it [inches]."""
 
 _DEPTH = 2.0
 """At which matplotlib draws lines: tints are drawn there, too, so that a panel's lines lie in their order."""
@@ -78,8 +84,8 @@ def _draw_on(figure: Figure | SubFigure, chart: Chart) -> None:
     shaded = None
     for i, panel in enumerate(chart.panels):
         shaded = _draw_marks(axes[i], panel, handles, chart.scale) or shaded
-        title_size = _SMALL_TITLE_SIZE if chart.crowded else _TITLE_SIZE
-        _dress(axes[i], panel, title_size=title_size, last_row=i + chart.columns >= len(chart.panels) or not chart.share_x)
+        _dress(axes[i], panel)
+        _label(axes[i], chart, i)
     for ax in axes[len(chart.panels) :]:
         ax.set_axis_off()
     for ax in axes[max(0, len(chart.panels) - chart.columns) : len(chart.panels)]:
@@ -146,12 +152,21 @@ def _draw_shaded(ax: Any, line: Line, values: Array, scale: tuple[float, float])
     return ax.scatter(line.x[order], line.y[order], s=4.0, linewidths=0.0, **colours)
 
 
-def _dress(ax: Any, panel: Panel, *, title_size: float, last_row: bool) -> None:
-    if last_row:
-        ax.set_xlabel(panel.x_label)
-    ax.set_ylabel(panel.y_label)
+def _label(ax: Any, chart: Chart, index: int) -> None:
+    """Write title and labels of a panel; labels that are longer than the panel have two lines."""
+    panel = chart.panels[index]
     if panel.title:
-        ax.set_title(panel.title, fontsize=title_size)
+        ax.set_title(panel.title, fontsize=_SMALL_TITLE_SIZE if chart.crowded else _TITLE_SIZE)
+    names = max((len(name) for shown in chart.panels for _, name in shown.y_names), default=0)
+    wide = chart.is_wide(index)
+    width = WIDTH_INCHES / (1 if wide else chart.columns) - _MARKS - _LETTER * names / chart.columns
+    height = WIDTH_INCHES * (chart.last_height if wide else chart.panel_height) - _MARKS / (chart.rows if chart.share_x else 1)
+    if index + chart.columns >= len(chart.panels) or not chart.share_x:
+        ax.set_xlabel("\n".join(wrapped(panel.x_label, width / _LETTER)))
+    ax.set_ylabel("\n".join(wrapped(panel.y_label, height / _LETTER)))
+
+
+def _dress(ax: Any, panel: Panel) -> None:
     x_range = _mark(ax, "x", [line.x for line in panel.lines], panel.x_range, log=panel.log_x, whole=panel.x_whole)
     y_range = _mark(ax, "y", [line.y for line in panel.lines], panel.y_range, log=panel.log_y, whole=panel.y_whole)
     for note in panel.notes:

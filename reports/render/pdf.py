@@ -71,7 +71,8 @@ def _block(block: Block, directory: Path) -> Data:
 
 def _flight(flight: FlightContent, directory: Path, numbers: Iterator[int]) -> Data:
     charts = [replace(chart, number=f"Figure {next(numbers)}") for chart in flight.charts]
-    return {"title": flight.title, "charts": [_image(chart, directory, f"{flight.flight_id}-") for chart in charts]}
+    images = [{"kind": "Chart", **_image(chart, directory, f"{flight.flight_id}-")} for chart in charts]
+    return {"title": flight.title, "charts": images}
 
 
 def _image(chart: Chart, directory: Path, prefix: str = "") -> Data:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from reports.document.axes import log_axis, mark_text
+from reports.document.axes import log_axis, mark_text, wrapped
 from reports.document.chart import Chart, Panel
 from reports.document.palette import BAND_OPACITY, COLOURS, INK
 
@@ -35,6 +35,9 @@ _TITLE_SIZE, _SMALL_TITLE_SIZE = 16, 12
 _SYMBOL, _CHARACTER = 46.0, 6.6
 """Width of an entry of the legend: its symbol and the room about it, and each letter [px]."""
 
+_LETTER, _LABEL_LINE = 8.0, 17
+"""Width of a letter of an axis' label, and height of each of its lines [px]."""
+
 _ONE_BY_ONE = 3
 """Panels side by side of which each has a row of its own on a narrow screen; of more two stay side by side."""
 
@@ -57,7 +60,7 @@ def layout(chart: Chart) -> Data:
     for i, panel in enumerate(chart.panels):
         number = _number(i)
         last = i + chart.columns >= len(chart.panels)
-        x, y = _axes(panel, number, show_x=last or not chart.share_x)
+        x, y = _axes(panel, number, place.room(i), show_x=last or not chart.share_x)
         if chart.share_x and not last:
             # The lowest panel of the column, which need not be in the last row.
             x["matches"] = f"x{i + chart.columns * ((len(chart.panels) - 1 - i) // chart.columns) + 1}"
@@ -65,7 +68,7 @@ def layout(chart: Chart) -> Data:
         found |= {f"xaxis{number}": x, f"yaxis{number}": y}
     return found | {
         "height": place.height,
-        "margin": {"l": 70, "r": 20, "t": place.top, "b": _BOTTOM},
+        "margin": {"l": 70, "r": 20, "t": place.top, "b": place.bottom},
         "font": {"size": 13},
         "legend": {"orientation": "h", "yanchor": "bottom", "y": place.legend, "x": 0.0},
         "showlegend": len(chart.labels) > 1,
@@ -103,8 +106,17 @@ class _Place:
         rows = chart.rows + bool(chart.last_height)
         self._inner = round(width * chart.height) + (rows - 1) * (self._gap if below_labels else 0)
         self.top = _BAR + _LEGEND_ROW * _legend_rows(chart.labels, width - _MARGINS) + _TITLE * self._titled + 6
-        self.height = self._inner + self.top + _BOTTOM
+        first = [name for panel in chart.panels[:: chart.columns] for _, name in panel.y_names]
+        self._width = width - _MARGINS - _CHARACTER * max(map(len, first), default=0)
+        lines = max(len(wrapped(panel.x_label, self.room(i)[0])) for i, panel in enumerate(chart.panels))
+        self.bottom = _BOTTOM + _LABEL_LINE * (lines - 1)
+        self.height = self._inner + self.top + self.bottom
         self.legend = 1.0 + (_TITLE * self._titled + 6) / self._inner
+
+    def room(self, index: int) -> tuple[float, float]:
+        """Return how many letters of a label fit along the width and the height of a panel."""
+        across, up = self.domains(index)
+        return self._width * (across[1] - across[0]) / _LETTER, self._inner * (up[1] - up[0]) / _LETTER
 
     def domains(self, index: int) -> tuple[list[float], list[float]]:
         """Return where a panel lies, from left to right and from bottom to top, in shares of the room for all of them."""
@@ -138,13 +150,14 @@ def _legend_rows(labels: Sequence[str], width: float) -> int:
     return rows
 
 
-def _axes(panel: Panel, number: str, *, show_x: bool) -> tuple[Data, Data]:
-    """Return abscissa and ordinate of a panel."""
+def _axes(panel: Panel, number: str, room: tuple[float, float], *, show_x: bool) -> tuple[Data, Data]:
+    """Return abscissa and ordinate of a panel, given how many letters there is room for along each."""
+    x_label, y_label = ("<br>".join(wrapped(*of)) for of in zip((panel.x_label, panel.y_label), room, strict=True))
     x: Data = {"anchor": f"y{number}", "showticklabels": show_x}
     if show_x:
-        x["title"] = {"text": panel.x_label, "standoff": 6}
+        x["title"] = {"text": x_label, "standoff": 6}
     # Figures of four digits and names are wide: the title stays clear of them only at a given distance.
-    y: Data = {"anchor": f"x{number}", "title": {"text": panel.y_label, "standoff": 8}}
+    y: Data = {"anchor": f"x{number}", "title": {"text": y_label, "standoff": 8}}
     x_range, y_range = panel.x_range, panel.y_range
     if panel.equal:
         free_x, free_y = _equal_ranges(panel)

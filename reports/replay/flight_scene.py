@@ -20,9 +20,8 @@ _PLUME_LENGTH = 3.0
 """Length of the plume that is drawn, over r_min [-]."""
 
 
-def flight_scene(trial: Trial, row: "pd.Series[Any]") -> Scene | None:
-    """Return the scene of one flight of a trial, given its row; None if it has no time history of any length, or no vessel."""
-    history = trial.run.history(str(row["flight_id"]))
+def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | None) -> Scene | None:
+    """Return the scene of one flight of a trial, given its row and its time history; None if that is short, or without a vessel."""
     if history is None or len(history) < 2 or not np.isfinite(row["keepout_radius_m"]):
         return None
     recorded = column(history, "time_s")

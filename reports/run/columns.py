@@ -29,6 +29,12 @@ def largest(values: Array) -> float | None:
     return float(np.nanmax(values)) if np.isfinite(values).any() else None
 
 
+def study_flight(rows: pd.DataFrame) -> "pd.Series[str]":
+    """Return the name of the study's flight of each row: of a comparison's flight the one that it is beside, else its own."""
+    own = rows["flight_id"].astype(str)
+    return rows["beside"].where(rows["beside"].notna(), own).astype(str) if "beside" in rows else own
+
+
 def measured(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the flights that were flown, of which the closest approach is known."""
     return rows[rows["min_distance_m"].notna()]

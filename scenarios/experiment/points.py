@@ -28,6 +28,7 @@ class Point:
     nu : speed ratio that is swept, or none [-]
     inputs : swept keys and their values
     flights : number of flights
+    beside : number of the study's point whose flights a comparison has with some keys set otherwise; None of others
     """
 
     label: str
@@ -36,6 +37,7 @@ class Point:
     nu: float | None
     inputs: Values
     flights: int
+    beside: int | None = None
 
 
 def points_of(scenario: Scenario) -> list[Point]:
@@ -50,7 +52,9 @@ def points_of(scenario: Scenario) -> list[Point]:
     comparison = scenario.comparison
     for variant in comparison.variants:
         try:
-            points += [_varied(point, variant.name, variant.set, comparison.flights) for point in _compared(scenario, points)]
+            points += [
+                _varied(point, variant.name, variant.set, comparison.flights, beside=i) for i, point in _compared(scenario, points)
+            ]
         except InputError as error:
             raise InputError(f"comparison '{variant.name}': {error}") from None
     return points
@@ -106,13 +110,13 @@ def _vehicles(scenario: Scenario) -> tuple[str, ...]:
     return ("kinematic", "six_dof") if scenario.fidelity == "both" else (scenario.fidelity,)
 
 
-def _compared(scenario: Scenario, points: list[Point]) -> list[Point]:
-    """Return the study's points at which variants are flown."""
+def _compared(scenario: Scenario, points: list[Point]) -> list[tuple[int, Point]]:
+    """Return the study's points at which variants are flown, each with its number."""
     ratios = scenario.comparison.nu
-    return [point for point in points if point.variant == STUDY and (not ratios or point.nu in ratios)]
+    return [(i, point) for i, point in enumerate(points) if point.variant == STUDY and (not ratios or point.nu in ratios)]
 
 
-def _varied(point: Point, name: str, values: Values, flights: int | None) -> Point:
+def _varied(point: Point, name: str, values: Values, flights: int | None, *, beside: int) -> Point:
     return Point(
         label=f"{point.label}_{name}" if point.label else name,
         variant=name,
@@ -120,6 +124,7 @@ def _varied(point: Point, name: str, values: Values, flights: int | None) -> Poi
         nu=point.nu,
         inputs=point.inputs,
         flights=min(flights or point.flights, point.flights),
+        beside=beside,
     )
 
 

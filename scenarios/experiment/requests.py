@@ -100,6 +100,13 @@ class Experiment:
         parts += [f"{index:05d}"] if point.flights > 1 or not point.label else []
         return "_".join(parts), point.variant
 
+    def beside(self, number: int) -> str:
+        """Return the name of the study's flight that a comparison's flight is beside; no word for other flights."""
+        point, index = self._point(number)
+        if point.beside is None:
+            return ""
+        return self.named(self._ends[point.beside] - self.points[point.beside].flights + index)[0]
+
     def names(self) -> list[str]:
         """Return the name of one flight of each point: those of the others differ in their number alone."""
         return [self.named(end - 1)[0] for end in self._ends]

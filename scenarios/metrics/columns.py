@@ -1,8 +1,8 @@
 """Columns of a run's tables, in order. A figure that a flight does not have is empty."""
 
 SUMMARY_COLUMNS = (
-    "flight_id", "trial", "variant", "outcome", "message", "criteria_met", "kept_out", "required", "aircraft", "fidelity",
-    "seed", "nu", "nu_min", "nu_max", "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "turbulence",
+    "flight_id", "trial", "variant", "beside", "outcome", "message", "criteria_met", "kept_out", "required", "aircraft",
+    "fidelity", "seed", "nu", "nu_min", "nu_max", "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "turbulence",
     "place_latitude_deg", "place_longitude_deg", "start_utc", "fault",
     "fault_time_s", "modes", "mode_at_end", "plume_heading_deg", "plume_elevation_deg", "start_distance_m",
     "start_aspect_deg", "eta", "omega_0_rad_s", "oscillation_limit", "r_co_m", "keepout_shape", "keepout_radius_m",

@@ -17,6 +17,7 @@ _OF_FLIGHT = {
 _OF_POINT = {**_OF_FLIGHT, "nu": "speed ratio through the air at the start: the vessel's speed over the UAV's"}
 
 _PLANNED = {
+    "beside": "of a comparison, the flight of the study that has its start and its air; else empty",
     "aircraft": "the aircraft",
     "fidelity": "six_dof, or kinematic for the paper's vehicle",
     "seed": "of start, air and noise of this flight",

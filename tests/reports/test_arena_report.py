@@ -5,12 +5,13 @@ import re
 
 import pytest
 
-from reports.arena.charts import crossing_chart, effort_charts, track_chart, worth_chart
+from reports.arena.charts import clusters, crossing_chart, effort_charts, track_charts, worth_chart
 from reports.arena.content import arena_content
 from reports.arena.data import read_arena
 from reports.arena.figures import CROSSINGS, ERROR, PLUME_TIME, SULPHUR
-from reports.arena.tables import condition_table, plume_table, tracking_table
+from reports.arena.tables import by_condition_table, condition_table, plume_table, tracking_table
 from reports.document.blocks import Table
+from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.schema.load import load_study
@@ -63,6 +64,8 @@ def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
     (panel,) = together.panels
     assert sum(len(line.x) for line in panel.lines) == 2
     assert {note.text for note in panel.notes} == {"1", "2"}
+    # Page 1 has the first one: the section does not show it once more.
+    assert [chart.name for chart in blocks_of(content(arena.run), Chart, "tracking")] == ["efforts", "tracks1"]
     assert len(each.panels) == 2
     # The ordinate is logarithmic: its marks are powers of ten.
     error = arena.of(ERROR, arena.entrants[0], "all").mean
@@ -74,7 +77,7 @@ def test_the_limit_of_any_path_is_drawn_and_listed_where_it_is_known(arena):
     limits = [line for panel in chart.panels for line in panel.lines if line.label == "limit of any path"]
     # 5 + 4 nu at nu = 0.5 in calm air.
     assert limits[0].x == pytest.approx([7.0, 7.0], abs=1e-3)
-    table = condition_table(arena, CROSSINGS)
+    table = by_condition_table(arena, CROSSINGS)
     assert table.rows[-1][1:3] == ["limit of any path", "7.00"]
 
 
@@ -98,7 +101,15 @@ def test_what_a_minute_is_worth_to_the_measurement_is_drawn_and_listed(arena):
 
 
 def test_tracks_are_shown_of_each_law_from_the_same_start(arena):
-    assert [len(track_chart(arena, tracking=tracking).panels) for tracking in (True, False)] == [2, 1]
+    assert [[len(chart.panels) for chart in track_charts(arena, tracking=tracking)] for tracking in (True, False)] == [[2], [1]]
+
+
+def test_numbers_that_would_hide_each_other_are_written_together():
+    # A number is as wide as a tenth of the panel: 3 touches 2, and 2 touches 1; 4 is far off, and 5 has no place.
+    places = {1: (0.5, 0.5), 2: (0.55, 0.52), 3: (0.62, 0.55), 4: (0.1, 0.9), 5: (math.nan, 0.1)}
+    found = {tuple(numbers): place for numbers, place in clusters(places, (0.1, 0.1))}
+    assert set(found) == {(1, 2, 3), (4,)}
+    assert found[1, 2, 3][0] == 0.62
 
 
 def test_what_each_law_was_given_and_what_it_cannot_do_is_said(run):
@@ -106,7 +117,13 @@ def test_what_each_law_was_given_and_what_it_cannot_do_is_said(run):
     given, refused = blocks_of(report, Table, "given")
     assert "tangent and curvature" in given.rows[0][2]
     assert "npfg_period_s 10 → " in given.rows[0][3]
-    assert refused.rows[0][:2] == ["pure pursuit", "circle the vessel"]
+    assert refused.rows[0][:2] == ["circle the vessel", "pure pursuit"]
+
+
+def test_what_the_conditions_set_is_said_in_words(arena):
+    rows = {row[0]: row[1:] for row in condition_table(arena).rows}
+    assert rows["calm"][1] == "none"
+    assert rows["wind"][1].startswith("wind.speed_mps = ")
 
 
 def test_the_headline_names_the_best_of_each_task(run):

@@ -29,6 +29,8 @@ from scenarios.studies.registry import run_study
 CRITERIA = ["criteria.tracking_error_rms_m=5.0", "criteria.crossing_interval_error=0.1"]
 OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0.5]", *CRITERIA]
 
+AUTOPILOT = ["step1", "step2", "step3", "levelmargins", "leveldiskmargins", "loops", "poles"]
+
 
 @pytest.fixture(scope="module")
 def run_path(tmp_path_factory):
@@ -72,7 +74,7 @@ def test_the_sweep_shows_everything_in_its_place(report):
     names = {section.anchor: [c.name for c in blocks_of(report, Chart, section.anchor)] for section in report.sections}
     assert names["trial1"] == [f"trial1-nu1-{what}" for what in ("interval", "distance", "errors", "command")]
     assert names["comparison"] == ["trial1-comparison"]
-    assert names["innerloop"] == ["responses", "margins", "loops", "poles"]
+    assert names["innerloop"] == AUTOPILOT
     tables = {section.anchor: len(blocks_of(report, Table, section.anchor)) for section in report.sections}
     assert tables == {
         "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "innerloop": 3, "parameters": 2,
@@ -162,7 +164,7 @@ def test_of_a_sweep_the_closest_flight_and_a_typical_one_are_printed_and_all_if_
     assert [flight_id for flight_id, flight in flights.items() if flight.printed] == list(flights)
     assert "closest approach" in flights["nu_0.90"].label
     (section,) = (section for section in report.sections if section.anchor == "flights")
-    assert "In print 3 have a page of their own" in section.blocks[0].text
+    assert "In print 3 are shown: " in section.blocks[0].text
     summary = pd.read_csv(copy / "summary.csv")
     more = summary[summary["flight_id"] == "nu_0.50"].assign(flight_id="nu_0.51", min_distance_m=215.0)
     pd.concat([summary, more]).to_csv(copy / "summary.csv", index=False)
@@ -182,7 +184,7 @@ def test_a_record_of_another_aircraft_over_airspeed_and_bank_is_shown_in_the_swe
     assert pdf.read_bytes().startswith(b"%PDF")
     assert f"of the {design['title']} in six degrees of freedom" in html.read_text(encoding="utf-8")
     section = next(section for section in content(read_run(copy)).sections if section.anchor == "innerloop")
-    assert [block.name for block in section.blocks if isinstance(block, Chart)] == ["responses", "margins", "loops", "poles"]
+    assert [block.name for block in section.blocks if isinstance(block, Chart)] == AUTOPILOT
     shown = [block for block in section.blocks if isinstance(block, Table)]
     assert len(shown) == 3
     assert all(table.rows for table in shown)

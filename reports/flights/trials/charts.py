@@ -24,6 +24,9 @@ _Figure = tuple[Array, str, list[tuple[float, str]]]
 _ROW = 3
 """Panels that stand in one row."""
 
+_OVER_THEORY = 2
+"""Figures of a sweep that show theory, too, and so are drawn of a single flight: the table says all that is in the others."""
+
 _R_MIN = (0.0, "r_min")
 _TRACKING = ("tracking_error_rms_m", "Tracking error, rms [m]")
 
@@ -69,7 +72,7 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
     bank = "Largest commanded heading rate against ω_max, largest bank, and settling time."
     if trial.setting("fidelity") == "kinematic":
         bank += " The kinematic vehicle has no bank: shown is that of a coordinated turn."
-    return [
+    charts = [
         _chart(
             trial, f"{name}-interval",
             "Time between plume crossings against half the reference's period, π/ω₀. Bars are one standard deviation. The limit is"
@@ -102,6 +105,7 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
             0.32, columns=3,
         ),
     ]  # fmt: skip
+    return charts if len(trial.flown) > 1 else charts[:_OVER_THEORY]
 
 
 def _spread(trial: Trial) -> Panel | None:
@@ -152,7 +156,11 @@ def _errors(trial: Trial) -> list[Chart]:
         "A marker per flight. Crossing intervals and errors are those after settling: of the tracking, of its part towards the"
         " vessel against the one that the margin was planned for, and of the estimates of wind and vessel."
     )
-    return [_chart(trial, "errors", caption, panels, 0.34)]
+    shown = [panel for panel in panels if panel is not None]
+    return [
+        _chart(trial, f"errors{i // _ROW + 1}", "As before." if i else caption, shown[i : i + _ROW], 0.34)
+        for i in range(0, len(shown), _ROW)
+    ]
 
 
 def _starts(trial: Trial) -> list[Chart]:

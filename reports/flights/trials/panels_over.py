@@ -121,7 +121,8 @@ class PanelsOver:
     def limit(self, key: str) -> float:
         """Return the limit of a criterion, or not a number."""
         value = self._trial.criteria.get(key)
-        return math.nan if value is None else float(value)
+        # A criterion that does not apply is false.
+        return math.nan if value is None or value is False else float(value)
 
     def _points(self, name: str, label: str, colour: str, style: Style = "points", error: str = "") -> Line:
         bars = column(self._rows, error) if error else None

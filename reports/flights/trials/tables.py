@@ -9,7 +9,7 @@ import pandas as pd
 from common.binomial import CONFIDENCE, percent, upper_bound
 from common.run_layout import SUMMARY
 from reports.document.blocks import Block, Table, Text
-from reports.document.tables import ending, number, outcome
+from reports.document.tables import ending, number, outcome, span
 from reports.flights.criteria import counted, criteria_of
 from reports.flights.names import fault_name
 from reports.run.columns import clearance, column, completed, count, kept_out, lost, met, total, violated
@@ -45,7 +45,11 @@ OSCILLATION_COLUMNS = (
 
 
 def flight_table(
-    rows: pd.DataFrame, head: str, name: Callable[["pd.Series[Any]"], str], columns: Columns = _FLIGHT_COLUMNS
+    rows: pd.DataFrame,
+    head: str,
+    name: Callable[["pd.Series[Any]"], str],
+    columns: Columns = _FLIGHT_COLUMNS,
+    caption: str = "The flights, a row each, with their outcome.",
 ) -> Table:
     """Return a row per flight, and its outcome in words.
 
@@ -54,6 +58,7 @@ def flight_table(
     rows : of the flights
     head, name : of the first column, and what it says of a flight
     columns : title, name and pattern of the others
+    caption : what the table shows
     """
     cells = [
         [name(row), *(number(row.get(key), pattern) for _, key, pattern in columns), outcome(row)] for _, row in rows.iterrows()
@@ -61,7 +66,7 @@ def flight_table(
     first, last = (min(2.6, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, -1))
     widths = [first, *[1.05] * len(columns), last]
     return Table(
-        caption="The flights, a row each, with their outcome.",
+        caption=caption,
         head=[head, *(title for title, _, _ in columns), "Outcome"],
         rows=cells,
         widths=widths,
@@ -143,7 +148,7 @@ def fault_table(trial: Trial) -> Table:
             f"{total(members, 'keepout_violations')}",
             number(float(column(members, "min_distance_m").min()), "{:.1f}"),
             number(min(known, default=None), "{:.1f}") + (f" (of {len(known)})" if known and len(known) < len(closest) else ""),
-            f"{column(members, 'end_distance_m').min():.0f} to {column(members, 'end_distance_m').max():.0f}",
+            span(column(members, "end_distance_m"), "{:.0f}"),
             counted(members["mode_at_end"]),
         ])  # fmt: skip
     head = [

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reports.document.axes import cut_words, in_kilometres, log_axis, mark_text
+from reports.document.axes import cut_words, in_kilometres, log_axis, mark_text, wrapped
 from reports.document.chart import Chart, Line, Note, Panel
 from reports.render import matplotlib_charts, plotly_charts
 
@@ -79,3 +79,26 @@ def test_words_among_the_curves_go_along_to_kilometres():
     )
     (note,) = in_kilometres(panel).notes
     assert (note.x, note.y) == (10.0, 5.0)
+
+
+@pytest.mark.parametrize(
+    ("label", "room", "lines"),
+    [
+        ("Distance [m]", 12, ["Distance [m]"]),
+        ("Crossings [1/min]", 12, ["Crossings", "[1/min]"]),
+        ("Error of the wind estimate, rms [m/s]", 30, ["Error of the wind", "estimate, rms [m/s]"]),
+        ("Error of a minute [% m/m]", 20, ["Error of a", "minute [% m/m]"]),
+        ("Airspeed", 2, ["Airspeed"]),
+    ],
+)
+def test_a_label_without_room_has_two_lines_and_its_unit_is_whole(label, room, lines):
+    assert wrapped(label, room) == lines
+
+
+def test_both_renderers_write_a_long_label_on_two_lines():
+    x = np.array([0.0, 1.0])
+    line = Line(x=x, y=x, label="", colour="blue")
+    panel = Panel(x_label="A quantity with a long name [m]", y_label="b [m]", lines=[line])
+    chart = Chart(name="c", caption="", panels=[panel] * 5, columns=5, panel_height=0.2)
+    assert matplotlib_charts.draw(chart).axes[0].get_xlabel() == "A quantity with\na long name [m]"
+    assert plotly_charts.draw(chart)["layout"]["xaxis"]["title"]["text"] == "A quantity with<br>a long name [m]"

@@ -35,14 +35,15 @@ def test_no_chart_draws_more_points_than_a_screen_shows(failed):
         "settling": CURVE_POINTS + 1, "predicted": CURVE_POINTS + 1, "distance": DISTANCE_BINS, "samples": HISTORY_POINTS,
         "counterexamples": HISTORY_POINTS,
     }  # fmt: skip
-    charts = named_charts(failed)
+    # Page 1 has the first one, and only page 1.
+    charts = {"settling": failed.picture, **named_charts(failed)}
     assert set(charts) == set(limits)
     for name, limit in limits.items():
         assert max(len(line.x) for panel in charts[name].panels for line in panel.lines) <= limit, name
 
 
 def test_a_panel_per_law_and_a_curve_per_reference(failed):
-    charts = named_charts(failed)
+    charts = {"settling": failed.picture, **named_charts(failed)}
     for name in ("settling", "predicted"):
         assert [len(panel.lines) for panel in charts[name].panels] == [len(REFERENCES)] * len(LAWS)
     assert [panel.title for panel in charts["settling"].panels] == ["Law (24)", "Law (30)", "Law (30), cut at ω_max"]
@@ -61,7 +62,7 @@ def test_over_distance_the_slowest_bound_every_settling_time(converged_path, con
 
 
 def test_samples_show_what_converged_and_counter_examples_what_did_not(failed):
-    charts = named_charts(failed)
+    charts = {"settling": failed.picture, **named_charts(failed)}
     for name in ("samples", "counterexamples"):
         for panel in charts[name].panels:
             assert panel.log_y

@@ -14,7 +14,7 @@ from reports.design.data import complete, excess_overshoot, reversal_sentences, 
 from reports.design.loop_charts import disk_region, turned
 from reports.design.margin_charts import margin_charts
 from reports.design.section import innerloop_section
-from reports.design.section_charts import innerloop_charts
+from reports.design.section_charts import loop_charts
 from reports.design.trim_charts import trim_charts
 from reports.document.blocks import Heading, Table, Text
 from reports.document.chart import Chart
@@ -211,9 +211,9 @@ def test_a_sweeps_report_takes_from_a_design_only_what_belongs_to_level_flight(d
     assert [row[0] for row in margins.rows] == [*(loop.replace("_", " ") for loop in LOOPS), "all controls"]
     assert {float(row[1]) for row in trims.rows} == {0.0, bank}
     assert section.blocks[-2] == Heading(f"Equilibria: level, and at {bank} degrees of bank")
-    curves = innerloop_charts(complete(design))[1].panels[0].lines
+    curves = loop_charts(complete(design))[0].panels[0].lines
     assert all(line.x.tolist() == AIRSPEEDS for line in curves)
-    assert len(innerloop_charts(complete(design))[2].panels[1].lines) == len(LOOPS)
+    assert len(loop_charts(complete(design))[2].panels[1].lines) == len(LOOPS)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,6 @@ ROWS = pd.DataFrame({
     "flight_id": [f"search_{number:05d}" for number in range(4)],
     "trial": "search",
     "variant": "study",
-    "seed": [11, 12, 13, 14],
     "orbit_at_s": [20.0, 20.0, 30.0, math.nan],
     "time_to_find_s": [10.0, 50.0, math.nan, math.nan],
     "hit_rate_found": [0.5, 0.7, math.nan, math.nan],
@@ -31,7 +30,8 @@ ROWS = pd.DataFrame({
 """Three flights on their orbit, of which one never found its plume, and one that never came there."""
 
 TOLD = ROWS.iloc[[1, 0]].assign(
-    variant="told", flight_id=["told_00001", "told_00000"], fsc_uncertainty_percent=[0.01, 0.02], fsc_noise_percent=[0.002, 0.001],
+    variant="told", flight_id=["told_00001", "told_00000"], beside=["search_00001", "search_00000"],
+    fsc_uncertainty_percent=[0.01, 0.02], fsc_noise_percent=[0.002, 0.001],
     axis_height_error_3min_m=math.nan, axis_height_deviation_3min_m=math.nan,
 )  # fmt: skip
 """The first two cases, in the other order."""
@@ -75,7 +75,7 @@ def test_a_plume_that_was_not_found_counts_against_the_share(trial):
 
 def test_flights_are_compared_with_those_of_the_same_case(trial):
     study, told = variants_of(trial)
-    # Seed 11: 0.02/0.02, seed 12: 0.03/0.01; the third has no pair.
+    # Case 0: 0.02/0.02, case 1: 0.03/0.01; the third has no pair.
     assert sorted(study.beside(told, "fsc_uncertainty_percent")) == pytest.approx([1.0, 3.0])
     rows = search_table([study, told]).rows
     # Errors +0.02, -0.02 and 0: rms 0.02 sqrt(2/3). Medians of 1 and 3, and of the noise 2 and 2.

@@ -164,3 +164,14 @@ def test_a_run_without_time_histories_shows_its_first_figure(run_path, tmp_path)
     report = content(read_run(copy))
     assert report.picture is not None
     assert "Closest" not in [panel.title.split(":")[0] for panel in report.picture.panels]
+
+
+def test_long_names_of_flights_stand_below_the_picture(run_path, monkeypatch):
+    run = read_run(run_path)
+    named = content(run).picture
+    monkeypatch.setattr("reports.flights.first_page._NAME_MAX", 3)
+    bare = content(run).picture
+    for with_name, without in zip(named.panels, bare.panels, strict=True):
+        what, name, distance = re.fullmatch(r"(\w+): (Flight \d), (.+ m)", with_name.title).groups()
+        assert without.title == f"{what}: {distance}"
+        assert f"{what}: {name}." in bare.caption

@@ -49,7 +49,8 @@ def changed_run(run_directory, tmp_path, record=None, samples=True):
 def test_the_report_shows_what_was_asked(run_directory):
     report = content(read_run(run_directory))
     charts = named_charts(report)
-    assert set(charts) == {"fsc-over-time", "budget", "regression", "track", "channels"}
+    # Page 1 has the sulphur content over time, and only page 1.
+    assert set(charts) == {"budget", "regression", "track", "channels"}
     assert_axes_read_quantity_and_unit(charts.values())
     assert [panel.title for panel in charts["track"].panels] == ["In plan", "In height"]
     assert {line.label for panel in charts["channels"].panels for line in panel.lines} >= {"truth", "reading", "what CO2 explains"}
@@ -58,11 +59,11 @@ def test_the_report_shows_what_was_asked(run_directory):
     assert not report.verdict.holds
 
 
-def test_both_reports_are_built_and_print_takes_four_pages(run_directory, tmp_path):
+def test_both_reports_are_built_and_print_takes_three_pages(run_directory, tmp_path):
     text = built(changed_run(run_directory, tmp_path))
     assert "Fuel sulphur content of example_flight" in text
     pages = re.findall(rb"/Type\s*/Page\b", (tmp_path / "report.pdf").read_bytes())
-    assert len(pages) == 4
+    assert len(pages) == 3
 
 
 def test_parts_of_the_uncertainty_add_to_the_whole(record):
@@ -101,7 +102,7 @@ def test_a_flight_without_a_result_says_why(run_directory, tmp_path, record):
 
 def test_a_perfect_instrument_is_shown_where_it_is_known(run_directory, tmp_path, record):
     report = content(read_run(changed_run(run_directory, tmp_path, record | {"true_percent": 0.25})))
-    labels = [line.label for line in named_charts(report)["fsc-over-time"].panels[0].lines]
+    labels = [line.label for line in report.picture.panels[0].lines]
     assert "a perfect instrument" in labels
     assert ("A perfect instrument reads", "0.250 %", "", None) in report.verdict.figures
 
@@ -110,7 +111,7 @@ def test_without_samples_the_report_says_so(run_directory, tmp_path):
     report = content(read_run(changed_run(run_directory, tmp_path, samples=False)))
     assert report.sections[0].anchor == "missing"
     assert "samples.csv" in blocks_of(report, Table, "missing")[0].rows[0][0]
-    assert set(named_charts(report)) == {"fsc-over-time", "budget"}
+    assert set(named_charts(report)) == {"budget"}
 
 
 def test_samples_without_a_place_have_no_track(run_directory, tmp_path):

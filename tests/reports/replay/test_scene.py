@@ -17,7 +17,7 @@ from reports.document.scene import COLUMNS
 from reports.registry import content
 from reports.render import html, replay
 from reports.replay.flight_scene import INTERVAL, flight_scene
-from reports.run.run_data import RunData, read_run
+from reports.run.run_data import read_run
 from reports.run.trials import read_trials
 
 
@@ -33,18 +33,16 @@ def row(trial):
 
 @pytest.fixture(scope="module")
 def scene(trial, row):
-    return flight_scene(trial, row)
+    return flight_scene(trial, row, history_of(trial, row))
 
 
 def history_of(trial, row):
     return trial.run.history(row["flight_id"])
 
 
-def with_history(monkeypatch, trial, row, **columns):
+def with_history(trial, row, **columns):
     """Return the scene of a flight whose time history has other columns."""
-    changed = history_of(trial, row).assign(**columns)
-    monkeypatch.setattr(RunData, "history", lambda *_: changed)
-    return flight_scene(trial, row)
+    return flight_scene(trial, row, history_of(trial, row).assign(**columns))
 
 
 def decoded(column, samples):
@@ -98,49 +96,47 @@ def test_a_second_of_flight_takes_some_sixty_bytes(scene):
     assert len(columns) < 65 * scene.interval * len(scene.columns["north"]) + 1000
 
 
-def test_stretches_of_the_guard_are_told_by_whether_it_held(monkeypatch, trial, row):
+def test_stretches_of_the_guard_are_told_by_whether_it_held(trial, row):
     time = history_of(trial, row)["time_s"]
     guard = np.select([(time >= 10.0) & (time < 12.0), (time >= 12.0) & (time < 13.0)], [1.0, 2.0], 0.0)
-    assert with_history(monkeypatch, trial, row, guard=guard).guard == [(10.0, 12.0, True), (12.0, 13.0, False)]
+    assert with_history(trial, row, guard=guard).guard == [(10.0, 12.0, True), (12.0, 13.0, False)]
 
 
-def test_courses_have_no_jumps_and_what_is_not_known_stays(monkeypatch, trial, row):
+def test_courses_have_no_jumps_and_what_is_not_known_stays(trial, row):
     time = history_of(trial, row)["time_s"].to_numpy()
     heading = np.mod(0.1 * time, 2.0 * np.pi)
     lost = np.where(time > 20.0, np.nan, 55.0 + 0.1 * time)
-    scene = with_history(monkeypatch, trial, row, heading_rad=heading, altitude_m=lost)
+    scene = with_history(trial, row, heading_rad=heading, altitude_m=lost)
     # To rounding: a turn at a steady rate is a straight line.
     assert np.diff(scene.columns["heading"]) == pytest.approx(0.1 * INTERVAL, abs=1e-9)
     assert scene.columns["altitude"][-1] == pytest.approx(57.0)
 
 
-def test_a_vessel_at_rest_points_along_its_course(monkeypatch, trial, row):
+def test_a_vessel_at_rest_points_along_its_course(trial, row):
     still = dict.fromkeys(("vessel_velocity_north_mps", "vessel_velocity_east_mps"), 0.0)
     turned = replace(trial, config={**trial.config, "vessel": {**trial.config["vessel"], "course_deg": 90.0}})
-    assert with_history(monkeypatch, turned, row, **still).columns["vessel_heading"] == pytest.approx(np.pi / 2.0)
+    assert with_history(turned, row, **still).columns["vessel_heading"] == pytest.approx(np.pi / 2.0)
 
 
 @pytest.mark.parametrize("samples", [0, 1, 2])
-def test_without_a_time_history_of_some_length_there_is_no_scene(monkeypatch, trial, row, samples):
+def test_without_a_time_history_of_some_length_there_is_no_scene(trial, row, samples):
     history = history_of(trial, row).iloc[:samples] if samples else None
-    monkeypatch.setattr(RunData, "history", lambda *_: history)
-    assert flight_scene(trial, row) is None
+    assert flight_scene(trial, row, history) is None
 
 
 @pytest.mark.parametrize("value", [np.inf, np.nan, 1e300])
-def test_a_damaged_time_history_makes_no_page_that_cannot_be_read(monkeypatch, trial, row, value):
+def test_a_damaged_time_history_makes_no_page_that_cannot_be_read(trial, row, value):
     clean = history_of(trial, row)
     for name in ("time_s", "north_m", "altitude_m", "roll_rad", "vessel_north_m", "plume_axis_rad"):
         damaged = clean[name].to_numpy().copy()
         damaged[-1] = value
-        scene = with_history(monkeypatch, trial, row, **{name: damaged})
-        monkeypatch.undo()
+        scene = with_history(trial, row, **{name: damaged})
         if scene is not None:
             json.dumps(replay.draw_scene(scene), allow_nan=False)
 
 
-def test_without_a_vessel_there_is_no_scene(monkeypatch, trial, row):
-    assert with_history(monkeypatch, trial, row, vessel_north_m=np.nan) is None
+def test_without_a_vessel_there_is_no_scene(trial, row):
+    assert with_history(trial, row, vessel_north_m=np.nan) is None
 
 
 def test_the_library_is_in_the_page_once_and_only_where_there_is_a_replay(run_of, tmp_path):

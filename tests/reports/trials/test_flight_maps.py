@@ -60,7 +60,7 @@ def test_many_stretches_become_few_that_hold_them_all(flight):
 
 
 def test_the_track_begins_and_ends_where_the_flight_does_and_the_reference_lies_over_it(flight):
-    chart = flight_charts(*flight)[0]
+    chart = flight_charts(flight_view(*flight))[0]
     whole = chart.panels[0]
     lines, names = {line.label: line for line in whole.lines}, [line.label for line in whole.lines]
     flown = lines["flown"]
@@ -112,14 +112,14 @@ def test_a_picture_has_a_panel_for_each_flight_with_a_time_history(run, flight):
     picture = track_picture(shown, " Told.")
     assert [panel.title for panel in picture.panels] == ["closest", "typical"]
     assert (picture.columns, picture.last_height, picture.caption[-6:]) == (2, 0.0, " Told.")
-    assert len(track_picture(shown[:2]).panels) == len(flight_charts(trial, row)[0].panels)
+    assert len(track_picture(shown[:2]).panels) == len(flight_charts(flight_view(trial, row))[0].panels)
     assert track_picture(shown[1:2]) is None
 
 
 def test_the_ground_lies_along_the_way_of_a_ship_that_goes_far(run):
     # The ship goes north at 5 to 14 m/s for some two minutes, and the track about her is some hundred metres wide.
     trial = read_trials(run)[0]
-    charts = [flight_charts(trial, row)[0] for _, row in trial.rows.iterrows()]
+    charts = [flight_charts(flight_view(trial, row))[0] for _, row in trial.rows.iterrows()]
     ground = [chart.panels[-1] for chart in charts if chart.last_height]
     for panel in ground:
         (way,) = (line for line in panel.lines if line.label == "ship's track")

@@ -12,6 +12,7 @@ from trial_runs import with_values
 
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart, Line, Panel
+from reports.flights.flight_view import flight_view
 from reports.flights.selection import PICKED_MAX, picked_flights
 from reports.flights.single_flight import flight_charts
 from reports.flights.trials.charts import trial_charts
@@ -36,7 +37,7 @@ def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(run_p
 def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
     for trial in read_trials(run):
         for _, row in trial.rows.iterrows():
-            tracks = flight_charts(trial, row)[0]
+            tracks = flight_charts(flight_view(trial, row))[0]
             lines = {line.label: line for line in tracks.panels[0].lines}
             uav, closest = lines["flown"], lines["closest approach"]
             # The summary's bearing from the plume's axis counts clockwise, so that it is positive to the right of the axis.
@@ -50,7 +51,7 @@ def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
 def test_flights_cross_the_axis_where_the_trial_found_crossings(run):
     trial = read_trials(run)[0]
     row = trial.rows.iloc[0]
-    tracks, histories = flight_charts(trial, row)
+    tracks, histories = flight_charts(flight_view(trial, row))
     uav = next(line for line in tracks.panels[0].lines if line.label == "flown")
     time = next(line for line in histories.panels[0].lines if line.label == "flown").x
     crossings = run.crossings_of(str(row["flight_id"]))

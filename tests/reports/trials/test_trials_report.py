@@ -15,6 +15,8 @@ from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
 from reports.document.blocks import Table, Text
+from reports.document.tables import parameter_value
+from reports.flights.trials.panels_over import PanelsOver, by_violation
 from reports.flights.trials.tables import FAILED_MAX
 from reports.registry import content
 from reports.run.run_data import read_run
@@ -83,7 +85,7 @@ def test_a_criterion_without_a_figure_counts_as_failed(run):
 
 def test_a_criterion_that_the_report_does_not_know_is_shown_all_the_same(run):
     rows = rows_of(content(with_criterion(run, "turns", "loops_per_hour", 7)), "Turns")
-    assert ["loops per hour", "7", "see the flights that failed", "0"] in rows
+    assert ["Loops per hour", "7", "see the flights that are not met", "0"] in rows
 
 
 def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run_path, tmp_path):
@@ -150,7 +152,41 @@ def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
 def test_many_comparisons_have_a_row_for_each_variant(run):
     rows = pd.concat([run.summary[run.summary["trial"] == "steady"]] * 20, ignore_index=True)
     rows["flight_id"] = [f"steady_{i:05d}" for i in range(len(rows))]
-    compared = rows.assign(flight_id=rows["flight_id"] + "_no_preview", variant="no_preview")
+    compared = rows.assign(flight_id=rows["flight_id"] + "_no_preview", variant="no_preview", beside=rows["flight_id"])
     report = content(replace(run, summary=pd.concat([rows, run.summary[run.summary["trial"] == "turns"]]), comparison=compared))
     (table,) = blocks_of(report, Table, "comparison")
     assert [row[:3] for row in table.rows] == [["as in the study", "40", "0"], ["no preview", "40", "0"]]
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ([], "none"),
+        ({}, "none"),
+        ("", "none"),
+        (None, "not set"),
+        ([1.0, 2.5], "1, 2.5"),
+        ([{"name": "calm_air", "set": {}}, {"name": "wind"}], "calm air, wind"),
+        ({"wind.speed_mps": 4.0, "draws": [{"key": "wind.from_deg", "uniform": [0.0, 360.0]}]},
+         "wind.speed_mps = 4, draws = wind.from_deg uniform 0, 360"),
+    ],
+)  # fmt: skip
+def test_a_parameter_is_written_in_words(value, words):
+    assert parameter_value(value) == words
+
+
+def test_a_criterion_that_does_not_apply_is_no_limit(run):
+    trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", False))[0]
+    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m", "Tracking error, rms [m]")
+    assert "criterion" not in {line.label for line in panel.lines}
+    trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", 2.0))[0]
+    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m", "Tracking error, rms [m]")
+    (level,) = (line for line in panel.lines if line.label == "criterion")
+    assert set(level.y) == {2.0}
+
+
+def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run):
+    changed = with_criterion(run, "turns", "within_altitudes", True)
+    rows = changed.summary.assign(altitude_outside_s=[0.0 if trial != "turns" else 1.5 for trial in changed.summary["trial"]])
+    shown = rows_of(content(replace(changed, summary=rows)), "Turns")
+    assert ["Time outside the altitudes of the scenario", "≤ 0 s", "1.5 s", "2"] in shown

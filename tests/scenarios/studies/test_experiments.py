@@ -103,6 +103,8 @@ def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_
     for number, variant in enumerate(variants):
         assert [variant[name] for name in same] == [rows[number % 2][name] for name in same]
         assert variant["flight_id"] == f"{variant['variant']}_{number % 2:05d}"
+        assert variant["beside"] == rows[number % 2]["flight_id"]
+    assert not any("beside" in row for row in rows)
     manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
     assert manifest["flights_planned"] == 3
 
