@@ -294,6 +294,9 @@ def test_a_package_that_is_missing_is_one_line_with_the_extra(run_path, monkeypa
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ReportError, match=r"install the extra: pip install 'plume-flight-study\[export\]'"):
         export_run(run_path, name)
+    # What comes before it in a list is not written either.
+    assert_refused(run_command("reports.build", run_path, "--export", f"kmz,{name}"), "install the extra")
+    assert not (run_path / "export").exists()
 
 
 def test_the_command_exports_several_formats_of_one_flight_and_streams_it(run_path):
