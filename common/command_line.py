@@ -35,7 +35,8 @@ def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]]
         status = app(prog_name=name, standalone_mode=False)
     except _USAGE_ERROR as error:
         message = str(getattr(error, "format_message", error.__str__)()).rstrip(".")
-        status = refuse(f"{message}; see {name} --help")
+        called = getattr(getattr(error, "ctx", None), "command_path", name)
+        status = refuse(f"{message}; see {called} --help")
     except typer.Abort:
         print("interrupted", file=sys.stderr)
         status = INTERRUPTED

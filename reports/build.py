@@ -92,6 +92,20 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
         return [written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
 
 
+def check_exporters(names: Sequence[str]) -> None:
+    """Refuse exporters before any of them writes.
+
+    Raises
+    ------
+    ReportError : a package is missing that one of them needs
+    PluginError : there is no such exporter, or it does not load
+    """
+    from reports.export import EXPORTERS
+
+    for name in names:
+        EXPORTERS.get(name)()
+
+
 def stream_run(directory: Path, address: str, flight_id: str | None = None) -> tuple[str, int, float]:
     """Send a flight of a run to ``udp://HOST:PORT`` in real time; return its name, the number of messages, its duration [s].
 
@@ -99,13 +113,17 @@ def stream_run(directory: Path, address: str, flight_id: str | None = None) -> t
     ------
     ReportError : the run cannot be read, or has no such flight, or the address is not of that form
     """
+    from reports.export.geographic import recorded_flights
     from reports.export.stream import stream_address, stream_flight
     from reports.run.files import damage_named
 
     host = stream_address(address)
     run = _run_of(directory, flight_id)
     with damage_named(directory):
-        return stream_flight(run, host)
+        flight = next(recorded_flights(run))
+        seconds = flight.time[-1] - flight.time[0]
+        print(f"streaming {flight.flight_id}, {seconds:.0f} s of flight, to {address}; Ctrl-C ends it", file=sys.stderr)
+        return stream_flight(flight, host)
 
 
 def _run_of(directory: Path, flight_id: str | None) -> "RunData":
@@ -142,7 +160,7 @@ def print_design(record: dict[str, Any]) -> None:
 
 
 def command(
-    directory: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="A directory that scenarios.run or innerloop.design wrote.")],
+    directory: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="A directory that plume-flight run or design wrote.")],
     export: Annotated[
         list[str] | None,
         typer.Option(
@@ -176,7 +194,9 @@ def command(
         if overrides and (export or stream):
             raise ReportError("--set is of the reports, which --export and --stream do not write: leave it out")
         if export or stream:
-            for name in (name for names in export or () for name in names.split(",")):
+            exporters = [name for names in export or () for name in names.split(",")]
+            check_exporters(exporters)
+            for name in exporters:
                 for path in export_run(directory, name, flight):
                     print(f"export: {path}")
             if stream:

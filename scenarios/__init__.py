@@ -1,6 +1,6 @@
 """From a scenario to results: the world, the closed loop, the studies; and the programming interface, ``docs/api.md``.
 
-``from scenarios import fly, run, load, Scenario``. Names are loaded when they are asked for: importing the package is light.
+``from scenarios import fly, run, load, read_ais, Scenario``. Names are loaded when they are asked for: importing it is light.
 """
 
 import importlib
@@ -9,9 +9,9 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from scenarios.api import Flight, InputError, Run, Scenario, Statistics, fly, load, run
+    from scenarios.api import Flight, InputError, Run, Scenario, Statistics, fly, load, read_ais, run
 
-__all__ = ["Flight", "InputError", "Run", "Scenario", "Statistics", "fly", "load", "run"]
+__all__ = ["Flight", "InputError", "Run", "Scenario", "Statistics", "fly", "load", "read_ais", "run"]
 
 
 class _Package(ModuleType):

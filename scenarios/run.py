@@ -161,7 +161,7 @@ def _run(
         again = "".join(f"--set {shlex.quote(item)} " for item in overrides)
         again = f"{shlex.quote(name)} {again}--out {shlex.quote(str(directory))} --resume"
         kept = f"{result.summary.done} of {result.planned} {result.what} are done and kept"
-        print(f"interrupted; {kept}. Continue with: python -m scenarios.run {again}", file=sys.stderr)
+        print(f"interrupted; {kept}. Continue with: plume-flight run {again}", file=sys.stderr)
         return INTERRUPTED
     reported = all((directory / name).is_file() for name in (REPORT_HTML, REPORT_PDF))
     status = MET if no_report or (reported and not result.changed) else _report(directory)
@@ -193,10 +193,10 @@ def _report(directory: Path) -> int:
     except ReportError as error:
         return refuse(error)
     except OSError as error:
-        again = f"python -m reports.build {directory}"
+        again = f"plume-flight report {directory}"
         return refuse(f"the report cannot be written: {error.strerror}; fix that, then build the report with: {again}")
     except KeyboardInterrupt:
-        print(f"report interrupted; build the report with: python -m reports.build {directory}", file=sys.stderr)
+        print(f"report interrupted; build the report with: plume-flight report {directory}", file=sys.stderr)
         return INTERRUPTED
     return MET
 

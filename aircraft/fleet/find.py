@@ -30,7 +30,7 @@ def find_spec(name: str) -> AircraftSpec:
     if is_path(name):
         return folder_spec(name)
     guess = did_you_mean(name, aircraft_names()) or ";"
-    listed = "`python -m innerloop.design --list` lists the known ones, or give a folder as DIR/NAME, or a file as FILE.py:NAME"
+    listed = "`plume-flight design --list` lists the known ones, or give a folder as DIR/NAME, or a file as FILE.py:NAME"
     raise AircraftError(f"unknown aircraft '{name}'{guess} {listed}")
 
 

@@ -12,7 +12,7 @@ def write_heavy_cessna(fleet: Path) -> Path:
     cessna = Path(jsbsim.get_default_root_dir()) / "aircraft" / "c172p" / "c172p.xml"
     text = cessna.read_text(encoding="utf-8").replace('<emptywt unit="LBS"> 1500', '<emptywt unit="LBS"> 1650')
     folder = fleet / "heavy"
-    folder.mkdir(parents=True)
+    folder.mkdir(parents=True, exist_ok=True)
     (folder / "heavy.xml").write_text(text, encoding="utf-8")
     (folder / "heavy.toml").write_text('title = "Heavy Cessna"', encoding="utf-8")
     return folder

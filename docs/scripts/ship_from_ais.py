@@ -2,15 +2,15 @@
 
 from pathlib import Path
 
-from scenarios import fly
-from scenarios.schema.load import CATALOG
+from scenarios import fly, load, read_ais
 
 Path("wind.csv").write_text(
     "time_utc,speed_mps,from_deg\n2026-06-01T10:00:00Z,4.0,60\n2026-06-01T10:30:00Z,6.0,80\n2026-06-01T11:30:00Z,5.0,70\n"
 )
+ship = read_ais(load("ship_from_ais")["vessel.track"], mmsi=219999001)
 flight = fly(
     "ship_from_ais",
-    track=CATALOG / "ais" / "made_danish.csv",
+    track=ship,
     wind={"table": "wind.csv"},
     flight={"duration_max_s": 600.0},
 )

@@ -1,4 +1,4 @@
-"""The published method: areas of SO2 and CO2 over a window about each pass (measurement.md, section 4.2)."""
+"""The published method: areas of SO2 and CO2 over a window about each pass."""
 
 import math
 from collections.abc import Sequence
@@ -51,8 +51,8 @@ class Areas:
 def overlap_ratio(interval: float, instrument: SnifferSpec) -> float:
     """Return what areas over troughs read of the truth where narrow passes follow at an interval [s].
 
-    An area over the line between troughs is 1 - q/(e^q - 1) of the whole, q = interval/tau (measurement.md, section 4.4); the ratio
-    is that of SO2 over that of CO2. A channel with two poles counts by the sum of its time constants.
+    An area over the line between troughs is 1 - q/(e^q - 1) of the whole, q = interval/tau; the ratio is that of SO2 over that of
+    CO2. A channel with two poles counts by the sum of its time constants.
     """
     kept = []
     for gas in ("so2", "co2"):

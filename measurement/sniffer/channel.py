@@ -14,7 +14,7 @@ class Channel:
     """A gas channel. Concentrations are in the unit of its gas: ppm of CO2, ppb of the others.
 
     It reads ``gain (c + sum of cross k c_k) (1 + pressure_effect dp) + zero``, delayed, through its lag, with white noise and a
-    random walk, rounded and cut at its range (measurement.md, section 3). An ending ``_sd`` is the standard deviation with which
+    random walk, rounded and cut at its range. An ending ``_sd`` is the standard deviation with which
     the analyst knows a property; infinite where it is not known at all, and then it is estimated from the record.
 
     Attributes

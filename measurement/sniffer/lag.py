@@ -50,7 +50,8 @@ def parallel(constants: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
 def weights(step: Array | float, constant: float) -> tuple[Array, Array, Array]:
     """Return what a first-order lag's output after a step is of its output, its input before and its input after [-].
 
-    With r = step/constant, a = e^-r and m = (1 - a)/r these are a, m - a and 1 - m (measurement.md, section 3).
+    With r = step/constant, a = e^-r and m = (1 - a)/r these are a, m - a and 1 - m: exact where the input is linear
+    over the step.
     """
     r = np.asarray(step, dtype=np.float64) / constant
     a = np.exp(-r)

@@ -34,7 +34,7 @@ def design_content(run: RunData) -> Findings:
     ReportError : the directory holds no design record
     """
     if run.innerloop is None:
-        raise ReportError(f"'{run.path}' holds no design record that can be read ({DESIGN_RECORD}); run innerloop.design again")
+        raise ReportError(f"'{run.path}' holds no design record that can be read ({DESIGN_RECORD}); run plume-flight design again")
     design = complete(run.innerloop)
     sections = [
         _margins(design),

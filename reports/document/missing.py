@@ -58,8 +58,8 @@ def missing_sections(run: RunData) -> list[Section]:
         for name in names[:_LISTED_MAX]
     ]
     text = (
-        f"{len(names)} {'files' if len(names) > 1 else 'file'} of this run cannot be shown; scenarios.run with --resume makes them"
-        " again."
+        f"{len(names)} {'files' if len(names) > 1 else 'file'} of this run cannot be shown; plume-flight run with --resume makes"
+        " them again."
     )
     table = Table(
         caption="Files that are gone or cannot be read.",

@@ -1,14 +1,16 @@
 """What an exporter is, and which there are."""
 
+import importlib.util
 from pathlib import Path
 from typing import Protocol
 
 from common.registry import Registry
+from reports.errors import ReportError
 from reports.run.run_data import RunData
 
 
 class Exporter(Protocol):
-    """Writes a run in another format, made without arguments.
+    """Writes a run in another format, made without arguments; one whose packages are missing says so when it is made.
 
     To add one, register its class in a module of this folder, announce it as an entry point in the group
     ``plume_flight_study.exporter``, or name it by its file: ``--export FILE.py:NAME``.
@@ -29,6 +31,18 @@ class Exporter(Protocol):
         ReportError : the run does not have what the format is about
         """
         ...
+
+
+def need_packages(exporter: str, *modules: str) -> None:
+    """Refuse an exporter, before it writes anything, whose modules of the extra ``export`` are not installed.
+
+    Raises
+    ------
+    ReportError : one of them is missing
+    """
+    if any(importlib.util.find_spec(module) is None for module in modules):
+        packages = " and ".join(module.partition(".")[0] for module in modules)
+        raise ReportError(f"{exporter} needs {packages}; install the extra: pip install 'plume-flight-study[export]'")
 
 
 EXPORTERS: Registry[type[Exporter]] = Registry("exporter", folder="reports.export", methods=("write",))

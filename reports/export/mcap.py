@@ -1,12 +1,11 @@
-"""MCAP with Foxglove's well-known schemas, which Foxglove, Lichtblick and Rerun open; needs the extra ``mcap``."""
+"""MCAP with Foxglove's well-known schemas, which Foxglove, Lichtblick and Rerun open; needs the extra ``export``."""
 
 import json
 import math
 from pathlib import Path
 from typing import Any
 
-from reports.errors import ReportError
-from reports.export.exporter import EXPORTERS
+from reports.export.exporter import EXPORTERS, need_packages
 from reports.export.geographic import Body, GeographicFlight, recorded_flights
 from reports.run.run_data import RunData
 
@@ -49,17 +48,13 @@ class Mcap:
     suffix = ".mcap"
     one_flight = True
 
-    def write(self, run: RunData, path: Path) -> None:
-        """Write one flight.
+    def __init__(self) -> None:
+        need_packages("mcap", "mcap.writer")
 
-        Raises
-        ------
-        ReportError : the package ``mcap`` is missing
-        """
-        try:
-            from mcap.writer import Writer
-        except ImportError:
-            raise ReportError("mcap needs the package mcap; install the extra: pip install 'plume-flight-study[export]'") from None
+    def write(self, run: RunData, path: Path) -> None:
+        """Write one flight."""
+        from mcap.writer import Writer
+
         flight = next(recorded_flights(run))
         drawn = set(flight.every(_DRAWN_EVERY))
         with path.open("wb") as file:

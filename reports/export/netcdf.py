@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from reports.errors import ReportError
-from reports.export.exporter import EXPORTERS
+from reports.export.exporter import EXPORTERS, need_packages
 from reports.export.geographic import GeographicFlight, recorded_flights
 from reports.run.run_data import RunData
 
@@ -39,20 +38,14 @@ class NetCdf:
 
     suffix = ".nc"
 
-    def write(self, run: RunData, path: Path) -> None:
-        """Write all flights that have a time history.
+    def __init__(self) -> None:
+        # xarray writes by h5netcdf.
+        need_packages("netcdf", "xarray", "h5netcdf")
 
-        Raises
-        ------
-        ReportError : the package ``xarray`` is missing
-        """
-        try:
-            import h5netcdf  # noqa: F401 - xarray writes by it
-            import xarray
-        except ImportError:
-            raise ReportError(
-                "netcdf needs xarray and h5netcdf; install the extra: pip install 'plume-flight-study[export]'"
-            ) from None
+    def write(self, run: RunData, path: Path) -> None:
+        """Write all flights that have a time history."""
+        import xarray
+
         flights = list(recorded_flights(run))
         names = np.array([flight.flight_id.encode() for flight in flights])
         variables: dict[str, Any] = {

@@ -5,9 +5,8 @@ import socket
 import time
 
 from reports.errors import ReportError
-from reports.export.geographic import recorded_flights
+from reports.export.geographic import GeographicFlight
 from reports.export.mavlink import messages
-from reports.run.run_data import RunData
 
 _ADDRESS = re.compile(r"udp://([A-Za-z0-9.\-]+):(\d{1,5})")
 
@@ -27,20 +26,20 @@ def stream_address(text: str) -> tuple[str, int]:
     return found[1], int(found[2])
 
 
-def stream_flight(run: RunData, address: tuple[str, int], *, speed: float = 1.0) -> tuple[str, int, float]:
-    """Send the first recorded flight of a run, and return its name, the number of messages and its duration [s].
+def stream_flight(flight: GeographicFlight, address: tuple[str, int], *, speed: float = 1.0) -> tuple[str, int, float]:
+    """Send a flight, and return its name, the number of messages and its duration [s].
 
     Parameters
     ----------
-    run : with the flight
+    flight : as recorded
     address : host and port
     speed : seconds of the flight in a second of the clock [-]
 
     Raises
     ------
-    ReportError : the run has no time history of a flight, or nothing can be sent to the address
+    ReportError : nothing can be sent to the address
     """
-    flight, sent, at = next(recorded_flights(run)), 0, 0.0
+    sent, at = 0, 0.0
     began = time.monotonic()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
         for at, message in messages(flight):

@@ -126,7 +126,7 @@ def read_run(path: Path) -> RunData:
     try:
         manifest = json.loads((path / MANIFEST).read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise ReportError(f"'{path}' holds no run (no {MANIFEST}); give the directory that scenarios.run named") from None
+        raise ReportError(f"'{path}' holds no run (no {MANIFEST}); give the directory that plume-flight run named") from None
     except (ValueError, OSError, RecursionError) as error:
         raise ReportError(f"'{path}': {MANIFEST} cannot be read: {error}; run the scenario again") from None
     if not (isinstance(manifest, dict) and isinstance(manifest.get("config"), dict)):

@@ -11,6 +11,7 @@ from typing import Any
 from common.registry import PluginError, Registry
 from scenarios.engine.task import Result, Task, Work
 from scenarios.errors import InputError
+from scenarios.world.ais import AisReports
 
 PLAIN = (bool, int, float, str)
 """Types of values that a scenario file has."""
@@ -122,7 +123,8 @@ def check_picklable(parts: Parts) -> None:
 def named(given: Mapping[str, Any], key: str = "") -> tuple[dict[str, Any], Parts]:
     """Return a table with names in place of objects, and the parts that the names stand for.
 
-    A steering law that is made already brings the keys of its fields: ``law=MyLaw(gain=2.0)`` sets ``gain`` beside ``law``.
+    A steering law that is made already brings the keys of its fields: ``law=MyLaw(gain=2.0)`` sets ``gain`` beside ``law``. So do
+    reports that are read already, with their file and the vessel in it: ``track=read_ais("ais.csv", mmsi=219999001)``.
 
     Parameters
     ----------
@@ -153,6 +155,9 @@ class _Namer:
                 section = name.rpartition(".")[0]
                 keys = {of.name: getattr(value, of.name) for of in fields(value) if of.init}
                 made |= {f"{section}.{of}" if section else of: item for of, item in keys.items()}
+            elif below == "vessel.track" and isinstance(value, AisReports):
+                made[name] = str(value.path)
+                made[f"{name.removesuffix('track')}mmsi"] = value.mmsi
             else:
                 made[name] = self.value(below, value)
         return made

@@ -71,7 +71,7 @@ def _key(key: DocumentedKey) -> Iterator[str]:
         if text:
             yield from _wrapped(f"  {name:<{_INDENT}}" if name else "  ", text)
     for condition in key.conditions:
-        yield from _wrapped(f"  {'used by':<{_INDENT}}", condition)
+        yield from _wrapped(f"  {'acts with':<{_INDENT}}", condition)
 
 
 def _wrapped(before: str, text: str) -> list[str]:

@@ -15,13 +15,23 @@ from common.command_line import refuse, run_command
 
 def export(
     directory: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="A directory that plume-flight run wrote.")],
-    to: Annotated[list[str], typer.Option(metavar="NAME,...", help="Formats: kmz, acmi, czml, ..., or FILE.py:NAME.")],
-    flight: Annotated[str | None, typer.Option(metavar="ID", help="Export this flight alone.")] = None,
+    to: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME,...", help="Formats: kmz, acmi, czml, mcap, netcdf, tlog, geojson, tracks_csv, or FILE.py:NAME."
+        ),
+    ] = None,
+    flight: Annotated[str | None, typer.Option(metavar="ID", help="Export or stream this flight alone.")] = None,
+    stream: Annotated[
+        str | None, typer.Option(metavar="udp://HOST:PORT", help="Send a flight to a ground station in real time, as MAVLink.")
+    ] = None,
 ) -> None:
-    """Write the flights of a run in other formats, into RUN_DIR/export."""
+    """Write the flights of a run in other formats, into RUN_DIR/export, or send one in real time."""
     from reports.build import command
 
-    command(directory, export=to, flight=flight)
+    if not (to or stream):
+        raise typer.Exit(refuse("nothing to export; give --to NAME,..., as in --to kmz, or --stream udp://HOST:PORT"))
+    command(directory, export=to, flight=flight, stream=stream)
 
 
 def describe(

@@ -21,8 +21,8 @@ _WIDTH = 118
 _HEAD = """\
 Made from {name} by plume-flight new. Fly it with: plume-flight run {file}
 
-Every key is here with its meaning, range and default. A key behind a # is not set, and stands there with its default: remove
-the # to set it. A key that no part of the flights uses is refused, with the part that would use it.
+Every key is here with its meaning, range and default. A key behind a # is not set, and stands there with its default: \
+remove the # to set it. A key that no part of the flights uses is refused, with the part that would use it.
 The seeds of flights follow from the name of this file, unless nu is swept: called otherwise it has other starts.
 """
 

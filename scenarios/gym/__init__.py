@@ -1,14 +1,12 @@
 """``gymnasium.make("PlumeCrossing-v0")``: flights as an environment for reinforcement learning. Needs the extra ``gym``.
 
-The installed project announces it to gymnasium by an entry point; without one, call ``register_environment``.
+Importing this package makes the environment known. Gymnasium has no entry points since its version 1.0: a package registers
+what it has when it is imported, by the user or by ``gymnasium.make("scenarios.gym:PlumeCrossing-v0")``.
 """
+
+from gymnasium.envs.registration import register, registry
 
 ENVIRONMENT = "PlumeCrossing-v0"
 
-
-def register_environment() -> None:
-    """Make the environment known to gymnasium, which calls this by its entry point."""
-    from gymnasium.envs.registration import register, registry
-
-    if ENVIRONMENT not in registry:
-        register(ENVIRONMENT, entry_point="scenarios.gym.environment:PlumeCrossing")
+if ENVIRONMENT not in registry:
+    register(ENVIRONMENT, entry_point="scenarios.gym.environment:PlumeCrossing")

@@ -159,7 +159,7 @@ def _range(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
     names = {
         dict: "keys with dots and their values",
         bool: "true or false",
-        str: "a word",
+        str: "text",
         datetime: "a time, as 2026-06-01T12:00:00Z",
     }
     return names.get(origin or annotation) or _limits(annotation, metadata)

@@ -86,7 +86,7 @@ def _part_keys(section: str, made: type[Any]) -> list[DocumentedKey]:
 def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
     meaning, unit = split_unit(described)
     number = type(of.default) in (int, float)
-    ranges: dict[type[Any], str] = {bool: "true or false", str: "a word"}
+    ranges: dict[type[Any], str] = {bool: "true or false", str: "text"}
     return DocumentedKey(
         key=key,
         meaning=meaning,

@@ -223,8 +223,8 @@ RULES = (
     Rule(
         keys=("turbulence.", "wind.", "emission.", "reports.", "sensors.", "fault.", "vessel.manoeuvres", "vessel.track"),
         acts=lambda s: s.follows,
-        user="the mission that follows what it estimates; guidance.mission is 'track', in still air beside a steady vessel: leave"
-        " guidance.mission out, or set it to 'follow'",
+        user="the mission that follows the vessel with estimates of vessel and wind; 'track' is in still air, beside a steady"
+        " vessel: leave guidance.mission out, or set it to 'follow'",
         by_mission=True,
     ),
     Rule(keys=("vessel.speed_mps",), acts=lambda s: s.vessel.speed_ratio is None and "nu" not in s.sweep.root,

@@ -59,7 +59,7 @@ class Scenario(Section):
     description: str = ""
     """In a sentence or two, for the head of the report."""
     aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = DEFAULT_AIRCRAFT
-    """The aircraft, by its name (innerloop.design --list), by the folder of its JSBSim model, DIR/NAME, or FILE.py:NAME."""
+    """The aircraft, by its name (plume-flight design --list), by the folder of its JSBSim model, DIR/NAME, or FILE.py:NAME."""
     fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
     """The aircraft in six degrees of freedom, the paper's kinematic vehicle, or one after the other."""
     seed: Seed = 1

@@ -27,6 +27,7 @@ class FlightCounts:
     planned : number of planned flights
     done, flown : number of flights that are done, and of those that were measured
     kept_out : number of flights that kept out of the keep-out area to their end, as far as it is known
+    without_area : number of flights that completed without a vessel, and so without an area to keep out of
     met : number of flights that met every criterion: they kept out, completed, and kept their aircraft
     passed : number of flights that did what exit status 0 requires of them
     outcomes : number of flights by their outcome
@@ -43,6 +44,7 @@ class FlightCounts:
     done: int = 0
     flown: int = 0
     kept_out: int = 0
+    without_area: int = 0
     met: int = 0
     passed: int = 0
     outcomes: Counter[str] = field(default_factory=Counter)
@@ -68,6 +70,7 @@ class FlightCounts:
         self.done += 1
         self.flown += "duration_s" in row
         self.kept_out += kept_out
+        self.without_area += row["outcome"] == Outcome.COMPLETED.value and "keepout_violations" not in row
         self.outcomes[row["outcome"]] += 1
         self.required[required] += 1
         self.passed += kept_out if required == "keep_out" else bool(row["criteria_met"])
@@ -98,7 +101,8 @@ class FlightCounts:
         counts = f"{self.planned} planned, {self.flown} flown, {self.completed} completed, {self.met} met every criterion{lost}"
         if math.isinf(self.nearest):
             return counts
-        kept = f"{self.kept_out} of {self.flown} kept out, {self.keepout_violations} keep-out violations"
+        beside = f"{self.flown - self.without_area}{' beside a vessel' if self.without_area else ''}"
+        kept = f"{self.kept_out} of {beside} kept out, {self.keepout_violations} keep-out violations"
         about = f" ({_MEASURED_FROM[next(iter(self.shapes))]})" if len(self.shapes) == 1 else ""
         return f"{counts}; {kept}, closest approach {self.nearest:.1f} m{about}"
 

@@ -35,11 +35,13 @@ class TabledWind:
     times : since 1970 in UTC, shape (n,); empty where it does not change with time [s]
     heights : above the sea, shape (m,); empty where it does not change with height [m]
     velocity : where it blows to, north and east, shape (max(n, 1), max(m, 1), 2) [m/s]
+    lines : of a table: the first and the last with a wind
     """
 
     times: tuple[float, ...]
     heights: tuple[float, ...]
     velocity: Array
+    lines: tuple[int, int] | None = None
 
 
 def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
@@ -59,8 +61,9 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
     if found.times:
         first, last = found.times[0], found.times[-1]
         if not first <= place.utc <= place.utc + duration <= last:
+            at = [f" (line {line})" for line in found.lines] if found.lines else ["", ""]
             raise InputError(
-                f"wind.table: {name} goes from {utc_text(first)} to {utc_text(last)}; the longest flight goes from"
+                f"wind.table: {name} goes from {utc_text(first)}{at[0]} to {utc_text(last)}{at[1]}; the longest flight goes from"
                 f" {utc_text(place.utc)} to {utc_text(place.utc + duration)}: give a longer table, or set place.utc or"
                 " flight.duration_max_s"
             )
@@ -116,9 +119,12 @@ def _read_table(path: Path, _stamp: tuple[int, int]) -> TabledWind:
 def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, float, float, float]]:
     """Yield line, time [s], height [m], and where the wind blows to, north and east [m/s]; not a number for what has no column."""
     heads = [head.strip().lower() for head in next(cells, [])]
+    if not any(heads):
+        columns = ",".join(COLUMNS[:1] + COLUMNS[2:])
+        raise InputError(f"wind.table: {path}: the file is empty; give a table with the columns {columns}")
     if not set(COLUMNS[2:]) <= set(heads) or not set(COLUMNS[:2]) & set(heads):
         raise InputError(f"wind.table: {path}, line 1: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)},"
-                         " without time_utc or without height_m if need be")  # fmt: skip
+                         " of which time_utc or height_m may be missing: rename the columns to these")  # fmt: skip
     for line, row in enumerate(cells, start=2):
         if not any(cell.strip() for cell in row):
             continue
@@ -143,7 +149,7 @@ def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, 
 
 def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> TabledWind:
     if not rows:
-        raise InputError(f"wind.table: {path}: no row with a wind; give one at least")
+        raise InputError(f"wind.table: {path}: no row below the header; give one at least")
     timed, layered = math.isfinite(rows[0][1]), math.isfinite(rows[0][2])
     at: dict[float, dict[float, tuple[float, float]]] = {}
     before = -math.inf
@@ -163,4 +169,9 @@ def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> 
                 " at all times"
             )
     velocity = np.array([[layers[height] for height in heights] for layers in at.values()])
-    return TabledWind(times=tuple(at) if timed else (), heights=heights if layered else (), velocity=velocity)
+    return TabledWind(
+        times=tuple(at) if timed else (),
+        heights=heights if layered else (),
+        velocity=velocity,
+        lines=(rows[0][0], rows[-1][0]),
+    )

@@ -1,8 +1,9 @@
-"""What README.md and CONTRIBUTING.md say can be done as it stands."""
+"""What README.md, CONTRIBUTING.md and the pages of the documentation say can be done as it stands."""
 
 import re
 import shlex
 import sys
+from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path
 
@@ -14,15 +15,21 @@ from scenarios.schema.load import load_study
 
 ROOT = Path(__file__).parents[2]
 PAGES = ("README.md", "CONTRIBUTING.md")
+DOCS = [
+    path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.md") if not {"generated", "_build"} & set(path.parts)
+]
+YOURS = re.compile(r"\.py:|mine\.toml|fleet|RUN_DIR|runs/|wind\.csv")
+"""What a command names that the reader has, and a clone does not."""
 
 
 def _lines(page: str) -> list[str]:
     blocks = re.findall(r"^```[a-z]*\n(.*?)^```$", (ROOT / page).read_text("utf-8"), re.MULTILINE | re.DOTALL)
-    return [line.split(" #")[0].strip() for block in blocks for line in block.splitlines() if line.strip()]
+    joined = (block.replace("\\\n", " ") for block in blocks)
+    return [line.split(" #")[0].strip() for block in joined for line in block.splitlines() if line.strip()]
 
 
-def _commands(word: str) -> list[list[str]]:
-    called = (shlex.split(line) for page in PAGES for line in _lines(page) if line.startswith((".venv", "plume-flight")))
+def _commands(word: str, pages: Iterable[str] = PAGES) -> list[list[str]]:
+    called = (shlex.split(line) for page in pages for line in _lines(page) if line.startswith((".venv", "plume-flight")))
     return [words[2:] for words in called if words[0].endswith("plume-flight") and words[1] == word]
 
 
@@ -56,10 +63,24 @@ def test_every_scenario_and_key_of_the_readme_is_taken(arguments):
     assert load_study(arguments[0], overrides).title
 
 
+def test_every_scenario_and_key_of_the_documentation_is_taken():
+    flown = [arguments for arguments in _commands("run", DOCS) if arguments and not YOURS.search(" ".join(arguments))]
+    assert len(flown) > 20
+    for arguments in flown:
+        overrides = [word for flag, word in pairwise(arguments) if flag == "--set"]
+        assert load_study(arguments[0], overrides).title
+
+
+def test_the_pages_write_commands_in_one_form():
+    """``python -m`` is named beside ``plume-flight`` where the table of both is."""
+    both = re.compile(r"python -m (scenarios\.run|innerloop\.design|reports\.)")
+    assert [page for page in DOCS if both.search((ROOT / page).read_text("utf-8"))] == ["docs/api.md"]
+
+
 @pytest.mark.parametrize("word", sorted(commands()))
 def test_every_command_takes_the_options_that_are_given(word, monkeypatch, capsys):
-    """Of the commands that the README shows; what is asked for is their help, so that nothing is flown."""
-    for arguments in _commands(word):
+    """Of the commands that the pages show; what is asked for is their help, so that nothing is flown."""
+    for arguments in _commands(word, (*PAGES, *DOCS)):
         options = [argument for argument in arguments if argument.startswith("--")]
         monkeypatch.setattr(sys, "argv", ["plume-flight", word, "--help"])
         with pytest.raises(SystemExit):

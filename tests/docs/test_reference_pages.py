@@ -10,6 +10,7 @@ from reference_pages.frames import frames_svg
 from reference_pages.keys import keys_page
 from reference_pages.markdown import literal, plain, table
 
+from common import run_layout
 from measurement.estimate import estimate
 from measurement.estimate.flight_log.config import LogConfig
 from measurement.estimate.flight_log.csv_file import read_flight
@@ -30,6 +31,13 @@ def test_every_key_of_a_scenario_is_on_its_page_with_its_meaning():
 def test_every_column_that_is_written_has_a_meaning():
     for title, (names, meanings) in tables().items():
         assert [name for name in names if not meanings.get(name)] == [], title
+
+
+def test_every_table_that_a_run_may_have_is_on_the_page():
+    titles = " ".join(tables())
+    files = {name for name in vars(run_layout).values() if isinstance(name, str) and name.endswith(".csv")}
+    assert len(files) > 9
+    assert [name for name in sorted(files | {*MEANINGS, *PATROL_MEANINGS}) if name not in titles] == []
 
 
 def test_no_meaning_is_of_a_column_that_nothing_writes():

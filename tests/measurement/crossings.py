@@ -11,7 +11,7 @@ BACKGROUND = np.array([1.0, 420.0, 0.2, 3.0])
 """SO2 [ppb], CO2 [ppm], NO [ppb], NO2 [ppb] of sea air."""
 
 NOX = np.array([20.7, 2.3])
-"""NO and NO2 per CO2 of a two-stroke engine of tier II at 10 % of NO2 [ppb/ppm] (measurement.md, section 2)."""
+"""NO and NO2 per CO2 of a two-stroke engine of tier II, 14 g/kWh of NOx by EPA's ShipEF data, at 10 % of NO2 [ppb/ppm]."""
 
 
 def sniffer_of(*channels, rate_hz=1.0):

@@ -1,4 +1,4 @@
-"""Both methods against the closed forms of measurement.md, sections 4.1 to 4.4."""
+"""Both methods against what follows in closed form for Gaussian passes and lags of first order."""
 
 import math
 from dataclasses import replace

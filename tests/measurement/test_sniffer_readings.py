@@ -20,13 +20,13 @@ def test_a_steady_reading_is_gain_times_air_and_other_gases_with_pressure_and_ze
     air = np.array([[30.0, 420.0, 1000.0, 50.0]] * 3)
     spec = sniffer_of(so2)
     reading = Sniffer(spec, generator=np.random.default_rng(0), time_step=1.0).advance(air, np.full(3, 2.0)).values
-    # gain (c + sum k c) (1 + 0.15 %/hPa 2 hPa) + zero: measurement.md, section 3.
+    # gain (c + sum k c) (1 + 0.15 %/hPa 2 hPa) + zero, as Channel says.
     np.testing.assert_allclose(reading[:, 0], 1.1 * (30.0 + 15.0 - 80.0) * 1.003 - 2.0, rtol=1e-12)
     assert np.isnan(reading[:, 1:]).all()
 
 
 def test_pressure_moves_co2_by_what_the_specification_says():
-    # 420 ppm x 0.15 %/hPa = 0.63 ppm/hPa (measurement.md, section 3).
+    # 420 ppm x 0.15 %/hPa = 0.63 ppm/hPa, uncompensated: manual of Vaisala's GMP343.
     spec = changed(sensor_preset("electrochemical"), "co2", noise=0.0, random_walk=0.0, resolution=0.0)
     sniffer = Sniffer(spec, generator=np.random.default_rng(0), time_step=1.0)
     assert sniffer.advance(STILL[:2], np.ones(2)).values[0, 1] == pytest.approx(420.63, abs=1e-9)

@@ -85,7 +85,7 @@ def test_help_and_list_answer():
         (["sweep_nu", "--set", "keepout.radius_m=-1"], ["keepout.radius_m", "-1", "greater than or equal to 10"]),
         (["sweep_nu", "--set", "guidance.airspeed_mps=nan"], ["guidance.airspeed_mps", "nan"]),
         (["sweep_nu", "--set", "guidance.airspeed_mps=60"], ["guidance.airspeed_mps is 60", "Skywalker X8 flies 15.0 to 25.0 m/s"]),
-        (["sweep_nu", "--set", "aircraft=zeppelin"], ["unknown aircraft 'zeppelin'", "innerloop.design --list"]),
+        (["sweep_nu", "--set", "aircraft=zeppelin"], ["unknown aircraft 'zeppelin'", "plume-flight design --list"]),
         (["sweep_nu", "--set", "aircraft=t37"], ["unknown aircraft 't37'", "did you mean 'T37'"]),
         (["sweep_nu", "--set", "aircraft=SGS"], ["aircraft 'SGS' cannot be flown", "it has no engine"]),
         (["sweep_nu", "--set", "aircraft=J246"], ["aircraft 'J246' cannot be flown", "rocket engines"]),

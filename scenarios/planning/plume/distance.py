@@ -3,7 +3,7 @@
 A pass at a height z off the centre of a Gaussian plume of spreads s_y, s_z, in an apparent wind U, at a speed v across it, has the
 dose A exp(-z^2/(2 s_z^2)), A = Q/(sqrt(2 pi) n U s_z v). A sensor with a time constant T makes of it a pulse whose square has the
 integral A^2/(2T) erfcx(s_y/(v T)), erfcx(x) = exp(x^2) erfc(x), by Parseval's theorem. The regression's uncertainty by noise falls
-with the root of the sum of these integrals (measurement.md, section 4.3). Their mean over a z of mean o and variance w^2 has the
+with the root of the sum of these integrals. Their mean over a z of mean o and variance w^2 has the
 factor s_z/sqrt(s_z^2 + 2 w^2) exp(-o^2/(s_z^2 + 2 w^2)).
 """
 

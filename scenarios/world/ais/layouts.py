@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
@@ -14,6 +15,12 @@ from scenarios.world.ais.rows import AisRow, number_of, seconds_of
 
 _NAMED = 5
 """Vessels of a file that a message names at most."""
+
+_COUNTED = 100_000
+"""Rows of a file in which other vessels are looked for, where it has none of the vessel asked for."""
+
+_SHOWN = 60
+"""Letters of a header that a message quotes at most."""
 
 
 def _danish_time(text: str) -> float:
@@ -60,7 +67,11 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow]]:
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
-            return _of_one(path, mmsi, _all_rows(path, file, mmsi))
+            found = _of_one(path, mmsi, _all_rows(path, file, mmsi))
+            if found is None:
+                file.seek(0)
+                raise _no_row(path, mmsi, islice(_all_rows(path, file, None), _COUNTED))
+            return found
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}; check the path, relative to the scenario file") from None
     except (UnicodeDecodeError, csv.Error) as error:
@@ -83,8 +94,8 @@ def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterat
     if layout is None:
         plain = ",".join(LAYOUTS[0].columns)
         raise InputError(
-            f"{path}, line 1: the header is {head.strip()[:80]!r}; known are those of the Danish Maritime Authority and of Marine"
-            f" Cadastre, and {plain}: rename the columns to these"
+            f"{path}, line 1: the header is {head.strip()[:_SHOWN]!r}; known are those of the Danish Maritime Authority and of"
+            f" Marine Cadastre, and {plain}: rename the columns to these"
         )
     places = [heads.index(column) for column in layout.columns]
     wanted = "" if mmsi is None else str(mmsi)
@@ -106,8 +117,8 @@ def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterat
         yield int(identity), AisRow(number, seconds, *map(number_of, others))
 
 
-def _of_one(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) -> tuple[int, list[AisRow]]:
-    """Return the rows of the vessel asked for, or of the only one."""
+def _of_one(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) -> tuple[int, list[AisRow]] | None:
+    """Return the rows of the vessel asked for, or of the only one; none if there are none."""
     found: list[AisRow] = []
     counts: Counter[int] = Counter()
     for identity, row in rows:
@@ -117,11 +128,18 @@ def _of_one(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) ->
     if mmsi is None and len(counts) > 1:
         raise InputError(f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one: vessel.mmsi")
     if not found:
-        asked = "any vessel" if mmsi is None else f"MMSI {mmsi}"
-        known = f"; it has {_most(counts)}" if counts else ""
-        raise InputError(f"{path}: no row of {asked}{known}: check vessel.mmsi")
+        return None
     return mmsi if mmsi is not None else next(iter(counts)), found
 
 
+def _no_row(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) -> InputError:
+    """Return what says that the file has no row of the vessel, and whose rows it has."""
+    counts = Counter(identity for identity, _ in rows)
+    if not counts:
+        return InputError(f"{path}: no row with a report; give a file of AIS reports")
+    return InputError(f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check vessel.mmsi")
+
+
 def _most(counts: Counter[int]) -> str:
-    return ", ".join(f"{identity} ({rows} rows)" for identity, rows in counts.most_common(_NAMED))
+    named = ", ".join(f"{identity} ({rows} row{'s' * (rows > 1)})" for identity, rows in counts.most_common(_NAMED))
+    return f"{named}, ..." if len(counts) > _NAMED else named

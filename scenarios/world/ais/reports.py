@@ -40,6 +40,7 @@ class AisReports:
     Attributes
     ----------
     path, mmsi : the file, and the vessel's identity
+    line : of the file, from 1
     time : since 1970 in UTC [s]
     latitude, longitude : [rad]
     speed, course : over the ground, course from true north [m/s, rad]
@@ -49,6 +50,7 @@ class AisReports:
 
     path: Path
     mmsi: int
+    line: Array
     time: Array
     latitude: Array
     longitude: Array
@@ -90,19 +92,21 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         kept = [row for row, reason in zip(kept, reasons, strict=True) if not reason]
     if len(kept) < 2:
         why = ", ".join(f"{count} {reason} (first in line {first[reason]})" for reason, count in dropped.items())
+        remedy = "sort the file by time" if dropped[OUT_OF_ORDER] else "correct the rows, or give another file"
         raise InputError(
-            f"{path}: of {len(rows)} rows of MMSI {identity} {len(kept)} are of use{': ' if why else ''}{why}; give a file with two"
-            " at least"
+            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
+            f" {remedy}"
         )
-    columns = np.array([row[1:] for row in kept]).T
+    columns = np.array(kept).T
     return AisReports(
         path=path,
         mmsi=identity,
-        time=columns[0],
-        latitude=np.radians(columns[1]),
-        longitude=np.radians(columns[2]),
-        speed=METRES_PER_SECOND_PER_KNOT * columns[3],
-        course=np.radians(np.where(np.isfinite(columns[4]) & (columns[4] < 360.0), columns[4], 0.0)),
+        line=columns[0],
+        time=columns[1],
+        latitude=np.radians(columns[2]),
+        longitude=np.radians(columns[3]),
+        speed=METRES_PER_SECOND_PER_KNOT * columns[4],
+        course=np.radians(np.where(np.isfinite(columns[5]) & (columns[5] < 360.0), columns[5], 0.0)),
         rows=len(rows),
         dropped=dict(dropped),
     )

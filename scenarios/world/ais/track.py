@@ -102,17 +102,18 @@ def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float
     """Raise an InputError where reports do not cover a flight between two times [s], or have too long a gap in it [s]."""
     if not reports.time[0] <= begin < end <= reports.time[-1]:
         raise InputError(
-            f"{reports.path}: reports of MMSI {reports.mmsi} go from {utc_text(reports.time[0])} to {utc_text(reports.time[-1])};"
-            f" the longest flight goes from {utc_text(begin)} to {utc_text(end)}: set place.utc or flight.duration_max_s"
+            f"{reports.path}: reports of MMSI {reports.mmsi} go from {utc_text(reports.time[0])} (line {reports.line[0]:.0f}) to"
+            f" {utc_text(reports.time[-1])} (line {reports.line[-1]:.0f}); the longest flight goes from {utc_text(begin)} to"
+            f" {utc_text(end)}: set place.utc or flight.duration_max_s"
         )
     gaps = np.diff(reports.time)
     used = (reports.time[1:] > begin) & (reports.time[:-1] < end)
     worst = int(np.argmax(np.where(used, gaps, 0.0)))
     if gaps[worst] > gap_max:
         raise InputError(
-            f"{reports.path}: after {utc_text(reports.time[worst])} there is no report of MMSI {reports.mmsi} for {gaps[worst]:.0f}"
-            f" s; the track is bridged over vessel.gap_max_s = {gap_max:g} s at most: set it, or fly another time (place.utc,"
-            " flight.duration_max_s)"
+            f"{reports.path}, line {reports.line[worst]:.0f}: after {utc_text(reports.time[worst])} there is no report of MMSI"
+            f" {reports.mmsi} for {gaps[worst]:.0f} s; the track is bridged over vessel.gap_max_s = {gap_max:g} s at"
+            " most: set it, or fly another time (place.utc, flight.duration_max_s)"
         )
 
 

@@ -91,7 +91,7 @@ def test_an_unknown_name_is_refused_with_its_nearest_neighbour_and_where_names_a
     assert "unknown aircraft 'aerosond'; did you mean 'aerosonde'?" in reason("aerosond")
     assert "unknown aircraft 'Cessna'" in reason("Cessna")
     assert "did you mean 'x8'?" in reason("X8")
-    assert "python -m innerloop.design --list" in reason("zeppelin NT")
+    assert "plume-flight design --list" in reason("zeppelin NT")
     assert "did you mean" not in reason("zzz")
 
 

@@ -17,6 +17,7 @@ from reports.build import export_run
 from reports.errors import ReportError
 from reports.export.geographic import recorded_flights
 from reports.run.run_data import read_run
+from tests.in_process import assert_refused, run_command
 from tests.reports.export.placed_flight import START, TOLERANCE, exported, off, track
 
 
@@ -160,3 +161,6 @@ def test_a_package_that_is_missing_is_one_line_with_the_extra(run_path, monkeypa
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ReportError, match=r"install the extra: pip install 'plume-flight-study\[export\]'"):
         export_run(run_path, name)
+    # What comes before it in a list is not written either.
+    assert_refused(run_command("reports.build", run_path, "--export", f"kmz,{name}"), "install the extra")
+    assert not (run_path / "export").exists()

@@ -113,13 +113,16 @@ def test_a_vessel_at_rest_needs_no_course(read):
     [
         ("", None, ["the file is empty"]),
         ("a,b,c\n1,2,3\n", None, ["line 1", "the header is 'a,b,c'", PLAIN]),
-        (table(*rows()), 5, ["no row of MMSI 5", "219999001 (3 rows)", "check vessel.mmsi"]),
-        (table(), None, ["no row of any vessel"]),
+        # 5 is in lines of the file, 366 in none: either way its vessels are named.
+        (table(*rows()), 5, ["no row of MMSI 5; it has 219999001 (3 rows): check vessel.mmsi"]),
+        (table(*rows()), 366, ["no row of MMSI 366; it has 219999001 (3 rows): check vessel.mmsi"]),
+        (table(*reversed(rows())), None, ["1 of 3 rows", "2 out of order (first in line 2)", "sort the file by time"]),
+        (table(), None, ["no row with a report"]),
         (table(*rows(), "2026-06-01T10:00:05Z,7,57.0,11.3,12.0,20.5"), None, ["2 vessels", "name one: vessel.mmsi"]),
         (table(*rows(), "yesterday,219999001,57.0,11.3,12.0,20.5"), None, ["line 5", "'yesterday' is no time of the layout plain"]),
         (
             table(*(f"2026-06-01T10:00:{s:02d}Z,1,91.0,11.3,12.0,20.5" for s in range(4))), None,
-            ["of 4 rows of MMSI 1 0 are of use", "4 without a possible position (first in line 2)", "two at least"],
+            ["0 of 4 rows of MMSI 1 used", "4 without a possible position (first in line 2)", "correct the rows"],
         ),
         ("PK\x03\x04\x00", None, ["the header is"]),
     ],

@@ -87,10 +87,10 @@ def test_usual_intervals_leave_out_the_longest_gaps():
     [
         (
             {"duration": 5000.0},
-            ["go from 2026-06-01T10:00:00Z to 2026-06-01T11:", "the longest flight goes", "flight.duration_max_s"],
+            ["go from 2026-06-01T10:00:00Z (line 2) to 2026-06-01T11:", "the longest flight goes", "flight.duration_max_s"],
         ),
         ({"utc": datetime(2026, 6, 1, 9, 0, tzinfo=UTC)}, ["goes from 2026-06-01T09:00:00Z", "place.utc"]),
-        ({"gap_max_s": 15.0}, ["there is no report", "vessel.gap_max_s = 15 s"]),
+        ({"gap_max_s": 15.0}, [", line ", "there is no report", "vessel.gap_max_s = 15 s"]),
     ],
 )
 def test_a_file_that_does_not_cover_the_flight_is_refused(changes, words):

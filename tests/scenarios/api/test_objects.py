@@ -9,7 +9,7 @@ import pytest
 from aircraft.fleet.x8 import X8
 from gnc.laws.line_of_sight import LineOfSightLaw
 from gnc.reference.shapes.sinusoid import Sinusoid
-from scenarios import InputError, fly, load, run
+from scenarios import InputError, fly, load, read_ais, run
 
 SHORT = {
     "title": "One short flight",
@@ -93,6 +93,15 @@ def test_laws_are_compared_and_swept_in_other_processes():
         "nu_0.50_law_cascade", "nu_0.50_law_Pursuit", "nu_0.50_law_cascade_soft", "nu_0.50_law_Pursuit_soft",
     ]  # fmt: skip
     assert study.flights["nu_0.50_law_cascade_soft"].history.equals(study.flights["nu_0.50_law_Pursuit"].history)
+
+
+def test_reports_that_are_read_already_are_a_track():
+    path = load("ship_from_ais")["vessel.track"]
+    scenario = load("ship_from_ais", track=read_ais(path, mmsi=219999001), flight={"duration_max_s": 60.0})
+    assert (scenario["vessel.track"], scenario["vessel.mmsi"]) == (path, 219999001)
+    # In a section as well, which has no mmsi of its own then.
+    in_section = load("ship_from_ais", vessel={"track": read_ais(path, mmsi=219999001)})
+    assert in_section["vessel.mmsi"] == 219999001
 
 
 def test_a_track_is_given_as_a_class_or_as_an_object_of_which_flights_take_copies():

@@ -13,6 +13,7 @@ SIGNATURES = {
     "fly": "(scenario, /, *, flight_id=None, out=None, progress=False, **keys)",
     "run": "(scenario, /, *, out=None, jobs=None, progress=False, **keys)",
     "load": "(scenario, /, *, name=None, **keys)",
+    "read_ais": "(path, mmsi=None)",
     "Scenario": "(*, name, source, changes=(), parts=())",
     "Scenario.set": "(self, **keys)",
     "Run": "(directory, *, met, lines)",
@@ -36,7 +37,7 @@ ATTRIBUTES = {
 
 
 def test_the_public_names_are_these():
-    assert scenarios.__all__ == ["Flight", "InputError", "Run", "Scenario", "Statistics", "fly", "load", "run"]
+    assert scenarios.__all__ == ["Flight", "InputError", "Run", "Scenario", "Statistics", "fly", "load", "read_ais", "run"]
     assert set(scenarios.__all__) <= set(dir(scenarios))
 
 

@@ -74,7 +74,7 @@ def test_a_run_is_flown_reported_and_exported(file, tmp_path):
         (("rum",), ("No such command 'rum'",)),
         (("run", "sweep_un"), ("did you mean 'sweep_nu'?",)),
         (("run", "sweep_nu", "--sed", "3"), ("No such option",)),
-        (("export", "."), ("--to",)),
+        (("export", "."), ("--to", "--stream udp://HOST:PORT")),
         (("export", ".", "--to", "kmz"), ("holds no run",)),
         (("report", "."), ("holds no run",)),
         (("design", "x9"), ("unknown aircraft 'x9'",)),
@@ -98,7 +98,7 @@ def test_a_key_is_described_with_unit_range_and_default():
         "m/s",
         "default   0.0",
         "monte_carlo",
-        "used by   a wind without a table",
+        "acts with a wind without a table",
     ):
         assert words in found
 

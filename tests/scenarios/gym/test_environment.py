@@ -2,7 +2,8 @@
 
 import math
 import re
-import tomllib
+import subprocess
+import sys
 import warnings
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from gymnasium.utils.env_checker import check_env
 
 from scenarios import fly
 from scenarios.errors import InputError
-from scenarios.gym import ENVIRONMENT, register_environment
+from scenarios.gym import ENVIRONMENT
 from scenarios.gym.observation import MEANINGS
 from scenarios.gym.reward import VIOLATION, CrossingReward
 
@@ -23,7 +24,6 @@ KINEMATIC = SHORT | {"fidelity": "kinematic"}
 
 
 def make(**keys):
-    register_environment()
     return gymnasium.make(ENVIRONMENT, keys=keys)
 
 
@@ -49,13 +49,16 @@ def column(env, name):
     return env.unwrapped.record.column(name)
 
 
-def test_the_project_announces_it_to_gymnasium():
-    project = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    # "__root__" is gymnasium's word for names without a namespace.
-    assert project["entry-points"]["gymnasium.envs"] == {"__root__": f"{register_environment.__module__}:register_environment"}
-    register_environment()
-    register_environment()
-    assert ENVIRONMENT in gymnasium.registry
+@pytest.mark.parametrize(
+    ("imported", "name"), [("gymnasium, scenarios.gym", ENVIRONMENT), ("gymnasium", f"scenarios.gym:{ENVIRONMENT}")]
+)
+def test_gymnasium_finds_it_in_a_process_of_its_own_as_the_page_says(imported, name):
+    script = f"import {imported}; print(gymnasium.make({name!r}, keys={{'fidelity': 'kinematic'}}).spec.id)"
+    found = subprocess.run([sys.executable, "-c", script], cwd=PROJECT, capture_output=True, text=True, check=False)
+    assert (found.stdout.split(), found.returncode) == ([ENVIRONMENT], 0), found.stderr
+    page = (PROJECT / "docs" / "gym.md").read_text(encoding="utf-8")
+    assert name in page
+    assert all(f"import {package}" in page for package in imported.split(", "))
 
 
 def test_it_passes_gymnasiums_check(kinematic):
@@ -182,7 +185,6 @@ def test_actions_outside_the_space_are_cut_and_the_guidance_knows_what_was_flown
     ],
 )
 def test_what_cannot_be_an_environment_is_refused_in_a_line(keys, words):
-    register_environment()
     with pytest.raises(InputError, match=words) as caught:
         gymnasium.make(ENVIRONMENT, keys=keys)
     assert "\n" not in str(caught.value)
@@ -195,7 +197,6 @@ def test_an_unknown_flight_is_refused_with_the_names_of_those_there_are(kinemati
 
 @pytest.mark.usefixtures("x8_design")
 def test_the_example_of_the_page_runs_as_it_stands_and_is_short(capsys):
-    register_environment()
     page = (PROJECT / "docs" / "gym.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
     assert len(example.splitlines()) <= 15

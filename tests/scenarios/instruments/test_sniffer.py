@@ -73,7 +73,7 @@ def test_gases_are_in_the_ratio_of_the_emission(slow):
     _, history, _ = slow
     excess = history[history["co2_ppm"] > 450.0]
     ratio = (excess["so2_ppb"] - 0.2) / (excess["co2_ppm"] - 420.0)
-    # 0.2322 is the published factor at 87 % carbon (measurement.md, section 4.1).
+    # 32.06/12.011 x 0.87/10: the factor of Balzani Loov et al., Atmos. Meas. Tech. 7 (2014), at 87 % carbon.
     expected = expected_fsc(fuel_preset("mgo", 0.1)) / 0.2322
     assert np.allclose(ratio, expected, rtol=2e-4)
 

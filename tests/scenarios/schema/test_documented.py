@@ -87,7 +87,7 @@ def test_studies_are_those_in_which_a_key_can_act():
 
 
 def test_conditions_say_what_uses_a_key():
-    assert BY_KEY["wind.from_deg"].conditions[-1].startswith("the mission that follows what it estimates")
+    assert BY_KEY["wind.from_deg"].conditions[-1].startswith("the mission that follows the vessel with estimates")
     assert all("; here " not in condition for key in KEYS for condition in key.conditions)
 
 

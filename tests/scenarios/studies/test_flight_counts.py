@@ -33,6 +33,10 @@ def test_flights_are_counted_as_planned_flown_completed_and_met():
         ("cylinder", "190.0 m (horizontally, from"),
     ):
         assert words in FlightCounts.of(({**each, "keepout_shape": shape} for each in ROWS), planned=6).line()
+    # A flight about a point, without a vessel, has nothing to keep out of; one that did not complete may have had.
+    alone = {"flight_id": "f4", "outcome": "completed", "message": "", "criteria_met": True, "duration_s": 100.0}
+    assert "; 2 of 3 beside a vessel kept out, 2 " in FlightCounts.of([*ROWS, alone], planned=6).line()
+    assert "; 2 of 4 kept out, 2 " in FlightCounts.of([*ROWS, alone | {"outcome": "diverged"}], planned=6).line()
     assert counts.not_met_lines("  ") == ["  f1: completed: why 1", "  f2: infeasible: why 2", "  f3: aircraft_lost: why 3"]
     # Every outcome is named, also those that no flight had.
     manifest = counts.manifest()

@@ -70,16 +70,16 @@ def test_a_table_over_time_may_have_a_profile_over_height(table):
 @pytest.mark.parametrize(
     ("text", "changes", "words"),
     [
-        ("", {}, ["line 1", "the header is ''", "time_utc,height_m,speed_mps,from_deg"]),
+        ("", {}, ["the file is empty", "time_utc,speed_mps,from_deg"]),
         ("speed_mps,from_deg\n5,0\n", {}, ["line 1", "the header is 'speed_mps,from_deg'"]),
-        ("height_m,speed_mps,from_deg\n", {}, ["no row with a wind"]),
+        ("height_m,speed_mps,from_deg\n", {}, ["no row below the header"]),
         (HOURLY + "noon,5,0\n", {}, ["line 5", "'noon' is no time"]),
         (HOURLY + "2026-06-01T11:30:00Z,5,0\n", {}, ["line 5", "2026-06-01T11:30:00Z is before the line above", "sort"]),
         (HOURLY + "2026-06-01T12:00:00Z,5,0\n", {}, ["line 5", "once more"]),
         (HOURLY + "2026-06-01T13:00:00Z,-5,0\n", {}, ["line 5", "speeds go from 0 to 100 m/s"]),
         (HOURLY + "2026-06-01T13:00:00Z,5,\n", {}, ["line 5", "directions"]),
         (HOURLY + "2026-06-01T13:00:00Z,5,400\n", {}, ["line 5", "directions"]),
-        (HOURLY, {"duration": 8000.0}, ["goes from 2026-06-01T10:00:00Z to 2026-06-01T12:00:00Z", "to 2026-06-01T12:13:20Z"]),
+        (HOURLY, {"duration": 8000.0}, ["T10:00:00Z (line 2) to 2026-06-01T12:00:00Z (line 4);", "2026-06-01T12:13:20Z"]),
         (HOURLY, {"place": replace(KATTEGAT, utc=START - 60.0)}, ["goes from 2026-06-01T09:59:00Z", "set place.utc"]),
         ("height_m,speed_mps,from_deg\n10,5,0\n", {"roughness_m": 1e-3}, ["wind.roughness_m is given beside heights"]),
         (
