@@ -20,6 +20,9 @@ _HOURS, _SEED = 20.0, 20261122
 """Flight time over which reports are drawn [h], and the seed: the same for every flight."""
 
 _SECONDS_PER_HOUR = 3600.0
+_NO_OFTENER, _LEAST = 1.0, 100
+"""Mean interval below which reports are drawn no oftener [s], and how many are drawn at least [-]."""
+
 _SETTLED = 50
 """Reports after which the filter's covariance no longer changes [-]."""
 
@@ -47,8 +50,8 @@ def scatter_allowance(
     planned : radius of the disc that is planned with, at the end of a turn away [m]
     """
     generator = np.random.default_rng(_SEED)
-    mean = 0.5 * sum(intervals)
-    shape = (round(_HOURS * _SECONDS_PER_HOUR / mean), KEPT)
+    mean = max(_NO_OFTENER, 0.5 * sum(intervals))
+    shape = (max(_LEAST, round(_HOURS * _SECONDS_PER_HOUR / mean)), KEPT)
     late = plan_period + generator.uniform(0.0, latency, (shape[0], 1))
     age = limits.horizon + late + np.cumsum(generator.uniform(*intervals, shape), axis=1)
     drift = limits.velocity_sigma * age

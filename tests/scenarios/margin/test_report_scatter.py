@@ -83,3 +83,12 @@ def test_reports_without_errors_do_not_scatter():
         limits, known, reports.interval_s, reports.latency_max_s, plan_period=PLAN_PERIOD, planned=disc.reach(TURN)
     )
     assert found == 0.0
+
+
+@pytest.mark.parametrize("interval_s", [[0.0, 0.02], [1e5, 1e6]])
+def test_reports_that_come_all_the_time_or_hardly_ever_have_an_allowance(interval_s):
+    scenario = declared(**{"reports.interval_s": interval_s})
+    limits, disc = oldest(scenario)
+    widest = widest_tube(limits, scenario.reports, plan_period=PLAN_PERIOD)
+    # The newest three of many reports hardly differ in age; their errors do not add up to more than one may have.
+    assert disc.radius <= widest.radius <= disc.radius + limits.deviations * limits.position_sigma
