@@ -22,6 +22,10 @@ _PANEL_HEIGHT = 0.56
 """Height of panels of page 1 that stand beside each other, all rows together, over the width of the page [-]."""
 
 
+_LONG = 16
+"""Letters of a word from which it may go on over the next line."""
+
+
 def write_html(report: Content, path: Path) -> None:
     """Write the report to ``path``; it opens from disk without a network."""
     environment = Environment(
@@ -43,8 +47,10 @@ def write_html(report: Content, path: Path) -> None:
 
 
 def _breakable(words: str) -> Markup:
-    """Return words whose keys may go on over the next line after a point or a stroke."""
-    return Markup(re.sub(r"(?<=\w)([_.])(?=[a-z])", r"\1<wbr>", str(escape(words))))
+    """Return words of which long keys may go on over the next line after a point or a stroke."""
+    keys = re.compile(rf"\S{{{_LONG},}}")
+    text = keys.sub(lambda key: re.sub(r"([_.])(?=[a-z])", r"\1<wbr>", key[0]), str(escape(words)))
+    return Markup(text)
 
 
 def _panels(picture: Chart) -> list[Chart]:
