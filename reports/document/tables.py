@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.provenance import without_folders
 from reports.document.blocks import Table, Verdict
 from reports.run.columns import Array
 from reports.run.run_data import RunData
@@ -109,7 +110,7 @@ def parameter_value(value: Any, key: str = "") -> str:
         return between.join(_entry_in_words(entry) for entry in value) or "none"
     if isinstance(value, Mapping):
         return ", ".join(f"{name} = {parameter_value(of, name)}" for name, of in value.items()) or "none"
-    return "not set" if value is None else f"{value:g}" if isinstance(value, float) else str(value) or "none"
+    return "not set" if value is None else f"{value:g}" if isinstance(value, float) else without_folders(str(value)) or "none"
 
 
 def _entry_in_words(entry: Any) -> str:

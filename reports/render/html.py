@@ -1,10 +1,12 @@
 """The report as one self-contained HTML file."""
 
+import re
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
 
 from reports.document.blocks import Content, FlightPicker
 from reports.document.chart import Chart
@@ -18,6 +20,10 @@ PLOTLY = Path(__file__).parent / "bundle" / "plotly-cartesian.min.js"
 
 _PANEL_HEIGHT = 0.56
 """Height of panels of page 1 that stand beside each other, all rows together, over the width of the page [-]."""
+
+
+_LONG = 16
+"""Letters of a word from which it may go on over the next line."""
 
 
 def write_html(report: Content, path: Path) -> None:
@@ -35,13 +41,21 @@ def write_html(report: Content, path: Path) -> None:
         replay=replay,
         cards=report.verdict.cards,
         failures=report.verdict.first_failures,
+        breakable=_breakable,
     )
     path.write_text(page, encoding="utf-8")
 
 
+def _breakable(words: str) -> Markup:
+    """Return words of which long keys may go on over the next line after a point or a stroke."""
+    keys = re.compile(rf"\S{{{_LONG},}}")
+    text = keys.sub(lambda key: re.sub(r"([_.])(?=[a-z])", r"\1<wbr>", key[0]), str(escape(words)))
+    return Markup(text)
+
+
 def _panels(picture: Chart) -> list[Chart]:
     """Return a chart for each panel of page 1's picture: beside each other in a wide window, below each other in a narrow one."""
-    height = picture.panel_height if picture.columns == 1 else _PANEL_HEIGHT / picture.rows
+    height = picture.panel_height if picture.columns == 1 else (_PANEL_HEIGHT - picture.last_height) / picture.rows
     return [
         replace(
             picture,

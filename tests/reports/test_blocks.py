@@ -125,3 +125,10 @@ def test_a_long_key_goes_on_over_the_next_line_and_is_copied_whole(tmp_path):
     # Line ends are where the page has them; nothing else stands between the letters.
     assert re.sub(r"\s", "", lines).startswith(key)
     assert key not in text
+
+
+def test_long_keys_may_go_on_over_the_next_line_on_the_screen_and_short_ones_may_not(tmp_path):
+    rows = [["guidance.heading_rate_max_rad_s", "ω_max & <b>, r_min"]]
+    text = html_of([Table(head=["Key", "Value"], rows=rows, widths=[1.0, 1.0])], tmp_path)
+    assert "guidance.<wbr>heading_<wbr>rate_<wbr>max_<wbr>rad_<wbr>s" in text
+    assert "ω_max &amp; &lt;b&gt;, r_min" in text

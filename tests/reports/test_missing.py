@@ -88,7 +88,7 @@ def test_the_exit_status_says_that_pieces_are_missing(copy):
     assert ended.status == 1
     missing = copy / "flights" / "short_00000.parquet"
     assert ended.errors.splitlines()[-1] == f"missing: {missing} is gone or cannot be read; the report says what it does not show"
-    assert "flights/short_00000.parquet" in (copy / "report.html").read_text(encoding="utf-8")
+    assert "flights/short_00000.parquet" in (copy / "report.html").read_text(encoding="utf-8").replace("<wbr>", "")
     assert (copy / "report.pdf").is_file()
 
 

@@ -166,6 +166,7 @@ def test_many_comparisons_have_a_row_for_each_variant(run):
         ("", "none"),
         (None, "not set"),
         ([1.0, 2.5], "1, 2.5"),
+        ("/home/somebody/tracks/ship.csv", "ship.csv"),
         ([{"name": "calm_air", "set": {}}, {"name": "wind"}], "calm air, wind"),
         ({"wind.speed_mps": 4.0, "draws": [{"key": "wind.from_deg", "uniform": [0.0, 360.0]}]},
          "wind.speed_mps = 4, draws = wind.from_deg uniform 0, 360"),
