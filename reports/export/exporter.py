@@ -41,7 +41,8 @@ def need_packages(exporter: str, *packages: str) -> None:
     ReportError : one of them is missing
     """
     if any(importlib.util.find_spec(package) is None for package in packages):
-        raise ReportError(f"{exporter} needs {' and '.join(packages)}; install the extra: pip install 'plume-flight-study[export]'")
+        needed = f"the package{'s' * (len(packages) > 1)} {' and '.join(packages)}"
+        raise ReportError(f"{exporter} needs {needed}; install the extra: pip install 'plume-flight-study[export]'")
 
 
 EXPORTERS: Registry[type[Exporter]] = Registry("exporter", folder="reports.export", methods=("write",))
