@@ -33,16 +33,16 @@ class Exporter(Protocol):
         ...
 
 
-def need_packages(exporter: str, *modules: str) -> None:
-    """Refuse an exporter, before it writes anything, whose modules of the extra ``export`` are not installed.
+def need_packages(exporter: str, *packages: str) -> None:
+    """Refuse an exporter, before it writes anything, whose packages of the extra ``export`` are not installed.
 
     Raises
     ------
     ReportError : one of them is missing
     """
-    if any(importlib.util.find_spec(module) is None for module in modules):
-        packages = " and ".join(module.partition(".")[0] for module in modules)
-        raise ReportError(f"{exporter} needs {packages}; install the extra: pip install 'plume-flight-study[export]'")
+    if any(importlib.util.find_spec(package) is None for package in packages):
+        needed = f"the package{'s' * (len(packages) > 1)} {' and '.join(packages)}"
+        raise ReportError(f"{exporter} needs {needed}; install the extra: pip install 'plume-flight-study[export]'")
 
 
 EXPORTERS: Registry[type[Exporter]] = Registry("exporter", folder="reports.export", methods=("write",))

@@ -49,7 +49,7 @@ class Mcap:
     one_flight = True
 
     def __init__(self) -> None:
-        need_packages("mcap", "mcap.writer")
+        need_packages("mcap", "mcap")
 
     def write(self, run: RunData, path: Path) -> None:
         """Write one flight."""

@@ -40,7 +40,8 @@ def read_netcdf(path: Path, latitude_deg: float, longitude_deg: float) -> tuple[
     except (OSError, ValueError, KeyError) as error:
         if isinstance(error, InputError):
             raise
-        reason = str(error).splitlines()[0][:160]
+        # What xarray recommends after its first sentence is for programmers.
+        reason = str(error).splitlines()[0].partition(". ")[0][:160]
         raise InputError(f"wind.table: {path}: cannot be read as netCDF ({reason}); check the file") from None
 
 

@@ -156,7 +156,7 @@ def test_one_flight_can_be_chosen_and_another_name_is_refused(run_path):
         export_run(run_path, "kmz", "nu")
 
 
-@pytest.mark.parametrize(("name", "package"), [("mcap", "mcap.writer"), ("netcdf", "xarray")])
+@pytest.mark.parametrize(("name", "package"), [("mcap", "mcap"), ("netcdf", "xarray"), ("netcdf", "h5netcdf")])
 def test_a_package_that_is_missing_is_one_line_with_the_extra(run_path, monkeypatch, name, package):
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ReportError, match=r"install the extra: pip install 'plume-flight-study\[export\]'"):
