@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 # No deadline, for time is not what is tested, and the same examples on every machine.
 if settings is not None:
-    settings.register_profile("reproducible", deadline=None, derandomize=True)
+    settings.register_profile("reproducible", deadline=None, derandomize=True, max_examples=50)
     settings.load_profile("reproducible")
 
 

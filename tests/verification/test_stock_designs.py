@@ -1,4 +1,4 @@
-"""Designs of JSBSim's own aircraft, and of one that is made of them: what is required of every design."""
+"""Designs of JSBSim's own aircraft: what is required of every design, on those that are designed in seconds."""
 
 import math
 
@@ -8,17 +8,14 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import flown_step, model_step
 from innerloop.jsbsim.root import write_root
 
-JETS = ("T37", "737")
-HEAVY = "heavy Cessna"
-"""With a piston engine; other tests have its design, too."""
-
+STOCK = ("T37", "737", "J3Cub")
 TURN = 0.5
 """Of the heading rate that the study's turn has, in the step that is flown [-]."""
 
 
-@pytest.fixture(scope="module", params=(*JETS, HEAVY))
+@pytest.fixture(scope="module", params=STOCK)
 def stock(request, designs):
-    return request.getfixturevalue("heavy_design") if request.param == HEAVY else designs(request.param)
+    return designs(request.param)
 
 
 def test_margins_hold_at_every_grid_point_and_between_as_modelled_and_changed(stock):

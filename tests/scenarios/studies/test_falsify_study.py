@@ -14,7 +14,7 @@ from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
-from scenarios.studies import falsification
+from scenarios.studies.falsification import study as falsification
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 
