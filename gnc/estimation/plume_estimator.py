@@ -32,14 +32,13 @@ _CHANCE = 0.02
 """Least chance of a hit or a miss that innovations are judged with [-]: models are not better than that."""
 
 _BELIEVED = 0.75
-"""Share of what a pass says that is believed [-]: passes have errors of the model in common. Of 0.65, 0.8 and 1 this is about where
-the true heights of 80 flights were likeliest."""
+"""Share of what a pass says that is believed [-]: passes have errors in common. Where the heights of 80 flights were likeliest."""
 
 HIT = 0.6
 """Concentration in a pass over that in the plume's centre from which it hits [-]."""
 
 _UNLIKELY = 1e-5
-"""Probability of a height below which it does not count where passes to come are weighed [-]: 1 cm in the deviation."""
+"""Probability of a height below which it does not count where passes to come are weighed [-]."""
 
 _LOOK = 2.0
 """Way along the plume to an independent centre, over the correlation length of the meander [-]: its integral scale."""
@@ -151,14 +150,14 @@ class PlumeEstimator:
         self._diffuse(self._time - self._pass_at)
         self._pass_at = self._time
         self.passes += 1
-        behind = path.at(self.offset)[0] > _NEAREST * self.prior.distance
-        believed = behind and not self._spoilt
-        # Where the plume is met it has another spread, and another strength, than where the cells have theirs.
-        self._widened = self.prior.widened(path.at(self.offset)[0], self._wind)
-        evidence = self._reader.read(path, self.grid.places, self._widened * self.grid.widths) if believed else None
+        along = path.at(self.offset)[0]
+        if along > _NEAREST * self.prior.distance and not self._spoilt:
+            # Where the plume is met it has another spread, and another strength, than where the cells have theirs.
+            self._widened = self.prior.widened(along, self._wind)
+            evidence = self._reader.read(path, self.grid.places, self._widened * self.grid.widths)
+            if evidence is not None:
+                self._correct(path, evidence)
         self._spoilt = False
-        if evidence is not None:
-            self._correct(path, evidence)
         self._note()
         return True
 
@@ -271,7 +270,6 @@ class PlumeEstimator:
         self._weights = grid.coarse(self.cells)
         of_spreads = self.cells.sum(axis=2)
         of_heights = of_spreads.sum(axis=0)
-        # Spread of each axis as it is believed of all of them together.
         self._spread: Array = grid.coarse_heights(of_spreads.sum(axis=1) @ grid.sigma_z)
         self._heights: Array = prior.height_at(grid.height, self._distance, self._wind)
         self.height = float(of_heights @ self._heights)
