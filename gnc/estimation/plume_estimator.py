@@ -269,13 +269,12 @@ class PlumeEstimator:
         prior, grid = self.prior, self.grid
         self._weights = grid.coarse(self.cells)
         of_spreads = self.cells.sum(axis=2)
-        of_heights = of_spreads.sum(axis=0)
+        self._of_heights = of_heights = of_spreads.sum(axis=0)
         self._spread: Array = grid.coarse_heights(of_spreads.sum(axis=1) @ grid.sigma_z)
         self._heights: Array = prior.height_at(grid.height, self._distance, self._wind)
         self.height = float(of_heights @ self._heights)
         step = float(self._heights[1] - self._heights[0])
         self.height_deviation = math.sqrt(float(of_heights @ (self._heights - self.height) ** 2) + step**2 / 12.0)
-        self._of_heights = of_heights
         self.bearing = float(self.bearings @ grid.bearing)
         self.bearing_deviation = math.sqrt(float(self.bearings @ (grid.bearing - self.bearing) ** 2))
         self.offset, self.offset_deviation = self._distance * self.bearing, self._distance * self.bearing_deviation
