@@ -32,14 +32,13 @@ _CHANCE = 0.02
 """Least chance of a hit or a miss that innovations are judged with [-]: models are not better than that."""
 
 _BELIEVED = 0.75
-"""Share of what a pass says that is believed [-]: passes have errors of the model in common. Of 0.65, 0.8 and 1 this is about where
-the true heights of 80 flights were likeliest."""
+"""Share of what a pass says that is believed [-]: passes have errors in common. Where the heights of 80 flights were likeliest."""
 
 HIT = 0.6
 """Concentration in a pass over that in the plume's centre from which it hits [-]."""
 
 _UNLIKELY = 1e-5
-"""Probability of a height below which it does not count where passes to come are weighed [-]: 1 cm in the deviation."""
+"""Probability of a height below which it does not count where passes to come are weighed [-]."""
 
 _LOOK = 2.0
 """Way along the plume to an independent centre, over the correlation length of the meander [-]: its integral scale."""
@@ -91,7 +90,7 @@ class PlumeEstimator:
     height, height_deviation : of the axis above the sea, at the distance and in the apparent wind of the last pass [m]
     bearing, bearing_deviation : of the axis to the right of the predicted one [rad]; a bearing is to be added to its course
     offset, offset_deviation : of the axis to the right of the predicted one, at the distance of the last pass [m]
-    sigma_y, sigma_z : spreads of the plume at one moment, at the estimated height [m]
+    sigma_y, sigma_z, meander_z : spreads of the plume at one moment, and its meander in height, at the last pass [m]
     state : whether the plume is searched for, found, or lost again
     signal_to_noise : peak of the readings over their noise, of the best pass so far [-]
     found_at : time since the start at which the plume was found first [s]; not a number before
@@ -112,7 +111,7 @@ class PlumeEstimator:
         self._spoilt = False
         self._distance, self._wind = prior.distance, prior.apparent_wind
         self._least = SIGNAL_TO_NOISE * sensor.noise / _NOMINAL_RESPONSE
-        self._misses = self._looks = 1.0
+        self._misses = self._looks = self._widened = 1.0
         self.cells: Array = self.grid.prior.copy()
         self.bearings: Array = self.grid.bearing_prior.copy()
         self._note()
@@ -151,12 +150,14 @@ class PlumeEstimator:
         self._diffuse(self._time - self._pass_at)
         self._pass_at = self._time
         self.passes += 1
-        behind = path.at(self.offset)[0] > _NEAREST * self.prior.distance
-        believed = behind and not self._spoilt
-        evidence = self._reader.read(path, self.grid.places, self.grid.widths) if believed else None
+        along = path.at(self.offset)[0]
+        if along > _NEAREST * self.prior.distance and not self._spoilt:
+            # Where the plume is met it has another spread, and another strength, than where the cells have theirs.
+            self._widened = self.prior.widened(along, self._wind)
+            evidence = self._reader.read(path, self.grid.places, self._widened * self.grid.widths)
+            if evidence is not None:
+                self._correct(path, evidence)
         self._spoilt = False
-        if evidence is not None:
-            self._correct(path, evidence)
         self._note()
         return True
 
@@ -174,19 +175,19 @@ class PlumeEstimator:
         """
         heights = self.grid.coarse_heights(self._heights)
         off = heights - (altitudes[:, np.newaxis] if altitudes.ndim == 1 else altitudes)
-        return self._weights, self.grid.chances(off, self._looks, self._least, self._spread)
+        return self._weights, self.grid.chances(off / self._widened, self._looks, self._least, self._spread)
 
     def expected_deviation(self, altitudes: Array) -> Array:
         """Return what the standard deviation of the height is expected to be after a pass at each altitude [m], shape (n,)."""
         likely = self._weights.sum(axis=1) > _UNLIKELY
         heights = self.grid.coarse_heights(self._heights)[likely]
-        off = heights - altitudes[:, np.newaxis]
+        off = (heights - altitudes[:, np.newaxis]) / self._widened
         return self.grid.expected_deviation(self._weights[likely], heights, off, self._looks, self._spread[likely])
 
     def hits(self, altitudes: Array) -> Array:
         """Return the probability that a pass at each altitude [m] hits the plume in height, shape (n,)."""
         off = self.grid.coarse_heights(self._heights) - altitudes[:, np.newaxis]
-        result: Array = self.grid.hits(off, self._looks, self._spread, HIT) @ self._weights.sum(axis=1)
+        result: Array = self.grid.hits(off / self._widened, self._looks, self._spread, HIT) @ self._weights.sum(axis=1)
         return result
 
     def _diffuse(self, time: float) -> None:
@@ -205,7 +206,8 @@ class PlumeEstimator:
         beside = self._beside(path)
         places = self.bearings @ beside
         self._judge(evidence, self.detection(altitude) * float(places @ path.covers(grid.places)))
-        fading = grid.fading(prior.height_at(grid.height, self._distance, self._wind), altitude, self._looks)
+        off = prior.height_at(grid.height, self._distance, self._wind) - altitude
+        fading = grid.fading(off / self._widened, self._looks)
         read = grid.over_faint(self.cells, fading)
         seen = places @ likelihood + nothing * (1.0 - places.sum())
         of_cells = fading @ grid.over_strengths(seen) + nothing * (1.0 - fading.sum(axis=-1, keepdims=True))
@@ -217,12 +219,13 @@ class PlumeEstimator:
     def _scene(self, path: Path, evidence: Evidence) -> "_Scene":
         """Take note of where a pass met the axis; return how likely its readings are."""
         prior, grid = self.prior, self.grid
-        self._least = SIGNAL_TO_NOISE * prior.sensor.noise / evidence.response
         self._distance, altitude = path.at(self.offset)
+        stronger = prior.apparent_wind / (self._wind * self._widened**2)
+        self._least = SIGNAL_TO_NOISE * prior.sensor.noise / (evidence.response * stronger)
         significant = evidence.significance > SIGNAL_TO_NOISE
         drawn_out = path.drawn_out(float(grid.places[evidence.at]) if significant else self.offset, self._wind)
-        self._looks = 1.0 + 2.0 * prior.sigma_y * drawn_out / (_LOOK * prior.meander_length)
-        exponent = over_nothing(evidence.slope, evidence.bend, grid.faint, drawn_out)
+        self._looks = 1.0 + 2.0 * self._widened * prior.sigma_y * drawn_out / (_LOOK * prior.meander_length)
+        exponent = over_nothing(evidence.slope, evidence.bend, stronger * grid.faint, drawn_out)
         largest = max(0.0, float(exponent.max()))
         return _Scene(np.tensordot(grid.of_widths(drawn_out), np.exp(exponent - largest), 1), math.exp(-largest), altitude)
 
@@ -237,7 +240,7 @@ class PlumeEstimator:
         common = (1.0 + apart) * math.exp(-apart)
         step = grid.places[1] - grid.places[0]
         cell = self._distance * (grid.bearing[1] - grid.bearing[0])
-        deviation = math.sqrt(prior.meander_y**2 * (1.0 + common) / (1.0 - common) + (step**2 + cell**2) / 12.0)
+        deviation = math.sqrt((self._widened * prior.meander_y) ** 2 * (1.0 + common) / (1.0 - common) + (step**2 + cell**2) / 12.0)
         off = (grid.places - self._distance * grid.bearing[:, np.newaxis]) / deviation
         result: Array = np.exp(-0.5 * off**2) * (step / (deviation * math.sqrt(2.0 * math.pi)))
         result /= np.maximum(1.0, result.sum(axis=1, keepdims=True))
@@ -259,25 +262,25 @@ class PlumeEstimator:
         if self.state is PlumeState.FOUND and self._misses < _LOST:
             self.state = PlumeState.LOST
             self.cells = 0.5 * (self.cells + self.grid.prior)
+            self.bearings = 0.5 * (self.bearings + self.grid.bearing_prior)
 
     def _note(self) -> None:
         """Compute the figures of the posterior."""
         prior, grid = self.prior, self.grid
         self._weights = grid.coarse(self.cells)
         of_spreads = self.cells.sum(axis=2)
-        of_heights = of_spreads.sum(axis=0)
-        # Spread of each axis as it is believed of all of them together.
+        self._of_heights = of_heights = of_spreads.sum(axis=0)
         self._spread: Array = grid.coarse_heights(of_spreads.sum(axis=1) @ grid.sigma_z)
         self._heights: Array = prior.height_at(grid.height, self._distance, self._wind)
         self.height = float(of_heights @ self._heights)
         step = float(self._heights[1] - self._heights[0])
         self.height_deviation = math.sqrt(float(of_heights @ (self._heights - self.height) ** 2) + step**2 / 12.0)
-        self._of_heights = of_heights
         self.bearing = float(self.bearings @ grid.bearing)
         self.bearing_deviation = math.sqrt(float(self.bearings @ (grid.bearing - self.bearing) ** 2))
         self.offset, self.offset_deviation = self._distance * self.bearing, self._distance * self.bearing_deviation
-        self.sigma_y = float(np.sum(of_spreads * grid.sigma_y))
-        self.sigma_z = float(np.sum(of_spreads * grid.sigma_z))
+        self.sigma_y = self._widened * float(np.sum(of_spreads * grid.sigma_y))
+        self.sigma_z = self._widened * float(np.sum(of_spreads * grid.sigma_z))
+        self.meander_z = self._widened * prior.meander_z
 
     @property
     def height_interval(self) -> tuple[float, float]:

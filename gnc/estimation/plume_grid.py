@@ -16,8 +16,8 @@ STRENGTH_STEP = 0.5
 _FADE = 13
 """Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.3 of the centre."""
 
-_HEIGHTS, _BEARINGS, _PLACES = 35, 25, 21
-"""Cells over height and bearing, and places of the centre across at one moment [-]."""
+_HEIGHTS, _BEARINGS, _PLACE_STEP = 35, 25, 0.5
+"""Cells over height and bearing, and step of places of the centre across at one moment, over the expected spread [-, -, -]."""
 
 _REACH = 3.0
 """Standard deviations of the prior that the cells reach to [-]."""
@@ -106,7 +106,7 @@ class PlumeGrid:
         of_bearings = np.exp(-0.5 * (self.bearing / prior.bearing_deviation) ** 2)
         self.bearing_prior: Array = of_bearings / of_bearings.sum()
         across = _REACH * math.hypot(prior.bearing_deviation * prior.distance, prior.meander_y)
-        self.places: Array = np.linspace(-across, across, _PLACES)
+        self.places: Array = np.linspace(-across, across, 1 + 2 * math.ceil(across / (_PLACE_STEP * prior.sigma_y)))
 
     def _of_heights(self) -> Array:
         """Return how likely each height is, shape (h,): a funnel as likely anywhere in its range, and a rise that is normal."""
@@ -130,7 +130,7 @@ class PlumeGrid:
         result /= result.sum(axis=1, keepdims=True)
         return result
 
-    def fading(self, height: Array, altitude: float, looks: float) -> Array:
+    def fading(self, off: Array, looks: float) -> Array:
         """Return how likely a pass at an altitude reads a plume with so many steps less than its strength, shape (w, h, f).
 
         The centre is z_m above the axis with z_m ~ N(0, meander_z^2), and the pulse has exp(-(h + z_m - z)^2/2 sigma_z^2) of the
@@ -138,12 +138,11 @@ class PlumeGrid:
 
         Parameters
         ----------
-        height : of the axes, shape (h,) [m]
-        altitude : z [m]
+        off : h - z, height of each axis above the pass, shape (h,) [m]
         looks : independent centres that a pass meets, at least 1 [-]
         """
         reach = self._edges * self.sigma_z[..., np.newaxis]
-        return np.diff(self._within(reach, (height - altitude)[:, np.newaxis], looks), axis=-1, prepend=0.0)
+        return np.diff(self._within(reach, off[:, np.newaxis], looks), axis=-1, prepend=0.0)
 
     def chances(self, off: Array, looks: float, least: float, sigma_z: Array) -> Array:
         """Return how likely a pass reads a strength of at least ``least`` [ppm], shape (..., h', c).

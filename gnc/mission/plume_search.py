@@ -82,7 +82,7 @@ class HeightSearch:
     def _hitting(self, estimator: PlumeEstimator) -> float:
         """Return the height that lets expect the most hits: now, and later by what the pass says of the height."""
         height, deviation = estimator.height, estimator.height_deviation
-        spread, meander = estimator.sigma_z, estimator.prior.meander_z
+        spread, meander = estimator.sigma_z, estimator.meander_z
         if deviation < _KNOWN * math.hypot(spread, meander):
             return min(max(height, self._lowest), self._highest)
         low, high = (min(max(height + side * _REACH * deviation, self._lowest), self._highest) for side in (-1.0, 1.0))

@@ -48,6 +48,27 @@ def test_height_spreads_and_peak_are_those_of_the_plume_model(apparent: float, w
     assert abs(math.log(prior.peak / peak)) < 0.3
 
 
+@pytest.mark.parametrize(
+    ("apparent", "wind", "source"), [(5.0, 8.0, 30.0), (6.0, 12.0, 50.0), (10.0, 5.0, 40.0), (16.0, 10.0, 25.0)]
+)
+def test_spreads_and_meander_are_carried_to_another_distance(apparent: float, wind: float, source: float) -> None:
+    """From where an orbit is joined to where it has closed in, against the plume model."""
+    far, near = 440.0, 270.0
+    prior = expected_plume(
+        distance=far, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.3, source_height=source, source_deviation=5.0,
+        stack_diameter=EMISSION.stack_diameter, exhaust_speed=EMISSION.exhaust_speed,
+        momentum_flux=EMISSION.momentum_flux, buoyancy_flux=EMISSION.buoyancy_flux, co2_rate=CO2_RATE,
+        load_deviation=0.3, sensor=SENSOR, lowest=20.0, highest=120.0,
+    )  # fmt: skip
+    of = spreads(EMISSION, MarineAir(wind_speed=wind), source, np.array([apparent]), far / apparent + 1.0, PlumeSettings())
+    ages = 0.1 * np.arange(of.height.shape[1])
+    assert prior.widened(far, apparent) == pytest.approx(1.0)
+    for name, limit in (("relative_y", 0.15), ("relative_z", 0.15), ("meander_y", 0.15), ("meander_z", 0.25)):
+        ratio = np.interp(near / apparent, ages, getattr(of, name)[0]) / np.interp(far / apparent, ages, getattr(of, name)[0])
+        # One factor for four, that differ by as much from each other: behind a low source the sea stops the meander in height.
+        assert prior.widened(near, apparent) == pytest.approx(float(ratio), rel=limit), name
+
+
 @pytest.mark.parametrize("load", [0.2, 0.9])
 def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load: float) -> None:
     """Of twice the gas, part is lost to the spread that twice the heat makes."""

@@ -40,7 +40,7 @@ def test_a_funnel_whose_height_has_a_range_is_as_likely_anywhere_in_it() -> None
 @pytest.mark.parametrize("looks", [1, 3])
 def test_fading_is_that_of_centres_drawn_at_random(looks: int) -> None:
     altitude, i = 70.0, len(GRID.height) // 2
-    fading = GRID.fading(GRID.height, altitude, looks)[MIDDLE, i]
+    fading = GRID.fading(GRID.height - altitude, looks)[MIDDLE, i]
     centres = GRID.height[i] + PRIOR.meander_z * np.random.default_rng(1).standard_normal((looks, 200_000))
     off = np.abs(centres - altitude).min(axis=0)
     steps = np.rint(0.5 * (off / GRID.sigma_z[MIDDLE, i]) ** 2 / STRENGTH_STEP).astype(int)
@@ -50,7 +50,7 @@ def test_fading_is_that_of_centres_drawn_at_random(looks: int) -> None:
 
 
 def test_a_plume_far_from_the_pass_is_not_read() -> None:
-    fading = GRID.fading(GRID.height, 300.0, 1.0)
+    fading = GRID.fading(GRID.height - 300.0, 1.0)
     assert fading.sum() < 1e-9
 
 
@@ -88,7 +88,7 @@ def test_without_an_uncertain_stack_the_whole_difference_is_rise() -> None:
 
 
 def test_what_a_pass_is_expected_to_read_adds_up_to_its_chance_of_anything() -> None:
-    fading = GRID.fading(GRID.height, 70.0, 1.5)
+    fading = GRID.fading(GRID.height - 70.0, 1.5)
     read = GRID.over_faint(GRID.prior, fading)
     # By spread, height and step; what a pass misses is the rest to 1.
     assert read.sum() == pytest.approx(float((GRID.prior.sum(axis=2)[..., np.newaxis] * fading).sum()), rel=1e-12)
