@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from exhaust_cases import SENSOR
 
+from gnc.estimation.plume_estimator import HIT
 from gnc.estimation.plume_prior import PlumePrior, expected_plume, rise
 from measurement.emission.emission import Emission, emission_of
 from measurement.emission.fuel import fuel_preset
 from measurement.emission.ship import ship_preset
 from measurement.gases import GASES
+from measurement.plume import passes
 from measurement.plume.air import MarineAir
 from measurement.plume.settings import PlumeSettings
 from measurement.plume.spread import spreads
@@ -94,3 +96,7 @@ def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load: float) -> N
 def test_rise_by_buoyancy_is_briggs_law() -> None:
     """1.609 F^(1/3) x^(2/3) / U: Briggs' 1.6."""
     assert rise(0.0, 49.6, 200.0, 10.0) == pytest.approx(1.609 * 49.6 ** (1 / 3) * 200.0 ** (2 / 3) / 10.0, rel=1e-3)
+
+
+def test_a_hit_of_the_guidance_is_a_hit_of_the_figures() -> None:
+    assert HIT == passes.HIT

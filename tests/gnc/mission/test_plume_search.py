@@ -8,7 +8,6 @@ from exhaust_cases import PRIOR, MadePlume, estimated
 
 from gnc.estimation.plume_estimator import HIT, PlumeEstimator, PlumeState
 from gnc.mission.plume_search import HeightSearch, LadderSearch
-from measurement.plume import passes as measured
 
 LOW, HIGH = 20.0, 120.0
 
@@ -106,10 +105,6 @@ def test_hits_are_those_of_centres_drawn_at_random() -> None:
         peak = np.exp(-0.5 * ((altitude - centres) / estimator._spread[axes]) ** 2)
         # A share of 100,000 has a deviation of at most 0.0016.
         assert chance == pytest.approx(float(np.mean(peak > HIT)), abs=0.01)
-
-
-def test_a_hit_of_the_guidance_is_a_hit_of_the_figures() -> None:
-    assert HIT == measured.HIT
 
 
 def test_a_ladder_goes_up_and_down_between_its_ends() -> None:
