@@ -28,7 +28,6 @@ from scenarios.studies.registry import run_study
 # Three crossings are too few for the study's own criteria.
 CRITERIA = ["criteria.tracking_error_rms_m=5.0", "criteria.crossing_interval_error=0.1"]
 OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0.5]", *CRITERIA]
-
 AUTOPILOT = ["step1", "step2", "step3", "levelmargins", "leveldiskmargins", "loops", "poles"]
 
 
