@@ -223,7 +223,10 @@ class KeepoutGuard:
         if slack < 0.0:
             # Away from the disc and no farther.
             left = math.remainder(math.atan2(y, x) - course - self._lag * heading_rate, 2.0 * math.pi)
-            return left / self._time_step if abs(left) < self._rate * self._time_step else turn
+            if abs(left) < self._rate * self._time_step:
+                return left / self._time_step
+            # Beyond that by less than a right angle it turns back: going on would lead once round, towards the disc.
+            return math.copysign(turn, left) if abs(left) < 0.5 * math.pi else turn
         self._kept_off = tube
         begun = self._until_acting + self._time_step
         mixed = turn

@@ -218,6 +218,16 @@ def test_a_vehicle_that_a_growing_radius_overtakes_flies_straight_away_from_it(w
     assert abs(command) < 0.05
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("beyond", [0.05, 0.3, 1.5])
+def test_a_vehicle_that_has_turned_beyond_straight_away_turns_back(side, beyond):
+    # Gusts may carry it past that course between two steps; on the same side it would come once round, towards the disc.
+    guard = make_guard()
+    for course, command in ((0.5 * math.pi - side, side), (0.5 * math.pi + side * beyond, -side)):
+        assert guard.limit(0.0, 0.0, 210.0, 0.0, 0.0, course, SPEED, 0.0, radius_inflation=5000.0) == command * HEADING_RATE_MAX
+        assert guard.lost
+
+
 def test_interventions_are_counted_once_each():
     guard = make_guard()
     _, changed, _ = fly_guarded(guard, (-500.0, 3.0, 0.0, 0.0), aim_at_the_centre, Steady((0.0, 0.0)), lag=0.4, duration=120.0)
