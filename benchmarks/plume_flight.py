@@ -191,9 +191,8 @@ def fly(
             flight.intervals.append(filtered.height_interval)
             flight.states.append(filtered.state)
             pass_peak = 0.0
-            demand = searcher.next_demand(filtered, altitude, orbit.pass_time)
             if not knowing:
-                demanded, offset_demanded = demand.altitude, demand.offset
+                demanded, offset_demanded = searcher.next_altitude(filtered, altitude, orbit.pass_time), filtered.offset
     flight.spread = simulation.spread
     return flight
 

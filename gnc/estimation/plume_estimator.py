@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from gnc.estimation.plume_grid import PlumeGrid, normalised, over_nothing, wandered
-from gnc.estimation.plume_passes import Evidence, PassCollector, PassReader, Path, Place
+from gnc.estimation.plume_grid import STRENGTH_STEP, PlumeGrid, normalised, over_nothing, wandered
+from gnc.estimation.plume_passes import Evidence, PassCollector, PassReader, Path
 from gnc.estimation.plume_prior import GasSensor, PlumePrior
 from gnc.estimation.sensor_watch import SensorState, SensorWatch
 
@@ -143,7 +143,7 @@ class PlumeEstimator:
         if not math.isnan(reading):
             self._watch.read(reading)
             self._spoilt = self._spoilt or self._watch.state is not SensorState.WORKING
-        path = self._collector.add(Place(self._time, along, across, altitude), reading)
+        path = self._collector.add(self._time, along, across, altitude, reading)
         if path is None:
             return False
         self._wind = apparent_wind or self.prior.apparent_wind
@@ -163,8 +163,16 @@ class PlumeEstimator:
 
     def detection(self, altitude: float) -> float:
         """Return the probability that a pass at an altitude [m] has a signal to noise above 5."""
-        weights, chances = self.prospects(np.array([altitude]))
-        return float(np.sum(weights * chances[0]))
+        return self._detected(self.grid.over_faint(self.cells, self._fading(altitude)))
+
+    def _fading(self, altitude: float) -> Array:
+        """Return ``PlumeGrid.fading`` of a pass at an altitude [m]."""
+        return self.grid.fading((self._heights - altitude) / self._widened, self._looks)
+
+    def _detected(self, read: Array) -> float:
+        """Return the probability that a pass detects the plume, of the one that it reads each strength with each spread (w, p)."""
+        above = np.log(self.grid.faint / self._least) / STRENGTH_STEP + 0.5
+        return float(read.sum(axis=0) @ np.minimum(np.maximum(above, 0.0), 1.0))
 
     def prospects(self, altitudes: Array) -> tuple[Array, Array]:
         """Return the probability of each of some cells, shape (h, c), and that a pass then detects the plume, shape (n, h, c).
@@ -201,17 +209,17 @@ class PlumeEstimator:
 
     def _correct(self, path: Path, evidence: Evidence) -> None:
         """Take in what a pass says: of spread, height and strength with the bearing as it is believed, and the other way round."""
-        prior, grid = self.prior, self.grid
+        grid = self.grid
         likelihood, nothing, altitude = self._scene(path, evidence)
         beside = self._beside(path)
         places = self.bearings @ beside
-        self._judge(evidence, self.detection(altitude) * float(places @ path.covers(grid.places)))
-        off = prior.height_at(grid.height, self._distance, self._wind) - altitude
-        fading = grid.fading(off / self._widened, self._looks)
+        self._heights: Array = self.prior.height_at(grid.height, self._distance, self._wind)
+        fading = self._fading(altitude)
         read = grid.over_faint(self.cells, fading)
+        self._judge(evidence, self._detected(read) * float(places @ path.covers(grid.places)))
         seen = places @ likelihood + nothing * (1.0 - places.sum())
         of_cells = fading @ grid.over_strengths(seen) + nothing * (1.0 - fading.sum(axis=-1, keepdims=True))
-        there = np.tensordot(read, likelihood, ((0, 1), (0, 2)))
+        there = (likelihood @ read[..., np.newaxis]).sum(axis=0)[:, 0]
         of_bearings = beside @ (there - nothing * read.sum()) + nothing
         self.cells = normalised(self.cells * of_cells**_BELIEVED, grid.prior)
         self.bearings = normalised(self.bearings * of_bearings**_BELIEVED, grid.bearing_prior)
@@ -227,7 +235,9 @@ class PlumeEstimator:
         self._looks = 1.0 + 2.0 * self._widened * prior.sigma_y * drawn_out / (_LOOK * prior.meander_length)
         exponent = over_nothing(evidence.slope, evidence.bend, stronger * grid.faint, drawn_out)
         largest = max(0.0, float(exponent.max()))
-        return _Scene(np.tensordot(grid.of_widths(drawn_out), np.exp(exponent - largest), 1), math.exp(-largest), altitude)
+        exponent -= largest
+        likelihood = grid.of_widths(drawn_out) @ np.exp(exponent, out=exponent).reshape(len(exponent), -1)
+        return _Scene(likelihood.reshape(exponent.shape), math.exp(-largest), altitude)
 
     def _beside(self, path: Path) -> Array:
         """Return how likely the centre is at each place, given each bearing, shape (b, j).
@@ -271,15 +281,15 @@ class PlumeEstimator:
         of_spreads = self.cells.sum(axis=2)
         self._of_heights = of_heights = of_spreads.sum(axis=0)
         self._spread: Array = grid.coarse_heights(of_spreads.sum(axis=1) @ grid.sigma_z)
-        self._heights: Array = prior.height_at(grid.height, self._distance, self._wind)
+        self._heights = prior.height_at(grid.height, self._distance, self._wind)
         self.height = float(of_heights @ self._heights)
         step = float(self._heights[1] - self._heights[0])
         self.height_deviation = math.sqrt(float(of_heights @ (self._heights - self.height) ** 2) + step**2 / 12.0)
         self.bearing = float(self.bearings @ grid.bearing)
         self.bearing_deviation = math.sqrt(float(self.bearings @ (grid.bearing - self.bearing) ** 2))
         self.offset, self.offset_deviation = self._distance * self.bearing, self._distance * self.bearing_deviation
-        self.sigma_y = self._widened * float(np.sum(of_spreads * grid.sigma_y))
-        self.sigma_z = self._widened * float(np.sum(of_spreads * grid.sigma_z))
+        self.sigma_y = self._widened * float(np.vdot(of_spreads, grid.sigma_y))
+        self.sigma_z = self._widened * float(np.vdot(of_spreads, grid.sigma_z))
         self.meander_z = self._widened * prior.meander_z
 
     @property

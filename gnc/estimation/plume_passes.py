@@ -1,8 +1,9 @@
 """What one pass over a plume's axis says: for each place of the axis, how well a pulse of each strength fits the readings."""
 
 import math
+from array import array
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -39,16 +40,7 @@ _BEND_MIN = 1e-12
 """Least curvature of a likelihood [1/ppm^2]: a place that the vehicle has not been to says nothing."""
 
 _STILL = 0.1
-"""Scatter of a pass over the sensor's noise below which its readings are not believed [-]."""
-
-
-class Place(NamedTuple):
-    """Where the vehicle is, in the frame of the predicted axis [m], at a time [s]."""
-
-    time: float
-    along: float
-    across: float
-    altitude: float
+"""Largest less least reading of a pass over the sensor's noise, below which they are not believed [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,57 +99,70 @@ class PassCollector:
     delay, tail : of the sensor, and how long after a turn what it reads belongs to the pass before [s]
     """
 
-    __slots__ = ("_delay", "_extreme", "_places", "_readings", "_side", "_tail", "_turn")
+    __slots__ = ("_columns", "_delay", "_farthest", "_farthest_at", "_read_at", "_readings", "_side", "_tail", "_turn")
 
     def __init__(self, *, delay: float, tail: float) -> None:
         self._delay, self._tail = delay, tail
-        self._places: list[Place] = []
-        self._readings: list[tuple[float, float]] = []
-        self._extreme: Place | None = None
+        # Of numbers that stand one behind the other numpy makes arrays at once: of places in order of time.
+        self._columns = array("d"), array("d"), array("d"), array("d")
+        self._read_at, self._readings = array("d"), array("d")
+        self._farthest = self._farthest_at = math.nan
         self._side = 0.0
         self._turn: float | None = None
 
-    def add(self, place: Place, reading: float) -> Path | None:
-        """Take note of a place and of a reading [ppm], or of none (not a number); return the pass that is over, if one is."""
-        if self._places and place.time <= self._places[-1].time:
-            self._places.pop()
-        self._places.append(place)
-        if not math.isnan(reading):
-            self._readings.append((place.time - self._delay, reading))
-        self._look_for_turn(place)
-        if self._turn is None or place.time - self._delay < self._turn + self._tail:
-            return None
-        return self._closed(self._turn)
+    def add(self, time: float, along: float, across: float, altitude: float, reading: float) -> Path | None:
+        """Take note of a place and of a reading, or of none; return the pass that is over, if one is.
 
-    def _look_for_turn(self, place: Place) -> None:
-        if self._extreme is None:
-            self._extreme = place
-        gone = place.across - self._extreme.across
-        if self._side == 0.0:
-            self._side = math.copysign(1.0, gone) if abs(gone) > _TURNED else 0.0
-        if self._side * gone > 0.0:
-            self._extreme = place
-        elif self._side != 0.0 and abs(gone) > _TURNED and self._turn is None:
-            self._turn = self._extreme.time
-            self._side, self._extreme = -self._side, place
-        if self._turn is None and place.time - self._places[0].time > _LONGEST:
-            self._turn = place.time
+        Parameters
+        ----------
+        time : [s]
+        along, across, altitude : of the vehicle, in the frame of the predicted axis [m]
+        reading : [ppm], or not a number
+        """
+        times, alongs, acrosses, altitudes = columns = self._columns
+        if times and time <= times[-1]:
+            for column in columns:
+                column.pop()
+        times.append(time)
+        alongs.append(along)
+        acrosses.append(across)
+        altitudes.append(altitude)
+        answered = time - self._delay
+        if not math.isnan(reading):
+            self._read_at.append(answered)
+            self._readings.append(reading)
+        self._look_for_turn(time, across)
+        turn = self._turn
+        return None if turn is None or answered < turn + self._tail else self._closed(turn)
+
+    def _look_for_turn(self, time: float, across: float) -> None:
+        gone, side = across - self._farthest, self._side
+        if side * gone > 0.0 or math.isnan(gone):
+            self._farthest, self._farthest_at = across, time
+        elif not -_TURNED <= gone <= _TURNED:
+            if side == 0.0:
+                self._side = math.copysign(1.0, gone)
+                self._farthest, self._farthest_at = across, time
+            elif self._turn is None:
+                self._turn, self._side = self._farthest_at, -side
+                self._farthest, self._farthest_at = across, time
+        if self._turn is None and time - self._columns[0][0] > _LONGEST:
+            self._turn = time
 
     def _closed(self, turn: float) -> Path | None:
-        places, readings = self._places, self._readings
-        begun = places[0].time
+        columns, read_at, readings = self._columns, self._read_at, self._readings
+        begun, end = columns[0][0], turn + self._tail
         self._turn = None
-        self._places = [place for place in places if place.time >= turn]
-        end = turn + self._tail
-        self._readings = [reading for reading in readings if reading[0] > end]
-        inside = [reading for reading in readings if begun <= reading[0] <= end]
-        if len(inside) < _READINGS_MIN or turn - begun < 2.0 * _FINE:
+        kept = bisect_left(columns[0], turn)
+        self._columns = columns[0][kept:], columns[1][kept:], columns[2][kept:], columns[3][kept:]
+        first, last = bisect_left(read_at, begun), bisect_right(read_at, end)
+        self._read_at, self._readings = read_at[last:], readings[last:]
+        if last - first < _READINGS_MIN or turn - begun < 2.0 * _FINE:
             return None
-        known = np.array(places)
+        known_at, *known = map(np.array, columns)
         time = np.arange(begun, end + _FINE, _FINE)
-        along, across, altitude = (np.interp(time, known[:, 0], known[:, i]) for i in (1, 2, 3))
-        read_at, values = np.array(inside).T
-        return Path(time, along, across, altitude, read_at, values)
+        along, across, altitude = (np.interp(time, known_at, values) for values in known)
+        return Path(time, along, across, altitude, np.array(read_at[first:last]), np.array(readings[first:last]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,33 +222,34 @@ class PassReader:
         spreads : of the pulse, shape (w,) [m]
         """
         sensor, y = self._sensor, path.readings
-        if float(y.std()) < _STILL * sensor.noise:
+        low, middle, high = _spread_of(y)
+        if high - low < _STILL * sensor.noise:
             return None
         templates = self._templates(path, places, spreads)
         since = path.read_at - path.time[0]
-        level = _median(y) if math.isnan(self._level) else self._level
+        level = middle if math.isnan(self._level) else self._level
         if path.time[0] - self._ended > path.duration:
             self._tail = 0.0
         fading = np.exp(-since / sensor.time_constant)
         y = y - level - self._tail * fading
         drift = sensor.background_drift
-        background = np.stack(
-            [
-                np.full(len(y), self._level_deviation),
-                drift * (since - 0.5 * since[-1]),
-                (_TAIL_ERROR * abs(self._tail) + sensor.noise) * fading,
-            ]
-        )
+        background = np.empty((3, len(y)))
+        background[0] = self._level_deviation
+        background[1] = drift * (since - 0.5 * since[-1])
+        background[2] = (_TAIL_ERROR * abs(self._tail) + sensor.noise) * fading
         noise = sensor.noise**2
-        total = noise + (_SHAPE_ERROR * max(0.0, float(y.max()) - _median(y))) ** 2
+        _, middle, high = _spread_of(y)
+        total = noise + (_SHAPE_ERROR * max(0.0, high - middle)) ** 2
         inner = _inner(background, total)
         slope, bend = _projected(templates, y, background, total, inner)
-        gain = np.where(slope > 0.0, slope, 0.0) ** 2 / np.maximum(bend, _BEND_MIN)
+        bend_up = np.maximum(bend, _BEND_MIN)
+        gain = np.maximum(slope, 0.0) ** 2 / bend_up
         best = int(gain.argmax())
         spread, at = divmod(best, len(places))
-        alone_slope, alone_bend = _projected(templates[best : best + 1], y, background, noise, _inner(background, noise))
-        strength = max(0.0, float(slope[best] / max(float(bend[best]), _BEND_MIN)))
-        pulse = strength * templates[best]
+        fitting = templates[best]
+        alone_slope, alone_bend = _projected(fitting, y, background, noise, _inner(background, noise))
+        strength = max(0.0, float(slope[best] / bend_up[best]))
+        pulse = strength * fitting
         self._settle(y - pulse, background, inner, total, level)
         self._ended = float(path.time[-1])
         turn = self._ended - sensor.time_constant
@@ -256,7 +262,7 @@ class PassReader:
             at=at,
             spread=spread,
             peak=float(pulse.max()),
-            significance=float(alone_slope[0] / math.sqrt(max(float(alone_bend[0]), _BEND_MIN))),
+            significance=float(alone_slope / math.sqrt(max(float(alone_bend), _BEND_MIN))),
         )
 
     def _settle(self, rest: Array, background: Array, covariance: Array, variance: float, level: float) -> None:
@@ -282,18 +288,25 @@ class PassReader:
 
 
 def _inner(background: Array, variance: float) -> Array:
-    """Return (variance I + N N')^-1 of a background (3, m), shape (3, 3)."""
-    return np.asarray(np.linalg.inv(variance * np.eye(len(background)) + background @ background.T), dtype=np.float64)
+    """Return (variance I + N N')^-1 of a background (3, m), shape (3, 3): by cofactors, as LAPACK takes ten times as long."""
+    (a, b, c), (_, d, e), (_, _, f) = (background @ background.T).tolist()
+    a, d, f = a + variance, d + variance, f + variance
+    of_a, of_b, of_c = d * f - e * e, c * e - b * f, b * e - c * d
+    of_d, of_e, of_f = a * f - c * c, b * c - a * e, a * d - b * b
+    cofactors = np.array(((of_a, of_b, of_c), (of_b, of_d, of_e), (of_c, of_e, of_f)))
+    cofactors /= a * of_a + b * of_b + c * of_c
+    return cofactors
 
 
 def _projected(templates: Array, y: Array, background: Array, variance: float, inner: Array) -> tuple[Array, Array]:
-    """Return slope and bend; arguments as in ``PassReader``: templates (k, m), background (3, m), and its ``_inner``."""
+    """Return slope and bend; arguments as in ``PassReader``: templates (..., m), background (3, m), and its ``_inner``."""
     within = templates @ background.T
     slope = (templates @ y - within @ (inner @ (background @ y))) / variance
-    bend = (np.einsum("km,km->k", templates, templates) - ((within @ inner) * within).sum(axis=1)) / variance
+    bend = ((templates * templates).sum(axis=-1) - ((within @ inner) * within).sum(axis=-1)) / variance
     return slope, bend
 
 
-def _median(values: Array) -> float:
-    """Return the median, of an even number the upper one: of few values ``np.median`` takes ten times as long."""
-    return float(np.partition(values, len(values) // 2)[len(values) // 2])
+def _spread_of(values: Array) -> tuple[float, float, float]:
+    """Return the least, the median (of an even number the upper one) and the largest: of few values numpy takes longer."""
+    ordered = sorted(values.tolist())
+    return ordered[0], ordered[len(ordered) // 2], ordered[-1]

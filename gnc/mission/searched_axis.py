@@ -9,7 +9,7 @@ from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState, SensorSta
 from gnc.estimation.plume_prior import GasSensor, expected_plume
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
-from gnc.mission.plume_axis import Climb, Situation, trail
+from gnc.mission.plume_axis import Climb, Situation
 from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
 
 _MODES = {PlumeState.SEARCHING: Mode.SEARCHING, PlumeState.FOUND: Mode.FOUND, PlumeState.LOST: Mode.LOST_AGAIN}
@@ -19,6 +19,9 @@ _BEARING_TIME = 15.0
 
 _NOTED, _SILENT = 0.75, 2.0
 """Time between readings beyond which the estimator is told a place in between, and beyond which it is told of silence [s]."""
+
+_DECIDED = 10.0
+"""Time for which a height that was chosen holds at least once the plume is found [s]: what is known of it changes more slowly."""
 
 Place = tuple[float, float, float, float]
 """Time [s], place along the predicted axis and to the right of it, altitude [m]."""
@@ -113,8 +116,8 @@ class SearchedAxis:
     """
 
     __slots__ = (
-        "_bearing", "_estimator", "_last_note", "_last_pass", "_parameters", "_pass_time", "_places", "_search", "_situation",
-        "bearing", "climb", "demanded", "estimate", "flown", "mode", "sensor",
+        "_bearing", "_decide_at", "_estimator", "_last_note", "_last_pass", "_parameters", "_pass_time", "_places", "_search",
+        "_situation", "bearing", "climb", "demanded", "estimate", "flown", "mode", "sensor",
     )  # fmt: skip
 
     def __init__(self, parameters: SearchedPlume) -> None:
@@ -123,7 +126,7 @@ class SearchedAxis:
         self._search = parameters.search()
         self._situation: Situation | None = None
         self._places: list[Place] = []
-        self._last_note = self._last_pass = 0.0
+        self._last_note = self._last_pass = self._decide_at = 0.0
         self._pass_time, self._bearing, self.bearing, self.flown, self.mode = _PASS_TIME, 0.0, 0.0, math.nan, Mode.SEARCHING
         self.estimate, self.sensor = PlumeEstimate(), SensorState.WORKING
 
@@ -158,7 +161,8 @@ class SearchedAxis:
             prior = expected_plume(distance=distance, apparent_wind=wind, wind_speed=blowing, **p.expected.arguments())
             self._estimator = PlumeEstimator(prior)
             self._last_note = self._last_pass = time
-            self._decide(self.demanded)
+            self._take_note(self._estimator)
+            self._decide(self._estimator, self.demanded)
         self.bearing += (self._bearing - self.bearing) * min(1.0, situation.plan_time / _BEARING_TIME)
         self.sensor = self._estimator.sensor
         self.mode = _MODES[self._estimator.state] if self.sensor is SensorState.WORKING else Mode.SENSOR_FAILED
@@ -169,34 +173,37 @@ class SearchedAxis:
         if situation is None or estimator is None:
             return
         along, across, altitude = _place_at(self._places, at)
-        estimator.predict(max(0.0, at - self._last_note))
-        self._last_note = max(at, self._last_note)
+        if at > self._last_note:
+            estimator.predict(at - self._last_note)
+            self._last_note = at
         wind = situation.centre.speed_ratio * situation.speed
         if estimator.update(along, across, altitude, reading, apparent_wind=wind):
             self._pass_time += _PASS_MEMORY * (at - self._last_pass - self._pass_time)
             self._last_pass = at
-            self._decide(altitude)
+            self._bearing = math.atan2(estimator.offset, situation.centre.distance)
+            self._take_note(estimator)
+            if estimator.state is not PlumeState.FOUND or at >= self._decide_at:
+                self._decide(estimator, altitude)
 
-    def _decide(self, altitude: float) -> None:
-        """Choose where to cross next."""
-        if self._estimator is not None and self._situation is not None:
-            demand = self._search.next_demand(self._estimator, altitude, self._pass_time)
-            self.demanded = demand.altitude
-            self._bearing = math.atan2(demand.offset, self._situation.centre.distance)
-            found = self._estimator
-            self.estimate = PlumeEstimate(
-                found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z,
-                found.sigma_y, found.innovation,
-            )  # fmt: skip
+    def _decide(self, estimator: PlumeEstimator, altitude: float) -> None:
+        """Choose how high to cross next."""
+        self.demanded = self._search.next_altitude(estimator, altitude, self._pass_time)
+        self._decide_at = self._last_pass + _DECIDED
+
+    def _take_note(self, found: PlumeEstimator) -> None:
+        self.estimate = PlumeEstimate(
+            found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z,
+            found.sigma_y, found.innovation,
+        )  # fmt: skip
 
 
 def _seen_along(situation: Situation) -> tuple[float, float]:
     """Return where the vehicle is behind the vessel, along the predicted axis and to the right of it [m]."""
     own, target = situation.own, situation.target
     x, y = own.ground_north - target.north, own.ground_east - target.east
-    axis = trail(own, target)
-    cos_a, sin_a = math.cos(axis), math.sin(axis)
-    return x * cos_a + y * sin_a, y * cos_a - x * sin_a
+    north, east = own.wind_north - target.velocity_north, own.wind_east - target.velocity_east
+    speed = math.hypot(north, east) or 1.0
+    return (x * north + y * east) / speed, (y * north - x * east) / speed
 
 
 def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float]:
