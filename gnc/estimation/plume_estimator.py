@@ -59,18 +59,16 @@ class PlumeState(Enum):
 
 
 class _Scene(NamedTuple):
-    """How likely the readings of a pass are, over the same factor; and where it was.
+    """How likely the readings of a pass are, over the same factor.
 
     Attributes
     ----------
     likelihood : of a pulse from a plume of each spread, at each place, of each strength, shape (w, j, p)
     nothing : of no pulse
-    altitude : where the way is nearest to the axis [m]
     """
 
     likelihood: Array
     nothing: float
-    altitude: float
 
 
 class PlumeEstimator:
@@ -112,6 +110,7 @@ class PlumeEstimator:
         self._distance, self._wind = prior.distance, prior.apparent_wind
         self._least = SIGNAL_TO_NOISE * sensor.noise / _NOMINAL_RESPONSE
         self._misses = self._looks = self._widened = 1.0
+        self._heights: Array = prior.height_at(self.grid.height, self._distance, self._wind)
         self.cells: Array = self.grid.prior.copy()
         self.bearings: Array = self.grid.bearing_prior.copy()
         self._note()
@@ -150,13 +149,15 @@ class PlumeEstimator:
         self._diffuse(self._time - self._pass_at)
         self._pass_at = self._time
         self.passes += 1
-        along = path.at(self.offset)[0]
-        if along > _NEAREST * self.prior.distance and not self._spoilt:
+        along, altitude = path.at(self.offset)
+        believed = along > _NEAREST * self.prior.distance and not self._spoilt
+        if believed:
             # Where the plume is met it has another spread, and another strength, than where the cells have theirs.
-            self._widened = self.prior.widened(along, self._wind)
-            evidence = self._reader.read(path, self.grid.places, self._widened * self.grid.widths)
-            if evidence is not None:
-                self._correct(path, evidence)
+            self._distance, self._widened = along, self.prior.widened(along, self._wind)
+        self._heights = self.prior.height_at(self.grid.height, self._distance, self._wind)
+        evidence = self._reader.read(path, self.grid.places, self._widened * self.grid.widths) if believed else None
+        if evidence is not None:
+            self._correct(path, evidence, altitude)
         self._spoilt = False
         self._note()
         return True
@@ -207,13 +208,12 @@ class PlumeEstimator:
         self.bearings = wandered(self.bearings, 0, prior.bearing_drift**2 * time / (grid.bearing[1] - grid.bearing[0]) ** 2)
         self.bearings += forgotten * (grid.bearing_prior - self.bearings)
 
-    def _correct(self, path: Path, evidence: Evidence) -> None:
+    def _correct(self, path: Path, evidence: Evidence, altitude: float) -> None:
         """Take in what a pass says: of spread, height and strength with the bearing as it is believed, and the other way round."""
         grid = self.grid
-        likelihood, nothing, altitude = self._scene(path, evidence)
+        likelihood, nothing = self._scene(path, evidence)
         beside = self._beside(path)
         places = self.bearings @ beside
-        self._heights: Array = self.prior.height_at(grid.height, self._distance, self._wind)
         fading = self._fading(altitude)
         read = grid.over_faint(self.cells, fading)
         self._judge(evidence, self._detected(read) * float(places @ path.covers(grid.places)))
@@ -225,9 +225,8 @@ class PlumeEstimator:
         self.bearings = normalised(self.bearings * of_bearings**_BELIEVED, grid.bearing_prior)
 
     def _scene(self, path: Path, evidence: Evidence) -> "_Scene":
-        """Take note of where a pass met the axis; return how likely its readings are."""
+        """Take note of how a pass met the axis; return how likely its readings are."""
         prior, grid = self.prior, self.grid
-        self._distance, altitude = path.at(self.offset)
         stronger = prior.apparent_wind / (self._wind * self._widened**2)
         self._least = SIGNAL_TO_NOISE * prior.sensor.noise / (evidence.response * stronger)
         significant = evidence.significance > SIGNAL_TO_NOISE
@@ -237,7 +236,7 @@ class PlumeEstimator:
         largest = max(0.0, float(exponent.max()))
         exponent -= largest
         likelihood = grid.of_widths(drawn_out) @ np.exp(exponent, out=exponent).reshape(len(exponent), -1)
-        return _Scene(likelihood.reshape(exponent.shape), math.exp(-largest), altitude)
+        return _Scene(likelihood.reshape(exponent.shape), math.exp(-largest))
 
     def _beside(self, path: Path) -> Array:
         """Return how likely the centre is at each place, given each bearing, shape (b, j).
@@ -281,7 +280,6 @@ class PlumeEstimator:
         of_spreads = self.cells.sum(axis=2)
         self._of_heights = of_heights = of_spreads.sum(axis=0)
         self._spread: Array = grid.coarse_heights(of_spreads.sum(axis=1) @ grid.sigma_z)
-        self._heights = prior.height_at(grid.height, self._distance, self._wind)
         self.height = float(of_heights @ self._heights)
         step = float(self._heights[1] - self._heights[0])
         self.height_deviation = math.sqrt(float(of_heights @ (self._heights - self.height) ** 2) + step**2 / 12.0)

@@ -4,6 +4,7 @@ import math
 from array import array
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -190,6 +191,32 @@ class Evidence:
     significance: float
 
 
+class _Match(NamedTuple):
+    """Products of templates T, readings y and background N, of k templates or of one.
+
+    Attributes
+    ----------
+    read, square, covered : T' y, T' T and N' T, shapes (k,), (k,) and (k, 3)
+    background : N' y, shape (3,)
+    """
+
+    read: Array
+    square: Array
+    covered: Array
+    background: Array
+
+    def of(self, one: int) -> "_Match":
+        """Return those of one template."""
+        return _Match(self.read[one], self.square[one], self.covered[one], self.background)
+
+    def projected(self, variance: float, inner: Array) -> tuple[Array, Array]:
+        """Return slope and bend as of ``PassReader``; arguments as of ``_inner``, and that."""
+        held = self.covered @ inner
+        slope: Array = (self.read - held @ self.background) / variance
+        bend: Array = (self.square - (held * self.covered).sum(axis=-1)) / variance
+        return slope, bend
+
+
 class PassReader:
     """Compares readings with pulses: Gaussian in the place across, through the lag of the sensor, over a background that drifts.
 
@@ -241,13 +268,14 @@ class PassReader:
         _, middle, high = _spread_of(y)
         total = noise + (_SHAPE_ERROR * max(0.0, high - middle)) ** 2
         inner = _inner(background, total)
-        slope, bend = _projected(templates, y, background, total, inner)
+        match = _Match(templates @ y, (templates * templates).sum(axis=1), templates @ background.T, background @ y)
+        slope, bend = match.projected(total, inner)
         bend_up = np.maximum(bend, _BEND_MIN)
         gain = np.maximum(slope, 0.0) ** 2 / bend_up
         best = int(gain.argmax())
         spread, at = divmod(best, len(places))
         fitting = templates[best]
-        alone_slope, alone_bend = _projected(fitting, y, background, noise, _inner(background, noise))
+        alone_slope, alone_bend = match.of(best).projected(noise, _inner(background, noise))
         strength = max(0.0, float(slope[best] / bend_up[best]))
         pulse = strength * fitting
         self._settle(y - pulse, background, inner, total, level)
@@ -296,14 +324,6 @@ def _inner(background: Array, variance: float) -> Array:
     cofactors = np.array(((of_a, of_b, of_c), (of_b, of_d, of_e), (of_c, of_e, of_f)))
     cofactors /= a * of_a + b * of_b + c * of_c
     return cofactors
-
-
-def _projected(templates: Array, y: Array, background: Array, variance: float, inner: Array) -> tuple[Array, Array]:
-    """Return slope and bend; arguments as in ``PassReader``: templates (..., m), background (3, m), and its ``_inner``."""
-    within = templates @ background.T
-    slope = (templates @ y - within @ (inner @ (background @ y))) / variance
-    bend = ((templates * templates).sum(axis=-1) - ((within @ inner) * within).sum(axis=-1)) / variance
-    return slope, bend
 
 
 def _spread_of(values: Array) -> tuple[float, float, float]:
