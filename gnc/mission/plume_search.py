@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtr
 
-from gnc.estimation.plume_estimator import HIT, PlumeEstimator, PlumeState
+from gnc.estimation.plume.estimator import HIT, PlumeEstimator, PlumeState
 
 Array = npt.NDArray[np.float64]
 

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
-from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState, SensorState
-from gnc.estimation.plume_prior import GasSensor, expected_plume
+from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState, SensorState
+from gnc.estimation.plume.prior import GasSensor, expected_plume
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb, Situation

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from exhaust_cases import PRIOR, MadePlume, estimated
 
-from gnc.estimation.plume_estimator import HIT, PlumeEstimator, PlumeState
+from gnc.estimation.plume.estimator import HIT, PlumeEstimator, PlumeState
 from gnc.mission.plume_search import HeightSearch, LadderSearch
 
 LOW, HIGH = 20.0, 120.0

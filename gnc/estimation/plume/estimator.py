@@ -7,10 +7,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from gnc.estimation.plume_grid import STRENGTH_STEP, PlumeGrid, normalised, over_nothing, wandered
-from gnc.estimation.plume_passes import Evidence, PassCollector, PassReader, Path
-from gnc.estimation.plume_prior import GasSensor, PlumePrior
-from gnc.estimation.sensor_watch import SensorState, SensorWatch
+from gnc.estimation.plume.grid import STRENGTH_STEP, PlumeGrid, normalised, over_nothing, wandered
+from gnc.estimation.plume.pass_reader import Evidence, PassReader
+from gnc.estimation.plume.passes import PassCollector, Path
+from gnc.estimation.plume.prior import GasSensor, PlumePrior
+from gnc.estimation.plume.sensor_watch import SensorState, SensorWatch
 
 __all__ = ["GasSensor", "PlumeEstimator", "PlumePrior", "PlumeState", "SensorState"]
 
@@ -212,7 +213,7 @@ class PlumeEstimator:
         """Take in what a pass says: of spread, height and strength with the bearing as it is believed, and the other way round."""
         grid = self.grid
         likelihood, nothing = self._scene(path, evidence)
-        beside = self._beside(path)
+        beside = grid.beside(self._distance, self._widened, path.duration)
         places = self.bearings @ beside
         fading = self._fading(altitude)
         read = grid.over_faint(self.cells, fading)
@@ -237,23 +238,6 @@ class PlumeEstimator:
         exponent -= largest
         likelihood = grid.of_widths(drawn_out) @ np.exp(exponent, out=exponent).reshape(len(exponent), -1)
         return _Scene(likelihood.reshape(exponent.shape), math.exp(-largest))
-
-    def _beside(self, path: Path) -> Array:
-        """Return how likely the centre is at each place, given each bearing, shape (b, j).
-
-        Meander that two passes have in common does not average out: its variance counts (1 + r)/(1 - r) times, with r its
-        correlation from pass to pass.
-        """
-        prior, grid = self.prior, self.grid
-        apart = 2.0 * path.duration / prior.meander_time
-        common = (1.0 + apart) * math.exp(-apart)
-        step = grid.places[1] - grid.places[0]
-        cell = self._distance * (grid.bearing[1] - grid.bearing[0])
-        deviation = math.sqrt((self._widened * prior.meander_y) ** 2 * (1.0 + common) / (1.0 - common) + (step**2 + cell**2) / 12.0)
-        off = (grid.places - self._distance * grid.bearing[:, np.newaxis]) / deviation
-        result: Array = np.exp(-0.5 * off**2) * (step / (deviation * math.sqrt(2.0 * math.pi)))
-        result /= np.maximum(1.0, result.sum(axis=1, keepdims=True))
-        return result
 
     def _judge(self, evidence: Evidence, chance: float) -> None:
         """Compare what a pass showed with the chance of a hit that was expected of it: innovations, found, lost again."""

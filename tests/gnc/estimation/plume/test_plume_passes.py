@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from exhaust_cases import SENSOR
 
-from gnc.estimation.plume_passes import PassCollector, PassReader, Path
+from gnc.estimation.plume.pass_reader import PassReader
+from gnc.estimation.plume.passes import PassCollector, Path
 
 _SPEED = 20.0
 

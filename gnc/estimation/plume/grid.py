@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtr
 
-from gnc.estimation.plume_prior import PlumePrior
+from gnc.estimation.plume.prior import PlumePrior
 
 Array = npt.NDArray[np.float64]
 
@@ -161,6 +161,28 @@ class PlumeGrid:
         """Return how likely a pass reads a ``fraction`` of a plume's own strength at least, shape (..., h'); arguments as above."""
         return self._within(math.sqrt(-2.0 * math.log(fraction)) * sigma_z, off, looks)
 
+    def beside(self, distance: float, widened: float, duration: float) -> Array:
+        """Return how likely the centre is at each place in a pass, given each bearing, shape (b, j).
+
+        Meander that two passes have in common does not average out: its variance counts (1 + r)/(1 - r) times, with r its
+        correlation from pass to pass.
+
+        Parameters
+        ----------
+        distance : behind the funnel [m]
+        widened : spread there over that of the cells [-]
+        duration : from pass to pass [s]
+        """
+        prior, places, bearing = self._expected, self.places, self.bearing
+        apart = 2.0 * duration / prior.meander_time
+        common = (1.0 + apart) * math.exp(-apart)
+        step, cell = float(places[1] - places[0]), distance * float(bearing[1] - bearing[0])
+        deviation = math.sqrt((widened * prior.meander_y) ** 2 * (1.0 + common) / (1.0 - common) + (step**2 + cell**2) / 12.0)
+        off = (places - distance * bearing[:, np.newaxis]) / deviation
+        result: Array = np.exp(-0.5 * off**2) * (step / (deviation * math.sqrt(2.0 * math.pi)))
+        result /= np.maximum(1.0, result.sum(axis=1, keepdims=True))
+        return result
+
     def coarse(self, cells: Array) -> Array:
         """Return the probability of every second height and each strength, shape (h', c), of cells (w, h, c)."""
         result: Array = np.add.reduceat(cells.sum(axis=0), np.arange(0, len(self.height), _COARSE), axis=0)
@@ -252,7 +274,7 @@ def over_nothing(slope: Array, bend: Array, strength: Array, drawn_out: float) -
 
     Parameters
     ----------
-    slope, bend : of ``gnc.estimation.plume_passes.Evidence``, shape (v, j) [1/ppm, 1/ppm^2]
+    slope, bend : of ``gnc.estimation.plume.passes.Evidence``, shape (v, j) [1/ppm, 1/ppm^2]
     strength : shape (p,) [ppm]
     drawn_out : way of the pass along the plume over that across [-]
     """
