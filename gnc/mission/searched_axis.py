@@ -24,7 +24,7 @@ _DECIDED = 10.0
 """Time for which a height that was chosen holds at least once the plume is found [s]: what is known of it changes more slowly."""
 
 Place = tuple[float, float, float, float]
-"""Time [s], place along the predicted axis and to the right of it, altitude [m]."""
+"""Time [s], place north and east of the vessel, altitude [m]."""
 
 _PASS_TIME, _PASS_MEMORY = 8.0, 0.3
 """Time between passes before the first two [s], and weight of the last one in its mean [-]."""
@@ -136,9 +136,11 @@ class SearchedAxis:
 
     def heed(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
         """Take note of the place now, and of what was read since the last readings came, each with its own time [s]."""
-        if self._estimator is None or self._situation is None:
+        situation = self._situation
+        if self._estimator is None or situation is None:
             return
-        self._places.append((time, *_seen_along(self._situation), self.flown))
+        own, target = situation.own, situation.target
+        self._places.append((time, own.ground_north - target.north, own.ground_east - target.east, self.flown))
         for read_at, reading in readings:
             if read_at - self._last_note > _NOTED:
                 self._note(0.5 * (self._last_note + read_at), math.nan)
@@ -172,7 +174,8 @@ class SearchedAxis:
         situation, estimator = self._situation, self._estimator
         if situation is None or estimator is None:
             return
-        along, across, altitude = _place_at(self._places, at)
+        north, east, altitude = _place_at(self._places, at)
+        along, across = _seen_along(situation, north, east)
         if at > self._last_note:
             estimator.predict(at - self._last_note)
             self._last_note = at
@@ -197,13 +200,12 @@ class SearchedAxis:
         )  # fmt: skip
 
 
-def _seen_along(situation: Situation) -> tuple[float, float]:
-    """Return where the vehicle is behind the vessel, along the predicted axis and to the right of it [m]."""
+def _seen_along(situation: Situation, north: float, east: float) -> tuple[float, float]:
+    """Return where a place north and east of the vessel is along the predicted axis and to the right of it [m]."""
     own, target = situation.own, situation.target
-    x, y = own.ground_north - target.north, own.ground_east - target.east
-    north, east = own.wind_north - target.velocity_north, own.wind_east - target.velocity_east
-    speed = math.hypot(north, east) or 1.0
-    return (x * north + y * east) / speed, (y * north - x * east) / speed
+    wind_north, wind_east = own.wind_north - target.velocity_north, own.wind_east - target.velocity_east
+    speed = math.hypot(wind_north, wind_east) or 1.0
+    return (north * wind_north + east * wind_east) / speed, (east * wind_north - north * wind_east) / speed
 
 
 def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float]:
@@ -213,5 +215,5 @@ def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float
         later -= 1
     then, before = places[later], places[max(0, later - 1)]
     share = min(max((time - before[0]) / (then[0] - before[0]), 0.0), 1.0) if then[0] > before[0] else 1.0
-    _, along, across, altitude = before
-    return along + share * (then[1] - along), across + share * (then[2] - across), altitude + share * (then[3] - altitude)
+    _, north, east, altitude = before
+    return north + share * (then[1] - north), east + share * (then[2] - east), altitude + share * (then[3] - altitude)
