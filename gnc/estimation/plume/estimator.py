@@ -23,6 +23,9 @@ SIGNAL_TO_NOISE = 5.0
 _FORGET = 6000.0
 """Time in which a posterior falls back to the prior, if nothing is read [s]: a ship may change her load."""
 
+_DIFFUSED = 10.0
+"""Least time after which the axis is let wander anew [s]: in less it wanders by less than a cell."""
+
 _LOST = 0.01
 """Chance of a row of misses below which a plume that was found is lost again [-]."""
 
@@ -106,7 +109,7 @@ class PlumeEstimator:
         self._watch = SensorWatch(interval=sensor.interval, saturated=sensor.saturated)
         self._collector = PassCollector(delay=sensor.delay, tail=sensor.time_constant)
         self._reader = PassReader(sensor)
-        self._time = self._pass_at = 0.0
+        self._time = self._diffused_at = 0.0
         self._spoilt = False
         self._distance, self._wind = prior.distance, prior.apparent_wind
         self._least = SIGNAL_TO_NOISE * sensor.noise / _NOMINAL_RESPONSE
@@ -147,8 +150,9 @@ class PlumeEstimator:
         if path is None:
             return False
         self._wind = apparent_wind or self.prior.apparent_wind
-        self._diffuse(self._time - self._pass_at)
-        self._pass_at = self._time
+        if self._time >= self._diffused_at + _DIFFUSED:
+            self._diffuse(self._time - self._diffused_at)
+            self._diffused_at = self._time
         self.passes += 1
         along, altitude = path.at(self.offset)
         believed = along > _NEAREST * self.prior.distance and not self._spoilt
@@ -217,7 +221,7 @@ class PlumeEstimator:
         places = self.bearings @ beside
         fading = self._fading(altitude)
         read = grid.over_faint(self.cells, fading)
-        self._judge(evidence, self._detected(read) * float(places @ path.covers(grid.places)))
+        self._judge(evidence, self._detected(read) * path.covered(grid.places, places))
         seen = places @ likelihood + nothing * (1.0 - places.sum())
         of_cells = fading @ grid.over_strengths(seen) + nothing * (1.0 - fading.sum(axis=-1, keepdims=True))
         there = (likelihood @ read[..., np.newaxis]).sum(axis=0)[:, 0]

@@ -66,9 +66,10 @@ class Path:
         along = self.along[i + 1] - self.along[i - 1] - apparent_wind * (self.time[i + 1] - self.time[i - 1])
         return float(abs(along) / max(abs(self.across[i + 1] - self.across[i - 1]), _BESIDE * abs(along)))
 
-    def covers(self, places: Array) -> Array:
-        """Return 1 for each place across that the way goes over, and 0 for others, shape as given [-]."""
-        return np.where((places >= self.across.min()) & (places <= self.across.max()), 1.0, 0.0)
+    def covered(self, places: Array, weights: Array) -> float:
+        """Return the sum of the weights of those places across, in order, that the way goes over."""
+        first, last = places.searchsorted((min(self.across), max(self.across)))
+        return float(weights[first:last].sum())
 
     def _nearest(self, across: float) -> int:
         return int(np.abs(self.across - across).argmin())
