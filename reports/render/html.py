@@ -18,7 +18,7 @@ PLOTLY = Path(__file__).parent / "bundle" / "plotly-cartesian.min.js"
 """Library that draws the charts of every page; ``bundle/README.md`` says where it comes from."""
 
 
-_PANEL_HEIGHT = 0.56
+_PANEL_HEIGHT = 0.64
 """Height of panels of page 1 that stand beside each other, all rows together, over the width of the page [-]."""
 
 

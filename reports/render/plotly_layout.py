@@ -47,6 +47,9 @@ _HIGHEST = 0.6
 _MAP, _UPRIGHT = 0.85, 1.1
 """Width of a map that is alone in its row on a narrow screen, and height of its row at most, over that of the screen."""
 
+_HALO = "rgba(255,255,255,0.7)"
+"""Behind words among curves."""
+
 _FEW = 8.0
 """Range of whole numbers from which Plotly marks whole numbers by itself."""
 
@@ -197,7 +200,7 @@ def _words(chart: Chart, place: _Place) -> list[Data]:
             words.append({"text": panel.title, "font": font, "showarrow": False, **at})
         for note in panel.notes:
             at = {"x": note.x, "y": note.y, "xref": f"x{_number(i)}", "yref": f"y{_number(i)}", "xanchor": note.align}
-            words.append({"text": note.text, "font": {"size": 11, "color": INK}, "showarrow": False, **at})
+            words.append({"text": note.text, "font": {"size": 11, "color": INK}, "bgcolor": _HALO, "showarrow": False, **at})
     return words
 
 
