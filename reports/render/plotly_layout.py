@@ -90,9 +90,15 @@ def narrow(chart: Chart) -> Data:
     found: Data = {"height": place.height, "margin": {"t": place.top, "l": 60, "r": 10}, "legend": {"y": place.legend}}
     if any(panel.title or panel.notes for panel in chart.panels):
         found["annotations"] = _words(chart, place)
-    for i in range(len(chart.panels)):
+    named = chart.panels[0]
+    for i, panel in enumerate(chart.panels):
         x, y = place.domains(i)
-        found |= {f"xaxis{_number(i)}": {"domain": x, "showticklabels": True}, f"yaxis{_number(i)}": {"domain": y}}
+        ordinate: Data = {"domain": y}
+        if panel.y_names and columns == 1:
+            # Names that a panel shared with the one to its left.
+            named = panel if any(name for _, name in panel.y_names) else named
+            ordinate |= {"ticktext": [name for _, name in named.y_names], "title": {"text": named.y_label, "standoff": 8}}
+        found |= {f"xaxis{_number(i)}": {"domain": x, "showticklabels": True}, f"yaxis{_number(i)}": ordinate}
     return found
 
 
