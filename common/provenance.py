@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from common.command_line import PROGRAM
+
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pandas", "pyarrow", "matplotlib", "pydantic", "typst")
 
 
@@ -26,16 +28,23 @@ def without_folders(text: str) -> str:
     return _FOLDERS.sub("", text)
 
 
-def command_line(module: str, arguments: Sequence[str]) -> str:
-    """Return the command line of a module, as a shell reads it, with no host and with absolute paths cut to their last name."""
+def command_line(module: str, given: Sequence[str]) -> str:
+    """Return a command line as a shell reads it, with no host and with absolute paths cut to their last name.
+
+    Parameters
+    ----------
+    module : that was run, where it was not the console command
+    given : ``sys.argv``: the program, and its arguments
+    """
+    program = PROGRAM if Path(given[0]).stem == PROGRAM else f"python -m {module}"
     shown = []
     host = False
-    for argument in arguments:
+    for argument in given[1:]:
         option, equals, _ = argument.partition("=")
         text = "HOST:PORT" if host else f"{option}=HOST:PORT" if equals and option in _HOSTS else without_folders(argument)
         shown.append(shlex.quote(text))
         host = argument in _HOSTS
-    return " ".join(["python -m", module, *shown])
+    return " ".join([program, *shown])
 
 
 def provenance() -> dict[str, Any]:

@@ -71,6 +71,17 @@ def test_help_needs_no_heavy_import():
     assert found.returncode == 0
 
 
+def test_what_is_said_of_a_key_needs_no_slow_import():
+    code = (
+        "import sys; from scenarios.console.describe import described; described('payload.sensor');"
+        "heavy = {'scipy', 'pandas', 'control', 'matplotlib', 'typst'};"
+        "sys.exit(', '.join(sorted(heavy & set(sys.modules))) or 0)"
+    )
+    found = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert found.stderr == ""
+    assert found.returncode == 0
+
+
 def test_help_and_list_answer():
     assert "--resume" in run("--help").stdout
     assert "sweep_nu" in run("--list").stdout

@@ -57,19 +57,20 @@ def flight_table(
     ----------
     rows : of the flights
     head, name : of the first column, and what it says of a flight
-    columns : title, name and pattern of the others
+    columns : title, name and pattern of the columns after the outcome
     caption : what the table shows
     """
     cells = [
-        [name(row), *(number(row.get(key), pattern) for _, key, pattern in columns), outcome(row)] for _, row in rows.iterrows()
+        [name(row), outcome(row), *(number(row.get(key), pattern) for _, key, pattern in columns)] for _, row in rows.iterrows()
     ]
-    first, last = (min(2.6, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, -1))
-    widths = [first, *[1.05] * len(columns), last]
+    words = (min(4.0, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, 1))
+    widths = [*words, *[1.05] * len(columns)]
     return Table(
         caption=caption,
-        head=[head, *(title for title, _, _ in columns), "Outcome"],
+        head=[head, "Outcome", *(title for title, _, _ in columns)],
         rows=cells,
         widths=widths,
+        left_columns=2,
         breakable=True,
     )
 
