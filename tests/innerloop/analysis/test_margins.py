@@ -128,10 +128,10 @@ def test_the_loop_stays_stable_up_to_its_gain_margin_and_not_beyond(margins, loo
 
 
 @pytest.mark.parametrize(("condition", "name"), CASES)
-def test_the_closed_loops_poles_are_those_of_the_opened_loop_closed(systems, condition, name):
+def test_the_closed_loops_poles_are_those_of_the_opened_loop_closed(systems, loops, condition, name):
     found = Loops(*systems[condition]).poles()
     # Slow poles, far below the delay's own (166 rad/s and more), whose order of approximation differs: 2 here, 4 there.
-    slow = [p for p in closed_poles(opened(*systems[condition], name)) if abs(p) < 15.0]
+    slow = [p for p in closed_poles(loops[condition, name]) if abs(p) < 15.0]
     assert len(slow) >= 8
     for pole in slow:
         assert np.abs(found - pole).min() < 2e-4 * (1.0 + abs(pole))

@@ -164,7 +164,7 @@ def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_line
     assert len(chosen) == 4
     for point in chosen:
         bank = 0.0 if point.trim.yaw_rate == 0.0 else point.trim.roll
-        there = trim(fdm, airspeed=point.trim.airspeed, altitude=100.0, bank=bank)
+        there = trim(fdm, airspeed=point.trim.airspeed, altitude=x8_schedule.altitude, bank=bank)
         # Half a step of the grid is 1.25 m/s or 11 degrees; the bend of alpha over either, second order, is 7 % of it.
         assert point.trim.alpha == pytest.approx(there.alpha, abs=0.006)
         linearised = Loops(linearise(fdm, there), linear_controller(law, there), x8_schedule.delay).margins()
@@ -231,7 +231,7 @@ def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeyp
         return checks
 
     monkeypatch.setattr(designer, "check_design", short_once)
-    found = design_autopilot(X8)
+    found = design_autopilot(X8, x8_design.schedule.altitude)
     # Designed twice, and then checked with the longest period: as modelled, and with every change.
     assert asked == [1, 1, 3, 3]
     assert found.bandwidths.lateral == pytest.approx(0.8 * x8_design.bandwidths.lateral)

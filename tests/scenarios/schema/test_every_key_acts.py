@@ -17,7 +17,7 @@ title = "short"
 fidelity = "kinematic"
 seed = 3
 flight.duration_max_s = 120.0
-guidance.rate_hz = 10.0
+guidance.rate_hz = 5.0
 flight.log_rate_hz = 5.0
 criteria.tracking_error_rms_m = 1e-4
 """
