@@ -12,6 +12,7 @@ HEIGHT = ("--altitude", 60.0)
 """That of the designs that other tests have too."""
 
 
+@pytest.mark.usefixtures("sketched")
 def test_the_command_leaves_a_directory_that_can_be_reported_on_again(tmp_path):
     ended = run_command("innerloop.design", "x8", *HEIGHT, "--out", tmp_path / "x8")
     assert ended.status == 0, ended.errors
