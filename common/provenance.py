@@ -1,5 +1,6 @@
 """Software and hosts of a run: recorded in its manifest, printed in its report. No name and no path of a machine is."""
 
+import functools
 import importlib.metadata
 import os
 import platform
@@ -7,7 +8,7 @@ import re
 import shlex
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -49,21 +50,28 @@ def command_line(module: str, given: Sequence[str]) -> str:
 
 def provenance() -> dict[str, Any]:
     """Return versions of Python, packages and source, and the kind of host."""
+    return {
+        "python": platform.python_version(),
+        "platform": f"{platform.system()} {platform.machine()}",
+        "cores": os.cpu_count(),
+        "packages": dict(_versions()),
+        "git_revision": _git_revision(),
+    }
+
+
+@functools.cache
+def _versions() -> Mapping[str, str]:
+    """Return the version of each package: those of a process stay what they are."""
     versions = {}
     for package in _PACKAGES:
         try:
             versions[package] = importlib.metadata.version(package)
         except importlib.metadata.PackageNotFoundError:
             versions[package] = "not installed"
-    return {
-        "python": platform.python_version(),
-        "platform": f"{platform.system()} {platform.machine()}",
-        "cores": os.cpu_count(),
-        "packages": versions,
-        "git_revision": _git_revision(),
-    }
+    return versions
 
 
+@functools.cache
 def _git_revision() -> str:
     git = shutil.which("git")
     if git is None:
