@@ -60,23 +60,19 @@ def assert_refused(result, *words):
         assert word in result.stderr
 
 
-def test_help_needs_no_heavy_import():
-    code = (
-        "import sys, scenarios.run, innerloop.design, reports.build;"
-        "heavy = {'numpy', 'scipy', 'pandas', 'control', 'jsbsim', 'matplotlib', 'plotly', 'pydantic', 'typst'};"
-        "sys.exit(', '.join(sorted(heavy & set(sys.modules))) or 0)"
-    )
-    found = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert found.stderr == ""
-    assert found.returncode == 0
+HEAVY = {"scipy", "pandas", "control", "matplotlib", "typst"}
 
 
-def test_what_is_said_of_a_key_needs_no_slow_import():
-    code = (
-        "import sys; from scenarios.console.describe import described; described('payload.sensor');"
-        "heavy = {'scipy', 'pandas', 'control', 'matplotlib', 'typst'};"
-        "sys.exit(', '.join(sorted(heavy & set(sys.modules))) or 0)"
-    )
+@pytest.mark.parametrize(
+    ("code", "heavy"),
+    [
+        ("import scenarios.run, innerloop.design, reports.build", HEAVY | {"numpy", "jsbsim", "plotly", "pydantic"}),
+        ("from scenarios.console.describe import described; described('payload.sensor')", HEAVY),
+    ],
+    ids=["help", "what is said of a key"],
+)
+def test_a_quick_answer_needs_no_heavy_import(code, heavy):
+    code += f"; import sys; sys.exit(', '.join(sorted({heavy!r} & set(sys.modules))) or 0)"
     found = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
     assert found.stderr == ""
     assert found.returncode == 0
