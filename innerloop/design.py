@@ -13,8 +13,7 @@ from common.command_line import INTERRUPTED, refuse, run_command
 from common.run_layout import DESIGN_RECORD, MANIFEST, MODEL
 
 if TYPE_CHECKING:
-    from innerloop.designs.cache import Designed
-    from innerloop.designs.record import Record
+    from innerloop.designs.designed import Designed, Record
 
 
 def command(

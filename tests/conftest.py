@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from aircraft.simulation.fdm import Fdm
-    from innerloop.designs.cache import Designed
-    from innerloop.designs.designer import Design
+    from innerloop.designs.designed import Design, Designed
     from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
     from innerloop.synthesis.schedule import Schedule
 

@@ -14,11 +14,11 @@ those are the coefficients of a lag of first or second order (a piston engine's 
 import math
 from dataclasses import dataclass, replace
 
-import control
 import numpy as np
 import numpy.typing as npt
 
 from aircraft.dynamics.equilibrium import Trim
+from aircraft.dynamics.linear_model import LinearModel
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import body_velocity, course_rate, euler_rates, level
@@ -54,7 +54,7 @@ _NO_LAG = 0.6
 """A time constant below this many steps is the half step of holding an input, not a lag [-]."""
 
 
-def linearise(fdm: Fdm, trim: Trim) -> control.StateSpace:
+def linearise(fdm: Fdm, trim: Trim) -> LinearModel:
     """Return the linear model about ``trim``, with named states, inputs and outputs.
 
     Parameters
@@ -64,7 +64,7 @@ def linearise(fdm: Fdm, trim: Trim) -> control.StateSpace:
 
     Returns
     -------
-    control.StateSpace
+    LinearModel
         States: ``BODY_STATES`` followed by the aircraft's driven states, then ``INPUT_effect`` for each measured lag,
         followed by ``INPUT_effect_rate`` where it is of second order. Inputs: the aircraft's control inputs [-].
         Outputs: every state followed by ``EXTRA_OUTPUTS``. All are deviations from trim, in SI and radians.
@@ -91,7 +91,7 @@ class _Differences:
         self._body = np.array([trim.airspeed, trim.alpha, trim.beta, *trim.rates_body, trim.roll, trim.pitch, trim.altitude])
         self._inputs = np.array([trim.inputs[i.name] for i in self._spec.inputs])
 
-    def model(self) -> control.StateSpace:
+    def model(self) -> LinearModel:
         n_body, n_driven, n_inputs = len(BODY_STATES), len(self._spec.driven_states), len(self._inputs)
         steps = {"airspeed": _AIRSPEED_STEP * self._trim.airspeed, "altitude": _ALTITUDE_STEP}
         body_steps = np.array([steps.get(name, _STEP) for name in BODY_STATES])
@@ -135,15 +135,14 @@ class _Differences:
             second = product > max(_SECOND_ORDER * lag, self._fdm.time_step) * lag
             model = model.with_lag(j, lag, product if second else 0.0)
             states += [f"{control_input.name}_effect", f"{control_input.name}_effect_rate"][: 1 + second]
-        return control.ss(
-            model.a,
-            model.b,
-            np.vstack([np.eye(len(states)), model.c]),
-            np.vstack([np.zeros((len(states), n_inputs)), model.d]),
-            states=states,
-            inputs=[i.name for i in self._spec.inputs],
-            outputs=[*states, *EXTRA_OUTPUTS],
-            name=self._spec.name,
+        return LinearModel(
+            A=model.a,
+            B=model.b,
+            C=np.vstack([np.eye(len(states)), model.c]),
+            D=np.vstack([np.zeros((len(states), n_inputs)), model.d]),
+            state_labels=tuple(states),
+            input_labels=tuple(i.name for i in self._spec.inputs),
+            output_labels=(*states, *EXTRA_OUTPUTS),
         )
 
     def _measured_lag(self, j: int) -> tuple[float, float]:
@@ -213,7 +212,7 @@ class _Differences:
             raise AircraftError(f"aircraft '{self._spec.name}': servos and propeller do not settle near the trim; check its spec")
 
     def _driven(self) -> npt.NDArray[np.float64]:
-        return np.array([node.get_double_value() for node in self._driven_nodes]) * self._scales
+        return np.asarray(np.array([node.get_double_value() for node in self._driven_nodes]) * self._scales)
 
     def _rates_and_extras(self, point: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         v, alpha, beta, p, q, r, roll, pitch, _ = (float(x) for x in point)

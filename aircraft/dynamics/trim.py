@@ -13,6 +13,7 @@ from aircraft.dynamics.equilibrium import Trim, TrimOutcome
 from aircraft.dynamics.trim_search import TOLERANCE, TrimProblem
 from aircraft.errors import TrimError
 from aircraft.simulation.fdm import Fdm
+from aircraft.spec import AircraftSpec
 
 
 def trim(
@@ -40,6 +41,17 @@ def trim(
         f"trim of '{fdm.spec.name}' at {where} did not converge: largest acceleration {found.residual:.2g}"
         f"{f' with {held}' if held else ''} against a limit of {TOLERANCE:g}; choose a condition inside the flight envelope"
     )
+
+
+def level_trim(spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None) -> Trim:
+    """Return the straight and level equilibrium of the bare aircraft at ``airspeed`` [m/s] and ``altitude`` [m].
+
+    Parameters
+    ----------
+    spec, airspeed, altitude : the aircraft and its flight condition
+    start : an equilibrium nearby
+    """
+    return trim(Fdm(spec), airspeed=airspeed, altitude=altitude, start=start)
 
 
 def search_trim(

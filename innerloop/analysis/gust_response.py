@@ -13,8 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.dynamics.equilibrium import Trim
+from aircraft.dynamics.linear_model import LinearModel
 from aircraft.simulation.state import body_velocity, level
-from innerloop.analysis.margins import closed_loop
+from innerloop.analysis.closed_loop import closed_loop
 from innerloop.law.control_law import ControlLaw
 from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.schedule import LEVEL_GAINS, Schedule
@@ -43,7 +44,7 @@ def gust_loop(schedule: Schedule, index: int, bank_index: int) -> control.StateS
     return closed_loop(aircraft, linear_controller(ControlLaw(schedule), trim), schedule.delay)
 
 
-def aircraft_in_gusts(model: control.StateSpace, trim: Trim, level_model: control.StateSpace) -> control.StateSpace:
+def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) -> LinearModel:
     """Return a linear model with inputs for gusts, and outputs for the motion against the mean air.
 
     Parameters
@@ -53,7 +54,7 @@ def aircraft_in_gusts(model: control.StateSpace, trim: Trim, level_model: contro
 
     Returns
     -------
-    control.StateSpace
+    LinearModel
         States as those of ``model``; the body's velocity is that against the mean air. Inputs: those of ``model``,
         then ``GUSTS``. Outputs: those of ``model``, of which ``airspeed``, ``alpha``, ``beta`` and ``heading_rate``
         are against the gusty air, then ``MOTION``.
@@ -64,7 +65,7 @@ def aircraft_in_gusts(model: control.StateSpace, trim: Trim, level_model: contro
     inertia. Moments by rates are taken from level flight instead, where gyroscopic moments vanish; they hardly depend
     on the angle of attack.
     """
-    states, outputs = list(model.state_labels), list(model.output_labels)
+    states, outputs = model.state_labels, model.output_labels
     air = [states.index(name) for name in _AIR]
     moments = [states.index(name) for name in _RATES]
     at = velocity_by_polar(trim.airspeed, trim.alpha, trim.beta)
@@ -88,15 +89,14 @@ def aircraft_in_gusts(model: control.StateSpace, trim: Trim, level_model: contro
     # The same acceleration turns a faster motion less: against the mean air the aircraft is faster by the gust along
     # its course.
     course_rate = reads[rate] - np.eye(len(GUSTS))[0] * trim.yaw_rate / trim.airspeed
-    return control.ss(
-        model.A,
-        np.hstack([model.B, by_air @ against]),
-        np.vstack([model.C, speed, model.C[rate]]),
-        np.block([[model.D, reads], [np.zeros((1, model.ninputs + len(GUSTS)))], [model.D[rate], course_rate]]),
-        states=states,
-        inputs=[*model.input_labels, *GUSTS],
-        outputs=[*outputs, *MOTION],
-        name=f"{model.name}_in_gusts",
+    return LinearModel(
+        A=model.A,
+        B=np.hstack([model.B, by_air @ against]),
+        C=np.vstack([model.C, speed, model.C[rate]]),
+        D=np.block([[model.D, reads], [np.zeros((1, len(model.input_labels) + len(GUSTS)))], [model.D[rate], course_rate]]),
+        state_labels=states,
+        input_labels=(*model.input_labels, *GUSTS),
+        output_labels=(*outputs, *MOTION),
     )
 
 

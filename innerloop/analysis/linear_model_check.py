@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.dynamics.equilibrium import Trim
+from aircraft.dynamics.linear_model import LinearModel
 from aircraft.simulation.fdm import Fdm
 from common.units import METRES_PER_FOOT
 
@@ -37,7 +38,7 @@ _FINE = 8
 Array = npt.NDArray[np.float64]
 
 
-def verify_model(fdm: Fdm, model: control.StateSpace, level: Trim) -> list[dict[str, Any]]:
+def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, Any]]:
     """Return the largest error of each prediction over the largest excursion flown, by control and state.
 
     Parameters
@@ -47,12 +48,12 @@ def verify_model(fdm: Fdm, model: control.StateSpace, level: Trim) -> list[dict[
     level : the equilibrium
     """
     fine = Fdm(fdm.spec, time_step=fdm.time_step / _FINE)
-    records = []
+    records, system = [], control.ss(model.A, model.B, model.C, model.D, inputs=model.input_labels)
     for control_input in fdm.spec.inputs:
         name = control_input.name
         time, flown = _flown(fine, level, name)
         doublet = np.where(time < _HALF, _SIZE, np.where(time < 2.0 * _HALF, -_SIZE, 0.0))
-        response = control.forced_response(model[:, name], time, doublet)
+        response = control.forced_response(system[:, name], time, doublet)
         for output in _SHOWN.get(name, ()):
             predicted = response.outputs[model.output_labels.index(output)]
             excursion = float(np.max(np.abs(flown[output])))

@@ -9,13 +9,14 @@ import copy
 import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
-import control
 import numpy as np
 import numpy.typing as npt
 from slycot import ab13md
 
+from aircraft.dynamics.linear_model import LinearModel
+from innerloop.analysis.checks import ALL_CONTROLS, Margin
+from innerloop.analysis.closed_loop import pade
 from innerloop.law.control_law import COMMANDS
 
 SENSOR_BREAKS = ("airspeed", "altitude", "heading_rate", "beta")
@@ -23,9 +24,6 @@ SENSOR_BREAKS = ("airspeed", "altitude", "heading_rate", "beta")
 
 BREAK_NAMES = {"beta": "sideslip"}
 """Names of breaks in reports, where they differ from the model's."""
-
-ALL_CONTROLS = "all controls"
-"""Name of the margins for simultaneous changes in every control."""
 
 _MU_STRIDE = 4
 """Stride over the frequencies of the structured singular value, which takes a hundred times as long as a gain [-]; all
@@ -42,27 +40,6 @@ Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Margin:
-    """Margins with one loop opened and every other closed.
-
-    Attributes
-    ----------
-    loop : where the loop is opened
-    gain_db : least change of gain, up or down, that brings instability [dB]; infinite where none does
-    phase_deg : least change of phase that does [deg]; infinite where none does
-    crossover : highest gain crossover [rad/s]; nan where the gain never crosses 1
-    disk_gain_db, disk_phase_deg : guaranteed for simultaneous changes of gain and phase [dB, deg]
-    """
-
-    loop: str
-    gain_db: float
-    phase_deg: float
-    crossover: float
-    disk_gain_db: float
-    disk_phase_deg: float
-
-
 class Loops:
     """The closed loop of an aircraft and its autopilot at one operating point, over frequency.
 
@@ -76,8 +53,8 @@ class Loops:
 
     def __init__(
         self,
-        aircraft: control.StateSpace,
-        autopilot: control.StateSpace,
+        aircraft: LinearModel,
+        autopilot: LinearModel,
         delay: float,
         frequencies: Array = FREQUENCIES,
     ) -> None:
@@ -92,7 +69,7 @@ class Loops:
         self._law = -_response(autopilot, frequencies)[:, :, self._reads]
         self._close()
 
-    def with_aircraft(self, aircraft: control.StateSpace, delay: float) -> "Loops":
+    def with_aircraft(self, aircraft: LinearModel, delay: float) -> "Loops":
         """Return the loops of a changed aircraft, or of another delay, under the same autopilot, whose response is known."""
         loops = copy.copy(self)
         loops._aircraft, loops._delay = aircraft, delay
@@ -170,16 +147,10 @@ Matrices = tuple[Array, Array, Array, Array]
 
 
 @functools.cache
-def _pade(delay: float) -> control.StateSpace:
-    """Return the second-order Pade approximation of a delay [s]."""
-    return control.ss(control.tf(*control.pade(delay, 2)))
-
-
-@functools.cache
 def _delays(delay: float, channels: int) -> Matrices:
     """Return A, B, C, D of the same delay [s] in each of some channels."""
-    pade = _pade(delay)
-    a, b, c, d = (np.kron(np.eye(channels), m) for m in (pade.A, pade.B, pade.C, pade.D))
+    one = pade(delay)
+    a, b, c, d = (np.kron(np.eye(channels), m) for m in (one.A, one.B, one.C, one.D))
     return a, b, c, d
 
 
@@ -197,7 +168,7 @@ def _disk(alpha: float) -> tuple[float, float]:
     return gain_db, math.degrees(2.0 * math.atan(0.5 * alpha))
 
 
-def _response(system: control.StateSpace, frequencies: Array) -> Complex:
+def _response(system: LinearModel, frequencies: Array) -> Complex:
     """Return C (jw - A)^-1 B + D over frequency, shape (frequencies, outputs, inputs), along the eigenvectors of A."""
     values, vectors = np.linalg.eig(system.A)
     if np.linalg.cond(vectors) < _WELL_CONDITIONED:
@@ -255,33 +226,3 @@ def _crossings(phase: Array) -> list[tuple[int, float]]:
 def _ordered(x: Array, y: Array) -> tuple[Array, Array]:
     order = np.argsort(x)
     return x[order], y[order]
-
-
-def closed_loop(aircraft: control.StateSpace, autopilot: control.StateSpace, delay: float) -> control.StateSpace:
-    """Return the closed loop from the autopilot's commands to every output of the aircraft and to the controls.
-
-    The aircraft's other inputs, such as gusts, follow the commands. The ``delay`` is that between measurement and servo [s].
-    """
-    controls: Sequence[str] = autopilot.output_labels
-    others = [name for name in aircraft.input_labels if name not in controls]
-    pade = _pade(delay)
-    plant = control.ss(aircraft, inputs=aircraft.input_labels, outputs=aircraft.output_labels, name="aircraft")
-    delays = [control.ss(pade, inputs=[f"{name}_delayed_in"], outputs=[name], name=f"{name}_delay") for name in controls]
-    connections: list[list[object]] = [
-        [f"autopilot.{name}", f"aircraft.{name}"] for name in autopilot.input_labels if name not in COMMANDS
-    ]
-    for block, name in zip(delays, controls, strict=True):
-        connections += [
-            [f"aircraft.{name}", f"{block.name}.{name}"],
-            [f"{block.name}.{name}_delayed_in", f"autopilot.{name}"],
-        ]
-    return control.interconnect(
-        [plant, autopilot, *delays],
-        connections=connections,
-        inplist=[*(f"autopilot.{name}" for name in COMMANDS), *(f"aircraft.{name}" for name in others)],
-        outlist=[*(f"aircraft.{name}" for name in aircraft.output_labels), *(f"autopilot.{name}" for name in controls)],
-        inputs=[*COMMANDS, *others],
-        outputs=[*aircraft.output_labels, *(f"{name}_command" for name in controls)],
-        warn_duplicate=False,
-        check_unused=False,
-    )

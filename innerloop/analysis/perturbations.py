@@ -2,21 +2,21 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
-import control
 import numpy as np
 import numpy.typing as npt
 
 from aircraft.dynamics.equilibrium import Trim
+from aircraft.dynamics.linear_model import LinearModel
 from aircraft.dynamics.linearise import BODY_STATES
 from common.units import STANDARD_GRAVITY
+from innerloop.analysis.checks import NOMINAL
 
-NOMINAL = "as modelled"
-
-Change = Callable[[control.StateSpace, Trim], control.StateSpace]
+Change = Callable[[LinearModel, Trim], LinearModel]
 
 
-def _unchanged(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+def _unchanged(model: LinearModel, trim: Trim) -> LinearModel:
     del trim
     return model
 
@@ -24,7 +24,7 @@ def _unchanged(model: control.StateSpace, trim: Trim) -> control.StateSpace:
 def _effectiveness(factor: float) -> Change:
     """Return a change of the effectiveness of every control."""
 
-    def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+    def change(model: LinearModel, trim: Trim) -> LinearModel:
         del trim
         b = model.B.copy()
         rows = [i for i, name in enumerate(model.state_labels) if name in BODY_STATES]
@@ -34,7 +34,7 @@ def _effectiveness(factor: float) -> Change:
         a[np.ix_(rows, driven)] *= factor
         extras = [i for i, name in enumerate(model.output_labels) if name not in model.state_labels]
         c[np.ix_(extras, driven)] *= factor
-        return with_matrices(model, a, b, c, d)
+        return replace(model, A=a, B=b, C=c, D=d)
 
     return change
 
@@ -42,13 +42,13 @@ def _effectiveness(factor: float) -> Change:
 def _inertia(factor: float) -> Change:
     """Return a change of all moments of inertia: angular accelerations by air and engine divide by it."""
 
-    def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
+    def change(model: LinearModel, trim: Trim) -> LinearModel:
         del trim
         a, b = model.A.copy(), model.B.copy()
         rows = [model.state_labels.index(name) for name in "pqr"]
         a[rows] /= factor
         b[rows] /= factor
-        return with_matrices(model, a, b, model.C, model.D)
+        return replace(model, A=a, B=b)
 
     return change
 
@@ -56,10 +56,10 @@ def _inertia(factor: float) -> Change:
 def _mass(factor: float) -> Change:
     """Return a change of mass: accelerations by air and engine divide by it, those by gravity and turning do not."""
 
-    def change(model: control.StateSpace, trim: Trim) -> control.StateSpace:
-        a, b, c, d = (m.copy() for m in matrices(model))
+    def change(model: LinearModel, trim: Trim) -> LinearModel:
+        a, b, c, d = (m.copy() for m in (model.A, model.B, model.C, model.D))
         rows = [model.state_labels.index(name) for name in ("airspeed", "alpha", "beta")]
-        kinematic = gravity_and_turning(trim, list(model.state_labels))
+        kinematic = gravity_and_turning(trim, model.state_labels)
         a[rows] = kinematic + (a[rows] - kinematic) / factor
         b[rows] /= factor
         # Rate of the course: side force over mass and speed, but for what attitude gives: an aircraft in equilibrium
@@ -68,12 +68,12 @@ def _mass(factor: float) -> Change:
         columns = [i for i, name in enumerate(model.state_labels) if name not in ("roll", "pitch")]
         c[row, columns] /= factor
         d[row] /= factor
-        return with_matrices(model, a, b, c, d)
+        return replace(model, A=a, B=b, C=c, D=d)
 
     return change
 
 
-def gravity_and_turning(trim: Trim, states: list[str]) -> npt.NDArray[np.float64]:
+def gravity_and_turning(trim: Trim, states: tuple[str, ...]) -> npt.NDArray[np.float64]:
     """Return how airspeed, angle of attack and sideslip change without any force of air or engine, shape (3, states).
 
     Differences of the rigid body's own equations: gravity along the body's axes, and the axes' turning.
@@ -100,22 +100,6 @@ def gravity_and_turning(trim: Trim, states: list[str]) -> npt.NDArray[np.float64
         step[i] = 1e-5
         result[:, states.index(name)] = (rates(point + step) - rates(point - step)) / 2e-5
     return result
-
-
-def matrices(model: control.StateSpace) -> tuple[npt.NDArray[np.float64], ...]:
-    """Return A, B, C and D."""
-    return model.A, model.B, model.C, model.D
-
-
-def with_matrices(
-    model: control.StateSpace,
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    c: npt.NDArray[np.float64],
-    d: npt.NDArray[np.float64],
-) -> control.StateSpace:
-    """Return a model with other matrices and the same names."""
-    return control.ss(a, b, c, d, states=model.state_labels, inputs=model.input_labels, outputs=model.output_labels)
 
 
 CASES: dict[str, tuple[Change, int]] = {

@@ -17,8 +17,7 @@ from aircraft.errors import AircraftError
 from aircraft.simulation.model_copy import model_hash
 from aircraft.spec import AircraftSpec
 from common.files import write_whole
-from innerloop.designs.designer import Design, DesignError, design_autopilot
-from innerloop.designs.record import Record, design_record
+from innerloop.designs.designed import Designed, DesignError
 from innerloop.designs.stored import as_text, from_text
 from innerloop.jsbsim.root import write_root
 
@@ -26,14 +25,6 @@ _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot")
 
 SUFFIX = ".design.json"
 """How the names of cached designs end."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Designed:
-    """A design and its record."""
-
-    design: Design
-    record: Record
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,6 +95,10 @@ def design_key(spec: AircraftSpec, altitude: float) -> str:
 
 
 def _design(spec: AircraftSpec, altitude: float) -> _Entry:
+    # They need python-control, which a flight with a cached design does without.
+    from innerloop.designs.designer import design_autopilot
+    from innerloop.designs.record import design_record
+
     try:
         design = design_autopilot(spec, altitude)
     except AircraftError as error:

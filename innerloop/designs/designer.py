@@ -3,23 +3,21 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import control
-
 from aircraft.dynamics.control_effectiveness import with_linearised_controls
 from aircraft.dynamics.envelope import find_envelope, first_trim
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.flight_idle import flight_idle, idling_at
+from aircraft.dynamics.linear_model import LinearModel
 from aircraft.dynamics.linearise import linearise
 from aircraft.dynamics.trim import trim
-from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec, Envelope
-from innerloop.analysis.margins import ALL_CONTROLS
-from innerloop.analysis.perturbations import NOMINAL
-from innerloop.analysis.robustness import REQUIRED, Check, ClosedLoops, check_design, closed_loops, with_all_controls
-from innerloop.synthesis.gains import design_gains
+from innerloop.analysis.checks import ALL_CONTROLS, NOMINAL, REQUIRED, Check
+from innerloop.analysis.robustness import ClosedLoops, check_design, closed_loops, with_all_controls
+from innerloop.designs.designed import Design, DesignError
 from innerloop.synthesis.rate import PERIODS
 from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL, LEVEL_GAINS, TRIM_BANKS, Schedule, table_banks
+from innerloop.synthesis.servo_lqr import design_gains
 from innerloop.synthesis.weights import LoopBandwidths, control_weights, design_weights, reachable_bandwidths
 
 _SLOWER = 0.8
@@ -38,26 +36,6 @@ _LATERAL_LOOPS = ("aileron", "rudder", "heading_rate", "sideslip")
 _AIRSPEED_LOOPS = ("throttle", "airspeed")
 
 
-class DesignError(AircraftError):
-    """No design of an aircraft has the margins that are required."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Design:
-    """An autopilot and its margins.
-
-    Attributes
-    ----------
-    schedule : the autopilot's tables
-    bandwidths : of its loops
-    checks : margins at every grid point, between them, and with the perturbed aircraft
-    """
-
-    schedule: Schedule
-    bandwidths: LoopBandwidths
-    checks: tuple[Check, ...]
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grid:
     """Equilibria and linear models of an aircraft over airspeed and bank, from which designs start.
@@ -72,7 +50,7 @@ class Grid:
     envelope: Envelope
     altitude: float
     trims: tuple[tuple[Trim, ...], ...]
-    models: tuple[tuple[control.StateSpace, ...], ...]
+    models: tuple[tuple[LinearModel, ...], ...]
 
 
 def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
 from common.interrupt import follow_parent
-from innerloop.analysis.perturbations import NOMINAL
+from innerloop.analysis.checks import NOMINAL
 from innerloop.designs.cache import designed
 
 

@@ -9,8 +9,7 @@ from pathlib import Path
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.spec import AircraftSpec
-from innerloop.designs.cache import Designed
-from innerloop.designs.record import Record
+from innerloop.designs.designed import Designed, Record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.reversal_search import ReversalSearch, search_reversals
 from innerloop.flight.turn_reversal import TurnReversalResponse

@@ -5,7 +5,7 @@ from typing import Any
 
 from common.provenance import provenance
 from common.run_layout import FORMAT
-from innerloop.designs.record import Record
+from innerloop.designs.designed import Record
 
 
 def design_manifest(record: Record, *, wall_time: float, command: str = "") -> dict[str, Any]:

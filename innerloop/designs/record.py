@@ -12,11 +12,10 @@ from aircraft.dynamics.trim import search_trim
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.spec import Envelope
 from common.units import STANDARD_GRAVITY
+from innerloop.analysis.checks import NOMINAL, REQUIRED, Check, Margin
 from innerloop.analysis.linear_model_check import verify_model
-from innerloop.analysis.margins import BREAK_NAMES, Loops, Margin
-from innerloop.analysis.perturbations import NOMINAL
-from innerloop.analysis.robustness import REQUIRED, Check
-from innerloop.designs.designer import Design
+from innerloop.analysis.margins import BREAK_NAMES, Loops
+from innerloop.designs.designed import Design, Record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.reversal_search import reversals_of_a_design, search_reversals
 from innerloop.flight.step_responses import Response, flown_step, measure_lag, model_step, predicted_step
@@ -36,9 +35,6 @@ _FREQUENCIES = np.logspace(-2.5, 2.2, 220)
 
 _CLIMB_ANGLES_DEG = (-3.0, -1.5, 1.5, 3.0)
 """Climbs and descents of the recorded equilibria [deg]."""
-
-
-Record = dict[str, Any]
 
 
 def design_record(design: Design, root: Path) -> Record:

@@ -14,15 +14,12 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
-import control
 import numpy as np
 import numpy.typing as npt
 
 Kind = TypeVar("Kind")
 
-_MATRICES = ("A", "B", "C", "D")
 _AS_THEY_ARE = (float, str, bool, int)
-_LABELS = {"states": "state_labels", "inputs": "input_labels", "outputs": "output_labels"}
 
 
 def as_text(value: object) -> str:
@@ -48,9 +45,6 @@ def _plain(value: Any) -> Any:
     """Return what JSON has no notation for as what it has one for."""
     if dataclasses.is_dataclass(value):
         return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
-    if isinstance(value, control.StateSpace):
-        matrices = {name: np.asarray(getattr(value, name)) for name in _MATRICES}
-        return matrices | {name: list(getattr(value, attribute)) for name, attribute in _LABELS.items()}
     if isinstance(value, np.ndarray):
         # Products of matrices are rounded by the order in which their numbers lie in memory.
         order: Literal["C", "F"] = "F" if value.flags.f_contiguous and not value.flags.c_contiguous else "C"
@@ -72,9 +66,6 @@ def _restored(found: Any, kind: Any) -> Any:
     arguments = typing.get_args(kind)
     if arguments:
         return _of_parts(found, typing.get_origin(kind), arguments)
-    if kind is control.StateSpace:
-        labels = {name: [str(label) for label in found[name]] for name in _LABELS}
-        return control.ss(*(_array(found[name]) for name in _MATRICES), **labels)
     if isinstance(kind, type) and dataclasses.is_dataclass(kind):
         hints = _hints(kind)
         return kind(**{key: _restored(item, hints[key]) for key, item in found.items()})

@@ -8,11 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.dynamics.equilibrium import Trim
-from aircraft.dynamics.trim import trim
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import AircraftSpec
 from common.units import METRES_PER_FOOT, STANDARD_GRAVITY
-from innerloop.analysis.margins import closed_loop
+from innerloop.analysis.closed_loop import closed_loop
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE
 from innerloop.law.control_law import COMMANDS, ControlLaw
@@ -127,17 +125,6 @@ def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> floa
     phasor = np.sum(flown[last] * np.exp(-1j * frequency * time[last]))
     commanded = np.sum(np.sin(frequency * time[last]) * np.exp(-1j * frequency * time[last]))
     return float(-np.angle(phasor / commanded) / frequency)
-
-
-def level_trim(spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None) -> Trim:
-    """Return the straight and level equilibrium of the bare aircraft at ``airspeed`` [m/s] and ``altitude`` [m].
-
-    Parameters
-    ----------
-    spec, airspeed, altitude : the aircraft and its flight condition
-    start : an equilibrium nearby
-    """
-    return trim(Fdm(spec), airspeed=airspeed, altitude=altitude, start=start)
 
 
 def _record(fdm: Fdm, duration: float) -> tuple[Array, Array]:

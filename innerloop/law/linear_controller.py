@@ -2,17 +2,17 @@
 
 from collections.abc import Mapping
 
-import control
 import numpy as np
 
 from aircraft.dynamics.equilibrium import Trim
+from aircraft.dynamics.linear_model import LinearModel
 from innerloop.law.control_law import COMMANDS, STATES, ControlLaw, measurements
 
 _STEP = 1e-4
 """Step of differences [SI]: the law has products and piecewise linear tables, so only rounding limits it."""
 
 
-def linear_controller(law: ControlLaw, trim: Trim) -> control.StateSpace:
+def linear_controller(law: ControlLaw, trim: Trim) -> LinearModel:
     """Return the autopilot, linear about an equilibrium of the aircraft.
 
     Inputs are ``COMMANDS`` and the measurements, outputs are the control inputs, all as deviations from trim. States
@@ -20,8 +20,8 @@ def linear_controller(law: ControlLaw, trim: Trim) -> control.StateSpace:
     """
     point = operating_point(law, trim)
     measured_names = measurements(law.schedule)
-    inputs = [*COMMANDS, *measured_names]
-    controls = list(law.schedule.controls)
+    inputs = (*COMMANDS, *measured_names)
+    controls = law.schedule.controls
 
     def column(name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
         sides = []
@@ -35,15 +35,14 @@ def linear_controller(law: ControlLaw, trim: Trim) -> control.StateSpace:
     by_input = np.column_stack([column(name) for name in inputs])
     n = len(STATES)
     kept = [i for i, name in enumerate(STATES) if name != "rudder_integral" or "rudder" in controls]
-    return control.ss(
-        by_state[:n][np.ix_(kept, kept)],
-        by_input[:n][kept],
-        by_state[n:][:, kept],
-        by_input[n:],
-        states=[STATES[i] for i in kept],
-        inputs=inputs,
-        outputs=controls,
-        name="autopilot",
+    return LinearModel(
+        A=by_state[:n][np.ix_(kept, kept)],
+        B=by_input[:n][kept],
+        C=by_state[n:][:, kept],
+        D=by_input[n:],
+        state_labels=tuple(STATES[i] for i in kept),
+        input_labels=inputs,
+        output_labels=controls,
     )
 
 

@@ -4,12 +4,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import control
 import numpy as np
 import numpy.typing as npt
 
 from aircraft.dynamics.envelope import TABLE_REACH
 from aircraft.dynamics.equilibrium import Trim
+from aircraft.dynamics.linear_model import LinearModel
 from aircraft.spec import AircraftSpec, Envelope
 from common.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import Gains
@@ -51,7 +51,7 @@ class Schedule:
     altitude: float
     airspeeds: tuple[float, ...]
     trims: tuple[tuple[Trim, ...], ...]
-    models: tuple[tuple[control.StateSpace, ...], ...]
+    models: tuple[tuple[LinearModel, ...], ...]
     gains: tuple[tuple[Gains, ...], ...]
     period: int
 

@@ -10,8 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import control
-
+from aircraft.dynamics.linear_model import LinearModel
 from common.units import STANDARD_GRAVITY
 from innerloop.synthesis.quasi_static import quasi_static, state_lag
 from innerloop.synthesis.rate import PERIODS, loop_delay
@@ -149,7 +148,7 @@ class ControlWeights:
     rudder: float
 
 
-def reachable_bandwidths(models: Sequence[control.StateSpace], bank: float) -> LoopBandwidths:
+def reachable_bandwidths(models: Sequence[LinearModel], bank: float) -> LoopBandwidths:
     """Return the bandwidths that every level linear model of an aircraft can follow, in turns up to ``bank`` [rad]."""
     each = [_reachable(model, bank) for model in models]
     longitudinal = min(bandwidths.longitudinal for bandwidths in each)
@@ -161,7 +160,7 @@ def reachable_bandwidths(models: Sequence[control.StateSpace], bank: float) -> L
     )
 
 
-def _reachable(model: control.StateSpace, bank: float) -> LoopBandwidths:
+def _reachable(model: LinearModel, bank: float) -> LoopBandwidths:
     plant = quasi_static(model)
 
     def a(row: str, column: str) -> float:
@@ -215,7 +214,7 @@ def design_weights(bandwidths: LoopBandwidths, airspeed: float) -> DesignWeights
     )
 
 
-def control_weights(model: control.StateSpace, bandwidths: LoopBandwidths, weights: DesignWeights) -> ControlWeights:
+def control_weights(model: LinearModel, bandwidths: LoopBandwidths, weights: DesignWeights) -> ControlWeights:
     """Return the controls at one airspeed that move their axis at its frequency, against its own damping."""
     plant = quasi_static(model)
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import find_peaks
 
 from measurement.estimate.record import Record
 from measurement.gases import GASES
@@ -79,6 +78,8 @@ def co2_background(time: Array, values: Array, noise: float) -> Array:
 
 def find_passes(record: Record, channel: Channel) -> tuple[Pass, ...]:
     """Return the passes of a record, given its CO2 channel."""
+    from scipy.signal import find_peaks
+
     noise = channel.noise
     passes: list[Pass] = []
     for time, values in zip(record.times, record.values, strict=True):

@@ -4,7 +4,6 @@ import functools
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import qmc
 
 _BLOCK = 256
 """Points that are made together: a Sobol sequence is balanced over powers of two."""
@@ -34,6 +33,8 @@ class Points:
         return tuple(self._block(block)[i])
 
     def _made(self, block: int) -> Sequence[Sequence[float]]:
+        from scipy.stats import qmc
+
         if self._sampling == "latin_hypercube":
             design: np.ndarray = qmc.LatinHypercube(self._dimension, rng=self._seed).random(self._flights)
         else:

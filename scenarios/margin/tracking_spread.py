@@ -25,10 +25,8 @@ from common.units import SECONDS_PER_HOUR
 from gnc.airspeed.pace_hold import SpeedHold
 from gnc.reference.reference import Orbit
 from gnc.tracker import TrackingParameters
-from innerloop.analysis.dryden import GustStatistics, dryden_filters
+from innerloop.analysis.gust_statistics import GustStatistics
 from innerloop.synthesis.schedule import Schedule
-from scenarios.margin.gusts_on_orbit import gusts_on_orbit
-from scenarios.margin.tracking_response import RESPONSES, tracking_response
 
 TOUCHES_PER_HOUR = 1e-3
 """Hundred flights of five minutes are 8.3 hours: one chance in a hundred and twenty that any of them touches the area [1/h]."""
@@ -101,6 +99,11 @@ def tracking_spread(
     turbulence, span : the air, and the wing that averages its rotation [m]
     oscillation, guidance, hold : the reference, and how it is tracked
     """
+    # They need python-control, which a flight in calm air does without.
+    from innerloop.analysis.dryden import dryden_filters
+    from scenarios.margin.gusts_on_orbit import gusts_on_orbit
+    from scenarios.margin.tracking_response import RESPONSES, tracking_response
+
     speed = oscillation.speed
     index = int(np.argmin(np.abs(np.array(schedule.airspeeds) - speed)))
     gusts = gusts_on_orbit(dryden_filters(turbulence, airspeed=speed, span=span), oscillation, FREQUENCIES)

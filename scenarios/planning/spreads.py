@@ -7,8 +7,8 @@ from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec
 from common.units import METRES_PER_FOOT
-from innerloop.analysis.dryden import low_altitude_turbulence
-from innerloop.designs.cache import Designed
+from innerloop.analysis.gust_statistics import low_altitude_turbulence
+from innerloop.designs.designed import Designed
 from scenarios.errors import InputError
 from scenarios.margin.tracking_spread import SpreadTable, tracking_spread
 from scenarios.planning.guidance import speed_hold, tracking_parameters

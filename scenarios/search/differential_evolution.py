@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from scipy.stats import qmc
 
 from scenarios.search.found import Found
 from scenarios.search.method import SearchSettings, search_method
@@ -30,6 +29,8 @@ class DifferentialEvolution:
 
     def _first(self) -> Array:
         """Return a Sobol sequence, in which random points replace those beyond the declared ranges."""
+        from scipy.stats import qmc
+
         population = self._settings.population
         sequence = qmc.Sobol(self._space.dimension, scramble=True, rng=self._generator)
         first: Array = sequence.random(1 << math.ceil(math.log2(population)))[:population]

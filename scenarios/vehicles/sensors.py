@@ -1,9 +1,9 @@
 """What the sensors of the UAV measure: the truth, with errors that are sampled for a whole flight at once."""
 
 import math
+from itertools import accumulate
 
 import numpy as np
-from scipy.signal import lfilter
 
 from scenarios.schema.sections.equipment import SensorsConfig
 
@@ -34,10 +34,15 @@ class SensorErrors:
         heading_bias = math.radians(float(generator.uniform(-1.0, 1.0)) * sensors.heading_bias_deg)
         white = generator.standard_normal((6, steps))
         kept = math.exp(-time_step / NAVIGATION_TIME)
-        before = generator.standard_normal((2, 1))
-        wander, _ = lfilter([math.sqrt(1.0 - kept**2)], [1.0, -kept], white[:2], axis=-1, zi=kept * before)
+        before = generator.standard_normal(2)
+        kicks = math.sqrt(1.0 - kept**2) * white[:2]
+        # scipy.signal, which has such filters, takes longer to import than a flight needs.
+        wander = [
+            [*accumulate(row.tolist(), lambda error, kick: kept * error + kick, initial=first)][1:]
+            for row, first in zip(kicks, before.tolist(), strict=True)
+        ]
         errors = [
-            sensors.position_sigma_m * wander.T,
+            sensors.position_sigma_m * np.array(wander).T,
             sensors.velocity_sigma_mps * white[2:4].T,
             self.airspeed_bias + sensors.airspeed_sigma_mps * white[4],
             heading_bias + math.radians(sensors.heading_sigma_deg) * white[5],

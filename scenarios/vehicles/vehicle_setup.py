@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 
 from aircraft.dynamics.equilibrium import Trim
+from aircraft.dynamics.trim import level_trim
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
 from aircraft.simulation.user_check import check_user_aircraft
 from aircraft.spec import AircraftSpec, Envelope
 from common.files import write_tree
-from innerloop.designs.cache import Designed, designed
-from innerloop.designs.record import reversal_record
+from innerloop.designs.cache import designed
+from innerloop.designs.designed import Designed
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.step_responses import level_trim
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.root import write_root
 from innerloop.synthesis.schedule import Schedule
@@ -150,6 +150,8 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
     reversal = found.record["turn_reversal"]
     slower_or_faster = abs(start.airspeed / reversal["airspeed_mps"] - 1.0)
     if bank > schedule.envelope.bank + _SAME_BANK or slower_or_faster > _SAME_AIRSPEED:
+        from innerloop.designs.record import reversal_record  # needs python-control
+
         aircraft = AutopilotedAircraft(schedule.spec, run.model)
         reversal = reversal_record(aircraft, start, max(bank, schedule.envelope.bank))
     return VehicleSetup(

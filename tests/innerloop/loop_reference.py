@@ -15,11 +15,15 @@ def delays(names, delay):
     return [control.ss(rational, inputs=[f"{n}_asked"], outputs=[n], name=f"{n}_delay") for n in names]
 
 
+def named(model, name):
+    """A linear model as python-control connects it."""
+    return control.ss(model.A, model.B, model.C, model.D, inputs=model.input_labels, outputs=model.output_labels, name=name)
+
+
 def opened(aircraft, autopilot, delay, name):
     """The loop opened at a control or a measurement, closed elsewhere, for negative feedback."""
     controls = list(autopilot.output_labels)
-    plant = control.ss(aircraft, inputs=aircraft.input_labels, outputs=aircraft.output_labels, name="aircraft")
-    law = control.ss(autopilot, inputs=autopilot.input_labels, outputs=autopilot.output_labels, name="law")
+    plant, law = named(aircraft, "aircraft"), named(autopilot, "law")
     wires = [[f"law.{m}", f"aircraft.{m}"] for m in autopilot.input_labels if m not in COMMANDS and m != name]
     for c in controls:
         wires.append([f"aircraft.{c}", f"{c}_delay.{c}"])

@@ -61,6 +61,9 @@ def assert_refused(result, *words):
 
 
 HEAVY = {"scipy", "pandas", "control", "matplotlib", "typst"}
+DESIGNING = {"control", "slycot", "matplotlib", "scipy.signal", "plotly", "jinja2", "typst"}
+"""What designs an autopilot, evaluates readings and writes reports."""
+FLIGHT = "from scenarios import fly; fly('sweep_nu', nu=0.5, fidelity='{}', **{{'flight.crossings': 2}})"
 
 
 @pytest.mark.parametrize(
@@ -68,10 +71,14 @@ HEAVY = {"scipy", "pandas", "control", "matplotlib", "typst"}
     [
         ("import scenarios.run, innerloop.design, reports.build", HEAVY | {"numpy", "jsbsim", "plotly", "pydantic"}),
         ("from scenarios.console.describe import described; described('payload.sensor')", HEAVY),
+        (FLIGHT.format("kinematic"), DESIGNING),
+        (FLIGHT.format("six_dof"), DESIGNING),
     ],
-    ids=["help", "what is said of a key"],
+    ids=["help", "what is said of a key", "a kinematic flight", "a flight whose autopilot is in the cache"],
 )
-def test_a_quick_answer_needs_no_heavy_import(code, heavy):
+def test_what_is_not_needed_is_not_imported(code, heavy, request):
+    if "six_dof" in code:
+        request.getfixturevalue("designs")("x8")
     code += f"; import sys; sys.exit(', '.join(sorted({heavy!r} & set(sys.modules))) or 0)"
     found = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
     assert found.stderr == ""

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from measurement.estimate.fit.background import without
 from measurement.estimate.fit.regression import noise_covariance
@@ -64,7 +64,7 @@ def grouped(signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: f
     if covariance.any():
         inverse = np.linalg.inv(covariance + response**2 * np.eye(len(found)))
         mean = float(inverse.sum(axis=0) @ found / inverse.sum())
-        agreement = float(chi2.sf(float((found - mean) @ inverse @ (found - mean)), len(found) - 1))
+        agreement = float(chdtrc(len(found) - 1, max(0.0, float((found - mean) @ inverse @ (found - mean)))))
     return Groups(
         slopes=tuple(float(v) for v in found),
         deviations=tuple(float(v) for v in np.sqrt(np.diagonal(covariance))),

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize
-from scipy.stats import qmc
 
 from scenarios.engine.task import Row
 from scenarios.experiment.requests import Experiment
@@ -117,6 +116,8 @@ def _search(cost: Callable[[Point], float], dimension: int, budget: int, seed: i
     costs = [cost(points[0])]
     if budget == 1 or not dimension:
         return
+    from scipy.stats import qmc
+
     spread = qmc.Halton(dimension, seed=seed).random(max(0, budget // 2 - 1))
     for point in spread:
         points.append(point)

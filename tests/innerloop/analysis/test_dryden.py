@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from common.units import METRES_PER_FOOT
-from innerloop.analysis.dryden import dryden_filters, low_altitude_turbulence
+from innerloop.analysis.dryden import dryden_filters
 from innerloop.analysis.gust_response import GUSTS
+from innerloop.analysis.gust_statistics import low_altitude_turbulence
 
 AIRSPEED, SPAN = 19.42, 2.1
 LIGHT = low_altitude_turbulence(60.0, 7.717)  # 15 knots at 20 ft

@@ -2,13 +2,15 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 import control
 import numpy as np
 import pytest
 from loop_reference import closed_poles, opened
 
-from innerloop.analysis.margins import FREQUENCIES, Loops, closed_loop, loop_margins
+from innerloop.analysis.closed_loop import closed_loop
+from innerloop.analysis.margins import FREQUENCIES, Loops, loop_margins
 from innerloop.law.control_law import COMMANDS, ControlLaw
 from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.rate import loop_delay
@@ -208,9 +210,7 @@ def test_a_loop_without_any_crossing_has_no_margin_to_lose():
 
 def test_feedback_of_the_wrong_sign_is_unstable(systems):
     aircraft, autopilot, late = systems["middle"]
-    wrong = control.ss(
-        autopilot.A, -autopilot.B, autopilot.C, -autopilot.D, inputs=autopilot.input_labels, outputs=autopilot.output_labels
-    )
+    wrong = replace(autopilot, B=-autopilot.B, D=-autopilot.D)
     assert not Loops(aircraft, wrong, late).stable
 
 

@@ -12,8 +12,8 @@ from aircraft.dynamics.trim import trim
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import MODELS
+from innerloop.analysis.checks import REQUIRED
 from innerloop.analysis.margins import Loops
-from innerloop.analysis.robustness import REQUIRED
 from innerloop.law.control_law import ControlLaw
 from innerloop.law.linear_controller import linear_controller
 

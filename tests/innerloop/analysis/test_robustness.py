@@ -14,11 +14,13 @@ from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import MODELS
 from innerloop.analysis import robustness
-from innerloop.analysis.margins import Loops, Margin
-from innerloop.analysis.perturbations import CASES, NOMINAL, gravity_and_turning
-from innerloop.analysis.robustness import Check, check_design, closed_loops, operating_points
+from innerloop.analysis.checks import NOMINAL, Check, Margin
+from innerloop.analysis.margins import Loops
+from innerloop.analysis.perturbations import CASES, gravity_and_turning
+from innerloop.analysis.robustness import check_design, closed_loops, operating_points
 from innerloop.designs import designer
-from innerloop.designs.designer import DesignError, design_autopilot, phase_loss
+from innerloop.designs.designed import DesignError
+from innerloop.designs.designer import design_autopilot, phase_loss
 from innerloop.law.control_law import ControlLaw
 from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.quasi_static import quasi_static

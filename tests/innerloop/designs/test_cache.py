@@ -18,9 +18,9 @@ from aircraft.errors import AircraftError
 from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.x8 import X8
 from aircraft.spec import MODELS
-from innerloop.designs import cache
+from innerloop.designs import cache, designer
 from innerloop.designs.cache import design_key, designed
-from innerloop.designs.designer import DesignError
+from innerloop.designs.designed import DesignError
 
 
 @pytest.fixture
@@ -239,7 +239,7 @@ def test_that_an_aircraft_has_no_design_is_remembered_with_its_reason(monkeypatc
         attempts.append(spec.name)
         raise kind("aircraft 'x8' flies no more: 5 dB of 6 dB")
 
-    monkeypatch.setattr(cache, "design_autopilot", refuse)
+    monkeypatch.setattr(designer, "design_autopilot", refuse)
     for _ in range(2):
         with pytest.raises(AircraftError, match="5 dB of 6 dB") as caught:
             designed(X8)

@@ -11,6 +11,7 @@ from dataclasses import replace
 import control
 import numpy as np
 import pytest
+from loop_reference import named
 
 from aircraft.dynamics.trim_search import pitch_for_climb
 from aircraft.fleet.x8 import X8
@@ -250,7 +251,8 @@ def test_a_heading_rate_command_moves_the_aileron_as_the_linear_description_says
     inputs[system.input_labels.index("heading_rate_command")] = size
     inputs[system.input_labels.index("heading_rate")] = measured  # a held aircraft does not turn, but its ailerons push sideways
     time = TIME_STEP * np.arange(1, steps + 1)
-    expected = control.forced_response(system, time - TIME_STEP, inputs).outputs[system.output_labels.index("aileron")]
+    answer = control.forced_response(named(system, "autopilot"), time - TIME_STEP, inputs)
+    expected = answer.outputs[system.output_labels.index("aileron")]
     # At the steps at which the autopilot computes. Between them it holds, and before the first it knows nothing of the command.
     computed = slice(x8_schedule.period - 1, None, x8_schedule.period)
     flown, expected, time = flown[computed], np.asarray(expected)[computed], time[computed]
@@ -275,4 +277,4 @@ def test_the_linear_description_is_named(designs, name, states):
     assert set(LONGITUDINAL) < set(measured)
     # Sideslip is measured where a rudder answers it, and only there its integral is a state.
     assert set(LATERAL) - set(measured) == (set() if name == "aerosonde" else {"beta"})
-    assert system.nstates == states
+    assert len(system.state_labels) == states

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import solve_continuous_are
 
 from innerloop.synthesis.gains import LATERAL, LONGITUDINAL
-from innerloop.synthesis.quasi_static import pick, quasi_static
+from innerloop.synthesis.quasi_static import quasi_static
 from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL_GAINS
 from innerloop.synthesis.weights import control_weights
 
@@ -138,7 +138,7 @@ def test_the_rudder_turns_the_nose_into_the_wind_and_damps_yaw(designs, name, i)
 def test_rolling_under_the_feedforward_the_nose_goes_round_with_the_turn(designs, name, i):
     schedule = designs(name).design.schedule
     gains, level = schedule.gains[i][LEVEL_GAINS], schedule.level(i)
-    a, b, _, _ = pick(quasi_static(schedule.models[i][LEVEL_GAINS]), ("p", "r"), ("aileron", "rudder"), ("p",))
+    a, b, _, _ = quasi_static(schedule.models[i][LEVEL_GAINS]).pick(("p", "r"), ("aileron", "rudder"), ("p",))
     rate, acceleration = 0.2, 0.5
     controls = gains.roll_rate_feedforward * rate + gains.roll_acceleration_feedforward * acceleration
     # Asked for: p_dot = acceleration; and r grows as the turn does in a roll about the velocity, omega = g tan(bank)/V, of which r

@@ -1,16 +1,16 @@
 """What the design asks for: by hand for a simple aircraft, and without a length or a time of its own."""
 
-import dataclasses
 import math
+from dataclasses import astuple, fields, replace
 
-import control
 import numpy as np
 import pytest
 
+from aircraft.dynamics.linear_model import LinearModel
 from common.units import STANDARD_GRAVITY
 from innerloop.synthesis import weights
-from innerloop.synthesis.gains import design_gains
 from innerloop.synthesis.schedule import LEVEL_GAINS
+from innerloop.synthesis.servo_lqr import design_gains
 from innerloop.synthesis.weights import LoopBandwidths, control_weights, design_weights, reachable_bandwidths
 
 STATES = ["airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude", "elevator_effect", "throttle_effect"]
@@ -43,7 +43,7 @@ def simple(aileron=30.0, roll_damping=-4.0, elevator=-20.0, z_alpha=-3.0, rudder
     }
     for (row, column), value in forcing.items():
         b[STATES.index(row), INPUTS.index(column)] = value
-    return control.ss(a, b, np.eye(11), np.zeros((11, 4)), states=STATES, inputs=INPUTS, outputs=STATES)
+    return LinearModel(A=a, B=b, C=np.eye(11), D=np.zeros((11, 4)), state_labels=STATES, input_labels=INPUTS, output_labels=STATES)
 
 
 BANK = 0.6  # rad; half of it is the step that half the authority is to turn
@@ -132,7 +132,7 @@ def test_with_half_the_speed_everything_takes_twice_as_long():
         "roll_rate": -1, "sideslip": 0, "heading_integral": 1, "sideslip_integral": 1, "model_frequency": -1, "model_damping": 0,
         "altitude_error_max": 1, "airspeed_error_max": 1, "anti_windup_rate": -1,
     }  # fmt: skip
-    ratios = {field.name: getattr(slow, field.name) / getattr(quick, field.name) for field in dataclasses.fields(quick)}
+    ratios = {field.name: getattr(slow, field.name) / getattr(quick, field.name) for field in fields(quick)}
     assert ratios == pytest.approx({name: 2.0**exponent for name, exponent in exponents.items()})
 
 
@@ -153,14 +153,12 @@ def similar(model):
     """The linear model of the aircraft four times as long."""
     state = np.array([SCALES.get(name, 1.0) for name in model.state_labels])
     output = np.array([SCALES.get(name, 1.0) for name in model.output_labels])
-    return control.ss(
-        0.5 * state[:, None] * model.A / state,
-        0.5 * state[:, None] * model.B,
-        output[:, None] * model.C / state,
-        output[:, None] * model.D,
-        states=model.state_labels,
-        inputs=model.input_labels,
-        outputs=model.output_labels,
+    return replace(
+        model,
+        A=0.5 * state[:, None] * model.A / state,
+        B=0.5 * state[:, None] * model.B,
+        C=output[:, None] * model.C / state,
+        D=output[:, None] * model.D,
     )
 
 
@@ -179,9 +177,9 @@ def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, 
     bandwidths, gains = designed(models, airspeed, level)
     # The autopilot's steps are the only time that is not the aircraft's own.
     monkeypatch.setattr(weights, "loop_delay", lambda _: 2.0 * DELAY)
-    larger = dataclasses.replace(level, airspeed=2.0 * level.airspeed)
+    larger = replace(level, airspeed=2.0 * level.airspeed)
     slower, scaled = designed([similar(model) for model in models], 2.0 * airspeed, larger)
-    assert dataclasses.astuple(slower) == pytest.approx([0.5 * s for s in dataclasses.astuple(bandwidths)])
+    assert astuple(slower) == pytest.approx([0.5 * s for s in astuple(bandwidths)])
     # The same deflection for a deviation that is as large for the larger aircraft: gains are over the deviation's scale.
     units = np.array([SCALES[n] if n != "pitch" else 1.0 for n in ("airspeed", "climb_rate", "q", "pitch", "altitude")])
     np.testing.assert_allclose(scaled.longitudinal * units, gains.longitudinal, rtol=1e-5, atol=1e-9)

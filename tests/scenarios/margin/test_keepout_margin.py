@@ -11,8 +11,9 @@ from common.units import METRES_PER_FOOT
 from gnc.airspeed.pace_hold import SpeedHold, air_turn, airspeed_to_hold, design_speed_hold
 from gnc.reference.oscillation import Oscillation
 from gnc.tracker import Tracker
-from innerloop.analysis.dryden import dryden_filters, low_altitude_turbulence
+from innerloop.analysis.dryden import dryden_filters
 from innerloop.analysis.gust_response import GUSTS
+from innerloop.analysis.gust_statistics import low_altitude_turbulence
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.synthesis.schedule import LEVEL_GAINS
 from scenarios.margin.gusts_on_orbit import gusts_on_orbit

@@ -11,7 +11,7 @@ from aircraft.errors import AircraftError
 from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import find_spec
 from innerloop.designs.cache import cache_directory
-from innerloop.designs.designer import DesignError
+from innerloop.designs.designed import DesignError
 from reports.build import build_reports
 from scenarios.errors import InputError
 from scenarios.run import command

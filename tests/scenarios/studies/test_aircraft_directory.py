@@ -59,7 +59,7 @@ def test_a_sweep_with_it_meets_every_criterion_and_names_it_in_report_and_manife
 def test_it_is_resumed_and_replayed_as_it_was_and_where_it_is_now_but_not_changed(flown, heavy, tmp_path, monkeypatch):
     out, _ = flown
     # Nothing is designed for what is refused; the design of what is flown is cached.
-    monkeypatch.setattr("innerloop.designs.cache.design_autopilot", lambda spec, _: pytest.fail(f"{spec.title} is designed for"))
+    monkeypatch.setattr("innerloop.designs.designer.design_autopilot", lambda spec, _: pytest.fail(f"{spec.title} is designed for"))
     same = ("scenarios.run", "sweep_nu", "--aircraft-dir", heavy.parent, *SWEEP, "--out", out, "--resume", "--no-report")
     assert run_command(*same).status == 0
     flight = out / "flights" / "nu_0.30"
