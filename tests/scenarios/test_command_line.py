@@ -18,21 +18,9 @@ ROOT = Path(__file__).parents[2]
 SHORT = ["--set", "flight.crossings=2", "--set", "comparison.variants=[]", "--no-report"]
 
 
-def run(*arguments, module="scenarios.run", cwd=ROOT):
-    return subprocess.run(
-        [sys.executable, "-m", module, *map(str, arguments)],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )
-
-
 @pytest.fixture
 def run_here(monkeypatch, capsys):
-    """Return ``run`` without a process: parsing, messages and exit status are the same."""
+    """Return a function that runs a command without a process: parsing, messages and exit status are the same."""
 
     def run_here(*arguments):
         monkeypatch.setattr(sys, "argv", ["scenarios.run", *map(str, arguments)])
@@ -86,8 +74,9 @@ def test_what_is_not_needed_is_not_imported(code, heavy, request):
 
 
 def test_help_and_list_answer():
-    assert "--resume" in run("--help").stdout
-    assert "sweep_nu" in run("--list").stdout
+    command = [sys.executable, "-m", "scenarios.run", "--help"]
+    assert "--resume" in subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True, timeout=120).stdout
+    assert "sweep_nu" in in_process.run_command("scenarios.run", "--list").out
 
 
 @pytest.mark.parametrize(
@@ -123,7 +112,7 @@ def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path, run
 
 def test_a_directory_that_holds_another_run_is_left_alone(tmp_path, run_here):
     (tmp_path / "manifest.json").write_text('{"config_hash": "other", "fingerprint": {}}', encoding="utf-8")
-    assert_refused(run("sweep_nu", "--out", tmp_path, *SHORT), "holds another run", "--resume")
+    assert_refused(run_here("sweep_nu", "--out", tmp_path, *SHORT), "holds another run", "--resume")
     assert_refused(run_here("sweep_nu", "--out", tmp_path, "--resume", *SHORT), "another configuration")
     assert [path.name for path in tmp_path.iterdir()] == ["manifest.json"]
 

@@ -1,17 +1,13 @@
 """What is recorded of a design, and the command that makes one."""
 
 import json
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
 from innerloop.analysis.margins import Loops
 from innerloop.law.control_law import ControlLaw
 from innerloop.law.linear_controller import linear_controller
-
-PROJECT = Path(__file__).parents[3]
+from tests.in_process import run_command
 
 
 @pytest.fixture(scope="module")
@@ -76,10 +72,7 @@ def test_poles_are_recorded_in_conjugate_pairs_and_stable_when_closed(record):
 
 
 def test_designing_for_an_unknown_aircraft_ends_in_one_line_and_status_2():
-    done = subprocess.run(
-        [sys.executable, "-m", "innerloop.design", "x9"], cwd=PROJECT, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 2
-    assert done.stdout == ""
-    assert done.stderr.startswith("error: unknown aircraft 'x9'; ")
-    assert done.stderr.count("\n") == 1
+    done = run_command("innerloop.design", "x9")
+    assert (done.status, done.out) == (2, "")
+    assert done.errors.startswith("error: unknown aircraft 'x9'; ")
+    assert done.errors.count("\n") == 1
