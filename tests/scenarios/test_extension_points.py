@@ -39,8 +39,9 @@ def refusal(path, out, *overrides, resume=False):
 @pytest.fixture
 def asked(monkeypatch, tmp_path, designs):
     """The names of aircraft that an autopilot was asked for: each has the X8's, as a design of its own takes seconds."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    # Before the cache is another one, in which there is none.
     made, names = designs("x8"), []
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
     def design(spec, altitude):
         names.append(spec.name)
