@@ -14,7 +14,9 @@ import argparse
 import itertools
 import json
 import math
+from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +26,9 @@ from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.planning.limits import omega_max
 from scenarios.planning.theory.speed_ratio import CROSSING_LIMITS
 from scenarios.schema.sections.guidance import GuidanceConfig
+
+if TYPE_CHECKING:
+    import casadi as ca
 
 RATIOS = tuple(round(0.05 * i, 2) for i in range(20))
 """Speed ratios of the limit line [-]."""
@@ -72,7 +77,7 @@ def _solved(nu: float, turns: int, *, bank: float, roll_rate: float, start: floa
     problem = ca.Opti()
     states, rolls, period = problem.variable(4, PIECES + 1), problem.variable(1, PIECES), problem.variable()
 
-    def rates(state, roll):
+    def rates(state: "ca.MX", roll: "ca.MX") -> "ca.MX":
         return ca.vertcat(ca.cos(state[2]) - nu, ca.sin(state[2]), ca.tan(state[3]) / math.tan(bank), roll)
 
     step = period / PIECES
@@ -113,8 +118,6 @@ def _guess(nu: float, turns: int, start: float) -> tuple[np.ndarray, float]:
 
 def limits(guidance: GuidanceConfig) -> dict[str, object]:
     """Return the limits of an aircraft's bank and roll rate over the speed ratio, as they are written."""
-    import casadi
-
     rate = omega_max(guidance)
     bank = math.radians(guidance.bank_deg)
     ratio = math.radians(guidance.roll_rate_max_deg_s) / rate
@@ -124,7 +127,7 @@ def limits(guidance: GuidanceConfig) -> dict[str, object]:
         found[name].append(round(0.5 * shortest_period(nu, turns, bank=bank, roll_rate=ratio), 5) if solved else None)
     return {
         "what": "shortest crossing interval times omega_max, two crossings a period, by speed ratio; null where not solved for",
-        "source": f"python -m benchmarks.crossing_limit --write; CasADi {casadi.__version__} with IPOPT, {PIECES} pieces a period",
+        "source": f"python -m benchmarks.crossing_limit --write; CasADi {version('casadi')} with IPOPT, {PIECES} pieces a period",
         "bank_deg": guidance.bank_deg,
         "roll_rate_over_omega_max": round(ratio, 6),
         "nu": list(RATIOS),
@@ -148,7 +151,7 @@ def designed(guidance: GuidanceConfig, shape: str, nu: float, *, reserve: float 
     return orbit.crossing_interval
 
 
-def _figure(guidance: GuidanceConfig, found: dict[str, object], path: Path) -> None:
+def _figure(guidance: GuidanceConfig, found: dict[str, Any], path: Path) -> None:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9.0, 8.0), layout="constrained")

@@ -91,7 +91,7 @@ class Flight:
 
 def sensor_of(spec: SnifferSpec) -> GasSensor:
     """Return the data sheet of a sniffer's CO2 channel."""
-    channel = spec.channel("co2")
+    channel = spec.known("co2")
     return GasSensor(
         interval=1.0 / spec.rate_hz,
         delay=channel.delay_s,
@@ -215,7 +215,7 @@ class _Simulation:
             seed=case.seed,
         )
         generator = np.random.default_rng([case.seed, 1])
-        only = replace(spec.drawn(generator), channels=(spec.drawn(generator).channel("co2"),))
+        only = replace(spec.drawn(generator), channels=(spec.drawn(generator).known("co2"),))
         self._sniffer = Sniffer(only, generator=generator, time_step=_STEP)
         self._case, self._orbit, self._samples = case, orbit, 0
         north, east = case.apparent
@@ -234,9 +234,9 @@ class _Simulation:
 
     def advance(self, altitudes: Array, offset: float, *, knowing: bool) -> tuple[Array, Array, Array, dict[int, float], Array]:
         """Return times, along and across as they are believed, readings by step, and the concentration over the centre's."""
-        steps = self._samples + np.arange(1, len(altitudes) + 1)
+        steps: Array = self._samples + np.arange(1.0, len(altitudes) + 1.0)
         self._samples += len(altitudes)
-        times = _STEP * steps
+        times: Array = _STEP * steps
         along, across = self._orbit.at(steps)
         across = across + offset
         axis = self.true_axis if knowing else self.axis
