@@ -51,7 +51,12 @@ def assert_refused(result, *words):
 HEAVY = {"scipy", "pandas", "control", "matplotlib", "typst"}
 DESIGNING = {"control", "slycot", "matplotlib", "scipy.signal", "plotly", "jinja2", "typst"}
 """What designs an autopilot, evaluates readings and writes reports."""
-FLIGHT = "from scenarios import fly; fly('sweep_nu', nu=0.5, fidelity='{}', **{{'flight.crossings': 2}})"
+FLIGHTS = """
+from scenarios import fly
+for fidelity in ("kinematic", "six_dof"):
+    fly("sweep_nu", nu=0.5, fidelity=fidelity, **{"flight.crossings": 2})
+"""
+"""Flights of both vehicles, the autopilot of one of them in the cache."""
 
 
 @pytest.mark.parametrize(
@@ -59,15 +64,13 @@ FLIGHT = "from scenarios import fly; fly('sweep_nu', nu=0.5, fidelity='{}', **{{
     [
         ("import scenarios.run, innerloop.design, reports.build", HEAVY | {"numpy", "jsbsim", "plotly", "pydantic"}),
         ("from scenarios.console.describe import described; described('payload.sensor')", HEAVY),
-        (FLIGHT.format("kinematic"), DESIGNING),
-        (FLIGHT.format("six_dof"), DESIGNING),
+        (FLIGHTS, DESIGNING),
     ],
-    ids=["help", "what is said of a key", "a kinematic flight", "a flight whose autopilot is in the cache"],
+    ids=["help", "what is said of a key", "flights"],
 )
-def test_what_is_not_needed_is_not_imported(code, heavy, request):
-    if "six_dof" in code:
-        request.getfixturevalue("designs")("x8")
-    code += f"; import sys; sys.exit(', '.join(sorted({heavy!r} & set(sys.modules))) or 0)"
+@pytest.mark.usefixtures("x8_design")
+def test_what_is_not_needed_is_not_imported(code, heavy):
+    code += f"\nimport sys; sys.exit(', '.join(sorted({heavy!r} & set(sys.modules))) or 0)"
     found = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
     assert found.stderr == ""
     assert found.returncode == 0
