@@ -59,7 +59,7 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Look for garbage again, but not among what was imported and collected: a tenth of the time of the tests, otherwise."""
+    """Look for garbage again, but not among what was imported and collected, which stays."""
     gc.freeze()
     gc.enable()
 
