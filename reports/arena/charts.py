@@ -24,8 +24,11 @@ _FAMILIES = (
 _WORD = (0.04, 0.03)
 """Width and height of a law's number, over those of a panel as wide as the page."""
 
-_MAPS = 9
-"""Tracks in a figure, in three columns: more would be small, and the figure higher than a page."""
+_LETTER, _OFF = 0.25, 0.35
+"""Width of a letter, and distance of a number from its mark, over the width of a law's number."""
+
+_MAPS = 6
+"""Tracks in a figure, in three columns: two such figures fill a page."""
 
 _SHOWN_S = 120.0
 """End of a flight that is drawn [s]."""
@@ -73,8 +76,14 @@ def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str, wor
     span = max(reach) - min(reach) or 0.1
     marks = {entrant.number: (efforts[entrant.name] / (1.16 * span), errors[entrant.name] / (high - low)) for entrant in entrants}
     for numbers, (x_mark, y_mark) in clusters(marks, word):
-        at = (1.16 * span * x_mark + 0.015 * span, (high - low) * y_mark)
-        notes.append(Note(x=at[0], y=at[1], text=", ".join(map(str, numbers)), align="left"))
+        text = ", ".join(map(str, numbers))
+        off, width, height = _OFF * word[0], _LETTER * word[0] * len(text), (high - low) * y_mark
+        # To the left of its marks where there is no room to the right.
+        if 1.16 * span * (x_mark + off + width) <= max(reach) + 0.1 * span:
+            notes.append(Note(x=1.16 * span * (x_mark + off), y=height, text=text, align="left"))
+        else:
+            first = min(marks[number][0] for number in numbers)
+            notes.append(Note(x=1.16 * span * (first - off), y=height, text=text, align="right"))
     return Panel(
         x_label="Heading rate, rms [rad/s]",
         y_label="Tracking error, rms [m]",
@@ -212,7 +221,7 @@ def track_charts(arena: Arena, *, tracking: bool) -> list[Chart]:
     return [
         Chart(
             name=f"{'tracks' if tracking else 'circles'}{i // _MAPS + 1}",
-            caption=caption if not i else "As before, of the other laws.",
+            caption=caption if not i else f"{what} by the laws that come next, in the same flight.",
             panels=panels[i : i + _MAPS],
             columns=3,
             panel_height=0.33,
