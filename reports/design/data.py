@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+from reports.document.tables import minus
+
 Record = dict[str, Any]
 
 CONTROLS = ("elevator", "aileron", "throttle", "rudder")
@@ -74,11 +76,6 @@ def where(row: Record) -> str:
     """Return the point of the grid that a row belongs to."""
     bank = bank_deg(row)
     return f"{speed(row['airspeed_mps'])}, " + (minus(f"{bank:+g}°") if bank else "level")
-
-
-def minus(text: str) -> str:
-    """Return figures with a minus sign for their hyphen."""
-    return text.replace("-", "−")
 
 
 def case_name(row: Record) -> str:

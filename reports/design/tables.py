@@ -15,14 +15,13 @@ from reports.design.data import (
     grid_trims,
     loop_name,
     loops_of,
-    minus,
     responses_of,
     short_of,
     where,
     worst,
 )
 from reports.document.blocks import Table
-from reports.document.tables import number
+from reports.document.tables import minus, number
 
 
 def worst_margin_table(design: Record) -> Table:

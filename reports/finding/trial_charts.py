@@ -117,7 +117,7 @@ def _error_panel(variants: list[Variant]) -> Panel | None:
         Line(x=ends, y=side * TWO_SIDED * ends, label="95 % interval", colour=Meaning.LIMIT, style="dash") for side in (1.0, -1.0)
     ]
     return (
-        Panel(x_label="Stated standard deviation [m]", y_label="Height believed less true [m]", lines=[*lines, *interval])
+        Panel(x_label="Stated standard deviation [m]", y_label="Height believed minus true [m]", lines=[*lines, *interval])
         if lines
         else None
     )

@@ -64,7 +64,7 @@ def accuracy_table(statistics: Record) -> Table:
             ]
             for entry in rows
         ],
-        widths=[1.5, 1.5, 0.75, 1.0, 0.7, 1.0, 1.0, 1.0, 0.9, 0.9, 1.4],
+        widths=[1.5, 1.9, 0.75, 1.05, 0.85, 1.0, 1.0, 1.0, 0.9, 0.9, 1.8],
         left_columns=2,
     )  # fmt: skip
 

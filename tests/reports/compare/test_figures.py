@@ -80,7 +80,7 @@ def test_the_table_counts_lower_and_higher_and_marks_an_interval_without_0():
     table = difference_table(pairs_of(np.zeros(8), np.ones(8)), found)
     row = next(i for i, cells in enumerate(table.rows) if cells[0].startswith("Tracking error"))
     # The first and the eighth of eight: 2/2^8 is left outside; with the second and the seventh it were 18/2^8, above 5 %.
-    assert table.rows[row][1:] == ["8", "0.000", "4.500", "+4.500", "+1.000 to +8.000", "+1.000 to +8.000", "0, 8"]
+    assert table.rows[row][1:] == ["8", "0.00", "4.50", "+4.50", "+1.00 to +8.00", "+1.00 to +8.00", "0, 8"]
     assert (row, 5) in table.bold
 
 

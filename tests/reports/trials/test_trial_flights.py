@@ -114,7 +114,8 @@ def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):
     manifest["trials"]["turns"]["sweep"] = {"turbulence.level": ["none", "light"]}
     draws = run.draws.assign(**{"wind.speed_mps": [2.0, 4.0, 3.0, 3.0], "turbulence.level": ["none", "none", "none", "light"]})
     report = content(replace(run, manifest=manifest, draws=draws))
-    assert [row[0] for row in blocks_of(report, Table, "trial1")[0].rows] == ["Wind speed 2 m/s", "Wind speed 4 m/s"]
+    table = blocks_of(report, Table, "trial1")[0]
+    assert [table.head[0], *(row[0] for row in table.rows)] == ["Wind speed", "2 m/s", "4 m/s"]
     charts = blocks_of(report, Chart, "trial1")
     assert {panel.x_label for chart in charts for panel in chart.panels} == {"Wind speed [m/s]"}
     (words,) = blocks_of(report, Chart, "trial2")
