@@ -1,5 +1,6 @@
 """Tables that every report has, and how their cells are written."""
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -74,8 +75,8 @@ def vehicle_flown(run: RunData) -> str:
 
 
 def minus(text: str) -> str:
-    """Return figures with a minus sign for their hyphen."""
-    return text.replace("-", "−")
+    """Return figures with a minus sign for their hyphen; that of an exponent stays."""
+    return re.sub(r"(?<!\w)-", "−", text)
 
 
 def number(value: Any, pattern: str) -> str:
@@ -92,7 +93,7 @@ def span(values: Array, pattern: str) -> str:
 
 
 def outcome(row: "pd.Series[Any]") -> str:
-    """Return how a flight ended, in words, and why it is not met."""
+    """Return how a flight ended, in words, and which criteria it failed."""
     if row["criteria_met"]:
         return "met"
     ended, message = str(row["outcome"]).replace("_", " "), str(row["message"])

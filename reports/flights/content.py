@@ -36,7 +36,7 @@ def flights_content(run: RunData) -> Findings:
         _overview(trials),
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
         comparison_section(run, trials),
-        Section(anchor="failed", title="Flights that are not met", nav_title="Not met", blocks=failed_blocks(run)),
+        Section(anchor="failed", title="Flights that failed a criterion", nav_title="Failed", blocks=failed_blocks(run)),
         flight_section(trials),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),

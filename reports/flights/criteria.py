@@ -94,7 +94,7 @@ def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
     if key == "within_altitudes":
         return _figure(trial, key, 0.0, _OUTSIDE)
     words = key.replace("_", " ").capitalize()
-    return Criterion(key=key, what=words, limit=parameter_value(value), worst="see the flights that are not met", failed=0)
+    return Criterion(key=key, what=words, limit=parameter_value(value), worst="see the flights that failed it", failed=0)
 
 
 def _figure(trial: Trial, key: str, value: float, measure: _Measure) -> Criterion:

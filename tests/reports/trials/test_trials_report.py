@@ -85,7 +85,7 @@ def test_a_criterion_without_a_figure_counts_as_failed(run):
 
 def test_a_criterion_that_the_report_does_not_know_is_shown_all_the_same(run):
     rows = rows_of(content(with_criterion(run, "turns", "loops_per_hour", 7)), "Turns")
-    assert ["Loops per hour", "7", "see the flights that are not met", "0"] in rows
+    assert ["Loops per hour", "7", "see the flights that failed it", "0"] in rows
 
 
 def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run_path, tmp_path):
