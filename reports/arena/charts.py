@@ -7,19 +7,19 @@ import numpy as np
 
 from reports.arena.data import ALL, Arena, Entrant
 from reports.arena.figures import CROSSINGS, EFFORT, ERROR, PLUME_TIME, SULPHUR, Figure
-from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.palette import Meaning
 from reports.document.ship_map import ship_panel
 from reports.run.columns import column
 from reports.run.surroundings import surroundings
 from reports.run.time_history import about_the_plume
 
-_FAMILIES = (
-    ("with the reference's turn fed forward", "blue"),
-    ("without it, on its tangent or circle (M1, M2)", "green"),
-    ("without it, at its place (M3)", "orange"),
+_FAMILIES: tuple[tuple[str, str, Style], ...] = (
+    ("with the reference's turn fed forward", "blue", "points"),
+    ("without it, on its tangent or circle (M1, M2)", "green", "diamonds"),
+    ("without it, at its place (M3)", "orange", "square"),
 )
-"""What a law makes use of, and its colour."""
+"""What a law makes use of, and the colour and style of its mark."""
 
 _WORD = (0.04, 0.03)
 """Width and height of a law's number, over those of a panel as wide as the page."""
@@ -65,11 +65,11 @@ def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str, wor
     efforts = {entrant.name: arena.of(EFFORT, entrant, condition).mean for entrant in entrants}
     errors = {entrant.name: math.log10(max(arena.of(ERROR, entrant, condition).mean, 1e-3)) for entrant in entrants}
     lines, notes = [], []
-    for label, colour in _FAMILIES:
+    for label, colour, style in _FAMILIES:
         members = [entrant for entrant in entrants if _family(entrant) == label]
         x, y = (np.array([values[entrant.name] for entrant in members]) for values in (efforts, errors))
         if members:
-            lines.append(Line(x=x, y=y, label=label, colour=colour, style="points"))
+            lines.append(Line(x=x, y=y, label=label, colour=colour, style=style))
     known = [value for value in errors.values() if math.isfinite(value)] or [0.0]
     low, high = math.floor(min(known) - 0.1), math.ceil(max(known) + 0.1)
     reach = [value for value in efforts.values() if math.isfinite(value)] or [0.0]
@@ -129,7 +129,7 @@ def _title(condition: str) -> str:
 
 
 def _family(entrant: Entrant) -> str:
-    forward, tangent, place = (label for label, _ in _FAMILIES)
+    forward, tangent, place = (label for label, _, _ in _FAMILIES)
     if "turn rate" in entrant.given or "curvature" in entrant.given:
         return forward
     return place if "M3" in entrant.given else tangent

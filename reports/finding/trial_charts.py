@@ -110,7 +110,7 @@ def _error_panel(variants: list[Variant]) -> Panel | None:
         error, deviation = (column(variant.rows, f"axis_height_{of}_3min_m") for of in ("error", "deviation"))
         known = np.isfinite(error) & np.isfinite(deviation)
         if known.any():
-            lines.append(Line(x=deviation[known], y=error[known], label=variant.name, colour=variant.colour, style="points"))
+            lines.append(Line(x=deviation[known], y=error[known], label=variant.name, colour=variant.colour, style=variant.marker))
             most = max(most, 1.05 * float(np.max(deviation[known])))
     ends = np.array([0.0, most])
     interval = [
