@@ -41,7 +41,7 @@ def worst_margin_table(design: Record) -> Table:
             ]
         )
     head = ["Loop opened at", "Gain [dB]", "at", "Phase [deg]", "at", "Disk gain [dB]", "Disk phase [deg]", "at"]
-    return Table(head=head, rows=rows, widths=[1.15, 0.85, 1.15, 0.95, 1.15, 1.15, 1.25, 1.15])
+    return Table(head=head, rows=rows, widths=[1.15, 0.85, 1.35, 0.95, 1.35, 1.1, 1.1, 1.35])
 
 
 def _margin_cells(row: Record | None, key: str, loop: str) -> list[str]:
