@@ -60,7 +60,7 @@ def _breakable(words: str) -> Markup:
 
 def _is_figures(cell: str) -> bool:
     """Return whether a cell of a table stays on one line: it is short, or figures alone with units of one letter."""
-    return len(cell) <= _LONG or not re.search(r"[^\W\d_]{2}", cell)
+    return len(cell) <= _LONG or not re.search(r"[^\W\d_]{2}", cell.replace(" to ", " "))
 
 
 def _panels(picture: Chart) -> list[Chart]:
