@@ -112,7 +112,7 @@ class PanelsOver:
         planned, kept = column(self._rows, "keepout_margin_m"), clearance(self._rows)
         if not np.isfinite(planned).any():
             return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), level(self._span, 0.0, "r_min")])
-        if float(np.ptp(planned)) < _MARGINS_APART * float(np.max(planned)):
+        if float(np.ptp(planned)) <= _MARGINS_APART * float(np.max(planned)):
             margin = level(self._span, float(np.mean(planned)), "planned margin", Meaning.ASKED)
             levels = [level(self._span, 0.0, "r_min"), margin]
             return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), *levels])

@@ -16,6 +16,7 @@ from reports.flights.flight_view import flight_view
 from reports.flights.selection import PICKED_MAX, picked_flights
 from reports.flights.single_flight import flight_charts
 from reports.flights.trials.charts import trial_charts
+from reports.flights.trials.panels_over import PanelsOver, by_violation
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
@@ -120,3 +121,11 @@ def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):
     assert {panel.x_label for chart in charts for panel in chart.panels} == {"Wind speed [m/s]"}
     (words,) = blocks_of(report, Chart, "trial2")
     assert [name for _, name in words.panels[0].y_names] == ["none", "light"]
+
+
+@pytest.mark.parametrize(("margins", "over"), [([90.0, 90.1], "Speed ratio ν [-]"), ([60.0, 90.0], "Planned margin [m]")])
+def test_clearances_are_drawn_over_the_planned_margin_only_where_that_differs_by_much(run, margins, over):
+    for number, margin in enumerate(margins):
+        run = with_values(run, number, keepout_margin_m=margin)
+    trial = read_trials(run)[0]
+    assert PanelsOver(trial, "nu", by_violation(trial)).margin().x_label == over
