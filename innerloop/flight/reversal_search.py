@@ -24,7 +24,7 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.properties import HEADING_RATE
 
-_SEARCHED = (20, 100)
+_SEARCHED = (20, 150)
 """Fewest and most reversals of the search that is part of every design [-]; the command's ``--reversals`` flies more."""
 
 _SEARCHED_FOR = 1000.0
@@ -33,7 +33,10 @@ _SEARCHED_FOR = 1000.0
 _AT_RANDOM = 0.5
 """Share of the reversals whose commands are random; those of the others are near the worst so far [-]."""
 
-_CHANGE = 0.2
+_WORST = 2
+"""Of the worst so far, any of which a reversal's commands may be near [-]."""
+
+_CHANGE = 0.15
 """Standard deviation by which these are changed: of a command over omega_max, and of the logarithm of its duration [-]."""
 
 _HELD = (0.1, 3.0)
@@ -79,8 +82,8 @@ def search_reversals(
 ) -> ReversalSearch:
     """Return the largest deviation of ``aircraft`` from its response in so many reversals, one after the other.
 
-    Each begins after a few commands of random size and duration: every second one is a full turn to one side. A part of them, the
-    later ones, climbs: their commands are those of the worst so far, changed at random.
+    Each begins after a few full turns to random sides for random durations; before every second one, a command is less than full.
+    The later ones climb: their commands are those of one of the worst so far, changed at random.
 
     Parameters
     ----------
@@ -94,28 +97,27 @@ def search_reversals(
     generator = np.random.default_rng(seed)
     flight = _Flight(aircraft, start, response)
     duration = (0.5 * math.pi + float(_LEANING[-1])) / rate + response.delay + response.lag
-    found: list[tuple[float, float, float]] = []
-    worst: _Before | None = None
+    found: list[_Found] = []
     for number in range(reversals):
-        if worst is None or number < _AT_RANDOM * reversals:
+        if number < _AT_RANDOM * reversals:
             before = _random(generator, full=number % 2 == 0)
         else:
-            before = _changed(worst, generator)
+            worst = sorted(found, key=lambda entry: -entry.deviation)[:_WORST]
+            before = _changed(worst[int(generator.integers(len(worst)))].before, generator)
         for share, held in before.commands:
             flight.fly(share * rate, held / rate)
         turn, speed = before.side * rate, flight.speed
         predicted, change = flight.predicted(turn, duration, max(speed, start.airspeed), rate)
         deviation = _deviation(flight.fly(turn, duration), predicted, before.side) / change
-        if not found or deviation > max(found)[0]:
-            worst = before
-        found.append((deviation, before.side * before.commands[-1][0], speed))
-    deviation, command_before, airspeed_before = max(found)
+        found.append(_Found(deviation, before, speed))
+    worst_of_all = max(found, key=lambda entry: entry.deviation)
+    at_random = [entry.deviation for entry in found[: math.ceil(_AT_RANDOM * reversals)]]
     return ReversalSearch(
         reversals=reversals,
-        deviation=max(0.0, deviation),
-        usual=max(0.0, float(np.quantile([entry[0] for entry in found[: math.ceil(_AT_RANDOM * reversals)]], 0.99))),
-        command_before=command_before,
-        airspeed_before=airspeed_before,
+        deviation=max(0.0, worst_of_all.deviation),
+        usual=max(0.0, float(np.quantile(at_random, 0.99))),
+        command_before=worst_of_all.before.side * worst_of_all.before.commands[-1][0],
+        airspeed_before=worst_of_all.airspeed,
     )
 
 
@@ -127,14 +129,22 @@ class _Before:
     side: float
 
 
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """A reversal: its deviation over its change of heading rate [m], what was flown before, and airspeed at its beginning [m/s]."""
+
+    deviation: float
+    before: _Before
+    airspeed: float
+
+
 def _random(generator: np.random.Generator, *, full: bool) -> _Before:
-    """Return random commands, and a turn to the other side of the last if they are ``full`` turns."""
-    commands = []
-    for _ in range(_BEFORE):
-        share = float(generator.choice([-1.0, 1.0]) if full else generator.uniform(-1.0, 1.0))
-        commands.append((share, float(generator.uniform(*_HELD))))
-    side = -math.copysign(1.0, commands[-1][0]) if full else float(generator.choice([-1.0, 1.0]))
-    return _Before(tuple(commands), side)
+    """Return random commands and a random side: full turns, of which one is a part of one unless all are ``full``."""
+    shares = generator.choice([-1.0, 1.0], _BEFORE)
+    if not full:
+        shares[generator.integers(_BEFORE)] = generator.uniform(-1.0, 1.0)
+    held = np.exp(generator.uniform(*np.log(_HELD), _BEFORE))
+    return _Before(tuple(zip(shares.tolist(), held.tolist(), strict=True)), float(generator.choice([-1.0, 1.0])))
 
 
 def _changed(before: _Before, generator: np.random.Generator) -> _Before:

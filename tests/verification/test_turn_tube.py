@@ -65,7 +65,7 @@ def rolled_back(x8_root, x8_schedule, record):
 
 
 def lacking(flights, record, *, remembers):
-    """Return by how much nearer to discs each turn came than predicted [m], by a guard that knows what is to come or one that does not."""
+    """Return by how much nearer to discs each turn came than predicted [m], what is to come known (``remembers``) or not."""
     rate, speed, found = flights
     lacks = []
     for told, now, path in found:
