@@ -5,7 +5,10 @@ import math
 METRES_PER_FOOT = 0.3048
 """International foot, exact by definition [m/ft]."""
 
-METRES_PER_SECOND_PER_KNOT = 1852.0 / 3600.0
+SECONDS_PER_HOUR = 3600.0
+"""Hour [s]."""
+
+METRES_PER_SECOND_PER_KNOT = 1852.0 / SECONDS_PER_HOUR
 """Knot: one nautical mile of 1,852 m an hour, exact by definition [m/s per kt]."""
 
 NEWTONS_PER_POUND = 4.4482216152605

@@ -12,12 +12,19 @@ reported later. So the vessel is in all of them at once, and to keep off one of 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+import numpy.typing as npt
 
 from gnc.estimation.vessel_filter import VesselReport
 
 KEPT = 3
 """Newest reports that discs are made of: an older one could be nearer the truth only by its luck [-]."""
+
+
+Value = TypeVar("Value", float, npt.NDArray[np.float64])
+"""A number, or many."""
 
 
 class Tube(NamedTuple):
@@ -68,6 +75,13 @@ class VesselLimits:
     horizon: float
 
 
+def radius_after(limits: VesselLimits, age: Value) -> Value:
+    """Return the radius [m] of the disc that a vessel cannot have left so long after a report [s]."""
+    spread = (limits.position_sigma**2 + (limits.velocity_sigma * age) ** 2) ** 0.5
+    radius: Value = limits.deviations * spread + 0.5 * limits.acceleration * age * age
+    return radius
+
+
 def tube(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
     """Return the disc at ``time`` [s] of a vessel that may have accelerated since its report, as it grows from then on.
 
@@ -89,7 +103,7 @@ def tube(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
         report.east + report.velocity_east * age,
         report.velocity_north,
         report.velocity_east,
-        k * spread + 0.5 * acceleration * age * age,
+        radius_after(limits, age),
         drifting + acceleration * age,
         faster + acceleration,
     )

@@ -143,7 +143,7 @@ def _random(generator: np.random.Generator, *, full: bool) -> _Before:
     shares = generator.choice([-1.0, 1.0], _BEFORE)
     if not full:
         shares[generator.integers(_BEFORE)] = generator.uniform(-1.0, 1.0)
-    held = np.exp(generator.uniform(*np.log(_HELD), _BEFORE))
+    held = np.exp(generator.uniform(math.log(_HELD[0]), math.log(_HELD[1]), _BEFORE))
     return _Before(tuple(zip(shares.tolist(), held.tolist(), strict=True)), float(generator.choice([-1.0, 1.0])))
 
 

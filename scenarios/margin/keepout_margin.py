@@ -3,10 +3,11 @@
 import math
 from dataclasses import dataclass
 
+from common.units import SECONDS_PER_HOUR
 from gnc.estimation.reachable_set import Tube, VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.parameters import FilterParameters
-from scenarios.margin.report_scatter import scatter_allowance
+from scenarios.margin.report_scatter import mean_interval, scatter_allowance
 from scenarios.margin.tracking_spread import CALM_AIR_SPREAD, SpreadTable, planned_margin
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.equipment import VesselReportsConfig
@@ -14,8 +15,6 @@ from scenarios.vehicles.sensors import NAVIGATION_TIME
 
 VESSEL_ACCELERATION, VESSEL_MEMORY = 0.02, 40.0
 """Standard deviation [m/s^2] and time constant [s] of the acceleration that the vessel's filter reckons with: a ship's."""
-
-_SECONDS_PER_HOUR = 3600.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,8 +57,8 @@ def vessel_limits(scenario: Scenario, horizon: float) -> VesselLimits:
     """
     f, reports = scenario.following, scenario.reports
     known = filter_parameters(reports)
-    between = max(1.0, 0.5 * sum(reports.interval_s)) if not reports.exact else NAVIGATION_TIME
-    chances = _SECONDS_PER_HOUR / between / f.touches_per_hour
+    between = mean_interval(reports.interval_s) if not reports.exact else NAVIGATION_TIME
+    chances = SECONDS_PER_HOUR / between / f.touches_per_hour
     return VesselLimits(
         acceleration=f.vessel_acceleration_mps2,
         speed_max=math.inf if f.vessel_speed_max_mps is None else f.vessel_speed_max_mps,

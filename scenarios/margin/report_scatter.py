@@ -8,8 +8,9 @@ import functools
 
 import numpy as np
 
+from common.units import SECONDS_PER_HOUR
 from gnc.compose import vessel_filter
-from gnc.estimation.reachable_set import KEPT, VesselLimits
+from gnc.estimation.reachable_set import KEPT, VesselLimits, radius_after
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.parameters import FilterParameters
 
@@ -19,9 +20,8 @@ GUARDED_PER_HOUR = 1.0
 _HOURS, _SEED = 20.0, 20261122
 """Flight time over which reports are drawn [h], and the seed: the same for every flight."""
 
-_SECONDS_PER_HOUR = 3600.0
 _NO_OFTENER, _LEAST = 1.0, 100
-"""Mean interval below which reports are drawn no oftener [s], and how many are drawn at least [-]."""
+"""Mean interval below which reports count no oftener [s], and how many are drawn at least [-]."""
 
 _SETTLED = 50
 """Reports after which the filter's covariance no longer changes [-]."""
@@ -50,16 +50,19 @@ def scatter_allowance(
     planned : radius of the disc that is planned with, at the end of a turn away [m]
     """
     generator = np.random.default_rng(_SEED)
-    mean = max(_NO_OFTENER, 0.5 * sum(intervals))
-    shape = (max(_LEAST, round(_HOURS * _SECONDS_PER_HOUR / mean)), KEPT)
+    mean = mean_interval(intervals)
+    shape = (max(_LEAST, round(_HOURS * SECONDS_PER_HOUR / mean)), KEPT)
     late = plan_period + generator.uniform(0.0, latency, (shape[0], 1))
     age = limits.horizon + late + np.cumsum(generator.uniform(*intervals, shape), axis=1)
-    drift = limits.velocity_sigma * age
-    radius = limits.deviations * np.hypot(limits.position_sigma, drift) + 0.5 * limits.acceleration * age**2
-    off = limits.position_sigma * generator.standard_normal(shape) + drift * generator.standard_normal(shape)
+    off = limits.position_sigma * generator.standard_normal(shape) + limits.velocity_sigma * age * generator.standard_normal(shape)
     taken = _filter_sigma(known, mean) * generator.standard_normal(shape[0])
-    reaches = np.min(radius + off, axis=1) - taken
-    return max(0.0, float(np.quantile(reaches, max(0.0, 1.0 - GUARDED_PER_HOUR * mean / _SECONDS_PER_HOUR))) - planned)
+    reaches = np.min(radius_after(limits, age) + off, axis=1) - taken
+    return max(0.0, float(np.quantile(reaches, max(0.0, 1.0 - GUARDED_PER_HOUR * mean / SECONDS_PER_HOUR))) - planned)
+
+
+def mean_interval(intervals: tuple[float, float]) -> float:
+    """Return the mean interval [s] between reports, by the shortest and longest; looked at no oftener than once a second."""
+    return max(_NO_OFTENER, 0.5 * sum(intervals))
 
 
 def _filter_sigma(known: FilterParameters, interval: float) -> float:

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from common.units import SECONDS_PER_HOUR
 from gnc.airspeed.pace_hold import SpeedHold
 from gnc.reference.reference import Orbit
 from gnc.tracker import TrackingParameters
@@ -35,7 +36,6 @@ TOUCHES_PER_HOUR = 1e-3
 FREQUENCIES = np.logspace(-2.5, 1.9, 400)
 """Where spectra are integrated [rad/s]: from far below the corner of a gust, V/L = 0.09, to beyond the hold of the commands."""
 
-_SECONDS_PER_HOUR = 3600.0
 _ORBIT_POINTS = 60
 
 Array = npt.NDArray[np.float64]
@@ -157,7 +157,7 @@ def crossings_per_hour(sigma: float, sigma_rate: float, level: float) -> float:
     sigma, sigma_rate : standard deviations of the process and of its rate [m, m/s]
     level : above the mean [m]
     """
-    return _SECONDS_PER_HOUR * sigma_rate / (2.0 * math.pi * sigma) * math.exp(-0.5 * (level / sigma) ** 2)
+    return SECONDS_PER_HOUR * sigma_rate / (2.0 * math.pi * sigma) * math.exp(-0.5 * (level / sigma) ** 2)
 
 
 def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
