@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.plume_flight import CLIMB_RATE, HIGHEST, LOWEST, Flight, draw_case, fly
 from benchmarks.plume_particles import ParticleEstimator
-from gnc.estimation.plume_estimator import PlumeEstimator
+from gnc.estimation.plume.estimator import PlumeEstimator
 from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
 from measurement.sniffer import SnifferSpec, sensor_preset
 

@@ -9,8 +9,8 @@ import numpy.typing as npt
 from scipy.optimize import brentq
 from scipy.special import j0
 
-from gnc.estimation.plume_estimator import GasSensor, PlumeEstimator, PlumePrior, PlumeState
-from gnc.estimation.plume_prior import expected_plume
+from gnc.estimation.plume.estimator import GasSensor, PlumeEstimator, PlumePrior, PlumeState
+from gnc.estimation.plume.prior import expected_plume
 from gnc.mission.plume_search import Search
 from measurement.emission.emission import emission_of
 from measurement.emission.fuel import fuel_preset
@@ -191,9 +191,8 @@ def fly(
             flight.intervals.append(filtered.height_interval)
             flight.states.append(filtered.state)
             pass_peak = 0.0
-            demand = searcher.next_demand(filtered, altitude, orbit.pass_time)
             if not knowing:
-                demanded, offset_demanded = demand.altitude, demand.offset
+                demanded, offset_demanded = searcher.next_altitude(filtered, altitude, orbit.pass_time), filtered.offset
     flight.spread = simulation.spread
     return flight
 

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 
-from gnc.estimation.plume_estimator import PlumeEstimator
-from gnc.estimation.plume_passes import Evidence, Path
-from gnc.estimation.plume_prior import PlumePrior
+from gnc.estimation.plume.estimator import PlumeEstimator
+from gnc.estimation.plume.pass_reader import Evidence
+from gnc.estimation.plume.passes import Path
+from gnc.estimation.plume.prior import PlumePrior
 
 COUNT = 1000
 """Particles [-]."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from gnc.estimation.plume_prior import rise
+from gnc.estimation.plume.prior import rise
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

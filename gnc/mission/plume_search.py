@@ -1,13 +1,13 @@
-"""How high and how far off the predicted axis to fly next, so that the plume is found soon and then known well."""
+"""How high to fly next, so that the plume is found soon and then known well."""
 
 import math
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtr
 
-from gnc.estimation.plume_estimator import HIT, PlumeEstimator, PlumeState
+from gnc.estimation.plume.estimator import HIT, PlumeEstimator, PlumeState
 
 Array = npt.NDArray[np.float64]
 
@@ -20,31 +20,18 @@ _HORIZON = 8
 _KNOWN = 0.3
 """Deviation of the height over the spread of a pass [-], below which nothing is gained by flying anywhere else."""
 
-_REACH, _PROBES = 1.6, 9
+_REACH, _PROBES = 1.6, np.linspace(0.0, 1.0, 9)
 """How far off the estimated height is flown to, over its deviation, and heights that are weighed [-, -]."""
 
 _AHEAD = 3.0
 """Passes that what is learned in this one is good for [-]: after those the others have told as much."""
 
 
-class Demand(NamedTuple):
-    """Where to cross next.
-
-    Attributes
-    ----------
-    altitude : above the sea [m], within the limits
-    offset : of the centre of oscillation to the right of the predicted axis [m], at the distance of the estimator's last place
-    """
-
-    altitude: float
-    offset: float
-
-
 class Search(Protocol):
-    """Decides after each pass (``PlumeEstimator.update`` returned True) where to fly next."""
+    """Decides after a pass (``PlumeEstimator.update`` returned True) how high to fly next."""
 
-    def next_demand(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> Demand:
-        """Return where to cross next.
+    def next_altitude(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> float:
+        """Return how high to cross next, above the sea [m], within the limits.
 
         Parameters
         ----------
@@ -73,11 +60,11 @@ class HeightSearch:
         self._lowest, self._highest, self._climb_rate = lowest, highest, climb_rate
         self._heights: Array = np.linspace(lowest, highest, max(2, 1 + math.ceil((highest - lowest) / _STEP)))
 
-    def next_demand(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> Demand:
-        """Return where to cross next; arguments as of ``Search``."""
+    def next_altitude(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> float:
+        """Return how high to cross next [m]; arguments as of ``Search``."""
         if estimator.state is not PlumeState.FOUND:
-            return Demand(self._soonest(estimator, altitude, self._climb_rate * pass_time), estimator.offset)
-        return Demand(self._hitting(estimator), estimator.offset)
+            return self._soonest(estimator, altitude, self._climb_rate * pass_time)
+        return self._hitting(estimator)
 
     def _hitting(self, estimator: PlumeEstimator) -> float:
         """Return the height that lets expect the most hits: now, and later by what the pass says of the height."""
@@ -86,7 +73,7 @@ class HeightSearch:
         if deviation < _KNOWN * math.hypot(spread, meander):
             return min(max(height, self._lowest), self._highest)
         low, high = (min(max(height + side * _REACH * deviation, self._lowest), self._highest) for side in (-1.0, 1.0))
-        altitudes = np.linspace(low, high, _PROBES)
+        altitudes = low + (high - low) * _PROBES
         off = np.hypot(estimator.expected_deviation(altitudes), meander)
         later = 2.0 * ndtr(math.sqrt(-2.0 * math.log(HIT)) * spread / off) - 1.0
         return float(altitudes[int((estimator.hits(altitudes) + _AHEAD * later).argmax())])
@@ -122,11 +109,11 @@ class LadderSearch:
         self._lowest, self._highest, self._rung = lowest, highest, rung
         self._up = True
 
-    def next_demand(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> Demand:  # noqa: ARG002 - of the Protocol
-        """Return where to cross next; arguments as of ``Search``."""
+    def next_altitude(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> float:  # noqa: ARG002 - of the Protocol
+        """Return how high to cross next [m]; arguments as of ``Search``."""
         height = estimator.height
         if estimator.state is not PlumeState.FOUND:
             if not self._lowest < altitude + (self._rung if self._up else -self._rung) < self._highest:
                 self._up = not self._up
             height = altitude + (self._rung if self._up else -self._rung)
-        return Demand(min(max(height, self._lowest), self._highest), estimator.offset)
+        return min(max(height, self._lowest), self._highest)

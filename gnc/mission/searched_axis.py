@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
-from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState, SensorState
-from gnc.estimation.plume_prior import GasSensor, expected_plume
+from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState, SensorState
+from gnc.estimation.plume.prior import GasSensor, expected_plume
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
-from gnc.mission.plume_axis import Climb, Situation, trail
+from gnc.mission.plume_axis import Climb, Situation
 from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
 
 _MODES = {PlumeState.SEARCHING: Mode.SEARCHING, PlumeState.FOUND: Mode.FOUND, PlumeState.LOST: Mode.LOST_AGAIN}
@@ -20,8 +20,11 @@ _BEARING_TIME = 15.0
 _NOTED, _SILENT = 0.75, 2.0
 """Time between readings beyond which the estimator is told a place in between, and beyond which it is told of silence [s]."""
 
+_DECIDED = 10.0
+"""Time for which a height that was chosen holds at least once the plume is found [s]: what is known of it changes more slowly."""
+
 Place = tuple[float, float, float, float]
-"""Time [s], place along the predicted axis and to the right of it, altitude [m]."""
+"""Time [s], place north and east of the vessel, altitude [m]."""
 
 _PASS_TIME, _PASS_MEMORY = 8.0, 0.3
 """Time between passes before the first two [s], and weight of the last one in its mean [-]."""
@@ -113,8 +116,8 @@ class SearchedAxis:
     """
 
     __slots__ = (
-        "_bearing", "_estimator", "_last_note", "_last_pass", "_parameters", "_pass_time", "_places", "_search", "_situation",
-        "bearing", "climb", "demanded", "estimate", "flown", "mode", "sensor",
+        "_bearing", "_decide_at", "_estimator", "_last_note", "_last_pass", "_parameters", "_pass_time", "_places", "_search",
+        "_situation", "bearing", "climb", "demanded", "estimate", "flown", "mode", "sensor",
     )  # fmt: skip
 
     def __init__(self, parameters: SearchedPlume) -> None:
@@ -123,7 +126,7 @@ class SearchedAxis:
         self._search = parameters.search()
         self._situation: Situation | None = None
         self._places: list[Place] = []
-        self._last_note = self._last_pass = 0.0
+        self._last_note = self._last_pass = self._decide_at = 0.0
         self._pass_time, self._bearing, self.bearing, self.flown, self.mode = _PASS_TIME, 0.0, 0.0, math.nan, Mode.SEARCHING
         self.estimate, self.sensor = PlumeEstimate(), SensorState.WORKING
 
@@ -133,9 +136,11 @@ class SearchedAxis:
 
     def heed(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
         """Take note of the place now, and of what was read since the last readings came, each with its own time [s]."""
-        if self._estimator is None or self._situation is None:
+        situation = self._situation
+        if self._estimator is None or situation is None:
             return
-        self._places.append((time, *_seen_along(self._situation), self.flown))
+        own, target = situation.own, situation.target
+        self._places.append((time, own.ground_north - target.north, own.ground_east - target.east, self.flown))
         for read_at, reading in readings:
             if read_at - self._last_note > _NOTED:
                 self._note(0.5 * (self._last_note + read_at), math.nan)
@@ -158,7 +163,8 @@ class SearchedAxis:
             prior = expected_plume(distance=distance, apparent_wind=wind, wind_speed=blowing, **p.expected.arguments())
             self._estimator = PlumeEstimator(prior)
             self._last_note = self._last_pass = time
-            self._decide(self.demanded)
+            self._take_note(self._estimator)
+            self._decide(self._estimator, self.demanded)
         self.bearing += (self._bearing - self.bearing) * min(1.0, situation.plan_time / _BEARING_TIME)
         self.sensor = self._estimator.sensor
         self.mode = _MODES[self._estimator.state] if self.sensor is SensorState.WORKING else Mode.SENSOR_FAILED
@@ -168,35 +174,38 @@ class SearchedAxis:
         situation, estimator = self._situation, self._estimator
         if situation is None or estimator is None:
             return
-        along, across, altitude = _place_at(self._places, at)
-        estimator.predict(max(0.0, at - self._last_note))
-        self._last_note = max(at, self._last_note)
+        north, east, altitude = _place_at(self._places, at)
+        along, across = _seen_along(situation, north, east)
+        if at > self._last_note:
+            estimator.predict(at - self._last_note)
+            self._last_note = at
         wind = situation.centre.speed_ratio * situation.speed
         if estimator.update(along, across, altitude, reading, apparent_wind=wind):
             self._pass_time += _PASS_MEMORY * (at - self._last_pass - self._pass_time)
             self._last_pass = at
-            self._decide(altitude)
+            self._bearing = math.atan2(estimator.offset, situation.centre.distance)
+            self._take_note(estimator)
+            if estimator.state is not PlumeState.FOUND or at >= self._decide_at:
+                self._decide(estimator, altitude)
 
-    def _decide(self, altitude: float) -> None:
-        """Choose where to cross next."""
-        if self._estimator is not None and self._situation is not None:
-            demand = self._search.next_demand(self._estimator, altitude, self._pass_time)
-            self.demanded = demand.altitude
-            self._bearing = math.atan2(demand.offset, self._situation.centre.distance)
-            found = self._estimator
-            self.estimate = PlumeEstimate(
-                found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z,
-                found.sigma_y, found.innovation,
-            )  # fmt: skip
+    def _decide(self, estimator: PlumeEstimator, altitude: float) -> None:
+        """Choose how high to cross next."""
+        self.demanded = self._search.next_altitude(estimator, altitude, self._pass_time)
+        self._decide_at = self._last_pass + _DECIDED
+
+    def _take_note(self, found: PlumeEstimator) -> None:
+        self.estimate = PlumeEstimate(
+            found.height, found.height_deviation, found.offset, found.offset_deviation, found.sigma_z,
+            found.sigma_y, found.innovation,
+        )  # fmt: skip
 
 
-def _seen_along(situation: Situation) -> tuple[float, float]:
-    """Return where the vehicle is behind the vessel, along the predicted axis and to the right of it [m]."""
+def _seen_along(situation: Situation, north: float, east: float) -> tuple[float, float]:
+    """Return where a place north and east of the vessel is along the predicted axis and to the right of it [m]."""
     own, target = situation.own, situation.target
-    x, y = own.ground_north - target.north, own.ground_east - target.east
-    axis = trail(own, target)
-    cos_a, sin_a = math.cos(axis), math.sin(axis)
-    return x * cos_a + y * sin_a, y * cos_a - x * sin_a
+    wind_north, wind_east = own.wind_north - target.velocity_north, own.wind_east - target.velocity_east
+    speed = math.hypot(wind_north, wind_east) or 1.0
+    return (north * wind_north + east * wind_east) / speed, (east * wind_north - north * wind_east) / speed
 
 
 def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float]:
@@ -206,5 +215,5 @@ def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float
         later -= 1
     then, before = places[later], places[max(0, later - 1)]
     share = min(max((time - before[0]) / (then[0] - before[0]), 0.0), 1.0) if then[0] > before[0] else 1.0
-    _, along, across, altitude = before
-    return along + share * (then[1] - along), across + share * (then[2] - across), altitude + share * (then[3] - altitude)
+    _, north, east, altitude = before
+    return north + share * (then[1] - north), east + share * (then[2] - east), altitude + share * (then[3] - altitude)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from exhaust_cases import SENSOR
 
-from gnc.estimation.plume_estimator import HIT
-from gnc.estimation.plume_prior import PlumePrior, expected_plume, rise
+from gnc.estimation.plume.estimator import HIT
+from gnc.estimation.plume.prior import PlumePrior, expected_plume, rise
 from measurement.emission.emission import Emission, emission_of
 from measurement.emission.fuel import fuel_preset
 from measurement.emission.ship import ship_preset

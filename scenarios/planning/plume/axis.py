@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.plume_prior import GasSensor
+from gnc.estimation.plume.prior import GasSensor
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.plume_axis import AxisParameters, Climb, PredictedPlume
 from gnc.mission.searched_axis import Expectation, SearchedPlume

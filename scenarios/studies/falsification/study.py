@@ -19,6 +19,7 @@ from scenarios.schema.scenario import Scenario
 from scenarios.search.method import SearchSettings
 from scenarios.search.space import Array
 from scenarios.search.turns import methods_named, search_in_turns
+from scenarios.studies.chosen_flights import ChosenFlightsStudy
 from scenarios.studies.falsification.results import (
     CONFIRMATION,
     UNFLOWN,
@@ -29,7 +30,6 @@ from scenarios.studies.falsification.results import (
     searched_flights,
     worst_flights,
 )
-from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.study import study
 
 _SAME_POINT = 1e-9
@@ -37,47 +37,30 @@ _SAME_POINT = 1e-9
 
 
 @study("falsify")
-class FalsificationStudy(FlightStudy):
+class FalsificationStudy(ChosenFlightsStudy):
     """Batches of flights, each where a search method proposes them; the worst are flown again with fresh noise.
 
     Flights of the search are numbered from 0; after the largest number that one may have come the confirmations, in the order of
     the flights that they repeat, so that a run that is resumed finds them whatever it has flown in between.
 
-    Parameters
-    ----------
-    scenario, name : the scenario, and its name
-    trials : the same by its name
-    overrides : overrides that were applied, recorded in the manifest
-
-    Raises
-    ------
-    InputError : as of ``FlightStudy``
+    Parameters as of any study; ``InputError`` as of ``FlightStudy``.
     """
-
-    chooses_flights = True
 
     def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
         self._search, self._seed = scenario.search, scenario.seed
         numbers = self._search.flights_max * (1 + self._search.confirmations)
-        searched = {trial: of.model_copy(update={"flights": numbers}) for trial, of in trials.items()}
-        super().__init__(scenario.model_copy(update={"flights": numbers}), name, searched, overrides=overrides)
-        ((self._trial, self._scenario),) = self.trials.items()
+        super().__init__(scenario, name, trials, numbers=numbers, overrides=overrides)
         self._space = search_space(self._scenario)
         # Of the numbers most stand for no flight, of which no time history is kept.
         self.histories *= 1 + self._search.confirmations
         keys = [key for key in self.tables[DRAWS] if key not in INPUT_COLUMNS]
         self.tables[DRAWS] = (*INPUT_COLUMNS, *SEARCH_COLUMNS, *keys)
-        self._tasks: list[Task] = []
         self._proposed = 0
         self._plan(self._search.flights_max if self._search.time_s is None else 0)
 
     def _plan(self, searched: int) -> None:
         """Take the number of flights that the search will have, as far as it is known."""
         self.flights = {self._trial: searched + self._search.confirmations * min(self._search.kept, searched)}
-
-    def task(self, number: int) -> Task:
-        """Return the task of a flight, at the point that the search gave it."""
-        return self._tasks[number]
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Search; then keep the worst flights, and fly them again with fresh noise."""

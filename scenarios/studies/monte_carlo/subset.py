@@ -19,39 +19,22 @@ from scenarios.statistics.subset_estimates import RareProbability, input_shifts,
 from scenarios.statistics.subset_levels import Array, Simulation
 from scenarios.statistics.subset_simulation import Point, Simulating, SubsetSimulation
 from scenarios.statistics.subset_statistics import subset_statistics
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.chosen_flights import ChosenFlightsStudy
 
 
-class SubsetStudy(FlightStudy):
+class SubsetStudy(ChosenFlightsStudy):
     """Repeated subset simulations of the distance kept beyond r_min, in step: each wave of all of them is flown at once.
 
     Points whose speed ratio leaves the declared range are not flown: the distribution is the declared one within that
     range, as in the plain study, which samples such flights again. A flight without a measurement passes no threshold.
 
-    Parameters
-    ----------
-    scenario, name : the scenario, and its name
-    trials : the same by its name
-    overrides : overrides that were applied, recorded in the manifest
-
-    Raises
-    ------
-    InputError : as of ``FlightStudy``
+    Parameters as of any study; ``InputError`` as of ``FlightStudy``.
     """
 
-    chooses_flights = True
-
     def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
-        flights = scenario.subset.flights_max
-        sampled = {trial: of.model_copy(update={"flights": flights}) for trial, of in trials.items()}
-        super().__init__(scenario.model_copy(update={"flights": flights}), name, sampled, overrides=overrides)
+        super().__init__(scenario, name, trials, numbers=scenario.subset.flights_max, overrides=overrides)
         self._statistics = scenario.statistics
-        self._tasks: list[Task] = []
         self._simulations: list[Simulation] = []
-
-    def task(self, number: int) -> Task:
-        """Return the task of a flight, at the point that its simulation gave it."""
-        return self._tasks[number]
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Have wave after wave flown, until every simulation has ended."""
@@ -73,7 +56,7 @@ class SubsetStudy(FlightStudy):
         fly(self.representative_flights(run, journal))
 
     def _begun(self) -> dict[int, Simulating]:
-        ((_, scenario),) = self.trials.items()
+        scenario = self._scenario
         settings = scenario.subset
         simulation = SubsetSimulation(
             dimension=len(scenario.draws),
@@ -109,8 +92,7 @@ class SubsetStudy(FlightStudy):
 
     def _values(self, points: Array) -> pd.DataFrame:
         """Return the values of the random variables at points of the unit cube."""
-        ((_, scenario),) = self.trials.items()
-        return pd.DataFrame({draw.key: [value_at(draw, at) for at in points[:, i]] for i, draw in enumerate(scenario.draws)})
+        return pd.DataFrame({draw.key: [value_at(draw, at) for at in points[:, i]] for i, draw in enumerate(self._scenario.draws)})
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return what the flights have come to, and the probability if every simulation has ended."""

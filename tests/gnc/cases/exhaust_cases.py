@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gnc.estimation.plume_estimator import PlumeEstimator
-from gnc.estimation.plume_prior import GasSensor, PlumePrior
+from gnc.estimation.plume.estimator import PlumeEstimator
+from gnc.estimation.plume.prior import GasSensor, PlumePrior
 
 SENSOR = GasSensor(interval=0.2, delay=1.0, time_constant=0.43, noise=0.5)
 

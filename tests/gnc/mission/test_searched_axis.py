@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from gnc.estimation.plume_estimator import SensorState
-from gnc.estimation.plume_prior import GasSensor
+from gnc.estimation.plume.estimator import SensorState
+from gnc.estimation.plume.prior import GasSensor
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb
 from gnc.mission.searched_axis import Expectation, SearchedPlume

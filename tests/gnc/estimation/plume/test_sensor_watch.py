@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gnc.estimation.sensor_watch import SensorState, SensorWatch
+from gnc.estimation.plume.sensor_watch import SensorState, SensorWatch
 
 
 def _watch() -> SensorWatch:

@@ -8,7 +8,7 @@ import pytest
 from exhaust_cases import PRIOR, SENSOR, MadePlume, estimated
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.plume_estimator import PlumeEstimator, PlumeState, SensorState
+from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState, SensorState
 
 AROUND = [65.0, 72.0, 58.0, 68.0, 62.0, 70.0]
 """Altitudes of passes about the expected height [m]."""

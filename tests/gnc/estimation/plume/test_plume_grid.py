@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from exhaust_cases import PRIOR
 
-from gnc.estimation.plume_grid import STRENGTH_STEP, PlumeGrid
+from gnc.estimation.plume.grid import STRENGTH_STEP, PlumeGrid
 
 GRID = PlumeGrid(PRIOR)
 

@@ -7,10 +7,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from gnc.estimation.plume_grid import PlumeGrid, normalised, over_nothing, wandered
-from gnc.estimation.plume_passes import Evidence, PassCollector, PassReader, Path, Place
-from gnc.estimation.plume_prior import GasSensor, PlumePrior
-from gnc.estimation.sensor_watch import SensorState, SensorWatch
+from gnc.estimation.plume.grid import STRENGTH_STEP, PlumeGrid, normalised, over_nothing, wandered
+from gnc.estimation.plume.pass_reader import Evidence, PassReader
+from gnc.estimation.plume.passes import PassCollector, Path
+from gnc.estimation.plume.prior import GasSensor, PlumePrior
+from gnc.estimation.plume.sensor_watch import SensorState, SensorWatch
 
 __all__ = ["GasSensor", "PlumeEstimator", "PlumePrior", "PlumeState", "SensorState"]
 
@@ -21,6 +22,9 @@ SIGNAL_TO_NOISE = 5.0
 
 _FORGET = 6000.0
 """Time in which a posterior falls back to the prior, if nothing is read [s]: a ship may change her load."""
+
+_DIFFUSED = 10.0
+"""Least time after which the axis is let wander anew [s]: in less it wanders by less than a cell."""
 
 _LOST = 0.01
 """Chance of a row of misses below which a plume that was found is lost again [-]."""
@@ -59,18 +63,16 @@ class PlumeState(Enum):
 
 
 class _Scene(NamedTuple):
-    """How likely the readings of a pass are, over the same factor; and where it was.
+    """How likely the readings of a pass are, over the same factor.
 
     Attributes
     ----------
     likelihood : of a pulse from a plume of each spread, at each place, of each strength, shape (w, j, p)
     nothing : of no pulse
-    altitude : where the way is nearest to the axis [m]
     """
 
     likelihood: Array
     nothing: float
-    altitude: float
 
 
 class PlumeEstimator:
@@ -107,11 +109,12 @@ class PlumeEstimator:
         self._watch = SensorWatch(interval=sensor.interval, saturated=sensor.saturated)
         self._collector = PassCollector(delay=sensor.delay, tail=sensor.time_constant)
         self._reader = PassReader(sensor)
-        self._time = self._pass_at = 0.0
+        self._time = self._diffused_at = 0.0
         self._spoilt = False
         self._distance, self._wind = prior.distance, prior.apparent_wind
         self._least = SIGNAL_TO_NOISE * sensor.noise / _NOMINAL_RESPONSE
         self._misses = self._looks = self._widened = 1.0
+        self._heights: Array = prior.height_at(self.grid.height, self._distance, self._wind)
         self.cells: Array = self.grid.prior.copy()
         self.bearings: Array = self.grid.bearing_prior.copy()
         self._note()
@@ -143,28 +146,39 @@ class PlumeEstimator:
         if not math.isnan(reading):
             self._watch.read(reading)
             self._spoilt = self._spoilt or self._watch.state is not SensorState.WORKING
-        path = self._collector.add(Place(self._time, along, across, altitude), reading)
+        path = self._collector.add(self._time, along, across, altitude, reading)
         if path is None:
             return False
         self._wind = apparent_wind or self.prior.apparent_wind
-        self._diffuse(self._time - self._pass_at)
-        self._pass_at = self._time
+        if self._time >= self._diffused_at + _DIFFUSED:
+            self._diffuse(self._time - self._diffused_at)
+            self._diffused_at = self._time
         self.passes += 1
-        along = path.at(self.offset)[0]
-        if along > _NEAREST * self.prior.distance and not self._spoilt:
+        along, altitude = path.at(self.offset)
+        believed = along > _NEAREST * self.prior.distance and not self._spoilt
+        if believed:
             # Where the plume is met it has another spread, and another strength, than where the cells have theirs.
-            self._widened = self.prior.widened(along, self._wind)
-            evidence = self._reader.read(path, self.grid.places, self._widened * self.grid.widths)
-            if evidence is not None:
-                self._correct(path, evidence)
+            self._distance, self._widened = along, self.prior.widened(along, self._wind)
+        self._heights = self.prior.height_at(self.grid.height, self._distance, self._wind)
+        evidence = self._reader.read(path, self.grid.places, self._widened * self.grid.widths) if believed else None
+        if evidence is not None:
+            self._correct(path, evidence, altitude)
         self._spoilt = False
         self._note()
         return True
 
     def detection(self, altitude: float) -> float:
         """Return the probability that a pass at an altitude [m] has a signal to noise above 5."""
-        weights, chances = self.prospects(np.array([altitude]))
-        return float(np.sum(weights * chances[0]))
+        return self._detected(self.grid.over_faint(self.cells, self._fading(altitude)))
+
+    def _fading(self, altitude: float) -> Array:
+        """Return ``PlumeGrid.fading`` of a pass at an altitude [m]."""
+        return self.grid.fading((self._heights - altitude) / self._widened, self._looks)
+
+    def _detected(self, read: Array) -> float:
+        """Return the probability that a pass detects the plume, of the one that it reads each strength with each spread (w, p)."""
+        above = np.log(self.grid.faint / self._least) / STRENGTH_STEP + 0.5
+        return float(read.sum(axis=0) @ np.minimum(np.maximum(above, 0.0), 1.0))
 
     def prospects(self, altitudes: Array) -> tuple[Array, Array]:
         """Return the probability of each of some cells, shape (h, c), and that a pass then detects the plume, shape (n, h, c).
@@ -199,27 +213,25 @@ class PlumeEstimator:
         self.bearings = wandered(self.bearings, 0, prior.bearing_drift**2 * time / (grid.bearing[1] - grid.bearing[0]) ** 2)
         self.bearings += forgotten * (grid.bearing_prior - self.bearings)
 
-    def _correct(self, path: Path, evidence: Evidence) -> None:
+    def _correct(self, path: Path, evidence: Evidence, altitude: float) -> None:
         """Take in what a pass says: of spread, height and strength with the bearing as it is believed, and the other way round."""
-        prior, grid = self.prior, self.grid
-        likelihood, nothing, altitude = self._scene(path, evidence)
-        beside = self._beside(path)
+        grid = self.grid
+        likelihood, nothing = self._scene(path, evidence)
+        beside = grid.beside(self._distance, self._widened, path.duration)
         places = self.bearings @ beside
-        self._judge(evidence, self.detection(altitude) * float(places @ path.covers(grid.places)))
-        off = prior.height_at(grid.height, self._distance, self._wind) - altitude
-        fading = grid.fading(off / self._widened, self._looks)
+        fading = self._fading(altitude)
         read = grid.over_faint(self.cells, fading)
+        self._judge(evidence, self._detected(read) * path.covered(grid.places, places))
         seen = places @ likelihood + nothing * (1.0 - places.sum())
         of_cells = fading @ grid.over_strengths(seen) + nothing * (1.0 - fading.sum(axis=-1, keepdims=True))
-        there = np.tensordot(read, likelihood, ((0, 1), (0, 2)))
+        there = (likelihood @ read[..., np.newaxis]).sum(axis=0)[:, 0]
         of_bearings = beside @ (there - nothing * read.sum()) + nothing
         self.cells = normalised(self.cells * of_cells**_BELIEVED, grid.prior)
         self.bearings = normalised(self.bearings * of_bearings**_BELIEVED, grid.bearing_prior)
 
     def _scene(self, path: Path, evidence: Evidence) -> "_Scene":
-        """Take note of where a pass met the axis; return how likely its readings are."""
+        """Take note of how a pass met the axis; return how likely its readings are."""
         prior, grid = self.prior, self.grid
-        self._distance, altitude = path.at(self.offset)
         stronger = prior.apparent_wind / (self._wind * self._widened**2)
         self._least = SIGNAL_TO_NOISE * prior.sensor.noise / (evidence.response * stronger)
         significant = evidence.significance > SIGNAL_TO_NOISE
@@ -227,24 +239,9 @@ class PlumeEstimator:
         self._looks = 1.0 + 2.0 * self._widened * prior.sigma_y * drawn_out / (_LOOK * prior.meander_length)
         exponent = over_nothing(evidence.slope, evidence.bend, stronger * grid.faint, drawn_out)
         largest = max(0.0, float(exponent.max()))
-        return _Scene(np.tensordot(grid.of_widths(drawn_out), np.exp(exponent - largest), 1), math.exp(-largest), altitude)
-
-    def _beside(self, path: Path) -> Array:
-        """Return how likely the centre is at each place, given each bearing, shape (b, j).
-
-        Meander that two passes have in common does not average out: its variance counts (1 + r)/(1 - r) times, with r its
-        correlation from pass to pass.
-        """
-        prior, grid = self.prior, self.grid
-        apart = 2.0 * path.duration / prior.meander_time
-        common = (1.0 + apart) * math.exp(-apart)
-        step = grid.places[1] - grid.places[0]
-        cell = self._distance * (grid.bearing[1] - grid.bearing[0])
-        deviation = math.sqrt((self._widened * prior.meander_y) ** 2 * (1.0 + common) / (1.0 - common) + (step**2 + cell**2) / 12.0)
-        off = (grid.places - self._distance * grid.bearing[:, np.newaxis]) / deviation
-        result: Array = np.exp(-0.5 * off**2) * (step / (deviation * math.sqrt(2.0 * math.pi)))
-        result /= np.maximum(1.0, result.sum(axis=1, keepdims=True))
-        return result
+        exponent -= largest
+        likelihood = grid.of_widths(drawn_out) @ np.exp(exponent, out=exponent).reshape(len(exponent), -1)
+        return _Scene(likelihood.reshape(exponent.shape), math.exp(-largest))
 
     def _judge(self, evidence: Evidence, chance: float) -> None:
         """Compare what a pass showed with the chance of a hit that was expected of it: innovations, found, lost again."""
@@ -271,15 +268,14 @@ class PlumeEstimator:
         of_spreads = self.cells.sum(axis=2)
         self._of_heights = of_heights = of_spreads.sum(axis=0)
         self._spread: Array = grid.coarse_heights(of_spreads.sum(axis=1) @ grid.sigma_z)
-        self._heights: Array = prior.height_at(grid.height, self._distance, self._wind)
         self.height = float(of_heights @ self._heights)
         step = float(self._heights[1] - self._heights[0])
         self.height_deviation = math.sqrt(float(of_heights @ (self._heights - self.height) ** 2) + step**2 / 12.0)
         self.bearing = float(self.bearings @ grid.bearing)
         self.bearing_deviation = math.sqrt(float(self.bearings @ (grid.bearing - self.bearing) ** 2))
         self.offset, self.offset_deviation = self._distance * self.bearing, self._distance * self.bearing_deviation
-        self.sigma_y = self._widened * float(np.sum(of_spreads * grid.sigma_y))
-        self.sigma_z = self._widened * float(np.sum(of_spreads * grid.sigma_z))
+        self.sigma_y = self._widened * float(np.vdot(of_spreads, grid.sigma_y))
+        self.sigma_z = self._widened * float(np.vdot(of_spreads, grid.sigma_z))
         self.meander_z = self._widened * prior.meander_z
 
     @property

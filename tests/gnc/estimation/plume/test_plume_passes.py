@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from exhaust_cases import SENSOR
 
-from gnc.estimation.plume_passes import PassCollector, PassReader, Path, Place
+from gnc.estimation.plume.pass_reader import PassReader
+from gnc.estimation.plume.passes import PassCollector, Path
 
 _SPEED = 20.0
 
@@ -97,8 +98,8 @@ def test_there_is_a_pass_for_each_half_of_an_oscillation() -> None:
     paths = []
     for i in range(round(5.0 * period / step)):
         time = i * step
-        place = Place(time, 230.0, 50.0 * math.cos(2.0 * math.pi * time / period), 60.0)
-        path = collector.add(place, 420.0 if i % 2 == 0 else math.nan)
+        across = 50.0 * math.cos(2.0 * math.pi * time / period)
+        path = collector.add(time, 230.0, across, 60.0, 420.0 if i % 2 == 0 else math.nan)
         if path is not None:
             paths.append(path)
     # The last one has not been read to its end.
@@ -112,7 +113,7 @@ def test_there_is_a_pass_for_each_half_of_an_oscillation() -> None:
 
 def test_a_way_that_does_not_turn_ends_after_a_while() -> None:
     collector = PassCollector(delay=1.0, tail=0.43)
-    paths = [collector.add(Place(0.2 * i, 230.0, 4.0 * i, 60.0), 420.0) for i in range(300)]
+    paths = [collector.add(0.2 * i, 230.0, 4.0 * i, 60.0, 420.0) for i in range(300)]
     assert sum(path is not None for path in paths) == 2
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtr
 
-from gnc.estimation.plume_prior import PlumePrior
+from gnc.estimation.plume.prior import PlumePrior
 
 Array = npt.NDArray[np.float64]
 
@@ -94,6 +94,7 @@ class PlumeGrid:
         self.strength: Array = np.exp(logs)
         self.faint: Array = np.exp(logs[0] + STRENGTH_STEP * np.arange(1 - _FADE, len(logs)))
         self._index = _FADE - 1 + np.arange(len(logs)) - np.arange(_FADE)[:, np.newaxis]
+        self._stronger = np.arange(len(self.faint)) + np.arange(_FADE)[:, np.newaxis]
         # Which of the faint strengths a step less than a strength is.
         self._fainter: Array = np.eye(len(self.faint))[self._index.ravel()]
         self._edges: Array = np.sqrt(2.0 * STRENGTH_STEP * (np.arange(_FADE) + 0.5))
@@ -142,7 +143,7 @@ class PlumeGrid:
         looks : independent centres that a pass meets, at least 1 [-]
         """
         reach = self._edges * self.sigma_z[..., np.newaxis]
-        return np.diff(self._within(reach, off[:, np.newaxis], looks), axis=-1, prepend=0.0)
+        return _between(self._within(reach, off[:, np.newaxis], looks))
 
     def chances(self, off: Array, looks: float, least: float, sigma_z: Array) -> Array:
         """Return how likely a pass reads a strength of at least ``least`` [ppm], shape (..., h', c).
@@ -160,6 +161,28 @@ class PlumeGrid:
         """Return how likely a pass reads a ``fraction`` of a plume's own strength at least, shape (..., h'); arguments as above."""
         return self._within(math.sqrt(-2.0 * math.log(fraction)) * sigma_z, off, looks)
 
+    def beside(self, distance: float, widened: float, duration: float) -> Array:
+        """Return how likely the centre is at each place in a pass, given each bearing, shape (b, j).
+
+        Meander that two passes have in common does not average out: its variance counts (1 + r)/(1 - r) times, with r its
+        correlation from pass to pass.
+
+        Parameters
+        ----------
+        distance : behind the funnel [m]
+        widened : spread there over that of the cells [-]
+        duration : from pass to pass [s]
+        """
+        prior, places, bearing = self._expected, self.places, self.bearing
+        apart = 2.0 * duration / prior.meander_time
+        common = (1.0 + apart) * math.exp(-apart)
+        step, cell = float(places[1] - places[0]), distance * float(bearing[1] - bearing[0])
+        deviation = math.sqrt((widened * prior.meander_y) ** 2 * (1.0 + common) / (1.0 - common) + (step**2 + cell**2) / 12.0)
+        off = (places - distance * bearing[:, np.newaxis]) / deviation
+        result: Array = np.exp(-0.5 * off**2) * (step / (deviation * math.sqrt(2.0 * math.pi)))
+        result /= np.maximum(1.0, result.sum(axis=1, keepdims=True))
+        return result
+
     def coarse(self, cells: Array) -> Array:
         """Return the probability of every second height and each strength, shape (h', c), of cells (w, h, c)."""
         result: Array = np.add.reduceat(cells.sum(axis=0), np.arange(0, len(self.height), _COARSE), axis=0)
@@ -174,8 +197,10 @@ class PlumeGrid:
         """Return how likely the centre of the best look is nearer in height than ``reach`` [m], with the axis ``off`` [m]."""
         meander = self._expected.meander_z
         far, middle = reach / meander, off / meander
-        result: Array = 1.0 - (1.0 - ndtr(far - middle) + ndtr(-far - middle)) ** looks
-        return result
+        beyond: Array = ndtr(middle - far)
+        beyond += ndtr(-far - middle)
+        beyond **= looks
+        return np.subtract(1.0, beyond, out=beyond)
 
     def expected_deviation(self, weights: Array, heights: Array, off: Array, looks: float, sigma_z: Array) -> Array:
         """Return the standard deviation of the height that is expected after a pass whose strength is read [m], shape (n,).
@@ -188,16 +213,17 @@ class PlumeGrid:
         looks, sigma_z : as of ``chances``
         """
         reach = self._edges * sigma_z[:, np.newaxis]
-        fading = np.diff(self._within(reach, off[..., np.newaxis], looks), axis=-1, prepend=0.0)
-        # By height and reading, summed over the strengths that lead to it.
-        padded = np.pad(weights, ((0, 0), (_FADE - 1, _FADE - 1)))
-        windows = np.lib.stride_tricks.sliding_window_view(padded, _FADE, axis=1)
-        joint = fading.transpose(1, 0, 2) @ windows.transpose(0, 2, 1)
-        nothing = weights.sum(axis=1) * (1.0 - fading.sum(axis=-1))
-        joint = np.concatenate([joint, nothing.T[..., np.newaxis]], axis=-1)
+        fading = _between(self._within(reach, off[..., np.newaxis], looks))
+        of_heights = weights.sum(axis=1)
+        # By height and reading, summed over the strengths that lead to it; nothing is read for the last.
+        joint = np.empty((len(heights), len(off), len(self.faint) + 1))
+        padded = np.zeros((len(heights), weights.shape[1] + 2 * (_FADE - 1)))
+        padded[:, _FADE - 1 : 1 - _FADE] = weights
+        np.matmul(fading.transpose(1, 0, 2), padded.take(self._stronger, axis=1), out=joint[..., :-1])
+        joint[..., -1] = (of_heights * (1.0 - fading.sum(axis=-1))).T
         total = np.maximum(joint.sum(axis=0), _TINY)
-        mean = np.tensordot(heights, joint, 1)
-        square = float(weights.sum(axis=1) @ heights**2)
+        mean = (heights @ joint.reshape(len(heights), -1)).reshape(total.shape)
+        square = float(of_heights @ heights**2)
         result: Array = np.sqrt(np.maximum(square - (mean**2 / total).sum(axis=1), 0.0))
         return result
 
@@ -218,12 +244,18 @@ class PlumeGrid:
         return result
 
 
+def _between(within: Array) -> Array:
+    """Return the differences of cumulated probabilities along the last axis, the first from 0; takes the array over."""
+    within[..., 1:] -= within[..., :-1].copy()
+    return within
+
+
 def wandered(cells: Array, axis: int, steps: float) -> Array:
     """Return probabilities after a random walk along an axis, of a variance of so many steps squared."""
     share = min(0.25, 0.5 * steps)
     result = cells.copy()
     moved = result.swapaxes(0, axis)
-    flow = share * np.diff(moved, axis=0)
+    flow = share * (moved[1:] - moved[:-1])
     moved[:-1] += flow
     moved[1:] -= flow
     return result
@@ -242,7 +274,7 @@ def over_nothing(slope: Array, bend: Array, strength: Array, drawn_out: float) -
 
     Parameters
     ----------
-    slope, bend : of ``gnc.estimation.plume_passes.Evidence``, shape (v, j) [1/ppm, 1/ppm^2]
+    slope, bend : of ``gnc.estimation.plume.passes.Evidence``, shape (v, j) [1/ppm, 1/ppm^2]
     strength : shape (p,) [ppm]
     drawn_out : way of the pass along the plume over that across [-]
     """

@@ -1,0 +1,37 @@
+"""A study that chooses its flights on the way, each by what those before it have come to."""
+
+from collections.abc import Mapping, Sequence
+
+from scenarios.engine.task import Task
+from scenarios.schema.scenario import Scenario
+from scenarios.studies.flight_study import FlightStudy
+
+
+class ChosenFlightsStudy(FlightStudy):
+    """Flights of one trial, at points of its draws that the study chooses; what runs it appends their tasks.
+
+    Parameters
+    ----------
+    scenario, name : the scenario, and its name
+    trials : the same by its name
+    numbers : that flights may have: so many at the most
+    overrides : overrides that were applied, recorded in the manifest
+
+    Raises
+    ------
+    InputError : as of ``FlightStudy``
+    """
+
+    chooses_flights = True
+
+    def __init__(
+        self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, numbers: int, overrides: Sequence[str] = ()
+    ) -> None:
+        numbered = {trial: of.model_copy(update={"flights": numbers}) for trial, of in trials.items()}
+        super().__init__(scenario.model_copy(update={"flights": numbers}), name, numbered, overrides=overrides)
+        ((self._trial, self._scenario),) = self.trials.items()
+        self._tasks: list[Task] = []
+
+    def task(self, number: int) -> Task:
+        """Return the task of a flight, at the point that was chosen for it."""
+        return self._tasks[number]
