@@ -107,7 +107,11 @@ class Guidance:
         tracker.heading_rate_command = command
         command /= own.air_ratio
         limit = self._limit
-        self.heading_rate_command = command if -limit <= command <= limit else math.copysign(limit, command)
+        if not -limit <= command <= limit:
+            command = math.copysign(limit, command)
+            if guard is not None:
+                guard.overruled(command * own.air_ratio)
+        self.heading_rate_command = command
         if not overriding:
             self.airspeed_command = self._airspeed(along, own, guarding)
         elif mission.leaving:
@@ -120,4 +124,6 @@ class Guidance:
     def overruled(self, heading_rate: float, airspeed: float) -> None:
         """Take note of commands that are flown in place of the last ones [rad/s, m/s]: what is predicted follows them."""
         self.heading_rate_command, self.airspeed_command = heading_rate, airspeed
-        self.mission.tracker.heading_rate_command = heading_rate * self.own.air_ratio
+        self.mission.tracker.heading_rate_command = turning = heading_rate * self.own.air_ratio
+        if self.guard is not None:
+            self.guard.overruled(turning)

@@ -4,7 +4,6 @@ import math
 from collections import deque
 
 from common.turn_tube import FORGOTTEN
-from gnc.estimation.own_motion import AirMotion
 
 _WHOLE = 1e-6
 """Of a step, by which a delay may exceed a whole number of them without counting as one more [-]."""
@@ -25,39 +24,52 @@ class GivenCommands:
     Attributes
     ----------
     under_way : commands that act within the delay, of the first perhaps a part [rad/s]
-    since : commands since the last look; whoever commands appends to them [rad/s]
+    since, rates : commands since the last look, and the heading rate at each; whoever commands appends to them [rad/s]
     """
 
-    __slots__ = ("_course", "_first", "_kept", "_lack", "_lag", "_rate", "_time_step", "since", "under_way")
+    __slots__ = ("_changing", "_first", "_kept", "_lack", "_lag", "_last", "_time_step", "rates", "since", "under_way")
 
     def __init__(self, *, lag: float, delay: float, time_step: float) -> None:
         self._lag, self._time_step = lag, time_step
         count, self._first = commands_under_way(delay, time_step)
         self._kept = math.exp(-time_step / (FORGOTTEN * lag)) if lag > 0.0 else 0.0
-        self._course = self._rate = self._lack = 0.0
+        # Course turned in a step in which a lag follows one command, from the heading rates at its ends; and what is to be added
+        # where another command begins to act within the step. So it is exact for a vehicle with just that dead time and lag.
+        self._last = self._changing = 0.0
+        if lag > 0.0:
+            turned = time_step / -math.expm1(-time_step / lag)
+            self._last = turned - lag
+            self._changing = time_step - self._first + turned * math.expm1((self._first - time_step) / lag)
+        self._lack = 0.0
         self.under_way: deque[float] = deque(maxlen=count)
         self.since: list[float] = []
+        self.rates: list[float] = []
 
-    def still_to_come(self, own: AirMotion) -> float:
+    def still_to_come(self, rate: float) -> float:
         """Take in the commands since the last look; return what the heading rate lacks for the course that is to come [rad/s].
 
         Parameters
         ----------
-        own : the vehicle's motion; since the last look it has turned by less than half a turn
+        rate : of heading, now [rad/s]. Course is its sum, and not that of the motion over the mean air: what a gust or a better
+            estimate of the wind does to that no autopilot makes up for
         """
-        since, under_way, rate = self.since, self.under_way, own.heading_rate
+        since, rates, under_way = self.since, self.rates, self.under_way
         if not since:
             # A flight begins: the turn that is flown is under way.
             self._lack = 0.0
             under_way.extend([rate] * (under_way.maxlen or 0))
         else:
+            acting = under_way[0] if under_way else 0.0
             acted = self._time_step * sum(since) + self._course_under_way()
             under_way.extend(since)
             acted -= self._course_under_way()
-            turned = math.remainder(own.course - self._course, math.tau)
-            self._lack = self._lack * self._kept ** len(since) + acted - turned - self._lag * (rate - self._rate)
+            changed = rate - rates[0]
+            turned = self._time_step * sum(rates) + self._last * changed
+            if under_way:
+                turned += self._changing * (under_way[0] - acting)
+            self._lack = self._lack * self._kept ** len(since) + acted - turned - self._lag * changed
             since.clear()
-        self._course, self._rate = own.course, rate
+            rates.clear()
         return self._lack / self._lag if self._lag > 0.0 else 0.0
 
     def _course_under_way(self) -> float:

@@ -121,9 +121,10 @@ class KeepoutGuard:
         if self._free_steps > 0 and bounded:
             self._free_steps -= 1
             self._given.since.append(command)
+            self._given.rates.append(own.heading_rate)
             return command
         self._free_steps = 0
-        free, motions, to_come = -1.0, [], self._given.still_to_come(own)
+        free, motions, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
         for tube in self._candidates(time, own):
             motion = self._relative(tube, time, own, speed, to_come)
             free = self._free_when_far(motion)
@@ -143,14 +144,19 @@ class KeepoutGuard:
             self.intervening = True
             command = self._mix(command, motions)
         self._given.since.append(command)
+        self._given.rates.append(own.heading_rate)
         return command
+
+    def overruled(self, command: float) -> None:
+        """Take note of a heading rate that is flown in place of the last command [rad/s]."""
+        self._given.since[-1] = command
 
     def clearance(self, time: float, own: AirMotion, speed: float) -> float:
         """Return by how much the better turn away, begun now, keeps off [m]; negative if no command can keep off.
 
         Parameters are those of ``limit``. That no other commands do better is argued in docs/keepout_guard.md.
         """
-        best, to_come = -math.inf, self._given.still_to_come(own)
+        best, to_come = -math.inf, self._given.still_to_come(own.heading_rate)
         for tube in self.tubes:
             then = self._prediction.when_acting(self._relative(tube, time, own, speed, to_come), self._given.under_way)
             start = (then[0], then[1], then[4], then[6])
@@ -196,8 +202,7 @@ class KeepoutGuard:
         duration = self._turn_time * max(1.0, speed / self.turn_speed)
         closing = speed + math.hypot(velocity_north, velocity_east) + growth
         gap = math.hypot(x, y) - radius - (closing + 0.5 * acceleration * duration) * duration
-        # By half a turn since the last look it could no longer be told what has been turned.
-        return min(gap / (closing + 1.5 * acceleration * duration), 0.5 * math.pi / self._rate)
+        return min(gap / (closing + 1.5 * acceleration * duration), duration)
 
     def _free_by_turning_away(self, command: float, motion: Motion) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""

@@ -74,7 +74,7 @@ def lacking(flights, record, *, remembers):
         guard.tubes = (Tube(0.0, 1e5, 0.0, 0.0, 0.0),)
         for step, (own, command) in enumerate(told):
             assert guard.limit(command, step * STEP, own, speed) == command
-        to_come = guard._given.still_to_come(now)
+        to_come = guard._given.still_to_come(now.heading_rate)
         time = len(told) * STEP
         after = TIME_STEP * np.arange(1, len(path) + 1)
         for closing in (0.0, 0.5 * speed, 0.85 * speed):
