@@ -67,7 +67,7 @@ _INTERVAL, _PARCEL = 4, 2
 Measured = Sequence[tuple[float, Any]]
 """Time, and what is measured then, in the form that the guidance takes."""
 
-Heard = Sequence[tuple[float, tuple[tuple[float, float], ...]] | None]
+PlumeReadings = Sequence[tuple[float, tuple[tuple[float, float], ...]] | None]
 """For each step the altitude [m], and times [s] and CO2 [ppm] of the readings that have come; none where nobody is told."""
 
 
@@ -89,8 +89,8 @@ def report_guidance(rounds: int, setup: VehicleSetup) -> None:
     )
     for name, speed in (("slow", 3.0), ("fast", 12.0)):
         predicted, _, _ = _flown(searching(speed, "predicted"), setup)
-        plan, measured, heard = _flown(searching(speed, "estimated"), setup)
-        pairs = [(_step_time(predicted, measured), _step_time(plan, measured, heard)) for _ in range(rounds)]
+        plan, measured, passed_on = _flown(searching(speed, "estimated"), setup)
+        pairs = [(_step_time(predicted, measured), _step_time(plan, measured, passed_on)) for _ in range(rounds)]
         without, with_it = (statistics.median(times) for times in zip(*pairs, strict=True))
         ratio = statistics.median(b / a for a, b in pairs)
         print(f"  beside a {name} ship: {without:.1f} us without a search, {with_it:.1f} us with one, {ratio:.2f} times as long")
@@ -110,7 +110,7 @@ def searching(vessel_speed: float, plume: str) -> Scenario:
     )
 
 
-def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measured, Heard]:
+def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measured, PlumeReadings]:
     """Return the plan of a flight, what its guidance measures at each step, and what a search would be told."""
     work = FlightWork(experiments=(Experiment("bench", scenario),), histories=1, setup=setup, spreads=PredictedSpreads())
     plan, result = work.plan(work.request(Task(number=0))), work.fly(Task(number=0))
@@ -123,10 +123,10 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
     v_north, v_east = (history[f"velocity_{axis}_mps"] - of_air for axis, of_air in zip(("north", "east"), wind, strict=True))
     air_data = zip(history["airspeed_mps"], np.arctan2(v_east, v_north), history["roll_rad"], strict=True)
     measured = [(at, (place, *read, rate, 0.0)) for (at, *place, rate), read in zip(motions, air_data, strict=True)]
-    return plan, measured, _heard(history)
+    return plan, measured, _plume_readings(history)
 
 
-def _heard(history: pd.DataFrame) -> Heard:
+def _plume_readings(history: pd.DataFrame) -> PlumeReadings:
     """Return what a search is told at each step of a flight, in parcels as the sniffer passes them on."""
     if "co2_reading_ppm" not in history:
         return []
@@ -147,23 +147,23 @@ def _reports(plan: FlightPlan) -> list[Any]:
     return list(reversed((plan.sensing.received if plan.sensing else None) or []))
 
 
-def _step_time(plan: FlightPlan, measured: Measured, heard: Heard = ()) -> float:
+def _step_time(plan: FlightPlan, measured: Measured, passed_on: PlumeReadings = ()) -> float:
     """Return the CPU time of a step of a settled flight [us]."""
     guidance, reports = compose(plan.guidance), _reports(plan)
     first = next(i for i, (at, _) in enumerate(measured) if at >= SETTLED)
-    _step_through(guidance, measured[:first], reports, heard[:first])
+    _step_through(guidance, measured[:first], reports, passed_on[:first])
     began = time.process_time()
-    _step_through(guidance, measured[first:], reports, heard[first:])
+    _step_through(guidance, measured[first:], reports, passed_on[first:])
     return 1e6 * (time.process_time() - began) / (len(measured) - first)
 
 
-def _step_through(guidance: Guidance, measured: Measured, reports: list[Any], heard: Heard) -> None:
+def _step_through(guidance: Guidance, measured: Measured, reports: list[Any], passed_on: PlumeReadings) -> None:
     target, axis = guidance.target, axis_of(guidance)
     for i, (at, measurement) in enumerate(measured):
         while reports and reports[-1][0] <= at and isinstance(target, ReportedTarget):
             target.report(reports.pop()[1])
         guidance.step(at, measurement)
-        told = heard[i] if heard else None
+        told = passed_on[i] if passed_on else None
         if told is not None and isinstance(axis, SearchedAxis):
             axis.flown = told[0]
             axis.heed(at, told[1])

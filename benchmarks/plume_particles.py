@@ -42,13 +42,13 @@ class ParticleEstimator(PlumeEstimator):
         drifts = np.array([0.0, self.prior.height_drift, 0.0, self.prior.bearing_drift]) * math.sqrt(time)
         self._particles += drifts[:, np.newaxis] * self._generator.standard_normal(self._particles.shape)
 
-    def _correct(self, path: Path, evidence: Evidence) -> None:
+    def _correct(self, path: Path, evidence: Evidence, altitude: float) -> None:
         prior, grid, generator = self.prior, self.grid, self._generator
         scene = self._scene(path, evidence)
         w = np.clip(np.rint(self._particles[0]).astype(int), 0, len(grid.sigma_y) - 1)
         heights = prior.height_at(self._particles[1], self._distance, self._wind)
         looks = generator.standard_normal((max(1, round(self._looks)), COUNT))
-        off = np.abs(heights + prior.meander_z * looks - scene.altitude).min(axis=0)
+        off = np.abs(heights + prior.meander_z * looks - altitude).min(axis=0)
         nearest = np.clip(np.rint((self._particles[1] - grid.height[0]) / self._steps[1]).astype(int), 0, len(grid.height) - 1)
         strength = np.exp(self._particles[2] - 0.5 * (off / grid.sigma_z[w, nearest]) ** 2)
         across = self._distance * self._particles[3] + prior.meander_y * generator.standard_normal(COUNT)
@@ -58,7 +58,7 @@ class ParticleEstimator(PlumeEstimator):
         p = np.clip((np.log(np.maximum(strength, 1e-9) / grid.faint[0])) / self._steps[2], 0.0, len(grid.faint) - 1.0)
         of = scene.likelihood[w, np.clip(j, 0, len(grid.places) - 1), np.rint(p).astype(int)]
         weight = np.where(inside, of, scene.nothing)
-        self._judge(evidence, self.detection(scene.altitude))
+        self._judge(evidence, self.detection(altitude))
         self._resample(weight / weight.sum())
 
     def _resample(self, weight: np.ndarray) -> None:

@@ -7,6 +7,9 @@ from typing import Annotated
 
 import typer
 
+PROGRAM = "plume-flight"
+"""Name of the console command."""
+
 BAD_INPUT, INTERRUPTED = 2, 130
 
 _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]

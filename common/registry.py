@@ -85,6 +85,10 @@ class Registry(Generic[Part]):
         """Return every known name, in alphabetical order."""
         return sorted({*self._known(), *self._entry_points()})
 
+    def __contains__(self, name: str) -> bool:
+        """Return whether a part is known by ``name``; installed packages are asked last, which takes longest."""
+        return name in self._known() or name in self._entry_points()
+
     def get(self, name: str) -> Part:
         """Return the part of this name, or that of a file, ``FILE.py:NAME``.
 

@@ -1,5 +1,7 @@
 """File names of a run directory, for the rooms that write it and the rooms that read it."""
 
+from pathlib import Path
+
 MANIFEST = "manifest.json"
 """Configuration, software, and how the run ended."""
 
@@ -88,6 +90,9 @@ EXPORT = "export"
 HISTORY_SUFFIX = ".parquet"
 """Suffix of time histories."""
 
+EVALUATION_SUFFIX = ".json"
+"""Suffix of what instruments made of flights."""
+
 NAME_BYTES_MAX = 200
 """Longest name of a trial or a flight [bytes]: file systems take 255, and suffixes are added."""
 
@@ -113,7 +118,12 @@ def time_history_path(flight_id: str) -> str:
 
 def evaluation_path(flight_id: str) -> str:
     """Return the path of what an instrument made of a flight, relative to the run directory."""
-    return f"{FLIGHTS}/{flight_id}.json"
+    return f"{FLIGHTS}/{flight_id}{EVALUATION_SUFFIX}"
+
+
+def flight_of(path: str) -> str:
+    """Return the flight that a path ``RUN_DIR/flights/ID`` names, with or without the suffix of one of its files."""
+    return Path(path).name.removesuffix(HISTORY_SUFFIX).removesuffix(EVALUATION_SUFFIX)
 
 
 def trajectory_path(law: str, number: int) -> str:

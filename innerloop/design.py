@@ -115,7 +115,7 @@ def _design(
     if reversals:
         record = _with_repeated_search(found, root, reversals)
     write_json(out / DESIGN_RECORD, record, indent=None)
-    command = command_line("innerloop.design", sys.argv[1:])
+    command = command_line("innerloop.design", sys.argv)
     write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started, command=command))
     print_design(record)
     print(f"\ndesign: {out}\nJSBSim root with the autopilot: {out / 'model'}")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from common.command_line import INTERRUPTED, refuse, run_command
-from common.run_layout import REPORT_HTML, REPORT_PDF
+from common.run_layout import REPORT_HTML, REPORT_PDF, flight_of
 
 if TYPE_CHECKING:
     from scenarios.engine.executors import ExecutorFactory
@@ -115,8 +115,8 @@ def _run(
     if seed is not None:
         overrides = [*overrides, f"seed={seed}"]
 
-    stem = Path(name).stem
     replayed = is_flight(name)
+    stem = flight_of(name) if replayed else Path(name).stem
     directory = out or Path("runs") / f"{'replay-' if replayed else ''}{stem}-{datetime.now():%Y%m%d-%H%M%S}"
     if replayed and overrides:
         raise InputError(
@@ -133,7 +133,7 @@ def _run(
     from common.provenance import command_line
     from scenarios.engine.progress import progress_bar
 
-    given = command_line("scenarios.run", sys.argv[1:])
+    given = command_line("scenarios.run", sys.argv)
     with progress_bar() as progress:
         if scenario is None:
             from scenarios.engine.runner import fly_study

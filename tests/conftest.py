@@ -49,6 +49,10 @@ LONGEST = (
 """Files of tests that take longest, in this order: each is run by one process, and none may begin one when the others are done."""
 
 
+SWEPT_ALTITUDE = 60.0
+"""Altitude of the catalog's flights, at which designs are made for all tests [m]."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the files that take longest."""
     place = {name: number for number, name in enumerate(LONGEST)}
@@ -77,7 +81,7 @@ def designs(cache_home: Path) -> Callable[..., Designed]:
     from innerloop.designs.cache import designed
 
     @functools.cache
-    def design(name: str, altitude: float = 100.0) -> Designed:
+    def design(name: str, altitude: float = SWEPT_ALTITUDE) -> Designed:
         with _alone(cache_home / f"{Path(name).name}.lock"):
             return designed(find_spec(name), altitude)
 
@@ -100,16 +104,16 @@ def _alone(lock: Path) -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def x8_design(designs: Callable[..., Designed]) -> Design:
-    """The X8's autopilot at its default altitude, and its margins."""
+    """The X8's autopilot and its margins."""
     return designs("x8").design
 
 
 @pytest.fixture(scope="session")
 def heavy_design(designs: Callable[..., Designed], tmp_path_factory: pytest.TempPathFactory) -> Designed:
-    """The autopilot of the Cessna of docs/scripts/aircraft_directory.py at the altitude at which it flies the sweep."""
+    """The autopilot of the Cessna of docs/scripts/aircraft_directory.py."""
     script = Path(__file__).parents[1] / "docs" / "scripts" / "aircraft_directory.py"
     folder = runpy.run_path(str(script))["write_heavy_cessna"](tmp_path_factory.mktemp("fleet"))
-    return designs(str(folder), 60.0)
+    return designs(str(folder))
 
 
 @pytest.fixture(scope="session")

@@ -23,7 +23,7 @@ def find_spec(name: str) -> AircraftSpec:
     ------
     AircraftError : the name is unknown, the aircraft does not load, or an autopilot cannot fly it, with the reason
     """
-    if is_file_part(name) or name in AIRCRAFT.names():
+    if is_file_part(name) or name in AIRCRAFT:
         return _registered(name)
     if name in stock_names():
         return stock_spec(name)

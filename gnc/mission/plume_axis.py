@@ -140,4 +140,10 @@ class PredictedAxis:
 
 def trail(own: OwnMotion, target: TargetMotion) -> float:
     """Return the course along which a plume trails behind the vessel's motion through the air, as it is estimated [rad]."""
-    return math.atan2(own.wind_east - target.velocity_east, own.wind_north - target.velocity_north)
+    north, east = apparent_wind(own, target)
+    return math.atan2(east, north)
+
+
+def apparent_wind(own: OwnMotion, target: TargetMotion) -> tuple[float, float]:
+    """Return the velocity of the air past the vessel, north and east, as it is estimated [m/s]."""
+    return own.wind_north - target.velocity_north, own.wind_east - target.velocity_east

@@ -9,7 +9,7 @@ from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState, SensorSta
 from gnc.estimation.plume.prior import GasSensor, expected_plume
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
-from gnc.mission.plume_axis import Climb, Situation
+from gnc.mission.plume_axis import Climb, Situation, apparent_wind
 from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
 
 _MODES = {PlumeState.SEARCHING: Mode.SEARCHING, PlumeState.FOUND: Mode.FOUND, PlumeState.LOST: Mode.LOST_AGAIN}
@@ -202,8 +202,7 @@ class SearchedAxis:
 
 def _seen_along(situation: Situation, north: float, east: float) -> tuple[float, float]:
     """Return where a place north and east of the vessel is along the predicted axis and to the right of it [m]."""
-    own, target = situation.own, situation.target
-    wind_north, wind_east = own.wind_north - target.velocity_north, own.wind_east - target.velocity_east
+    wind_north, wind_east = apparent_wind(situation.own, situation.target)
     speed = math.hypot(wind_north, wind_east) or 1.0
     return (north * wind_north + east * wind_east) / speed, (east * wind_north - north * wind_east) / speed
 

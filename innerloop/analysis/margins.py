@@ -124,7 +124,8 @@ class Loops:
 
     def margins(self) -> list[Margin]:
         """Return the margins at each of ``breaks``."""
-        return [loop_margin(BREAK_NAMES.get(name, name), self.opened(name), self.frequencies) for name in self.breaks]
+        names = [BREAK_NAMES.get(name, name) for name in self.breaks]
+        return loop_margins(names, np.array([self.opened(name) for name in self.breaks]), self.frequencies)
 
     def margin_at_all_controls(self) -> Margin:
         """Return the disk margins for independent changes in all controls at once."""
@@ -208,10 +209,23 @@ def _response(system: control.StateSpace, frequencies: Array) -> Complex:
     return np.asarray(system.C @ np.linalg.solve(resolvent, forcing) + system.D)
 
 
-def loop_margin(name: str, loop: Complex, frequencies: Array) -> Margin:
-    """Return the margins of a single loop known over frequency, its crossings interpolated between frequencies."""
-    logs = np.log(np.abs(loop))
-    phase = np.unwrap(np.angle(loop))
+def loop_margins(names: Sequence[str], loops: Complex, frequencies: Array) -> list[Margin]:
+    """Return the margins of single loops known over frequency, their crossings interpolated between frequencies.
+
+    Parameters
+    ----------
+    names : of the loops
+    loops : negative feedback, shape (loops, frequencies)
+    frequencies : [rad/s]
+    """
+    logs = np.log(np.abs(loops))
+    phases = np.unwrap(np.angle(loops), axis=1)
+    disks = np.min(2.0 * np.abs(1.0 + loops) / np.abs(1.0 - loops), axis=1)
+    return [_loop_margin(*of_loop, frequencies) for of_loop in zip(names, logs, phases, disks.tolist(), strict=True)]
+
+
+def _loop_margin(name: str, logs: Array, phase: Array, disk: float, frequencies: Array) -> Margin:
+    """Return the margins of a loop from its logarithmic gain, its unwrapped phase [rad] and the size of its disk."""
     gains = [float(np.interp(0.0, *_ordered(phase[i : i + 2] - turn, logs[i : i + 2]))) for i, turn in _crossings(phase)]
     at_unity = np.nonzero(np.sign(logs[:-1]) != np.sign(logs[1:]))[0]
     shares = [logs[i] / (logs[i] - logs[i + 1]) for i in at_unity]
@@ -220,7 +234,7 @@ def loop_margin(name: str, loop: Complex, frequencies: Array) -> Margin:
         frequencies[i] * (frequencies[i + 1] / frequencies[i]) ** share for i, share in zip(at_unity, shares, strict=True)
     ]
     away = [abs(math.remainder(p - math.pi, 2.0 * math.pi)) for p in phases]
-    disk_gain_db, disk_phase_deg = _disk(float(np.min(2.0 * np.abs(1.0 + loop) / np.abs(1.0 - loop))))
+    disk_gain_db, disk_phase_deg = _disk(disk)
     return Margin(
         loop=name,
         gain_db=min((abs(20.0 * g / math.log(10.0)) for g in gains), default=math.inf),

@@ -168,17 +168,35 @@ def _between(first: control.StateSpace, second: control.StateSpace) -> list[cont
     return [with_matrices(first, a, b, c, d)]
 
 
-def check_design(schedule: Schedule, *, changed: bool = True) -> list[Check]:
-    """Return the margins at every operating point, as modelled and, if ``changed``, with the perturbed aircraft."""
+ClosedLoops = Sequence[tuple[OperatingPoint, Loops]]
+"""Operating points, and the loops that are closed there."""
+
+
+def closed_loops(schedule: Schedule) -> ClosedLoops:
+    """Return the loops at every operating point, as modelled.
+
+    But for their delay they are those of every ``period`` of the schedule.
+    """
     law = ControlLaw(schedule)
+    return [(p, Loops(p.model, linear_controller(law, p.trim), schedule.delay)) for p in operating_points(schedule)]
+
+
+def check_design(period: int, closed: ClosedLoops, *, changed: bool = True) -> list[Check]:
+    """Return the margins at every operating point, as modelled and, if ``changed``, with the perturbed aircraft.
+
+    Parameters
+    ----------
+    period : from one computation of the autopilot to the next, as in ``Schedule``
+    closed : the loops of the schedule, as ``closed_loops`` returns them
+    changed : whether the aircraft is perturbed, too
+    """
     cases = CASES if changed else {NOMINAL: CASES[NOMINAL]}
-    return [check for point in operating_points(schedule) for check in _checks(law, point, cases)]
+    return [check for point, loops in closed for check in _checks(point, loops, period, cases)]
 
 
-def _checks(law: ControlLaw, point: OperatingPoint, cases: "dict[str, tuple[Change, int]]") -> Iterator[Check]:
-    as_modelled = _loops(law, point)
+def _checks(point: OperatingPoint, as_modelled: Loops, period: int, cases: "dict[str, tuple[Change, int]]") -> Iterator[Check]:
     for case, (change, late) in cases.items():
-        loops = as_modelled.with_aircraft(change(point.model, point.trim), loop_delay(law.schedule.period, late))
+        loops = as_modelled.with_aircraft(change(point.model, point.trim), loop_delay(period, late))
         yield Check(
             case=case,
             airspeed=point.trim.airspeed,
@@ -189,20 +207,23 @@ def _checks(law: ControlLaw, point: OperatingPoint, cases: "dict[str, tuple[Chan
         )
 
 
-def _loops(law: ControlLaw, point: OperatingPoint) -> Loops:
-    return Loops(point.model, linear_controller(law, point.trim), law.schedule.delay)
-
-
-def with_all_controls(schedule: Schedule, checks: Sequence[Check]) -> list[Check]:
+def with_all_controls(period: int, closed: ClosedLoops, checks: Sequence[Check]) -> list[Check]:
     """Return the checks of a design, to those of the grid's points as modelled added the disk margins at all controls at once.
 
     Nothing is required of those, and they take as long as all other margins.
+
+    Parameters
+    ----------
+    period, closed : as for ``check_design``
+    checks : as it returned them
     """
-    law = ControlLaw(schedule)
-    of_grid = iter([point for point in operating_points(schedule) if not point.between])
+    of_grid = iter([(point, loops) for point, loops in closed if not point.between])
+
+    def at_all_controls() -> Margin:
+        point, loops = next(of_grid)
+        return loops.with_aircraft(point.model, loop_delay(period)).margin_at_all_controls()
+
     return [
-        replace(check, margins=(*check.margins, _loops(law, next(of_grid)).margin_at_all_controls()))
-        if check.case == NOMINAL and not check.between
-        else check
+        replace(check, margins=(*check.margins, at_all_controls())) if check.case == NOMINAL and not check.between else check
         for check in checks
     ]

@@ -1,6 +1,7 @@
 """A cache of designs, by the hash of everything they depend on, so that a stale one is never used."""
 
 import contextlib
+import functools
 import hashlib
 import importlib.metadata
 import os
@@ -69,7 +70,7 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
         text = as_text(_design(spec, altitude))
         _store(key, text)
         # What is used is what the next run reads, whether or not it was written.
-        found = from_text(text, _Entry)
+        found = _restored(text)
     if found.refused is not None or found.made is None:
         refused = found.refused or _Refused(message=f"aircraft '{spec.name}' has no design", is_margins=False)
         raise (DesignError if refused.is_margins else AircraftError)(refused.message)
@@ -130,9 +131,15 @@ def _cached(key: str) -> _Entry | None:
     try:
         # In a damaged file the numbers might be those of another autopilot: the first line is the hash of the others.
         digest, _, text = (directory / f"{key}{SUFFIX}").read_text(encoding="utf-8").partition("\n")
-        return from_text(text, _Entry) if digest == _digest(text) else None
+        return _restored(text) if digest == _digest(text) else None
     except (OSError, ValueError):
         return None
+
+
+@functools.lru_cache(maxsize=4)
+def _restored(text: str) -> _Entry:
+    """Return the entry that a text holds: restored once, however many studies of a process fly with it."""
+    return from_text(text, _Entry)
 
 
 def _store(key: str, text: str) -> None:

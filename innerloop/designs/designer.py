@@ -16,7 +16,7 @@ from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec, Envelope
 from innerloop.analysis.margins import ALL_CONTROLS
 from innerloop.analysis.perturbations import NOMINAL
-from innerloop.analysis.robustness import REQUIRED, Check, check_design, with_all_controls
+from innerloop.analysis.robustness import REQUIRED, Check, ClosedLoops, check_design, closed_loops, with_all_controls
 from innerloop.synthesis.gains import design_gains
 from innerloop.synthesis.rate import PERIODS
 from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL, LEVEL_GAINS, TRIM_BANKS, Schedule, table_banks
@@ -91,11 +91,13 @@ def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
     short: list[Check] = []
     for _ in range(_ATTEMPTS):
         schedule = schedule_at(grid, bandwidths)
-        checks = check_design(schedule)
+        closed = closed_loops(schedule)
+        checks = check_design(schedule.period, closed)
         short = [check for check in checks if not check.met]
         if not short:
-            schedule, checks = _computed_seldom(schedule, checks)
-            return Design(schedule=schedule, bandwidths=bandwidths, checks=tuple(with_all_controls(schedule, checks)))
+            period, checks = _computed_seldom(closed, checks)
+            checks = with_all_controls(period, closed, checks)
+            return Design(schedule=replace(schedule, period=period), bandwidths=bandwidths, checks=tuple(checks))
         bandwidths = _slowed(bandwidths, short)
     worst = min(short, key=lambda check: check.shortfall)
     raise DesignError(
@@ -147,23 +149,23 @@ def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
     )
 
 
-def _computed_seldom(schedule: Schedule, checks: list[Check]) -> tuple[Schedule, list[Check]]:
-    """Return the design with the longest of ``PERIODS`` that margins allow, and its margins.
+def _computed_seldom(closed: ClosedLoops, checks: list[Check]) -> tuple[int, list[Check]]:
+    """Return the longest of ``PERIODS`` that margins allow, and the margins with it.
 
     Every margin is as required then too, perturbed or not, and no loop has lost more than ``_PHASE_LOSS_MAX``.
 
     Parameters
     ----------
-    schedule, checks : of the shortest period
+    closed : the loops of the design
+    checks : its margins with the shortest period
     """
     often = [check for check in checks if check.case == NOMINAL]
     for period in reversed(PERIODS[1:]):
-        slower = replace(schedule, period=period)
-        if phase_loss(often, check_design(slower, changed=False)) <= _PHASE_LOSS_MAX:
-            found = check_design(slower)
+        if phase_loss(often, check_design(period, closed, changed=False)) <= _PHASE_LOSS_MAX:
+            found = check_design(period, closed)
             if all(check.met for check in found):
-                return slower, found
-    return schedule, checks
+                return period, found
+    return PERIODS[0], checks
 
 
 def phase_loss(before: Sequence[Check], after: Sequence[Check]) -> float:

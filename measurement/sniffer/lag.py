@@ -4,8 +4,6 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import brentq
-from scipy.signal import lfilter
 
 from measurement.errors import MeasurementError
 
@@ -32,6 +30,8 @@ def time_constants(t90: float, second_pole: float = 0.0) -> tuple[float, ...]:
         )
     if second_pole == 0.0:
         return (t90 / math.log(10.0),)
+    from scipy.optimize import brentq
+
     # With the first time constant 1, the step response is 1 - (e^-t - r e^(-t/r)) / (1 - r).
     reached = brentq(
         lambda t: 0.1 - (math.exp(-t) - second_pole * math.exp(-t / second_pole)) / (1.0 - second_pole), 1.0, 6.0, xtol=1e-14
@@ -69,6 +69,8 @@ def lag(signal: Array, step: float, constant: float, before: tuple[float, float]
     constant : time constant [s]
     before : output and input a step before the first sample; without it the lag is at rest at the first sample
     """
+    from scipy.signal import lfilter
+
     a, old, new = (float(w) for w in weights(step, constant))
     if not len(signal):
         return signal.copy()

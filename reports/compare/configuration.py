@@ -78,7 +78,7 @@ def _differing(runs: Sequence[Run]) -> dict[tuple[str, Values], list[str]]:
 def _settings(trial: Trial) -> dict[str, Any]:
     """Return the values of a trial's configuration by dotted keys; draws, cases and variants by what they are called."""
     config = {key: value for key, value in trial.config.items() if key not in _WORDS}
-    config["draws"] = {draw["key"]: distribution(draw) for draw in config.get("draws", [])}
+    config["draws"] = {draw["key"]: distribution(draw, str(config.get("study"))) for draw in config.get("draws", [])}
     return leaves(_named(config))
 
 

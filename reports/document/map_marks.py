@@ -79,11 +79,11 @@ def on_map(
     panel : in metres
     north : angle of north, or None where it is not known
     wind : speed [m/s] and the angle that it blows towards, or None where it is not known
-    shown : lines that have to be seen whole; all of the panel's if none
+    shown : lines that have to be seen whole, beside the words; all of the panel's if none
     aspect : width of the panel over its height
     """
     share = min(_STRIP_MAX, _STRIP * max(1.0, 0.5 * aspect))
-    (left, right), (bottom, top) = _view(shown or panel.lines, aspect, share)
+    (left, right), (bottom, top) = _view(shown or panel.lines, panel.notes, aspect, share)
     width, strip = right - left, share * (top - bottom)
     middle, size = top - 0.5 * strip, 0.66 * strip
     bar = _round_length(_BAR * width)
@@ -110,11 +110,16 @@ def on_map(
     )
 
 
-def _view(lines: Sequence[Line], aspect: float, strip: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return limits that hold all lines below a strip, which is a share of the height, of a panel of an aspect."""
+def _view(
+    lines: Sequence[Line], notes: Sequence[Note], aspect: float, strip: float
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return limits that hold all lines and words below a strip, which is a share of the height, of a panel of an aspect."""
     (left, right), (bottom, top) = (
         (float(np.nanmin(values)), float(np.nanmax(values)))
-        for values in (np.concatenate([line.x for line in lines]), np.concatenate([line.y for line in lines]))
+        for values in (
+            np.concatenate([*(line.x for line in lines), [note.x for note in notes]]),
+            np.concatenate([*(line.y for line in lines), [note.y for note in notes]]),
+        )
     )
     room = _ROOM * max(right - left, top - bottom) or 1.0
     width, height = right - left + 2.0 * room, (top - bottom + 2.0 * room) / (1.0 - strip)

@@ -7,7 +7,7 @@ from itertools import count
 from reports.document.blocks import Block, Heading, Section, Table
 from reports.document.chart import Chart
 
-PICTURE_HEIGHT = 0.66
+PICTURE_HEIGHT = 0.7
 """Height of the panels of page 1's picture, over its width: what a printed page has room for below the figures [-]."""
 
 

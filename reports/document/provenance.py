@@ -17,6 +17,7 @@ def provenance_section(run: RunData, head: Letterhead) -> Section:
         widths=[1.0, 4.0],
         left_columns=2,
         prose=True,
+        breakable=True,
         print_size_pt=8.0,
         caption="How the run was made; with the same source, input and seed it can be made again.",
     )

@@ -23,8 +23,8 @@ GUARD, GUARD_LOST = "guard changed commands", "guard lost its radius"
 _GUARDED_MAX = 400
 """Points of all the guard's stretches on a track at most."""
 
-_DIAMONDS_MAX = 60
-"""Crossings that are marked by diamonds; more are by dots."""
+_DIAMONDS_MAX, _DIAMONDS_FAR = 60, 12
+"""Crossings that are marked by diamonds, more by dots: of a track that is near, and of one that is far away."""
 
 _BANDS_MAX = 30
 """Stretches of the guard in a time history at most; those that are nearest to each other are drawn as one."""
@@ -90,14 +90,11 @@ class FlightView:
         late.crossings, late.closest = (rows[rows["time_s"] >= time] for rows in (self.crossings, self.closest))
         return late
 
-    @property
-    def _crossing_style(self) -> Style:
-        """How crossings are marked: many of them would hide the track."""
-        return "diamonds" if len(self.crossings) <= _DIAMONDS_MAX else "dots"
-
-    def marks(self, place: Place) -> list[Line]:
-        """Return the crossings and the closest approach, where ``place`` has them."""
-        marks: list[tuple[pd.DataFrame, str, str, Style]] = [(self.crossings, "crossing", Meaning.CROSSING, self._crossing_style)]
+    def marks(self, place: Place, *, far: bool = False) -> list[Line]:
+        """Return the crossings and the closest approach, where ``place`` has them, or has them from far away."""
+        # Many diamonds would hide the track.
+        style: Style = "dots" if len(self.crossings) > (_DIAMONDS_FAR if far else _DIAMONDS_MAX) else "diamonds"
+        marks: list[tuple[pd.DataFrame, str, str, Style]] = [(self.crossings, "crossing", Meaning.CROSSING, style)]
         marks += [(self.closest, "closest approach", Meaning.LIMIT, "cross")] if self.vessel else []
         return [self.line(place, samples, label, colour, style) for samples, label, colour, style in marks if len(samples)]
 

@@ -13,7 +13,8 @@ def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
     """Return what a flight is called: by what was swept, or by its number, or by its name."""
     flight_id = str(row["flight_id"])
     if trial.swept:
-        return ", ".join(_swept(key, trial.input(key)[flight_id]) for key in trial.swept)
+        first, *others = (_swept(key, trial.input(key)[flight_id]) for key in trial.swept)
+        return ", ".join([first, *(words[0].lower() + words[1:] for words in others)])
     counted = re.search(r"_(\d+)$", flight_id)
     return f"Flight {int(counted[1])}" if counted else flight_id
 

@@ -1,5 +1,6 @@
 """Tables of parameters: what trials set, sweep and sample, what follows from it, and the defaults."""
 
+import re
 from functools import partial
 from typing import Any
 
@@ -7,6 +8,7 @@ from reports.document.blocks import Block, Heading, Table
 from reports.document.tables import parameter_value, span
 from reports.flights.names import flight_name, manoeuvre_name
 from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
+from reports.monte_carlo.names import input_name, input_unit
 from reports.run.columns import column
 from reports.run.run_data import RunData
 from reports.run.trials import Parameters, Trial
@@ -56,9 +58,9 @@ def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
         low, high = trial.config["speed_ratio"]
         rows.append(["speed_ratio", f"{low:g} to {high:g}", "", "", "Samples with another speed ratio ν are sampled again"])
     inputs = {key: f"swept: {parameter_value(values)}" for key, values in trial.swept.items()}
-    inputs |= {sample["key"]: distribution(sample) for sample in trial.sampled}
+    inputs |= {sample["key"]: distribution(sample, trial.setting("study", "flights")) for sample in trial.sampled}
     for key, words in inputs.items():
-        about = listed.get(key, {"meaning": "Speed ratio ν of the vessel and the UAV" if key == "nu" else ""})
+        about = listed.get(key, {"meaning": _meaning(key), "unit": input_unit(key).replace("-", "")})
         rows.append([key, words, _default(about), about.get("unit", ""), about["meaning"]])
     return rows + [
         [key, value_in_words(p["value"], key), _default(p), p["unit"], p["meaning"]]
@@ -67,15 +69,22 @@ def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
     ]
 
 
-def distribution(sample: dict[str, Any]) -> str:
-    """Return how a key is sampled, in words."""
+def _meaning(key: str) -> str:
+    """Return the meaning of an input that is no key of its own: the speed ratio, or of an entry of a list."""
+    if entry := re.fullmatch(r"vessel\.manoeuvres\.(\d+)\.(\w+)", key):
+        return f"Of the vessel's manoeuvre number {int(entry[1]) + 1}: {input_name(entry[2]).lower()}"
+    return "Speed ratio ν of the vessel and the UAV" if key == "nu" else ""
+
+
+def distribution(sample: dict[str, Any], study: str) -> str:
+    """Return how a key is sampled in flights of a study, in words."""
     if sample["uniform"] is not None:
         low, high = sample["uniform"]
         return f"uniform from {low:g} to {high:g}"
     if sample["choice"] is not None:
         choices = [value_in_words(choice) for choice in sample["choice"]]
         if sample["weights"] is None:
-            return "cycled: " + "; ".join(choices)
+            return f"{'one' if study == 'falsify' else 'in turn one'} of: {'; '.join(choices)}"
         whole = sum(sample["weights"])
         return "; ".join(f"{100.0 * w / whole:.0f} % {choice}" for w, choice in zip(sample["weights"], choices, strict=True))
     if sample["normal"] is not None:

@@ -33,8 +33,8 @@ def flight_section(trials: list[Trial]) -> Section:
         telling = {str(row["flight_id"]): why for _, row, why in picked}
         flights = [_of_sweep(trials[0], row, telling.get(str(row["flight_id"]), "")) for _, row in trials[0].rows.iterrows()]
         text = (
-            f"Every flight of the sweep. In print {len(telling)} {'are' if len(telling) > 1 else 'is'} shown:"
-            f" {', '.join(telling.values())}; reports.build --all-flights prints all."
+            f"Every flight of the sweep on the screen; in print {len(telling)}: {', '.join(telling.values())}."
+            " The option --all-flights of plume-flight report prints them all."
         )
     else:
         flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked]

@@ -14,6 +14,7 @@ from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.ship_map import ship_lines, ship_panel, ship_words
 from reports.flights.flight_view import FlightView, Place, flight_view
+from reports.flights.time_marks import marks_beside, marks_in_a_row
 from reports.run.columns import Array, column
 from reports.run.surroundings import Surroundings, surroundings
 from reports.run.time_history import about_the_plume, turned
@@ -25,12 +26,6 @@ _STEPS = (10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)
 _MARKS_MAX = 8
 """Marks of the time along a track at most."""
 
-_APART = 0.08
-"""Distance of words in a row at least, over the width of the panel."""
-
-_WORD = (0.22, 0.07)
-"""Width and height of the words beside a track, over the size of what is shown."""
-
 _NEAR_PERIODS = 2.0
 """Periods of the oscillation that are shown from near, at the end of the flight."""
 
@@ -40,7 +35,7 @@ _NEAR_S = 60.0
 _NEARER = 0.5
 """Size of what is shown from near, over that of the whole, up to which it has a panel of its own."""
 
-_UPRIGHT, _LARGE, _BESIDE, _WIDE, _FLAT = 0.75, 1.05, 1.2, 1.9, 4.8
+_UPRIGHT, _LARGE, _BESIDE, _WIDE, _FLAT = 0.66, 1.05, 1.2, 1.9, 4.8
 """Width over height: of one of two flights on page 1, of one of two of a flight there, of such on its own page, alone, and over
 the ground."""
 
@@ -113,15 +108,15 @@ class _Tracks:
     def _whole(self, about: Surroundings, title: str, aspect: float) -> Panel:
         """Return the whole flight, seen from the ship with her plume up the page."""
         view = self.view
-        times, notes = self._times(about_the_plume, until=view.settled_at)
         lines = [
             *view.guarded(about_the_plume),
             view.line(about_the_plume, view.samples, "flown", Meaning.FLOWN),
             self._reference(about_the_plume, view.samples),
             *view.marks(about_the_plume),
             *view.ends_of(about_the_plume),
-            *times,
         ]
+        marked, notes = self._times(about_the_plume, lines, until=view.settled_at)
+        lines += marked
         return ship_panel(about, lines, title=title, notes=notes, shown=[*ship_lines(about, about.axis), *lines], aspect=aspect)
 
     def _near(self, about: Surroundings, aspect: float) -> Panel | None:
@@ -158,12 +153,12 @@ class _Tracks:
             *view.guarded(place),
             view.line(place, view.samples, "flown", Meaning.FLOWN),
             *([] if view.vessel else [self._reference(place, view.samples)]),
-            *view.marks(place),
+            *view.marks(place, far=way is not None),
             *view.ends_of(place),
         ]
-        times, notes = self._times(place, until=float(view.ends[1]), beside=way is None)
+        marked, notes = self._times(place, None if way is not None else lines, until=float(view.ends[1]))
         labels = ("East [m]", "North [m]") if way is None else ("Along the ship's way [m]", "To port [m]")
-        panel = Panel(x_label=labels[0], y_label=labels[1], title=title, lines=[*lines, *times], notes=notes)
+        panel = Panel(x_label=labels[0], y_label=labels[1], title=title, lines=[*lines, *marked], notes=notes)
         wind = None if about is None else (about.wind[0], about.wind[1] - up)
         return on_map(panel, north=-up, wind=wind, aspect=_WIDE if way is None else _FLAT)
 
@@ -188,26 +183,16 @@ class _Tracks:
         x, y = place(_reference_of(samples))
         return Line(x=x, y=y, label="reference", colour=Meaning.ASKED, style="thin")
 
-    def _times(self, place: Place, *, until: float, beside: bool = True) -> tuple[list[Line], list[Note]]:
-        """Return marks along the track at round times up to some [s], and what they say: beside the track or above it all."""
+    def _times(self, place: Place, drawn: Sequence[Line] | None, *, until: float) -> tuple[list[Line], list[Note]]:
+        """Return marks at round times up to some [s]: beside a track among what is drawn, or in a row above one across the page."""
         times = np.arange(self._step, until - 0.3 * self._step, self._step)
-        if not len(times):
-            return [], []
-        x, y = place(self.view.at_times(times))
-        flown, radius = place(self.view.samples), self.view.radius
-        width = max(float(np.ptp(flown[0])), _FLAT * (float(np.ptp(flown[1])) + 2.0 * radius))
-        # In a row they have to be apart.
-        beside = beside or bool(np.any(np.diff(np.sort(x)) < _APART * width))
-        high = float(np.max(flown[1])) + radius
-        size = max(float(np.ptp(flown[0])), float(np.ptp(flown[1]))) + radius
-        notes: list[Note] = []
-        for right, up, time in zip(x.tolist(), y.tolist(), times.tolist(), strict=True):
-            if not beside:
-                notes.append(Note(x=right, y=high, text=_duration(time)))
-            elif not any(abs(right - of.x) < _WORD[0] * size and abs(up - of.y) < _WORD[1] * size for of in notes):
-                # One that others would hide has its mark alone.
-                notes.append(Note(x=right, y=up, text=f"  {_duration(time)}", align="left"))
-        return [Line(x=x, y=y, label="", colour=Meaning.SHIP, style="dots")], notes
+        (x, y), flown = place(self.view.at_times(times)), place(self.view.samples)
+        words = [_duration(time) for time in times.tolist()]
+        wide, high = (float(np.ptp(of)) for of in flown)
+        if drawn is not None:
+            return marks_beside(x, y, words, drawn, max(wide, high) + self.view.radius)
+        top, across = float(np.max(flown[1])) + 0.4 * self.view.radius, _FLAT * (high + 2.0 * self.view.radius)
+        return marks_in_a_row(x, y, words, top, max(wide, across))
 
 
 def _reference_of(samples: pd.DataFrame) -> pd.DataFrame:

@@ -54,7 +54,7 @@ CLEARANCE = FIGURES["clearance_m"].label
 def input_name(key: str) -> str:
     """Return what an input is called, by its dotted key, without its unit."""
     bare = next((key.removesuffix(suffix) for suffix in _UNITS if key.endswith(suffix)), key)
-    return bare.replace(".", " ").replace("_", " ").capitalize()
+    return bare.replace(".", " ").replace("_", " ").replace("keepout", "keep-out").capitalize()
 
 
 def input_unit(key: str) -> str:

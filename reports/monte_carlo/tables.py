@@ -95,8 +95,6 @@ def left_out_rows(sensitivity: Record) -> list[str]:
             # One reason for figures of which other numbers of flights are known: only its end is the same.
             reason = str(found["message"]).rpartition("; ")[2]
             without.setdefault(reason, []).append(f"{FIGURES[key].name} ({found['flights']:,} flights)")
-    lines = [
-        f"{reason[0].upper()}{reason[1:]}, so that there are none of: {'; '.join(names)}." for reason, names in without.items()
-    ]
+    lines = [f"Without indices, as {reason}: {'; '.join(names)}." for reason, names in without.items()]
     reasons = {(key, why) for found in sensitivity.values() if not found["message"] for key, why in found["left_out"].items()}
     return [*lines, *(f"{input_name(key)} has no index: {why}." for key, why in sorted(reasons))]

@@ -18,9 +18,12 @@ PLOTLY = Path(__file__).parent / "bundle" / "plotly-cartesian.min.js"
 """Library that draws the charts of every page; ``bundle/README.md`` says where it comes from."""
 
 
-_PANEL_HEIGHT = 0.56
+_PANEL_HEIGHT = 0.64
 """Height of panels of page 1 that stand beside each other, all rows together, over the width of the page [-]."""
 
+
+_PAPER = 1040
+"""Width of figures of a page that is printed [px]; the page is drawn as wide as that of a large screen."""
 
 _LONG = 16
 """Letters of a word from which it may go on over the next line."""
@@ -42,6 +45,7 @@ def write_html(report: Content, path: Path) -> None:
         cards=report.verdict.cards,
         failures=report.verdict.first_failures,
         breakable=_breakable,
+        paper_width=_PAPER,
     )
     path.write_text(page, encoding="utf-8")
 

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator, NullLocator
 
 from reports.document.axes import log_axis, mark_text, wrapped
@@ -47,6 +48,9 @@ _STYLE: dict[Any, Any] = {
     "svg.fonttype": "path",
     "svg.hashsalt": "report",
 }
+
+_HALO = [withStroke(linewidth=1.6, foreground="white", alpha=0.8)]
+"""About words among curves."""
 
 _LINE_STYLES: dict[str, dict[str, Any]] = {
     "solid": {"linestyle": "-", "linewidth": 1.1},
@@ -170,7 +174,7 @@ def _dress(ax: Any, panel: Panel) -> None:
     x_range = _mark(ax, "x", [line.x for line in panel.lines], panel.x_range, log=panel.log_x, whole=panel.x_whole)
     y_range = _mark(ax, "y", [line.y for line in panel.lines], panel.y_range, log=panel.log_y, whole=panel.y_whole)
     for note in panel.notes:
-        ax.text(note.x, note.y, note.text, color=INK, fontsize=7.0, ha=note.align, va="center", clip_on=True)
+        ax.text(note.x, note.y, note.text, color=INK, fontsize=7.0, ha=note.align, va="center", clip_on=True, path_effects=_HALO)
     if panel.y_names:
         ax.set_yticks([value for value, _ in panel.y_names], [name for _, name in panel.y_names])
     if x_range:

@@ -47,6 +47,9 @@ _HIGHEST = 0.6
 _MAP, _UPRIGHT = 0.85, 1.1
 """Width of a map that is alone in its row on a narrow screen, and height of its row at most, over that of the screen."""
 
+_HALO = "rgba(255,255,255,0.7)"
+"""Behind words among curves."""
+
 _FEW = 8.0
 """Range of whole numbers from which Plotly marks whole numbers by itself."""
 
@@ -87,9 +90,15 @@ def narrow(chart: Chart) -> Data:
     found: Data = {"height": place.height, "margin": {"t": place.top, "l": 60, "r": 10}, "legend": {"y": place.legend}}
     if any(panel.title or panel.notes for panel in chart.panels):
         found["annotations"] = _words(chart, place)
-    for i in range(len(chart.panels)):
+    named = chart.panels[0]
+    for i, panel in enumerate(chart.panels):
         x, y = place.domains(i)
-        found |= {f"xaxis{_number(i)}": {"domain": x, "showticklabels": True}, f"yaxis{_number(i)}": {"domain": y}}
+        ordinate: Data = {"domain": y}
+        if panel.y_names and columns == 1:
+            # Names that a panel shared with the one to its left.
+            named = panel if any(name for _, name in panel.y_names) else named
+            ordinate |= {"ticktext": [name for _, name in named.y_names], "title": {"text": named.y_label, "standoff": 8}}
+        found |= {f"xaxis{_number(i)}": {"domain": x, "showticklabels": True}, f"yaxis{_number(i)}": ordinate}
     return found
 
 
@@ -197,7 +206,7 @@ def _words(chart: Chart, place: _Place) -> list[Data]:
             words.append({"text": panel.title, "font": font, "showarrow": False, **at})
         for note in panel.notes:
             at = {"x": note.x, "y": note.y, "xref": f"x{_number(i)}", "yref": f"y{_number(i)}", "xanchor": note.align}
-            words.append({"text": note.text, "font": {"size": 11, "color": INK}, "showarrow": False, **at})
+            words.append({"text": note.text, "font": {"size": 11, "color": INK}, "bgcolor": _HALO, "showarrow": False, **at})
     return words
 
 

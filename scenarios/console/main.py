@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from common.command_line import refuse, run_command
+from common.command_line import PROGRAM, refuse, run_command
 
 
 def export(
@@ -83,4 +83,4 @@ def main() -> None:
     """Entry point."""
     # As of scenarios.run: small matrices in several processes need no threads of their own.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    run_command(commands(), "plume-flight", importlib.metadata.version("plume-flight-study"))
+    run_command(commands(), PROGRAM, importlib.metadata.version("plume-flight-study"))

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-_BEGUN = re.compile(rf"{re.escape(JOURNAL)}(-.*)?|\.probe-[0-9a-f]*|\.{re.escape(MANIFEST)}\.\d+\.part")
+_BEGUN = re.compile(rf"{re.escape(JOURNAL)}(-.*)?|\.probe-[0-9a-f]*\.part|\.{re.escape(MANIFEST)}\.\d+\.part")
 """Files of a run that was killed before it had a manifest."""
 
 _PARQUET_END = b"PAR1"
@@ -148,7 +148,7 @@ class RunDirectory:
 
     def _create(self) -> None:
         self.path.mkdir(parents=True, exist_ok=True)
-        probe = self.path / f".probe-{uuid.uuid4().hex}"
+        probe = self.path / f".probe-{uuid.uuid4().hex}.part"
         probe.touch()
         probe.unlink()
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicHermiteSpline
 
 from measurement.emission.emission import GRAVITY
 from measurement.gases import GASES
@@ -85,6 +84,8 @@ class AirSampler:
         place, rate : north, east and altitude, shape (n, 3) [m], and what they change by [m/s]
         airspeed : shape (n,) [m/s]
         """
+        from scipy.interpolate import CubicHermiteSpline
+
         end = max(self._taken, math.ceil(time[-1] / TIME_STEP))
         at = TIME_STEP * np.arange(self._taken, end, dtype=np.float64)
         self._taken = end

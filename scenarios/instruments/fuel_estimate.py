@@ -3,18 +3,19 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from common.run_layout import SULPHUR_TABLE
 from measurement.errors import MeasurementError
-from measurement.estimate import FscEstimate, time_to_verdict
-from measurement.estimate.flight_log.analysis import analyse
-from measurement.estimate.verdict import OPEN
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from measurement.estimate import FscEstimate
 
 _INTERVAL = 60.0
 """About the time between estimates of a flight [s]: the time to a verdict is known to that."""
@@ -60,6 +61,10 @@ def fuel_estimate(readings: Readings, instrument: SnifferSpec, *, limit: float, 
     limit : that the verdict is on [% m/m]
     expected : what a perfect instrument reads [% m/m]
     """
+    from measurement.estimate import time_to_verdict
+    from measurement.estimate.flight_log.analysis import analyse
+    from measurement.estimate.verdict import OPEN
+
     try:
         found = analyse(readings, instrument, limits_percent=(limit,), points=_points(readings))
     except MeasurementError as error:
@@ -93,18 +98,20 @@ def _points(readings: Readings) -> int:
     return max(1, round(float(readings.time[-1] - readings.time[0]) / _INTERVAL)) if len(readings) else 0
 
 
-def _verdict_after(table: pd.DataFrame, elapsed: float, name: str) -> str:
+def _verdict_after(table: "pd.DataFrame", elapsed: float, name: str) -> str:
     """Return the verdict after some time [s]; open before there is one."""
+    from measurement.estimate.verdict import OPEN
+
     known = table.loc[table["elapsed_s"] <= elapsed, name]
     return str(known.iloc[-1]) if len(known) else OPEN
 
 
-def _separate(areas: FscEstimate) -> float:
+def _separate(areas: "FscEstimate") -> float:
     """Return what areas would read if passes did not overlap in the slow channel, by the closed form [% m/m]."""
     return areas.fsc_percent + areas.common_percent.get("overlap", 0.0)
 
 
-def _figures(found: FscEstimate, name: str) -> dict[str, Any]:
+def _figures(found: "FscEstimate", name: str) -> dict[str, Any]:
     return {
         f"{name}_percent": found.fsc_percent,
         f"{name}_uncertainty_percent": found.total_percent,

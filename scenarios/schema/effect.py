@@ -1,9 +1,10 @@
 """Which keys of a scenario act: one that no part of its flights uses is refused, with the part that would use it."""
 
+import functools
 from collections.abc import Iterable
 
 from scenarios.errors import InputError
-from scenarios.schema.effect_rules import OPERATIONAL, RULES
+from scenarios.schema.effect_rules import OPERATIONAL, RULES, Rule
 from scenarios.schema.scenario import Scenario
 
 
@@ -31,11 +32,16 @@ def unused(scenario: Scenario, key: str) -> str:
     varied |= {other for case in scenario.cases for other in (*case.set, *case.set_kinematic)}
     # A mission that is given does not follow from the air, the vessel or the equipment.
     mission = ("guidance.mission", *(OPERATIONAL if scenario.guidance.mission is None else ()))
-    for rule in RULES:
+    for rule in _rules_of(key):
         depends = (*rule.depends, *(mission if rule.by_mission else ()))
-        if named_by(key, rule.keys) and not rule.acts(scenario) and not any(named_by(other, depends) for other in varied):
+        if not rule.acts(scenario) and not any(named_by(other, depends) for other in varied):
             return rule.user
     return ""
+
+
+@functools.lru_cache(maxsize=1024)
+def _rules_of(key: str) -> tuple[Rule, ...]:
+    return tuple(rule for rule in RULES if named_by(key, rule.keys))
 
 
 def named_by(key: str, names: Iterable[str]) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from common.run_layout import COMPARISON, HISTORY_SUFFIX, JOURNAL, MANIFEST, SUMMARY, is_file_name
+from common.run_layout import COMPARISON, JOURNAL, MANIFEST, SUMMARY, flight_of, is_file_name
 from scenarios.engine.fingerprint import differences
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
@@ -35,7 +35,7 @@ class Replay(SingleFlight):
 
     Parameters
     ----------
-    name : ``RUN_DIR/flights/ID``, with or without the suffix of its time history
+    name : ``RUN_DIR/flights/ID``, with or without the suffix of one of its files
     viewer : host and port of a FlightGear that is to show it, in real time; none if not given
     aircraft_dir : directory in which the folder of the user's own aircraft is now, if it was moved since
 
@@ -46,7 +46,7 @@ class Replay(SingleFlight):
 
     def __init__(self, name: str, viewer: tuple[str, int] | None = None, *, aircraft_dir: Path | None = None) -> None:
         self._viewer = viewer
-        self._flight_id = Path(name).name.removesuffix(HISTORY_SUFFIX)
+        self._flight_id = flight_of(name)
         self._from = Path(name).parents[1]
         manifest = self._manifest()
         if "replayed" in manifest:

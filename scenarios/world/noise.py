@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import ndtr
 
 Array = npt.NDArray[np.float64]
 
@@ -111,6 +110,8 @@ class BlendedGenerator(np.random.Generator):
 
     def random(self, size: Any = None, *_: Any, **__: Any) -> Any:
         """Return numbers between 0 and 1."""
+        from scipy.special import ndtr
+
         return ndtr(self.standard_normal(size))
 
     def uniform(self, low: Any = 0.0, high: Any = 1.0, size: Any = None) -> Any:

@@ -26,7 +26,9 @@ def test_every_module_of_gnc_imports_with_numpy_scipy_and_what_all_rooms_share()
 
 def test_the_tests_of_gnc_are_collected_with_numpy_and_scipy_alone():
     # What tests/conftest.py imports counts, too.
-    outcome = GNC.run("import pytest; sys.exit(pytest.main(['--collect-only', '-p', 'no:cacheprovider', 'tests/gnc']))")
+    outcome = GNC.run(
+        "import pytest; sys.exit(pytest.main(['--collect-only', '--assert=plain', '-p', 'no:cacheprovider', 'tests/gnc']))"
+    )
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert "test_cascade.py::test_equation_35_is_23_whatever_the_state" in outcome.stdout
 

@@ -1,9 +1,6 @@
 """What ``python -m innerloop.design`` leaves behind, and what it leaves alone."""
 
 import json
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
@@ -11,29 +8,26 @@ from reports.registry import content
 from reports.run.run_data import read_run
 from tests.in_process import run_command
 
-PROJECT = Path(__file__).parents[2]
+HEIGHT = ("--altitude", 60.0)
+"""That of the designs that other tests have too."""
 
 
-def design_command(*arguments):
-    command = [sys.executable, "-m", "innerloop.design", *map(str, arguments)]
-    return subprocess.run(command, cwd=PROJECT, capture_output=True, text=True, check=False)
-
-
+@pytest.mark.usefixtures("sketched")
 def test_the_command_leaves_a_directory_that_can_be_reported_on_again(tmp_path):
-    done = design_command("x8", "--out", tmp_path / "x8")
-    assert done.returncode == 0, done.stderr
+    ended = run_command("innerloop.design", "x8", *HEIGHT, "--out", tmp_path / "x8")
+    assert ended.status == 0, ended.errors
     assert {"manifest.json", "innerloop.json", "report.html", "report.pdf", "model"} <= {
         p.name for p in (tmp_path / "x8").iterdir()
     }
     manifest = json.loads((tmp_path / "x8" / "manifest.json").read_text(encoding="utf-8"))
     assert (manifest["study"], manifest["name"]) == ("design", "x8")
     assert manifest["packages"]["jsbsim"]
-    assert content(read_run(tmp_path / "x8")).verdict.headline in done.stdout
+    assert content(read_run(tmp_path / "x8")).verdict.headline in ended.out
 
 
 @pytest.mark.usefixtures("sketched")
 def test_the_search_over_reversals_can_be_repeated_with_more_of_them(tmp_path):
-    ended = run_command("innerloop.design", "x8", "--out", tmp_path / "x8", "--reversals", 3)
+    ended = run_command("innerloop.design", "x8", *HEIGHT, "--out", tmp_path / "x8", "--reversals", 3)
     assert ended.status == 0, ended.errors
     own = json.loads((tmp_path / "x8" / "innerloop.json").read_text(encoding="utf-8"))["turn_reversal"]
     found = own["repeated_search"]
@@ -70,7 +64,7 @@ def test_a_design_made_anew_leaves_no_report_of_the_older_one(tmp_path, designs)
     (out / "manifest.json").write_text('{"study": "design"}', encoding="utf-8")
     for name in ("report.html", "report.pdf", "export/x8.csv", "notes.txt"):
         (out / name).write_text("of the older one", encoding="utf-8")
-    assert run_command("innerloop.design", "x8", "--out", out, "--no-report").status == 0
+    assert run_command("innerloop.design", "x8", *HEIGHT, "--out", out, "--no-report").status == 0
     # What somebody else put there stays.
     assert {path.name for path in out.iterdir()} == {"manifest.json", "innerloop.json", "model", "notes.txt"}
 

@@ -22,7 +22,7 @@ def test_every_module_imports():
 
 def test_the_tests_are_collected():
     # What tests/conftest.py imports counts, too.
-    options = ["--collect-only", "-p", "no:cacheprovider", "-p", "no:hypothesispytest", "tests/measurement"]
+    options = ["--collect-only", "--assert=plain", "-p", "no:cacheprovider", "-p", "no:hypothesispytest", "tests/measurement"]
     outcome = MEASUREMENT.run(f"import pytest; sys.exit(pytest.main({options}))")
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert "test_flux.py::test_what_passes_a_plane_is_what_was_emitted" in outcome.stdout

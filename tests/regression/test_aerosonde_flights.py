@@ -6,14 +6,12 @@ import pytest
 from study_runs import assert_flown_as_the_issue_asks, fly_study
 
 NUS = (0.3, 0.5, 0.7)
-HEIGHT = "plume.source_height_m=100.0"
-"""The altitude of the design that other tests have too."""
 
 
 @pytest.fixture(scope="module")
 def run(designs, tmp_path_factory):
     designs("aerosonde")
-    return fly_study(tmp_path_factory.mktemp("aerosonde") / "run", "aerosonde", HEIGHT, nus=NUS)
+    return fly_study(tmp_path_factory.mktemp("aerosonde") / "run", "aerosonde", nus=NUS)
 
 
 def test_every_loop_keeps_6_db_and_45_degrees_wherever_it_was_checked(designs):
@@ -62,7 +60,6 @@ def test_its_controls_stay_off_their_stops(run):
 def test_the_guard_keeps_it_out_where_the_law_would_fly_in(tmp_path):
     # The X8's start at nu = 0.15 (test_flights), in the Aerosonde's units, about a keep-out area that is as much larger.
     words = [
-        HEIGHT,
         "guidance.approach=false",
         "keepout.radius_m=331.44",
         "flight.crossings=2",

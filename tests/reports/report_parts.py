@@ -4,6 +4,15 @@ import re
 
 from reports.build import build_reports
 from reports.document.chart import Chart
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+
+
+def flown(tmp_path_factory, scenario, overrides):
+    """Fly a scenario with overrides and return the directory of the run."""
+    path = tmp_path_factory.mktemp(scenario) / "run"
+    run_study(load_study(scenario, overrides), scenario, path, overrides=overrides)
+    return path
 
 
 def built(path):

@@ -14,9 +14,7 @@ from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.schema.load import load_study
-from scenarios.studies.registry import run_study
-from tests.reports.report_parts import blocks_of, built
+from tests.reports.report_parts import blocks_of, built, flown
 
 QUICK = (
     "fidelity=kinematic", "flights=2", "flight.duration_max_s=80", "arena.window_s=30", "arena.tuning_duration_s=30",
@@ -28,9 +26,7 @@ QUICK = (
 
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
-    out = tmp_path_factory.mktemp("arena") / "run"
-    run_study(load_study("arena", QUICK), "arena", out, overrides=QUICK)
-    return out
+    return flown(tmp_path_factory, "arena", QUICK)
 
 
 @pytest.fixture(scope="module")

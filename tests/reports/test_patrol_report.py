@@ -9,8 +9,7 @@ from reports.patrol.content import patrol_content
 from reports.patrol.data import read_patrols
 from reports.patrol.tables import oracle_table, ship_table
 from reports.run.run_data import read_run
-from scenarios.schema.load import load_study
-from scenarios.studies.registry import run_study
+from tests.reports.report_parts import flown
 
 QUICK = (
     "fidelity=kinematic", "flights=1", "patrol.ships=2", "patrol.area_m=9000", "patrol.endurance_s=450", "patrol.separation_m=2000",
@@ -19,9 +18,7 @@ QUICK = (
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    out = tmp_path_factory.mktemp("patrol") / "run"
-    run_study(load_study("patrol", QUICK), "patrol", out, overrides=QUICK)
-    return read_run(out)
+    return read_run(flown(tmp_path_factory, "patrol", QUICK))
 
 
 def test_the_verdict_compares_with_the_oracle(run):

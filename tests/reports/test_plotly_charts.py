@@ -159,3 +159,11 @@ def test_names_of_an_ordinate_have_room_beside_the_panel_to_their_left():
     assert gaps[1] > gaps[0]
     assert gaps[1] * 890.0 > 70.0 + 35.0
     assert named["xaxis2"]["domain"][1] == pytest.approx(1.0)
+
+
+def test_a_panel_that_shares_its_names_with_its_neighbour_has_them_where_it_stands_below_it():
+    first, second = a_panel(y_names=[(1.0, "engine"), (2.0, "throttle")]), a_panel(y_names=[(1.0, ""), (2.0, "")])
+    figure = draw(Chart(name="chart", caption="", panels=[first, second], columns=2))
+    assert figure["layout"]["yaxis2"]["ticktext"] == ["", ""]
+    assert figure["narrow"]["yaxis2"]["ticktext"] == ["engine", "throttle"]
+    assert figure["narrow"]["yaxis2"]["title"]["text"] == "Distance [m]"

@@ -93,6 +93,7 @@ class Scripts(HTMLParser):
             self.texts.append(data)
 
 
+@pytest.mark.usefixtures("sketched")
 def test_a_report_keeps_its_charts_whatever_the_scenario_is_called(folder):
     (folder / "<!--<script>.toml").write_text(TRIAL, encoding="utf-8")
     ended = run_command("scenarios.run", "<!--<script>.toml", "--out", "run", "--jobs", "1")

@@ -2,12 +2,14 @@
 
 import importlib.metadata
 import json
+from dataclasses import replace
 
 import pandas as pd
 import pytest
 
 from common.registry import ENTRY_POINTS, file_hash
 from gnc.laws.steering_law import STEERING_LAWS
+from innerloop.designs import cache
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
@@ -34,11 +36,27 @@ def refusal(path, out, *overrides, resume=False):
     return message
 
 
+@pytest.fixture
+def asked(monkeypatch, tmp_path, designs):
+    """The names of aircraft that an autopilot was asked for: each has the X8's, as a design of its own takes seconds."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    made, names = designs("x8"), []
+
+    def design(spec, altitude):
+        names.append(spec.name)
+        schedule = replace(made.design.schedule, spec=spec, envelope=spec.envelope)
+        return cache._Entry(made=replace(made, design=replace(made.design, schedule=schedule)))
+
+    monkeypatch.setattr(cache, "_design", design)
+    return names
+
+
 @pytest.mark.parametrize(("key", "name"), PARTS.items())
-def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path, key, name):
+def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path, asked, key, name):
     path = write_scenario(tmp_path, line_of(key, name))
     # An aircraft is one in six degrees of freedom, with an autopilot of its own.
     run(path, tmp_path / "run", *(["fidelity=six_dof"] if key == "aircraft" else []))
+    assert asked == (["slow_x8"] if key == "aircraft" else [])
     rows = rows_of(tmp_path / "run")
     assert [row["nu"] for row in rows] == [0.3, 0.5]
     for row in rows:
@@ -52,6 +70,7 @@ def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path
     assert value == ({"instruments": [part]} if key == "payload" else part)
 
 
+@pytest.mark.usefixtures("asked")
 def test_parts_act_on_the_flight(tmp_path):
     path = write_scenario(tmp_path, "".join(line_of(key, name) for key, name in PARTS.items() if key != "guidance.law"))
     run(path, tmp_path / "run", "sweep.nu=[0.5]")

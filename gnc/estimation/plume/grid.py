@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtr
 
+from gnc.estimation.plume.pass_reader import BEND_MIN
 from gnc.estimation.plume.prior import PlumePrior
 
 Array = npt.NDArray[np.float64]
@@ -49,10 +50,6 @@ _TINY = 1e-300
 
 _SPREAD_MIN = 0.4
 """Least spread over that at the expected height [-]."""
-
-
-_BEND_MIN = 1e-12
-"""Least curvature of a likelihood [1/ppm^2]: a place that the vehicle has not been to says nothing."""
 
 
 class PlumeGrid:
@@ -279,7 +276,7 @@ def over_nothing(slope: Array, bend: Array, strength: Array, drawn_out: float) -
     drawn_out : way of the pass along the plume over that across [-]
     """
     error = math.hypot(_STRENGTH_ERROR, _STRENGTH_OBLIQUE * drawn_out)
-    slope, bend = slope[..., np.newaxis], np.maximum(bend, _BEND_MIN)[..., np.newaxis]
+    slope, bend = slope[..., np.newaxis], np.maximum(bend, BEND_MIN)[..., np.newaxis]
     best = slope**2 / bend
     widened = 1.0 + bend * (error * strength) ** 2
     result: Array = 0.5 * (best - (best - 2.0 * slope * strength + bend * strength**2) / widened - np.log(widened))

@@ -21,7 +21,7 @@ _TAIL_ERROR = 0.3
 _FIRST_BACKGROUND = 1e3
 """Standard deviation of the background before anything is read [ppm]: clean air has some 400."""
 
-_BEND_MIN = 1e-12
+BEND_MIN = 1e-12
 """Least curvature of a likelihood [1/ppm^2]: a place that the vehicle has not been to says nothing."""
 
 _STILL = 0.1
@@ -132,7 +132,7 @@ class PassReader:
         inner = _inner(background, total)
         match = _Match(templates @ y, (templates * templates).sum(axis=1), templates @ background.T, background @ y)
         slope, bend = match.projected(total, inner)
-        bend_up = np.maximum(bend, _BEND_MIN)
+        bend_up = np.maximum(bend, BEND_MIN)
         gain = np.maximum(slope, 0.0) ** 2 / bend_up
         best = int(gain.argmax())
         spread, at = divmod(best, len(places))
@@ -152,7 +152,7 @@ class PassReader:
             at=at,
             spread=spread,
             peak=float(pulse.max()),
-            significance=float(alone_slope / math.sqrt(max(float(alone_bend), _BEND_MIN))),
+            significance=float(alone_slope / math.sqrt(max(float(alone_bend), BEND_MIN))),
         )
 
     def _settle(self, rest: Array, background: Array, covariance: Array, variance: float, level: float) -> None:

@@ -54,20 +54,53 @@ def _chart(trial: Trial, name: str, caption: str, panels: Sequence[Panel | None]
 
 
 def _sweep(trial: Trial) -> list[Chart]:
-    return [chart for i, key in enumerate(trial.swept, start=1) for chart in _over_key(trial, key, f"{key.rsplit('.', 1)[-1]}{i}")]
+    """Return the figures over the keys that were swept: over several numbers in as many columns, over one in more detail."""
+    values = {key: trial.input(key).reindex(trial.flown["flight_id"]) for key in trial.swept}
+    names = {key: f"{key.rsplit('.', 1)[-1]}{i}".replace("_", "") for i, key in enumerate(trial.swept, start=1)}
+    numbers = [key for key, of in values.items() if pd.api.types.is_numeric_dtype(of)]
+    if len(numbers) > 1:
+        in_rows = [numbers[i : i + _ROW] for i in range(0, len(numbers), _ROW)]
+        charts = [chart for keys in in_rows for chart in _over_keys(trial, keys, names[keys[0]])]
+    else:
+        charts = [chart for key in numbers for chart in _over_key(trial, key, names[key])]
+    return [*charts, *(_by_word(trial, key, values[key], names[key]) for key in values if key not in numbers)]
+
+
+def _by_word(trial: Trial, key: str, values: "pd.Series[Any]", name: str) -> Chart:
+    """Return figures by a key that is no number."""
+    figures: list[_Figure] = [
+        (clearance(trial.flown), CLEARANCE, [_R_MIN]),
+        (column(trial.flown, _TRACKING[0]), _TRACKING[1], []),
+    ]
+    caption = "Closest approach of the whole flight, and tracking error after settling."
+    return _strips(trial, name, caption, [str(value).replace("_", " ") for value in values], input_name(key), figures)
+
+
+def _over_keys(trial: Trial, keys: Sequence[str], name: str) -> list[Chart]:
+    """Return two figures over several keys, a column for each."""
+    every = [PanelsOver(trial, key, by_violation(trial)) for key in keys]
+    crossings = (
+        "Time between plume crossings against half the reference's period, π/ω₀, with bars of one standard deviation; below,"
+        " distances from the funnel's mouth, of the crossings after settling, three-dimensional, and the closest approach of the"
+        f" whole flight, {trial.measured_from}. A column for each key: flights of other values of the other keys stand above each"
+        " other."
+    )
+    errors = "Distance to the reference after settling, and settling time, over the same keys."
+    rows = {
+        ("crossings", crossings): [[over.interval() for over in every], [over.distances() for over in every]],
+        ("errors", errors): [
+            [over.figure(*_TRACKING) for over in every],
+            [over.figure("settling_time_s", "Settling time [s]") for over in every],
+        ],
+    }
+    return [
+        _chart(trial, f"{name}-{what}", caption, [panel for row in panels for panel in row], 0.3, columns=len(keys))
+        for (what, caption), panels in rows.items()
+    ]
 
 
 def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
-    name = name.replace("_", "")
-    values = trial.input(key).reindex(trial.flown["flight_id"])
-    if not pd.api.types.is_numeric_dtype(values):
-        words = [str(value).replace("_", " ") for value in values]
-        figures: list[_Figure] = [
-            (clearance(trial.flown), CLEARANCE, [_R_MIN]),
-            (column(trial.flown, _TRACKING[0]), _TRACKING[1], []),
-        ]
-        caption = "Closest approach of the whole flight, and tracking error after settling."
-        return [_strips(trial, name, caption, words, input_name(key), figures)]
+    """Return four figures over one key."""
     over = PanelsOver(trial, key, by_violation(trial))
     bank = "Largest commanded heading rate against ω_max, largest bank, and settling time."
     if trial.setting("fidelity") == "kinematic":
@@ -144,22 +177,22 @@ def _errors(trial: Trial) -> list[Chart]:
     if np.nanmax(largest, initial=0.0) > NOTICEABLE:
         series = [(largest, "largest of the flight", "plum"), (typical, "rms after settling", Meaning.FLOWN)]
         vessel = histogram(series, "Error of the vessel's position [m]")
-    panels = [
-        over.interval_error() if trial.criteria.get("crossing_interval_error") else None,
-        over.figure(*_TRACKING),
-        _spread(trial),
-        over.figure("wind_error_rms_mps", "Error of the wind estimate, rms [m/s]"),
-        vessel,
-        over.figure("guard_time_s", "Guard changes commands for [s]") if total(rows, "guard_time_s") else None,
-    ]
-    caption = (
-        "A marker per flight. Crossing intervals and errors are those after settling: of the tracking, of its part towards the"
-        " vessel against the one that the margin was planned for, and of the estimates of wind and vessel."
-    )
-    shown = [panel for panel in panels if panel is not None]
+    panels = {
+        "mean crossing interval": over.interval_error() if trial.criteria.get("crossing_interval_error") else None,
+        "distance to the reference": over.figure(*_TRACKING),
+        "its part towards the vessel, over the one that the margin was planned for": _spread(trial),
+        "error of the wind estimate": over.figure("wind_error_rms_mps", "Error of the wind estimate, rms [m/s]"),
+        "error of the vessel's position, counted": vessel,
+        "how long the keep-out guard changed commands": (
+            over.figure("guard_time_s", "Guard changes commands for [s]") if total(rows, "guard_time_s") else None
+        ),
+    }
+    shown = [(words, panel) for words, panel in panels.items() if panel is not None]
+    in_rows = [shown[i : i + _ROW] for i in range(0, len(shown), _ROW)]
+    captions = [f"Each flight, with errors as they are after settling: {'; '.join(words for words, _ in row)}." for row in in_rows]
     return [
-        _chart(trial, f"errors{i // _ROW + 1}", "As before." if i else caption, shown[i : i + _ROW], 0.34)
-        for i in range(0, len(shown), _ROW)
+        _chart(trial, f"errors{i}", caption, [panel for _, panel in row], 0.34)
+        for i, (caption, row) in enumerate(zip(captions, in_rows, strict=True), start=1)
     ]
 
 

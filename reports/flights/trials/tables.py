@@ -44,6 +44,10 @@ OSCILLATION_COLUMNS = (
 )
 
 
+_WORDS_MAX, _NUMBER, _LETTER = 3.2, 0.9, 0.15
+"""Relative widths of a table's columns: of words at most, of numbers at least, and of a letter of a heading [-]."""
+
+
 def flight_table(
     rows: pd.DataFrame,
     head: str,
@@ -57,19 +61,21 @@ def flight_table(
     ----------
     rows : of the flights
     head, name : of the first column, and what it says of a flight
-    columns : title, name and pattern of the others
+    columns : title, name and pattern of the columns after the outcome
     caption : what the table shows
     """
     cells = [
-        [name(row), *(number(row.get(key), pattern) for _, key, pattern in columns), outcome(row)] for _, row in rows.iterrows()
+        [name(row), outcome(row), *(number(row.get(key), pattern) for _, key, pattern in columns)] for _, row in rows.iterrows()
     ]
-    first, last = (min(2.6, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, -1))
-    widths = [first, *[1.05] * len(columns), last]
+    words = (min(_WORDS_MAX, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, 1))
+    # The longest word of a heading has to fit.
+    widths = [*words, *(max(_NUMBER, _LETTER * max(map(len, title.split()))) for title, _, _ in columns)]
     return Table(
         caption=caption,
-        head=[head, *(title for title, _, _ in columns), "Outcome"],
+        head=[head, "Outcome", *(title for title, _, _ in columns)],
         rows=cells,
         widths=widths,
+        left_columns=2,
         breakable=True,
     )
 

@@ -1,5 +1,6 @@
 """What theory says over the speed ratio: curves for the reports, whichever speed ratios are flown."""
 
+import functools
 import json
 import math
 from pathlib import Path
@@ -39,14 +40,13 @@ def theory_over_speed_ratio(scenario: Scenario) -> dict[str, list[float]]:
     if "nu" not in scenario.sweep.root or any(key.startswith(_OTHERS) for key in scenario.sweep.root):
         return {}
     axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
-    shapes = {shape: ReferenceConfig(shape=shape) for shape in _OSCILLATIONS}
-    names = ("nu", "crossing_interval_predicted_s", "r_co_m", *(f"crossing_interval_{shape}_s" for shape in shapes))
+    names = ("nu", "crossing_interval_predicted_s", "r_co_m", *(f"crossing_interval_{shape}_s" for shape in _OSCILLATIONS))
     curves: dict[str, list[float]] = {name: [] for name in names}
     for nu in np.linspace(0.0, _RATIO_MAX, _POINTS).tolist():
         try:
             orbit = oscillation_at(scenario.guidance, scenario.reference, nu)
             distance = placed_distance(scenario, orbit, axis)
-            others = [oscillation_at(scenario.guidance, shape, nu).crossing_interval for shape in shapes.values()]
+            others = [_crossing_interval(scenario.guidance, shape, nu) for shape in _OSCILLATIONS]
         except InfeasibleError:
             break
         for name, value in zip(curves, (nu, orbit.crossing_interval, distance, *others), strict=True):
@@ -54,6 +54,12 @@ def theory_over_speed_ratio(scenario: Scenario) -> dict[str, list[float]]:
     if scenario.follows:
         del curves["r_co_m"]
     return curves | crossing_limit(scenario.guidance)
+
+
+@functools.lru_cache(maxsize=len(_OSCILLATIONS) * _POINTS)
+def _crossing_interval(guidance: GuidanceConfig, shape: str, nu: float) -> float:
+    """Return the crossing interval of one of the project's oscillations [s], remembered for the next study of a process."""
+    return oscillation_at(guidance, ReferenceConfig(shape=shape), nu).crossing_interval
 
 
 def crossing_limit(guidance: GuidanceConfig) -> dict[str, list[float]]:

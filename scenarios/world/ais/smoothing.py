@@ -1,8 +1,12 @@
 """A smooth motion through positions and velocities that were reported at some times, with errors."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import BPoly
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BPoly
 
 Array = npt.NDArray[np.float64]
 
@@ -15,7 +19,7 @@ JERK_DENSITY = 5e-4
 more [m^2/s^5]."""
 
 
-def smooth_motion(time: Array, place: Array, velocity: Array) -> BPoly:
+def smooth_motion(time: Array, place: Array, velocity: Array) -> "BPoly":
     """Return place over time: of degree 5 between reports, with continuous velocity and acceleration.
 
     It is the mean of a motion whose jerk is white noise, given all reports (H. E. Rauch, F. Tung, C. T. Striebel, AIAA J. 3:1445,
@@ -26,6 +30,8 @@ def smooth_motion(time: Array, place: Array, velocity: Array) -> BPoly:
     time : of the reports, rising, shape (n,) [s]
     place, velocity : as reported, shape (n, 2) [m, m/s]
     """
+    from scipy.interpolate import BPoly
+
     filtered, predicted = [], []
     # Nothing is known of the acceleration at first but that it is a ship's.
     state = np.stack([place[0], velocity[0], np.zeros(2)])

@@ -16,8 +16,8 @@ from gnc.numeric import wrap
 from gnc.safety.keepout_guard import KeepoutGuard
 
 PLAN_PERIOD = 0.5
-PIECE = 0.01
-"""For which the vessel's acceleration is held [s]."""
+PIECE, FINE_PIECE = 0.025, 0.01
+"""For which the vessel's acceleration is held [s]; the finer one where it has to divide a delay."""
 
 
 class Hunt(NamedTuple):
@@ -118,7 +118,8 @@ def hunt(guard, start, vessel, hunter, sent, generator, *, lag, delay=0.0, durat
     state, reach, post = start, ReachableSet(vessel.limits), Mailbox()
     sent = sorted(sent)
     tubes = known(reach) if known else reach.tubes
-    pieces, late = round(time_step / PIECE), round(delay / PIECE)
+    piece = FINE_PIECE if delay else PIECE
+    pieces, late = round(time_step / piece), round(delay / piece)
     under_way = deque([start[3]] * late)
     closest, changed, lost, last_report = math.inf, 0, 0, -math.inf
     each = round(PLAN_PERIOD / time_step)
@@ -142,7 +143,7 @@ def hunt(guard, start, vessel, hunter, sent, generator, *, lag, delay=0.0, durat
         silent = not sent or sent[0][0] > time + 10.0 or time - last_report > 10.0
         for _ in range(pieces):
             under_way.append(command)
-            state = moved(state, under_way.popleft(), lag, PIECE)
-            vessel.accelerate(*(1e3 * part for part in hunter(vessel, state[0], state[1], silent)), PIECE)
+            state = moved(state, under_way.popleft(), lag, piece)
+            vessel.accelerate(*(1e3 * part for part in hunter(vessel, state[0], state[1], silent)), piece)
             closest = min(closest, math.hypot(state[0] - vessel.north, state[1] - vessel.east))
     return Hunt(closest, changed, lost)

@@ -4,15 +4,15 @@ import math
 from dataclasses import replace
 
 import pytest
+from exhaust_cases import SENSOR
 
 from gnc.estimation.plume.estimator import SensorState
-from gnc.estimation.plume.prior import GasSensor
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb
 from gnc.mission.searched_axis import Expectation, SearchedPlume
 from tests.gnc.mission.axis_cases import PLAN_TIME, RISING, SPEED, situation
 
-FAST = GasSensor(interval=0.2, delay=1.0, time_constant=0.43, noise=0.5, saturated=20000.0)
+FAST = replace(SENSOR, saturated=20000.0)
 EXPECTED = Expectation(
     source_height=35.0,
     source_deviation=8.0,

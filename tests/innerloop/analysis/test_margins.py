@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from loop_reference import closed_poles, opened
 
-from innerloop.analysis.margins import FREQUENCIES, Loops, closed_loop, loop_margin
+from innerloop.analysis.margins import FREQUENCIES, Loops, closed_loop, loop_margins
 from innerloop.law.control_law import COMMANDS, ControlLaw
 from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.rate import loop_delay
@@ -128,10 +128,10 @@ def test_the_loop_stays_stable_up_to_its_gain_margin_and_not_beyond(margins, loo
 
 
 @pytest.mark.parametrize(("condition", "name"), CASES)
-def test_the_closed_loops_poles_are_those_of_the_opened_loop_closed(systems, condition, name):
+def test_the_closed_loops_poles_are_those_of_the_opened_loop_closed(systems, loops, condition, name):
     found = Loops(*systems[condition]).poles()
     # Slow poles, far below the delay's own (166 rad/s and more), whose order of approximation differs: 2 here, 4 there.
-    slow = [p for p in closed_poles(opened(*systems[condition], name)) if abs(p) < 15.0]
+    slow = [p for p in closed_poles(loops[condition, name]) if abs(p) < 15.0]
     assert len(slow) >= 8
     for pole in slow:
         assert np.abs(found - pole).min() < 2e-4 * (1.0 + abs(pole))
@@ -166,7 +166,8 @@ def test_every_single_loop_has_six_decibels_and_forty_five_degrees_everywhere(de
 
 
 def frequency_response(loop):
-    return loop_margin("textbook", loop(1j * FREQUENCIES), FREQUENCIES)
+    (found,) = loop_margins(["textbook"], loop(1j * FREQUENCIES)[np.newaxis], FREQUENCIES)
+    return found
 
 
 def test_the_margins_of_a_textbooks_loop():
@@ -180,7 +181,7 @@ def test_the_margins_of_a_textbooks_loop():
 
 def test_the_margins_of_an_integrator_with_a_delay():
     # L = exp(-s/2)/s: phase margin 90 degrees less half a radian at 1 rad/s; phase -180 at pi rad/s, where the gain is 1/pi.
-    found = loop_margin("delayed", np.exp(-0.5j * FREQUENCIES) / (1j * FREQUENCIES), FREQUENCIES)
+    found = frequency_response(lambda s: np.exp(-0.5 * s) / s)
     assert found.gain_db == pytest.approx(20.0 * math.log10(math.pi), abs=0.02)
     assert found.phase_deg == pytest.approx(90.0 - math.degrees(0.5), abs=0.02)
     assert found.crossover == pytest.approx(1.0, rel=1e-4)

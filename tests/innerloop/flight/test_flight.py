@@ -32,9 +32,11 @@ def test_a_released_aircraft_stays_in_its_equilibrium(x8_schedule, x8_aircraft, 
 @pytest.mark.parametrize("yaw", [0.0, 2.0, -1.0])
 def test_a_released_aircraft_starts_where_it_was_put(x8_schedule, x8_aircraft, yaw):
     state = x8_schedule.level(MIDDLE).state(latitude=0.01, longitude=0.02, yaw=yaw)
-    x8_aircraft.release(state, airspeed=20.0, altitude=100.0)
+    x8_aircraft.release(state, airspeed=20.0, altitude=x8_schedule.altitude)
     fdm = x8_aircraft.fdm
-    north, east = LocalFrame(0.01, 0.02, 100.0).to_local(fdm.read("position/lat-geod-rad"), fdm.read("position/long-gc-rad"))
+    north, east = LocalFrame(0.01, 0.02, x8_schedule.altitude).to_local(
+        fdm.read("position/lat-geod-rad"), fdm.read("position/long-gc-rad")
+    )
     assert math.hypot(north, east) < 0.1  # of plumes and tracks of hundreds of metres
     assert math.remainder(fdm.read("attitude/psi-rad") - yaw, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-6)
 
@@ -60,7 +62,7 @@ def test_two_fresh_aircraft_fly_the_same_flight(x8_schedule, x8_root):
 
 
 @pytest.mark.parametrize("altitude", [10.0, 1000.0, 2000.0])
-def test_the_autopilot_designed_at_100_m_flies_at_other_altitudes(x8_aircraft, altitude):
+def test_the_autopilot_designed_near_the_sea_flies_at_other_altitudes(x8_aircraft, altitude):
     found = trim(Fdm(X8), airspeed=20.0, altitude=altitude)
     flight = fly(x8_aircraft, found, 30.0, [(1.0, "heading_rate", 0.25), (15.0, "heading_rate", 0.0)])
     # Integral action takes up the different equilibrium: at 2000 m, with a fifth less density, 0.2 m at first.
@@ -78,10 +80,10 @@ def test_a_root_without_autopilot_is_refused_by_name_of_what_is_missing():
 def test_an_aircraft_released_off_its_equilibrium_is_brought_there(x8_schedule, x8_aircraft):
     found = x8_schedule.level(MIDDLE)
     upset = replace(found.state(), roll=0.5, pitch=0.15, rates_body=(0.3, -0.2, 0.1))
-    x8_aircraft.release(upset, airspeed=20.0, altitude=100.0)
+    x8_aircraft.release(upset, airspeed=20.0, altitude=x8_schedule.altitude)
     x8_aircraft.fdm.step(15 * 120)
     read = x8_aircraft.fdm.read
     # Fifteen seconds, seven time constants of the slowest pole.
     assert read("attitude/phi-rad") == pytest.approx(found.roll, abs=2e-3)
     assert read("velocities/vt-fps") * 0.3048 == pytest.approx(20.0, abs=0.02)
-    assert read("position/h-sl-meters") == pytest.approx(100.0, abs=0.05)
+    assert read("position/h-sl-meters") == pytest.approx(x8_schedule.altitude, abs=0.05)

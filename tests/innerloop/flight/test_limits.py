@@ -23,7 +23,7 @@ def test_a_huge_heading_rate_command_stays_within_the_envelopes_bank(x8_schedule
     assert np.abs(flight["bank"]).max() < BANK_MAX + math.radians(3.0)
     # Steady: within 0.2 degrees, what the turn-compensation tables leave for feedback without integral on bank.
     assert np.abs(after(flight, 5.0, "bank")) == pytest.approx(BANK_MAX, abs=math.radians(0.2))
-    assert np.abs(flight["altitude"] - 100.0).max() < 1.0
+    assert np.abs(flight["altitude"] - x8_schedule.altitude).max() < 1.0
     assert np.abs(flight["airspeed"] - 20.0).max() < 0.5
 
 
@@ -45,7 +45,7 @@ def test_a_turn_at_forty_five_degrees_of_bank_holds_altitude_and_airspeed(x8_sch
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 21.0, [(1.0, "heading_rate", sign * 0.45)])
     # 20 m/s times 0.45 rad/s over g is tan(43 degrees); sideslip makes it 44 and 45.
     assert np.degrees(np.abs(after(flight, 6.0, "bank"))) == pytest.approx(44.5, abs=1.0)
-    assert np.abs(flight["altitude"] - 100.0).max() < 1.0
+    assert np.abs(flight["altitude"] - x8_schedule.altitude).max() < 1.0
     assert np.abs(flight["airspeed"] - 20.0).max() < 0.2
     # Stable: nothing moves any more.
     assert np.ptp(after(flight, 16.0, "bank")) < 1e-3
@@ -60,7 +60,7 @@ def test_an_airspeed_command_outside_the_envelope_is_held_at_its_limit(x8_schedu
     # On the way it passes the limit by 0.6 m/s at most; 1 m/s is how far the design airspeeds reach past the envelope.
     assert flight["airspeed"].min() > X8.envelope.airspeed_min - 1.0
     assert flight["airspeed"].max() < X8.envelope.airspeed_max + 1.0
-    assert np.abs(flight["altitude"] - 100.0).max() < 2.0
+    assert np.abs(flight["altitude"] - x8_schedule.altitude).max() < 2.0
 
 
 def test_a_wide_open_throttle_winds_nothing_up(x8_schedule, x8_aircraft):
@@ -75,10 +75,10 @@ def test_a_wide_open_throttle_winds_nothing_up(x8_schedule, x8_aircraft):
 
 @pytest.mark.parametrize("size", [200.0, -200.0])
 def test_an_altitude_that_cannot_be_reached_in_time_is_approached_within_the_envelope(x8_schedule, x8_aircraft, size):
-    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 21.0, [(1.0, "altitude", 100.0 + size)])
+    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 21.0, [(1.0, "altitude", x8_schedule.altitude + size)])
     # It climbs steadily (near 2.3 m/s, what an altitude error of 1 m asks for), with wings level and airspeed held: 0.5 m/s. The
     # model is linear in angle of attack to 0.2 rad.
-    climbed = (after(flight, 20.9, "altitude")[0] - 100.0) * math.copysign(1.0, size)
+    climbed = (after(flight, 20.9, "altitude")[0] - x8_schedule.altitude) * math.copysign(1.0, size)
     assert 20.0 < climbed < 100.0
     assert np.abs(flight["airspeed"] - 20.0).max() < 0.5
     assert np.abs(flight["bank"]).max() < math.radians(2.0)
@@ -89,9 +89,9 @@ def test_an_altitude_that_cannot_be_reached_in_time_is_approached_within_the_env
 
 @pytest.mark.parametrize("size", [200.0, -200.0])
 def test_an_altitude_that_could_not_be_reached_in_time_winds_nothing_up(x8_schedule, x8_aircraft, size):
-    commands = [(1.0, "altitude", 100.0 + size), (21.0, "altitude", 100.0)]
+    commands = [(1.0, "altitude", x8_schedule.altitude + size), (21.0, "altitude", x8_schedule.altitude)]
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 60.0, commands)
-    error = (flight["altitude"] - 100.0) * math.copysign(1.0, size)
+    error = (flight["altitude"] - x8_schedule.altitude) * math.copysign(1.0, size)
     # Sent back after 20 s it turns round within a second and less than 3 m further on ...
     assert np.argmax(error) / 120.0 < 22.0
     assert error.max() < error[21 * 120] + 3.0
@@ -108,8 +108,10 @@ def test_an_altitude_that_could_not_be_reached_in_time_winds_nothing_up(x8_sched
 def test_an_altitude_step_is_not_overshot_by_more_for_being_larger(x8_schedule, x8_root):
     overshoots = {}
     for size in (2.0, 10.0, 30.0):
-        flight = fly(AutopilotedAircraft(X8, x8_root), x8_schedule.level(MIDDLE), 40.0, [(1.0, "altitude", 100.0 + size)])
-        overshoots[size] = flight["altitude"].max() - 100.0 - size
+        flight = fly(
+            AutopilotedAircraft(X8, x8_root), x8_schedule.level(MIDDLE), 40.0, [(1.0, "altitude", x8_schedule.altitude + size)]
+        )
+        overshoots[size] = flight["altitude"].max() - x8_schedule.altitude - size
     # The last metre is flown the same way whatever came before it.
     assert max(overshoots.values()) < 0.3
 
@@ -119,8 +121,8 @@ def test_controls_stay_within_their_range_whatever_is_commanded(x8_schedule, x8_
     commands = [
         *((1.0 + t, "heading_rate", sign * 5.0 * (-1.0) ** t) for t in range(8)),
         *((1.5 + 2 * t, "airspeed", 20.0 + 30.0 * (-1.0) ** t) for t in range(4)),
-        *((1.2 + 2 * t, "altitude", 100.0 + 50.0 * (-1.0) ** t) for t in range(4)),
-        *((10.0, name, value) for name, value in (("heading_rate", 0.0), ("airspeed", 20.0), ("altitude", 100.0))),
+        *((1.2 + 2 * t, "altitude", x8_schedule.altitude + 50.0 * (-1.0) ** t) for t in range(4)),
+        *((10.0, name, value) for name, value in (("heading_rate", 0.0), ("airspeed", 20.0), ("altitude", x8_schedule.altitude))),
     ]
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 40.0, commands)
     for name in ("elevator", "aileron", "throttle"):
@@ -129,6 +131,6 @@ def test_controls_stay_within_their_range_whatever_is_commanded(x8_schedule, x8_
         assert flight[name].max() <= limits.upper
     assert all(np.isfinite(channel).all() for channel in flight.values())
     # And it recovers: half a minute after all that it flies straight and level as before.
-    assert after(flight, 38.0, "altitude") == pytest.approx(100.0, abs=0.1)
+    assert after(flight, 38.0, "altitude") == pytest.approx(x8_schedule.altitude, abs=0.1)
     assert after(flight, 38.0, "airspeed") == pytest.approx(20.0, abs=0.05)
     assert np.abs(after(flight, 38.0, "heading_rate")).max() < 1e-3

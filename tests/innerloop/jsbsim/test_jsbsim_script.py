@@ -171,14 +171,14 @@ def test_a_stock_aircrafts_script_runs_its_engines_up_while_the_body_is_held_and
 
 def test_run_without_options_the_script_writes_its_result_where_it_is_run(x8_schedule, x8_root, tmp_path):
     root = shutil.copytree(x8_root, tmp_path / "root")
-    commands = [Command(time=0.5, name=ALTITUDE_COMMAND, value=101.0, note='Climb -- "1 m" & stay.')]
+    commands = [Command(time=0.5, name=ALTITUDE_COMMAND, value=x8_schedule.altitude + 1.0, note='Climb -- "1 m" & stay.')]
     script = write_script(x8_schedule, root, commands=commands)
     run_jsbsim(f"--script=scripts/{script.name}", directory=root)
     alone = read_result(root / f"{script.stem}.csv")
     command = released(alone).set_index("Time")[ALTITUDE_COMMAND]
     # Given when 0.5 s are complete, so that the step after that is the first to see it.
-    assert (command[:0.501] == 100.0).all()
-    assert (command[0.549:] == 101.0).all()
+    assert (command[:0.501] == x8_schedule.altitude).all()
+    assert (command[0.549:] == x8_schedule.altitude + 1.0).all()
     assert command.index[-1] == pytest.approx(10.5)
     assert np.diff(alone["Time"]) == pytest.approx(0.05)
 
@@ -186,7 +186,7 @@ def test_run_without_options_the_script_writes_its_result_where_it_is_run(x8_sch
 def test_sizes_of_the_demonstration_are_taken(x8_schedule):
     start = x8_schedule.level(MIDDLE)
     found = demonstration(x8_schedule.envelope, start, heading_rate=0.1, altitude_step=-7.0, airspeed_step=1.5)
-    assert [c.value for c in found] == [0.1, 0.0, 93.0, 21.5, 100.0, 20.0, -0.1, 0.0]
+    assert [c.value for c in found] == [0.1, 0.0, start.altitude - 7.0, 21.5, start.altitude, 20.0, -0.1, 0.0]
     assert [c.time for c in found] == sorted(c.time for c in found)
 
 

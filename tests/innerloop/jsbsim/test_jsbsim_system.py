@@ -63,11 +63,11 @@ def test_writing_twice_into_one_directory_leaves_one_system(x8_schedule, tmp_pat
     AutopilotedAircraft(X8, tmp_path)
 
 
-def test_commands_start_in_the_middle_of_the_design(x8_root):
+def test_commands_start_in_the_middle_of_the_design(x8_schedule, x8_root):
     fdm = Fdm(X8, x8_root)
     # The middle one of the five design airspeeds, the design altitude, straight on.
     assert fdm.read(AIRSPEED_COMMAND) == 20.0
-    assert fdm.read(ALTITUDE_COMMAND) == 100.0
+    assert fdm.read(ALTITUDE_COMMAND) == x8_schedule.altitude
     assert fdm.read(HEADING_RATE_COMMAND) == 0.0
 
 

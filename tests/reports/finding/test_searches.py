@@ -4,14 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from report_parts import assert_axes_read_quantity_and_unit, blocks_of, named_charts
+from report_parts import assert_axes_read_quantity_and_unit, blocks_of, flown, named_charts
 
 from reports.document.blocks import Text
 from reports.finding.search_view import search_view
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.schema.load import load_study
-from scenarios.studies.registry import run_study
 
 QUICK = (
     "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "start.course_deg=-90",
@@ -23,9 +21,7 @@ QUICK = (
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    directory = tmp_path_factory.mktemp("search") / "run"
-    run_study(load_study("sulphur", QUICK), "sulphur", directory)
-    return read_run(directory)
+    return read_run(flown(tmp_path_factory, "sulphur", QUICK))
 
 
 @pytest.fixture(scope="module")
@@ -80,10 +76,7 @@ def test_the_true_axis_is_where_the_passes_cross_it(view):
     assert y == last["altitude_m"] - last["plume_above_m"]
 
 
-def test_a_flight_that_is_told_nothing_of_a_search_has_no_such_section(tmp_path):
-    run_study(
-        load_study("sulphur", (*QUICK, "following.plume=predicted", "flight.after_settling_s=20")), "sulphur", tmp_path / "run"
-    )
-    run = read_run(tmp_path / "run")
+def test_a_flight_that_is_told_nothing_of_a_search_has_no_such_section(tmp_path_factory):
+    run = read_run(flown(tmp_path_factory, "sulphur", (*QUICK, "following.plume=predicted", "flight.after_settling_s=20")))
     assert search_view(run, run.summary.iloc[0]) is None
     assert not {"searches", "finding"} & {section.anchor for section in content(run).sections}

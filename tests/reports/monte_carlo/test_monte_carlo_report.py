@@ -192,7 +192,7 @@ def test_why_there_are_no_indices_is_said():
     texts = [block.text for block in section.blocks if isinstance(block, Text)]
     # Two figures have indices at all here, each of 50 flights: one sentence, and not a word on how to read indices.
     without = "Distance kept beyond r_min (50 flights); Settling time (50 flights)"
-    assert texts == [f"Indices take 200 at least, so that there are none of: {without}."]
+    assert texts == [f"Without indices, as indices take 200 at least: {without}."]
     assert charts_of(section) == {}
 
 

@@ -146,6 +146,22 @@ def test_the_page_is_not_wider_than_a_small_screen(browser, page_of):
     assert browser.run("document.querySelector('[data-part=stage]').clientWidth") > 400
 
 
+def test_figures_are_as_wide_in_print_whatever_the_window_and_as_before_after_it(browser, page_of):
+    _, page = page_of("trials")
+    drawn = "[...document.querySelectorAll('.js-plotly-plot')].map((plot) => [plot._fullLayout.width, plot.style.zoom])"
+    for width in (520, 1200):
+        show(browser, page, width)
+        before = browser.run(drawn)
+        browser.run("dispatchEvent(new Event('beforeprint'))")
+        # The width of the page's text in print; those that are smaller still have their letters in proportion.
+        assert {plot for plot, _ in browser.run(drawn)} == {1040}
+        assert browser.run("document.getElementById('paper').media") == "print"
+        browser.run("dispatchEvent(new Event('afterprint'))")
+        browser.settle()
+        assert browser.run(drawn) == before
+    assert browser.errors == []
+
+
 def test_another_flight_is_picked_and_those_without_a_history_have_no_replay(browser, page_of):
     run, page = page_of("trials")
     show(browser, page)

@@ -133,7 +133,7 @@ def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
     steady, turns = ({row[0]: row[1:3] for row in table.rows} for table in tables)
     assert steady["wind.speed_mps"] == ["uniform from 2 to 4", "0"]
     assert steady["criteria.crossing_interval_error"] == ["0.0321", "0.01"]
-    assert turns["vessel.manoeuvres"] == ["cycled: 20° to starboard at 0.5°/s; 10° to port at 0.5°/s", "none"]
+    assert turns["vessel.manoeuvres"] == ["in turn one of: 20° to starboard at 0.5°/s; 10° to port at 0.5°/s", "none"]
     assert turns["reports.interval_s"] == ["2 to 10", "0 to 0"]
     # Its own keys, and those that the base which it extends sets otherwise than the schema.
     own = {"flights, seed", "speed_ratio", "wind.speed_mps", "flight.crossings", "criteria.crossing_interval_error"}

@@ -171,7 +171,7 @@ def test_a_scenario_of_which_no_one_flight_can_be_flown_is_refused(scenario, wor
 
 
 def test_a_study_of_no_flights_has_its_table():
-    study = run("convergence", ensemble={"trajectories": 3, "time_max_s": 100.0}, jobs=1)
+    study = run("convergence", ensemble={"trajectories": 3, "time_max_s": 20.0}, jobs=1)
     assert study.flights == {}
     assert len(study.summary) == 6  # each with both laws of the catalog's scenario
 

@@ -114,7 +114,12 @@ def test_a_path_too_long_for_the_file_system_is_refused_in_a_line(tmp_path):
 @pytest.mark.parametrize("resume", [False, True])
 @pytest.mark.parametrize(
     "names",
-    [["journal.sqlite"], ["journal.sqlite", "journal.sqlite-wal"], [".probe-0a1b"], ["journal.sqlite", ".manifest.json.1.part"]],
+    [
+        ["journal.sqlite"],
+        ["journal.sqlite", "journal.sqlite-wal"],
+        [".probe-0a1b.part"],
+        ["journal.sqlite", ".manifest.json.1.part"],
+    ],
 )
 def test_what_a_run_leaves_that_was_killed_before_its_manifest_is_taken_for_a_new_one(tmp_path, names, resume):
     for name in names:

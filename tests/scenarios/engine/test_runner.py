@@ -70,7 +70,7 @@ def test_a_run_that_was_killed_before_its_tables_were_written_goes_on_too(marks,
     # As kill -9 leaves it: what was being written lies about, and nothing says that it has ended.
     (out / TABLE).unlink()
     (out / "manifest.json").write_text(json.dumps(study.initial_manifest() | {"state": "running"}), encoding="utf-8")
-    parts = [out / f".{TABLE}.123.part", out / "files" / ".5.txt.123.part"]
+    parts = [out / f".{TABLE}.123.part", out / ".probe-0a1b.part", out / "files" / ".5.txt.123.part"]
     for part in parts:
         part.write_bytes(b"half")
     assert fly(study, out, resume=True).all_met

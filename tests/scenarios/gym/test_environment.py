@@ -49,16 +49,14 @@ def column(env, name):
     return env.unwrapped.record.column(name)
 
 
-@pytest.mark.parametrize(
-    ("imported", "name"), [("gymnasium, scenarios.gym", ENVIRONMENT), ("gymnasium", f"scenarios.gym:{ENVIRONMENT}")]
-)
-def test_gymnasium_finds_it_in_a_process_of_its_own_as_the_page_says(imported, name):
-    script = f"import {imported}; print(gymnasium.make({name!r}, keys={{'fidelity': 'kinematic'}}).spec.id)"
+def test_gymnasium_finds_it_in_a_process_of_its_own_as_the_page_says():
+    # By its module and name alone; the other tests' environments are made after an import, the page's other way.
+    name = f"scenarios.gym:{ENVIRONMENT}"
+    script = f"import gymnasium; print(gymnasium.make({name!r}, keys={{'fidelity': 'kinematic'}}).spec.id)"
     found = subprocess.run([sys.executable, "-c", script], cwd=PROJECT, capture_output=True, text=True, check=False)
     assert (found.stdout.split(), found.returncode) == ([ENVIRONMENT], 0), found.stderr
     page = (PROJECT / "docs" / "gym.md").read_text(encoding="utf-8")
-    assert name in page
-    assert all(f"import {package}" in page for package in imported.split(", "))
+    assert all(words in page for words in (name, f'"{ENVIRONMENT}"', "import gymnasium", "import scenarios.gym"))
 
 
 def test_it_passes_gymnasiums_check(kinematic):

@@ -19,8 +19,7 @@ from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
-# At 100 m, the altitude of the designs that other tests have too.
-SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]", "plume.source_height_m=100.0"]
+SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]"]
 
 # Two crossings, right after settling, are too few for means over them.
 LOOSE = ["criteria.crossing_interval_error=0.1", "criteria.tracking_error_rms_m=5.0"]

@@ -31,18 +31,18 @@ def test_a_flight_has_the_spread_of_its_speed_ratio_and_none_in_still_air():
 
 @pytest.fixture(scope="module")
 def x8(designs, tmp_path_factory):
-    """The design that other tests have too, at 100 m, and what flights need of it."""
+    """The design that other tests have too, and what flights need of it."""
     found = designs("x8")
     return found, aircraft_setup(found, gusty(level="none"), RunDirectory(tmp_path_factory.mktemp("x8")))
 
 
 def gusty(**turbulence):
-    return scenario(fidelity="six_dof", plume={"source_height_m": 100.0}, turbulence=turbulence)
+    return scenario(fidelity="six_dof", turbulence=turbulence)
 
 
 def sampling(key, choice):
     draws = [{"key": key, "choice": list(choice)}]
-    return scenario(fidelity="six_dof", flights=len(choice), plume={"source_height_m": 100.0}, draws=draws)
+    return scenario(fidelity="six_dof", flights=len(choice), draws=draws)
 
 
 def test_an_experiment_that_samples_its_turbulence_plans_each_levels_own_margin(x8, monkeypatch):

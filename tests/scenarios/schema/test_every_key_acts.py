@@ -16,19 +16,20 @@ SHORT = """
 title = "short"
 fidelity = "kinematic"
 seed = 3
-flight.duration_max_s = 120.0
-guidance.rate_hz = 10.0
+guidance.rate_hz = 5.0
 flight.log_rate_hz = 5.0
 criteria.tracking_error_rms_m = 1e-4
 """
 
 BASES = {
     "tracking": """
+flight.duration_max_s = 120.0
 vessel.speed_mps = 8.0
 flight.crossings = 2
 start.distance_m = [300.0, 400.0]
 """,
     "following": """
+flight.duration_max_s = 120.0
 guidance.mission = "follow"
 vessel.speed_mps = 6.0
 vessel.manoeuvres = [{ at_s = 60.0, turn_deg = 20.0, speed_mps = 7.0 }]
@@ -40,6 +41,7 @@ flight.crossings = 0
 start.distance_m = [300.0, 400.0]
 """,
     "measuring": """
+flight.duration_max_s = 120.0
 vessel.speed_mps = 8.0
 wind = { speed_mps = 5.0, from_deg = 80.0 }
 plume = { model = "fluctuating", source_height_m = 35.0 }
@@ -50,6 +52,7 @@ flight.after_settling_s = 20.0
 start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
 """,
     "searching": """
+flight.duration_max_s = 120.0
 vessel.speed_mps = 8.0
 wind = { speed_mps = 5.0, from_deg = 80.0 }
 plume = { model = "fluctuating", source_height_m = 30.0 }
@@ -62,19 +65,20 @@ flight.altitude_min_m = 52.0
 start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
 """,
     "standoff": """
+flight.duration_max_s = 80.0
 guidance.mission = "standoff"
 guidance.law = "npfg"
 keepout.radius_m = 90.0
 vessel.speed_mps = 6.0
-vessel.manoeuvres = [{ at_s = 60.0, turn_deg = 20.0, speed_mps = 7.0 }]
+vessel.manoeuvres = [{ at_s = 30.0, turn_deg = 20.0, speed_mps = 7.0 }]
 wind = { speed_mps = 4.0, from_deg = 60.0 }
 reports.interval_s = [2.0, 5.0]
 following.vessel_acceleration_mps2 = 0.15
-fault = { kind = "satellite_navigation", at_s = [70.0, 80.0] }
+fault = { kind = "satellite_navigation", at_s = [40.0, 50.0] }
 flight.crossings = 0
 start.distance_m = [300.0, 400.0]
 """,
-    "circle": 'reference.path = "circle"\nstart.place_m = [80.0, -60.0]\n',
+    "circle": 'flight.duration_max_s = 120.0\nreference.path = "circle"\nstart.place_m = [80.0, -60.0]\n',
 }
 """Flights of the kinematic vehicle with each mission, and without a vessel."""
 

@@ -18,8 +18,7 @@ ENDS_IN = {"engine": DITCHED, "throttle": Mode.TRACKING.value, "left_elevon": DI
 
 @pytest.fixture(scope="module")
 def flown(designs, tmp_path_factory):
-    """A flight for each kind of fault, by its kind: row and time history. The design is that of the other tests, at 100 m."""
-    designs("x8")
+    """A flight for each kind of fault, by its kind: row and time history. At 100 m, to have some way before the sea."""
     flights = scenario(
         fidelity="six_dof",
         flights=len(KINDS),
@@ -33,7 +32,10 @@ def flown(designs, tmp_path_factory):
         criteria={"settles": False},
     )
     path = tmp_path_factory.mktemp("faults") / "run"
-    run_study(flights, "faults", path)
+    with pytest.MonkeyPatch.context() as patch:
+        # The design of the other tests, for 60 m.
+        patch.setattr("scenarios.studies.flight_study.design_of", lambda *_: (designs("x8"), ""))
+        run_study(flights, "faults", path)
     return {row["fault"]: (row, pd.read_parquet(path / "flights" / f"{row['flight_id']}.parquet")) for row in rows_of(path)}
 
 

@@ -6,6 +6,7 @@ import shutil
 import pandas as pd
 import pytest
 
+from common.run_layout import flight_of
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.engine.executors import ExecutorFactory
@@ -101,6 +102,11 @@ def test_only_what_lies_in_a_run_is_a_flight(runs, tmp_path):
     assert is_flight(str(runs / "trials" / "flights" / "one_00000"))
     assert not is_flight("sweep_nu")
     assert not is_flight(str(tmp_path / "flights" / "one_00000"))
+
+
+@pytest.mark.parametrize("suffix", ["", ".parquet", ".json"])
+def test_a_flight_is_named_by_any_of_its_files(suffix):
+    assert flight_of(f"runs/sulphur/flights/nu_0.50{suffix}") == "nu_0.50"
 
 
 def test_what_cannot_be_flown_again_is_refused_in_one_line(runs, tmp_path):

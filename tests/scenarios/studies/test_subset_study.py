@@ -178,6 +178,7 @@ def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, 
     assert statistics_of(out) == statistics_of(whole[1])
 
 
+@pytest.mark.usefixtures("sketched")
 def test_its_report_says_the_probability_and_shows_levels_and_inputs(whole, tmp_path):
     html, pdf = build_reports(shutil.copytree(whole[1], tmp_path / "copy"))
     text = html.read_text(encoding="utf-8")

@@ -1,0 +1,87 @@
+"""Marks of the time along a track, with words where they hide nothing and nothing hides them."""
+
+from collections.abc import Iterable, Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from reports.document.chart import Line, Note
+from reports.document.palette import Meaning
+from reports.run.columns import Array
+
+_LETTER, _HEIGHT = 0.024, 0.045
+"""Width of a letter and height of a word, over the size of what is shown."""
+
+_OFF = 0.02
+"""Distance of a word from its mark, over the same."""
+
+_PASSES_MAX = 1
+"""Curves that may go through a word; one that would hide or be hidden by more has no mark either."""
+
+_APART = 0.12
+"""Distance of words in a row at least, over its length."""
+
+
+class _Word(NamedTuple):
+    """Where a word may stand: its middle, half its size, and the end of it that stands at ``at``."""
+
+    middle: tuple[float, float]
+    half: tuple[float, float]
+    at: float
+    align: Literal["left", "center", "right"]
+
+
+def marks_beside(x: Array, y: Array, words: Sequence[str], drawn: Sequence[Line], size: float) -> tuple[list[Line], list[Note]]:
+    """Return marks, each with its word to the right, to the left, above or below, where the fewest curves are.
+
+    Parameters
+    ----------
+    x, y : of the marks, shape (n,)
+    words : of each
+    drawn : what is drawn besides
+    size : of what is shown, in the units of the axes
+    """
+    kept: list[int] = []
+    notes: list[Note] = []
+    taken: list[_Word] = []
+    for i, text in enumerate(words):
+        free = [word for word in _places(float(x[i]), float(y[i]), text, size) if not any(_touch(word, of) for of in taken)]
+        passes = [sum(_passes(line, word) for line in drawn) for word in free]
+        if free and min(passes) <= _PASSES_MAX:
+            word = free[passes.index(min(passes))]
+            taken.append(word)
+            kept.append(i)
+            notes.append(Note(x=word.at, y=word.middle[1], text=text, align=word.align))
+    return _dots(x[kept], y[kept]), notes
+
+
+def marks_in_a_row(x: Array, y: Array, words: Sequence[str], height: float, length: float) -> tuple[list[Line], list[Note]]:
+    """Return marks along a track that goes across the page, and their words at a height above it, as many as there is room for."""
+    notes: list[Note] = []
+    for right, text in zip(x.tolist(), words, strict=True):
+        if all(abs(right - of.x) > _APART * length for of in notes):
+            notes.append(Note(x=right, y=height, text=text))
+    return _dots(x, y), notes
+
+
+def _dots(x: Array, y: Array) -> list[Line]:
+    return [Line(x=x, y=y, label="", colour=Meaning.SHIP, style="dots")] if len(x) else []
+
+
+def _places(x: float, y: float, text: str, size: float) -> Iterable[_Word]:
+    half = 0.5 * _LETTER * len(text) * size, 0.5 * _HEIGHT * size
+    off = _OFF * size
+    yield _Word((x + off + half[0], y), half, x + off, "left")
+    yield _Word((x - off - half[0], y), half, x - off, "right")
+    yield _Word((x, y + off + half[1]), half, x, "center")
+    yield _Word((x, y - off - half[1]), half, x, "center")
+
+
+def _touch(one: _Word, other: _Word) -> bool:
+    return all(abs(one.middle[i] - other.middle[i]) < one.half[i] + other.half[i] for i in (0, 1))
+
+
+def _passes(line: Line, word: _Word) -> int:
+    """Return how often a curve goes through a word."""
+    inside = (np.abs(line.x - word.middle[0]) < word.half[0]) & (np.abs(line.y - word.middle[1]) < word.half[1])
+    return int(np.count_nonzero(inside[1:] & ~inside[:-1])) + int(inside[:1].any())

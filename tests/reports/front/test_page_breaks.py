@@ -1,0 +1,62 @@
+"""Where printed pages break: figures become smaller rather than leave much of a page empty, and tables go on over pages."""
+
+from dataclasses import replace
+
+import pypdfium2
+import pytest
+
+from reports.document.blocks import Table
+from reports.render.pdf import write_pdf
+from tests.reports.test_blocks import a_chart, a_report
+
+
+def pages_of(blocks, path):
+    """Return the text of each page of a report, the second of which begins with these blocks."""
+    # The first section is long enough to fill what page 1 has left.
+    write_pdf(a_report([tall("filler", 0.9), *blocks]), path)
+    document = pypdfium2.PdfDocument(path)
+    texts = [page.get_textpage().get_text_range() for page in document]
+    document.close()
+    return texts
+
+
+def tall(name, height):
+    """Return a chart so high, over the width of the page; a page is 1.44 such widths high."""
+    return replace(a_chart(name), panel_height=height)
+
+
+def page_with(texts, words):
+    return next(number for number, text in enumerate(texts, 1) if words in text)
+
+
+@pytest.mark.parametrize(
+    ("second", "together"),
+    [
+        # With marks and captions 1.3, 1.5 and 2.1 widths in all: they fit as they are, when drawn smaller, and not at all.
+        (0.4, True),
+        (0.6, True),
+        (1.2, False),
+    ],
+)
+def test_a_figure_goes_on_the_page_before_it_if_it_fits_when_it_is_drawn_smaller(second, together, tmp_path):
+    texts = pages_of([tall("one", 0.7), tall("two", second)], tmp_path / "report.pdf")
+    assert (page_with(texts, "Caption of one") == page_with(texts, "Caption of two")) is together
+
+
+def test_a_page_makes_room_for_a_figure_that_would_stand_alone_on_the_next(tmp_path):
+    # The first two fill a page but for a tenth, and the last one fills one: the third needs others to be smaller.
+    heights = [0.55, 0.55, 0.35, 1.3]
+    texts = pages_of([tall(f"figure {i}", height) for i, height in enumerate(heights)], tmp_path / "report.pdf")
+    assert [page_with(texts, f"Caption of figure {i}") for i in range(4)] == [2, 2, 2, 3]
+
+
+def test_what_follows_a_table_begins_below_its_last_row(tmp_path):
+    rows = [[f"row {i}", "word " * (1 + 60 * (i % 3 == 0))] for i in range(90)]
+    table = Table(head=["Row", "Words"], rows=rows, widths=[1.0, 3.0], breakable=True, caption="Table of rows")
+    texts = pages_of([tall("one", 0.5), table, tall("two", 0.5)], tmp_path / "report.pdf")
+    begin, end = page_with(texts, "Table of rows"), page_with(texts, "row 89")
+    assert begin == page_with(texts, "Caption of one")
+    assert end == begin + 2
+    # Each page repeats the head.
+    assert all("Words" in text for text in texts[begin - 1 : end])
+    assert page_with(texts, "Caption of two") in (end, end + 1)
