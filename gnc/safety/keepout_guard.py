@@ -35,6 +35,7 @@ class KeepoutGuard:
     heading_rate_max : omega_max, the largest command [rad/s]
     lag : time constant of the vehicle's heading rate behind its command; 0 if it follows at once [s]
     delay : dead time before that [s]
+    slow_lag : by which it is behind slow commands; None if that is ``delay`` + ``lag`` [s]
     time_step : for which a command is held [s]
     speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together [m/s]
     drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
@@ -81,6 +82,7 @@ class KeepoutGuard:
         lag: float,
         time_step: float,
         delay: float = 0.0,
+        slow_lag: float | None = None,
         speed_error: float = 0.0,
         drift_rate: float = 0.0,
         turn_speed: float = math.inf,
@@ -88,7 +90,13 @@ class KeepoutGuard:
         self._radius, self._deviation, self.turn_speed = radius, deviation, turn_speed
         self._rate, self._time_step = heading_rate_max, time_step
         self._lag, self._until_acting = lag, delay
-        self._given = GivenCommands(lag=lag, delay=delay, time_step=time_step)
+        self._given = GivenCommands(
+            lag=lag,
+            delay=delay,
+            slow_lag=delay + lag if slow_lag is None else slow_lag,
+            time_step=time_step,
+            heading_rate_max=heading_rate_max,
+        )
         # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
         self._speed_error, self._drift_rate = speed_error + drift_rate, drift_rate
         self._prediction = TurnPrediction(
@@ -120,8 +128,7 @@ class KeepoutGuard:
         bounded = -self._rate <= command <= self._rate
         if self._free_steps > 0 and bounded:
             self._free_steps -= 1
-            self._given.since.append(command)
-            self._given.rates.append(own.heading_rate)
+            self._give(command, own.heading_rate, speed)
             return command
         self._free_steps = 0
         free, motions, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
@@ -143,9 +150,16 @@ class KeepoutGuard:
             self.interventions += not self.intervening
             self.intervening = True
             command = self._mix(command, motions)
-        self._given.since.append(command)
-        self._given.rates.append(own.heading_rate)
+        self._give(command, own.heading_rate, speed)
         return command
+
+    def _give(self, command: float, heading_rate: float, speed: float) -> None:
+        """Take note of a command: what is beyond the largest bank never comes [rad/s, rad/s, m/s]."""
+        if speed > self.turn_speed:
+            most = self._rate * self.turn_speed / speed
+            command = command if -most <= command <= most else math.copysign(most, command)
+        self._given.since.append(command)
+        self._given.rates.append(heading_rate)
 
     def overruled(self, command: float) -> None:
         """Take note of a heading rate that is flown in place of the last command [rad/s]."""
@@ -194,11 +208,12 @@ class KeepoutGuard:
             self._speed_error + tube.growth + tube.acceleration * since,
             tube.acceleration,
             to_come,
+            self._given.change,
         )
 
     def _free_when_far(self, motion: Motion) -> float:
         """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
-        x, y, velocity_north, velocity_east, _, speed, _, radius, growth, acceleration, _ = motion
+        x, y, velocity_north, velocity_east, _, speed, _, radius, growth, acceleration, *_ = motion
         duration = self._turn_time * max(1.0, speed / self.turn_speed)
         closing = speed + math.hypot(velocity_north, velocity_east) + growth
         gap = math.hypot(x, y) - radius - (closing + 0.5 * acceleration * duration) * duration

@@ -3,7 +3,6 @@
 import math
 from collections import deque
 
-from common.turn_tube import LEAST_CHANGE
 from gnc.safety.given_commands import commands_under_way
 
 _TURN = 0.125
@@ -11,12 +10,13 @@ _TURN = 0.125
 _TURN_MAX = 2.5 * math.pi
 """Course after which a turn away is over [rad]: once round, and what a turn the other way before it and the disc's motion add."""
 
-Motion = tuple[float, float, float, float, float, float, float, float, float, float, float]
+Motion = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
 """A vehicle's motion relative to a disc, and how the disc grows.
 
 North and east of the disc's centre [m]; the disc's velocity north and east in the air mass [m/s]; the vehicle's course and speed
 there, and its heading rate [rad, m/s, rad/s]; radius of the disc now [m], rate of its growth [m/s] and of that [m/s^2]; and what
-the heading rate lacks for the course that is still to come of earlier commands [rad/s].
+the heading rate lacks for the course that is still to come of earlier commands [rad/s]; their largest change of late, over a
+full reversal [-].
 """
 Start = tuple[float, float, float, float]
 """x, y, course and heading rate."""
@@ -76,12 +76,11 @@ class TurnPrediction:
         chord = speed * (1.0 - half * half / 6.0)
         x += (chord * math.cos(middle) - velocity_north) * self._delay
         y += (chord * math.sin(middle) - velocity_east) * self._delay
-        radius, growth, acceleration, to_come = disc
-        return x, y, velocity_north, velocity_east, course, speed, heading_rate, radius, growth, acceleration, to_come
+        return (x, y, velocity_north, velocity_east, course, speed, heading_rate, *disc)
 
     def after(self, command: float, motion: Motion) -> Start:
         """Return where a command held for one time step leads."""
-        x, y, velocity_north, velocity_east, course, speed, heading_rate, _, _, _, _ = motion
+        x, y, velocity_north, velocity_east, course, speed, heading_rate, *_ = motion
         duration, turned, mean, decay = self._hold
         middle = course + mean * heading_rate + (0.5 * duration - mean) * command
         return (
@@ -107,7 +106,7 @@ class TurnPrediction:
         """
         cos, sin, sqrt = math.cos, math.sin, math.sqrt
         x, y, course, heading_rate = start
-        _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration, to_come = motion
+        _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration, to_come, change = motion
         # What is to come counts where it is against the turn.
         heading_rate += side * min(0.0, side * to_come)
         duration, turned, mean, decay = self._interval
@@ -118,8 +117,8 @@ class TurnPrediction:
         chord = speed * duration * self._chord
         north, east = velocity_north * duration, velocity_east * duration
         half, lag = 0.5 * acceleration, self._lag
-        # The farther the vehicle has to roll into the turn, the more it deviates; where it is now it does not yet.
-        deviation = self._deviation * max(LEAST_CHANGE, 0.5 - 0.5 * side * heading_rate / self._rate)
+        # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
+        deviation = self._deviation * max(change, 0.5 - 0.5 * side * heading_rate / self._rate)
         fixed += deviation
         slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
         least = slack + deviation

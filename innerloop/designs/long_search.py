@@ -38,13 +38,22 @@ def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) ->
     """
     schedule, own = found.design.schedule, found.record["turn_reversal"]
     response = TurnReversalResponse(delay=own["delay_s"], lag=own["lag_s"])
+    slow_lag = found.record["heading_rate_lag_s"]
     counts = [min(PART, reversals - first) for first in range(0, reversals, PART)]
     searches: list[ReversalSearch] = []
     with ProcessPoolExecutor(min(_PROCESSES, os.cpu_count() or 1), initializer=_leave_interrupts_alone) as pool:
         parts: list[Future[ReversalSearch]] = [
             # The design's own search has the seed 0.
             pool.submit(
-                _search, schedule.spec, root, schedule.level(schedule.middle), schedule.envelope.bank, response, count, seed
+                _search,
+                schedule.spec,
+                root,
+                schedule.level(schedule.middle),
+                schedule.envelope.bank,
+                response,
+                slow_lag,
+                count,
+                seed,
             )
             for seed, count in enumerate(counts, start=1)
         ]
@@ -67,9 +76,16 @@ def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) ->
 
 
 def _search(
-    spec: AircraftSpec, root: Path, start: Trim, bank: float, response: TurnReversalResponse, reversals: int, seed: int
+    spec: AircraftSpec,
+    root: Path,
+    start: Trim,
+    bank: float,
+    response: TurnReversalResponse,
+    slow_lag: float,
+    reversals: int,
+    seed: int,
 ) -> ReversalSearch:
-    return search_reversals(AutopilotedAircraft(spec, root), start, bank, response, reversals=reversals, seed=seed)
+    return search_reversals(AutopilotedAircraft(spec, root), start, bank, response, slow_lag, reversals=reversals, seed=seed)
 
 
 def _leave_interrupts_alone() -> None:

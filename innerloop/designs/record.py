@@ -52,6 +52,7 @@ def design_record(design: Design, root: Path) -> Record:
     schedule = design.schedule
     aircraft = AutopilotedAircraft(schedule.spec, root)
     level = schedule.level(schedule.middle)
+    slow_lag = measure_lag(aircraft, level, schedule.envelope.bank)
     return {
         "aircraft": schedule.spec.name,
         "title": schedule.spec.title,
@@ -75,16 +76,19 @@ def design_record(design: Design, root: Path) -> Record:
         "loops": _loops(schedule),
         "responses": _responses(schedule, aircraft),
         "verification": verify_model(Fdm(schedule.spec), schedule.models[schedule.middle][LEVEL_GAINS], level),
-        "heading_rate_lag_s": measure_lag(aircraft, level, schedule.envelope.bank),
-        "turn_reversal": reversal_record(aircraft, level, schedule.envelope.bank),
+        "heading_rate_lag_s": slow_lag,
+        "turn_reversal": reversal_record(aircraft, level, schedule.envelope.bank, slow_lag),
     }
 
 
-def reversal_record(aircraft: AutopilotedAircraft, start: Trim, bank: float, *, reversals: int | None = None) -> Record:
-    """Return how the heading rate follows a reversal of a turn at ``bank`` [rad], and the deviations that a search found."""
+def reversal_record(aircraft: AutopilotedAircraft, start: Trim, bank: float, slow_lag: float) -> Record:
+    """Return how the heading rate follows a reversal of a turn at ``bank`` [rad], and the deviations that a search found.
+
+    ``slow_lag`` is that behind slow commands [s].
+    """
     response = measure_turn_reversal(aircraft, start, bank)
-    count = reversals or reversals_of_a_design(bank, start.airspeed)
-    found = search_reversals(aircraft, start, bank, response, reversals=count)
+    count = reversals_of_a_design(bank, start.airspeed)
+    found = search_reversals(aircraft, start, bank, response, slow_lag, reversals=count)
     return {
         "bank_deg": math.degrees(bank),
         "airspeed_mps": start.airspeed,

@@ -18,7 +18,7 @@ from scipy.signal import lfilter
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.fdm import TIME_STEP
-from common.turn_tube import FORGOTTEN, LEAST_CHANGE
+from common.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
 from common.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.turn_reversal import TurnReversalResponse
@@ -78,7 +78,14 @@ def reversals_of_a_design(bank: float, airspeed: float) -> int:
 
 
 def search_reversals(
-    aircraft: AutopilotedAircraft, start: Trim, bank: float, response: TurnReversalResponse, *, reversals: int, seed: int = 0
+    aircraft: AutopilotedAircraft,
+    start: Trim,
+    bank: float,
+    response: TurnReversalResponse,
+    slow_lag: float,
+    *,
+    reversals: int,
+    seed: int = 0,
 ) -> ReversalSearch:
     """Return the largest deviation of ``aircraft`` from its response in so many reversals, one after the other.
 
@@ -91,11 +98,12 @@ def search_reversals(
     start : straight and level equilibrium
     bank : whose coordinated turn is omega_max [rad]
     response : of the heading rate to a reversal
+    slow_lag : by which it is behind slow commands [s]
     reversals, seed : how many are flown, and of their random numbers
     """
     rate = STANDARD_GRAVITY * math.tan(bank) / start.airspeed
     generator = np.random.default_rng(seed)
-    flight = _Flight(aircraft, start, response)
+    flight = _Flight(aircraft, start, response, slow_lag)
     duration = (0.5 * math.pi + float(_LEANING[-1])) / rate + response.delay + response.lag
     found: list[_Found] = []
     for number in range(reversals):
@@ -159,15 +167,17 @@ def _changed(before: _Before, generator: np.random.Generator) -> _Before:
 class _Flight:
     """An aircraft under way, the heading-rate commands that it was given at each time step, and what is to come of them."""
 
-    def __init__(self, aircraft: AutopilotedAircraft, start: Trim, response: TurnReversalResponse) -> None:
+    def __init__(self, aircraft: AutopilotedAircraft, start: Trim, response: TurnReversalResponse, slow_lag: float) -> None:
         aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
         self._aircraft, self._response, fdm = aircraft, response, aircraft.fdm
+        self._slow, self._doubt = slow_lag - response.delay, SLOW_LAG_ERROR * slow_lag
         self._north = fdm.node("velocities/v-north-fps").get_double_value
         self._east = fdm.node("velocities/v-east-fps").get_double_value
         self._rate = fdm.node(HEADING_RATE).get_double_value
         self._late = max(1, round(response.delay / TIME_STEP))
         self._kept = math.exp(-TIME_STEP / (FORGOTTEN * response.lag))
-        self._lack = 0.0
+        self._fading = math.exp(-TIME_STEP / (CHANGED * response.lag))
+        self._lack, self._change = 0.0, 0.0
         self.commands: list[float] = [0.0] * self._late
 
     @property
@@ -201,24 +211,26 @@ class _Flight:
         lag, steps = self._response.lag, max(1, round(duration / TIME_STEP))
         decay, side = math.exp(-TIME_STEP / lag), math.copysign(1.0, turn)
         rates, now = np.empty(steps), self._rate()
+        to_come = math.copysign(max(0.0, abs(self._lack) - self._doubt * abs(now)), self._lack) / lag
         for i, command in enumerate([*self.commands[-self._late :], *[turn] * (steps - self._late)]):
             if i == self._late:
                 # What is to come counts where it is against the turn.
-                now += side * min(0.0, side * self._lack / lag)
+                now += side * min(0.0, side * to_come)
                 change = 0.5 - 0.5 * side * now / rate
             now = command + (now - command) * decay
             rates[i] = now
         courses = math.atan2(self._east(), self._north()) + np.cumsum(rates) * TIME_STEP
         path = np.cumsum(np.column_stack([np.cos(courses), np.sin(courses)]), axis=0) * speed * TIME_STEP
-        return np.asarray(path), max(LEAST_CHANGE, change)
+        return np.asarray(path), max(LEAST_CHANGE, self._change / (2.0 * rate), change)
 
     def _take_in(self, heading_rate: float, flown: Array) -> None:
         """Take in what was commanded and flown: the course that the aircraft has turned less than its response to the commands."""
         steps = len(flown) - 1
+        self._change = max(abs(heading_rate - self.commands[-1]), self._change) * self._fading**steps
         self.commands = [*self.commands[-self._late :], *[heading_rate] * steps]
         acted = np.array(self.commands[:steps]) * TIME_STEP
         courses = np.unwrap(np.arctan2(flown[:, 1], flown[:, 0]))
-        lacks = acted - np.diff(courses) - self._response.lag * np.diff(flown[:, 2])
+        lacks = acted - np.diff(courses) - self._slow * np.diff(flown[:, 2])
         self._lack = float(lfilter([1.0], [1.0, -self._kept], lacks, zi=[self._kept * self._lack])[0][-1])
 
 

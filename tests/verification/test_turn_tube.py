@@ -23,7 +23,8 @@ HELD = (0.2, 0.35, 0.5, 0.65, 0.8, 1.0)
 
 @pytest.fixture(scope="module")
 def record(designs):
-    return designs("x8").record["turn_reversal"]
+    whole = designs("x8").record
+    return whole["turn_reversal"] | {"slow_lag_s": whole["heading_rate_lag_s"]}
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +70,14 @@ def lacking(flights, record, *, remembers):
     rate, speed, found = flights
     lacks = []
     for told, now, path in found:
-        guard = KeepoutGuard(radius=RADIUS, heading_rate_max=rate, lag=record["lag_s"], delay=record["delay_s"], time_step=STEP)
+        guard = KeepoutGuard(
+            radius=RADIUS,
+            heading_rate_max=rate,
+            lag=record["lag_s"],
+            delay=record["delay_s"],
+            slow_lag=record["slow_lag_s"],
+            time_step=STEP,
+        )
         # Far off, so that every command passes.
         guard.tubes = (Tube(0.0, 1e5, 0.0, 0.0, 0.0),)
         for step, (own, command) in enumerate(told):

@@ -15,6 +15,7 @@ from gnc.unicycle import lagged_move
 from innerloop.designs.long_search import PART, repeat_search
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.reversal_search import _deviation, _Flight, reversals_of_a_design, search_reversals
+from innerloop.flight.step_responses import measure_lag
 from innerloop.flight.turn_reversal import TurnReversalResponse, measure_turn_reversal
 from innerloop.jsbsim.properties import HEADING_RATE
 
@@ -25,10 +26,11 @@ REVERSALS = 12
 def flown(x8_schedule, x8_aircraft, x8_root):
     """Return the response of the X8 at the bank of its studies, and a function that searches a few reversals of a new one."""
     level, bank = x8_schedule.level(x8_schedule.middle), X8.envelope.bank
-    measured = measure_turn_reversal(x8_aircraft, level, bank)
+    measured, slow_lag = measure_turn_reversal(x8_aircraft, level, bank), measure_lag(x8_aircraft, level, bank)
 
     def flown(response=measured, seed=0):
-        return search_reversals(AutopilotedAircraft(X8, x8_root), level, bank, response, reversals=REVERSALS, seed=seed)
+        aircraft = AutopilotedAircraft(X8, x8_root)
+        return search_reversals(aircraft, level, bank, response, slow_lag, reversals=REVERSALS, seed=seed)
 
     return measured, flown
 
@@ -82,7 +84,7 @@ class Exact:
 
 def test_a_vehicle_of_just_that_response_is_predicted(x8_schedule):
     response = TurnReversalResponse(delay=0.5, lag=0.4)
-    flight = _Flight(Exact(response), x8_schedule.level(x8_schedule.middle), response)
+    flight = _Flight(Exact(response), x8_schedule.level(x8_schedule.middle), response, 0.9)
     for rate, duration in ((0.5, 4.0), (-0.5, 0.3), (0.2, 1.0), (-0.5, 0.6)):
         flight.fly(rate, duration)
     predicted, change = flight.predicted(0.5, 5.0, 20.0, 0.5)
