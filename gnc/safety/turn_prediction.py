@@ -62,7 +62,7 @@ class TurnPrediction:
         """
         if not under_way:
             return motion
-        x, y, velocity_north, velocity_east, course, speed, heading_rate, *disc = motion
+        x, y, velocity_north, velocity_east, course, speed, heading_rate, radius, growth, acceleration, to_come, change = motion
         held = self._first
         begun, middles = course, 0.0
         for command in under_way:
@@ -76,7 +76,9 @@ class TurnPrediction:
         chord = speed * (1.0 - half * half / 6.0)
         x += (chord * math.cos(middle) - velocity_north) * self._delay
         y += (chord * math.sin(middle) - velocity_east) * self._delay
-        return (x, y, velocity_north, velocity_east, course, speed, heading_rate, *disc)
+        return (
+            x, y, velocity_north, velocity_east, course, speed, heading_rate, radius, growth, acceleration, to_come, change,
+        )  # fmt: skip
 
     def after(self, command: float, motion: Motion) -> Start:
         """Return where a command held for one time step leads."""

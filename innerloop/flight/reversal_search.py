@@ -10,6 +10,7 @@ angle over the aircraft's own speed, later by that angle. So the directions lean
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,8 +31,8 @@ _SEARCHED = (20, 150)
 _SEARCHED_FOR = 1000.0
 """Flight time of that search, within those limits [s]."""
 
-_AT_RANDOM = 0.5
-"""Share of the reversals whose commands are random; those of the others are near the worst so far [-]."""
+_NOT_CLIMBING = 0.5
+"""Share of the reversals whose commands owe nothing to the worst so far [-]."""
 
 _WORST = 2
 """Of the worst so far, any of which a reversal's commands may be near [-]."""
@@ -44,6 +45,13 @@ _HELD = (0.1, 3.0)
 
 _BEFORE = 3
 """Commands before the turn [-]."""
+
+_SETTLED = 3.0
+"""Time for which the turn is held out of which those to the other side begin, over 1/omega_max [-]."""
+
+_ROLLING, _BACK = (1.0, 1.5, 2.0), (0.2, 2.0, 3.0, 4.0)
+"""For how long the aircraft turns to the other side, and has turned back since, over dead time and lag [-]: in the middle of a roll
+it turns on; and heading rates oscillate for as long after it."""
 
 _LEANING = np.radians([0.0, 30.0, 60.0])
 """How far the direction away leans forward of abeam [rad]: more, the faster that moves from which the aircraft turns away."""
@@ -59,13 +67,15 @@ class ReversalSearch:
     ----------
     reversals : flown [-]
     deviation : largest, over the change of heading rate as a fraction of a full reversal [m]
-    usual : that 99 of 100 reversals from random commands stay below [m]
+    deviations : largest of each aircraft [m]; minus infinity of one that flew none
+    usual : that 99 of 100 reversals of the first half, which do not climb, stay below [m]
     command_before : heading-rate command just before the worst, over omega_max to the side of the turn [-]
     airspeed_before : airspeed at its beginning [m/s]
     """
 
     reversals: int
     deviation: float
+    deviations: tuple[float, ...]
     usual: float
     command_before: float
     airspeed_before: float
@@ -78,7 +88,7 @@ def reversals_of_a_design(bank: float, airspeed: float) -> int:
 
 
 def search_reversals(
-    aircraft: AutopilotedAircraft,
+    aircraft: Sequence[AutopilotedAircraft],
     start: Trim,
     bank: float,
     response: TurnReversalResponse,
@@ -87,14 +97,15 @@ def search_reversals(
     reversals: int,
     seed: int = 0,
 ) -> ReversalSearch:
-    """Return the largest deviation of ``aircraft`` from its response in so many reversals, one after the other.
+    """Return the largest deviation of ``aircraft`` from their response in so many reversals, one after the other.
 
-    Each begins after a few full turns to random sides for random durations; before every second one, a command is less than full.
-    The later ones climb: their commands are those of one of the worst so far, changed at random.
+    The aircraft take turns. The first reversals begin after a roll to the other side, the next after a few full turns to random
+    sides for random durations; before every second one of these, a command is less than full. Those of the second half climb:
+    aircraft and commands are those of one of the worst so far, the commands changed at random.
 
     Parameters
     ----------
-    aircraft : with its autopilot; its flight is ended
+    aircraft : with their autopilot, as modelled and perturbed; their flight is ended
     start : straight and level equilibrium
     bank : whose coordinated turn is omega_max [rad]
     response : of the heading rate to a reversal
@@ -103,27 +114,36 @@ def search_reversals(
     """
     rate = STANDARD_GRAVITY * math.tan(bank) / start.airspeed
     generator = np.random.default_rng(seed)
-    flight = _Flight(aircraft, start, response, slow_lag)
+    flights = [_Flight(each, start, response, slow_lag) for each in aircraft]
     duration = (0.5 * math.pi + float(_LEANING[-1])) / rate + response.delay + response.lag
     found: list[_Found] = []
+    rolls = _rolls((response.delay + response.lag) * rate)
+    first = math.ceil(_NOT_CLIMBING * reversals)
     for number in range(reversals):
-        if number < _AT_RANDOM * reversals:
-            before = _random(generator, full=number % 2 == 0)
-        else:
+        which = number % len(flights)
+        if number >= first:
             worst = sorted(found, key=lambda entry: -entry.deviation)[:_WORST]
-            before = _changed(worst[int(generator.integers(len(worst)))].before, generator)
+            near = worst[int(generator.integers(len(worst)))]
+            which, before = near.which, _changed(near.before, generator)
+        elif number < len(rolls) * len(flights):
+            before = _changed(rolls[number % len(rolls)], generator)
+        else:
+            before = _random(generator, full=number % 2 == 0)
+        flight = flights[which]
         for share, held in before.commands:
             flight.fly(share * rate, held / rate)
         turn, speed = before.side * rate, flight.speed
         predicted, change = flight.predicted(turn, duration, max(speed, start.airspeed), rate)
         deviation = _deviation(flight.fly(turn, duration), predicted, before.side) / change
-        found.append(_Found(deviation, before, speed))
+        found.append(_Found(deviation, which, before, speed))
     worst_of_all = max(found, key=lambda entry: entry.deviation)
-    at_random = [entry.deviation for entry in found[: math.ceil(_AT_RANDOM * reversals)]]
     return ReversalSearch(
         reversals=reversals,
         deviation=max(0.0, worst_of_all.deviation),
-        usual=max(0.0, float(np.quantile(at_random, 0.99))),
+        deviations=tuple(
+            max((entry.deviation for entry in found if entry.which == which), default=-math.inf) for which in range(len(flights))
+        ),
+        usual=max(0.0, float(np.quantile([entry.deviation for entry in found[:first]], 0.99))),
         command_before=worst_of_all.before.side * worst_of_all.before.commands[-1][0],
         airspeed_before=worst_of_all.airspeed,
     )
@@ -139,11 +159,17 @@ class _Before:
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """A reversal: its deviation over its change of heading rate [m], what was flown before, and airspeed at its beginning [m/s]."""
+    """A reversal: deviation over its change of heading rate [m], which aircraft flew it, what before, at what airspeed [m/s]."""
 
     deviation: float
+    which: int
     before: _Before
     airspeed: float
+
+
+def _rolls(late: float) -> list[_Before]:
+    """Return turns to the other side and back; ``late`` is dead time and lag over 1/omega_max [-]."""
+    return [_Before(((1.0, _SETTLED), (-1.0, rolling * late), (1.0, back * late)), 1.0) for rolling in _ROLLING for back in _BACK]
 
 
 def _random(generator: np.random.Generator, *, full: bool) -> _Before:

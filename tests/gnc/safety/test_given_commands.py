@@ -85,12 +85,12 @@ def test_as_much_as_slow_commands_may_be_followed_sooner_or_later_does_not_count
     given = commands(0.4, 0.0)
     given.still_to_come(0.2)
     give(given, [0.2, 0.2], 0.2)
-    # A turn of 0.2 rad/s that is commanded 0.04 s longer than it is flown lacks 0.008 rad, of which 5 % of 0.4 s are 0.004 rad.
+    # 0.008 rad are lacking, of which some per cent of the course that is turned in 0.4 s do not count.
     give(given, [0.36], 0.2)
     assert given.still_to_come(0.2) == pytest.approx((0.16 * TIME_STEP - SLOW_LAG_ERROR * 0.4 * 0.2) / 0.4, rel=1e-9)
     other = commands(0.4, 0.0)
     other.still_to_come(0.2)
-    give(other, [0.2 + 0.003 / TIME_STEP], 0.2)
+    give(other, [0.2 + 0.9 * SLOW_LAG_ERROR * 0.4 * 0.2 / TIME_STEP], 0.2)
     assert other.still_to_come(0.2) == 0.0
 
 

@@ -19,7 +19,7 @@ from innerloop.flight.step_responses import measure_lag
 from innerloop.flight.turn_reversal import TurnReversalResponse, measure_turn_reversal
 from innerloop.jsbsim.properties import HEADING_RATE
 
-REVERSALS = 12
+REVERSALS = 28
 
 
 @pytest.fixture
@@ -29,8 +29,7 @@ def flown(x8_schedule, x8_aircraft, x8_root):
     measured, slow_lag = measure_turn_reversal(x8_aircraft, level, bank), measure_lag(x8_aircraft, level, bank)
 
     def flown(response=measured, seed=0):
-        aircraft = AutopilotedAircraft(X8, x8_root)
-        return search_reversals(aircraft, level, bank, response, slow_lag, reversals=REVERSALS, seed=seed)
+        return search_reversals([AutopilotedAircraft(X8, x8_root)], level, bank, response, slow_lag, reversals=REVERSALS, seed=seed)
 
     return measured, flown
 
