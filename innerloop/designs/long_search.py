@@ -1,5 +1,6 @@
 """The search over reversals of a design, repeated with thousands of them in several processes."""
 
+import math
 import os
 import signal
 import sys
@@ -84,8 +85,14 @@ def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) ->
         "deviation_max_m": worst.deviation,
         "worst_command_before": worst.command_before,
         "worst_airspeed_before_mps": worst.airspeed_before,
-        "deviation_of_m": {case: max(search.deviations[i] for search in searches) for i, case in enumerate(CASES)},
+        "deviation_of_m": _largest(searches),
     }
+
+
+def _largest(searches: list[ReversalSearch]) -> dict[str, float]:
+    """Return the largest deviation of each aircraft that flew a reversal [m]."""
+    found = {case: max(search.deviations[i] for search in searches) for i, case in enumerate(CASES)}
+    return {case: deviation for case, deviation in found.items() if math.isfinite(deviation)}
 
 
 def _search(part: _Part) -> ReversalSearch:

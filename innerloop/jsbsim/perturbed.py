@@ -9,6 +9,8 @@ _DEFLECTION = re.compile(r"^-?fcs/.*pos")
 """Properties of surfaces' deflections, as JSBSim's own and those of models are called."""
 
 _MASSES, _MOMENTS = ("emptywt", "pointmass/weight"), ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+_TANKS = ("propulsion/tank/contents", "propulsion/tank/capacity")
+"""A tank that holds more than it can is no model."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,8 +41,9 @@ def perturb(model_file: Path, by: Perturbation) -> None:
             _scale(element, by.mass)
         for element in (found for path in _MOMENTS for found in balance.findall(path)):
             _scale(element, by.inertia)
-    for element in model.findall("propulsion/tank/contents"):
-        _scale(element, by.mass)
+    for path in _TANKS:
+        for element in model.findall(path):
+            _scale(element, by.mass)
     aerodynamics = model.find("aerodynamics")
     if aerodynamics is not None and by.effectiveness != 1.0:
         _scale_deflections(aerodynamics, by.effectiveness)
