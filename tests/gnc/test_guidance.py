@@ -14,7 +14,7 @@ from gnc.parameters import GuardParameters
 from gnc.reference.placement import PlumeAxis, distance_by_paper
 
 # 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py). These vehicles answer at once.
-GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, time_step=TIME_STEP)
+GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, slow_lag=0.0, time_step=TIME_STEP)
 
 
 class RecordingGuard:
