@@ -1,6 +1,6 @@
 """``python -m benchmarks.scaling``: cost of a study over flights, flight time and log rate; ten minutes.
 
-The results are in docs/scaling.md. Each is that of a whole study with journal, tables and time histories, in its own
+The results are in docs/explanation/scaling.md. Each is that of a whole study with journal, tables and time histories, in its own
 process, so that peak memory is that of the study alone.
 """
 

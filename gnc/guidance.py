@@ -35,9 +35,9 @@ class Guidance:
 
     # Methods of parts are bound once: each is called at every step.
     __slots__ = (
-        "_airspeed", "_keep_out", "_limit", "_locate", "_plan", "_sense", "_speed", "_until_plan", "airspeed_command",
-        "altitude_command", "guard", "guarding", "heading_rate_command", "mission", "monitor", "own", "plan_interval",
-        "target",
+        "_airspeed", "_catching_up_from", "_keep_out", "_limit", "_locate", "_plan", "_quarter_turn", "_sense", "_speed",
+        "_until_plan", "airspeed_command", "altitude_command", "guard", "guarding", "heading_rate_command", "mission", "monitor",
+        "own", "plan_interval", "target",
     )  # fmt: skip
 
     def __init__(
@@ -60,6 +60,9 @@ class Guidance:
         self._speed, self._limit = speed, heading_rate_max
         self.plan_interval, self._until_plan = plan_interval, 0
         self.guarding = False
+        # A vehicle that catches up turns the wider. It does so once the guard has been free for a quarter of a turn: before that,
+        # the airspeed that is commanded would make it act again, and so in turns.
+        self._quarter_turn, self._catching_up_from = 0.5 * math.pi / heading_rate_max, -math.inf
         self.heading_rate_command, self.airspeed_command, self.altitude_command = 0.0, speed, altitude
 
     def step(self, time: float, measurement: Any) -> None:
@@ -107,17 +110,30 @@ class Guidance:
         tracker.heading_rate_command = command
         command /= own.air_ratio
         limit = self._limit
-        self.heading_rate_command = command if -limit <= command <= limit else math.copysign(limit, command)
-        if not overriding:
-            self.airspeed_command = self._airspeed(along, own, guarding)
+        if not -limit <= command <= limit:
+            command = math.copysign(limit, command)
+            if guard is not None:
+                guard.overruled(command * own.air_ratio)
+        self.heading_rate_command = command
+        self._choose_airspeed(time, along, guarding)
+
+    def _choose_airspeed(self, time: float, along: float, guarding: bool) -> None:
+        """Command an airspeed, and the altitude to which a vehicle that leaves climbs; ``along`` is that of an airspeed law [m]."""
+        mission = self.mission
+        if guarding:
+            self._catching_up_from = time + self._quarter_turn
+        if not mission.overriding:
+            self.airspeed_command = self._airspeed(along, self.own, guarding or time < self._catching_up_from)
         elif mission.leaving:
             self.airspeed_command, self.altitude_command = mission.airspeed, mission.altitude
         elif guarding:
-            self.airspeed_command = self._airspeed(0.0, own, True)
+            self.airspeed_command = self._airspeed(0.0, self.own, True)
         else:
             self.airspeed_command = mission.airspeed
 
     def overruled(self, heading_rate: float, airspeed: float) -> None:
         """Take note of commands that are flown in place of the last ones [rad/s, m/s]: what is predicted follows them."""
         self.heading_rate_command, self.airspeed_command = heading_rate, airspeed
-        self.mission.tracker.heading_rate_command = heading_rate * self.own.air_ratio
+        self.mission.tracker.heading_rate_command = turning = heading_rate * self.own.air_ratio
+        if self.guard is not None:
+            self.guard.overruled(turning)

@@ -21,6 +21,7 @@ class GuardParameters:
     heading_rate_max: float
     lag: float
     delay: float
+    slow_lag: float
     time_step: float
     speed_error: float = 0.0
     deviation: float = 0.0

@@ -1,4 +1,4 @@
-"""From a scenario to results: the world, the closed loop, the studies; and the programming interface, ``docs/api.md``.
+"""From a scenario to results: the world, the closed loop, the studies; and the programming interface, ``docs/reference/api.md``.
 
 ``from scenarios import fly, run, load, read_ais, Scenario``. Names are loaded when they are asked for: importing it is light.
 """

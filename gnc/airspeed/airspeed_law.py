@@ -15,5 +15,5 @@ class AirspeedLaw(Protocol):
         ----------
         along : how far the reference is ahead, along its course [m]
         own : the vehicle's motion
-        guarding : whether the keep-out guard turns the vehicle away
+        guarding : whether the keep-out guard turns the vehicle away, or did so of late
         """

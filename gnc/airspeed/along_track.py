@@ -27,7 +27,7 @@ class AlongTrackTrim:
         Parameters
         ----------
         along : how far the reference is ahead, along its course [m]
-        guarding : whether the keep-out guard turns the vehicle away
+        guarding : whether the keep-out guard turns the vehicle away, or did so of late
         """
         if guarding or not self.gain:
             return self.speed

@@ -96,7 +96,7 @@ class PaceHold:
         ----------
         along : how far the reference is ahead, along its course [m]
         own : the vehicle's motion
-        guarding : whether the keep-out guard turns the vehicle away
+        guarding : whether the keep-out guard turns the vehicle away, or did so of late
         """
         # The guard reckons with V_r: a vehicle that catches up meanwhile turns the wider. It catches up afterwards.
         behind = 0.0 if guarding else along

@@ -12,12 +12,12 @@ The guard plans no way round; it keeps out and no more.
 """
 
 import math
-from collections import deque
 from collections.abc import Sequence
 
 from gnc.estimation.own_motion import AirMotion
 from gnc.estimation.reachable_set import Tube
-from gnc.safety.turn_prediction import Motion, TurnPrediction, commands_under_way
+from gnc.safety.given_commands import GivenCommands
+from gnc.safety.turn_prediction import Motion, TurnPrediction
 
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
@@ -35,6 +35,7 @@ class KeepoutGuard:
     heading_rate_max : omega_max, the largest command [rad/s]
     lag : time constant of the vehicle's heading rate behind its command; 0 if it follows at once [s]
     delay : dead time before that [s]
+    slow_lag : by which it is behind slow commands; None if that is ``delay`` + ``lag`` [s]
     time_step : for which a command is held [s]
     speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together [m/s]
     drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
@@ -54,6 +55,7 @@ class KeepoutGuard:
         "_deviation",
         "_drift_rate",
         "_free_steps",
+        "_given",
         "_kept_off",
         "_lag",
         "_prediction",
@@ -63,7 +65,6 @@ class KeepoutGuard:
         "_speed_error",
         "_time_step",
         "_turn_time",
-        "_under_way",
         "_until_acting",
         "intervening",
         "interventions",
@@ -81,6 +82,7 @@ class KeepoutGuard:
         lag: float,
         time_step: float,
         delay: float = 0.0,
+        slow_lag: float | None = None,
         speed_error: float = 0.0,
         drift_rate: float = 0.0,
         turn_speed: float = math.inf,
@@ -88,7 +90,13 @@ class KeepoutGuard:
         self._radius, self._deviation, self.turn_speed = radius, deviation, turn_speed
         self._rate, self._time_step = heading_rate_max, time_step
         self._lag, self._until_acting = lag, delay
-        self._under_way: deque[float] = deque(maxlen=commands_under_way(delay, time_step))
+        self._given = GivenCommands(
+            lag=lag,
+            delay=delay,
+            slow_lag=delay + lag if slow_lag is None else slow_lag,
+            time_step=time_step,
+            heading_rate_max=heading_rate_max,
+        )
         # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
         self._speed_error, self._drift_rate = speed_error + drift_rate, drift_rate
         self._prediction = TurnPrediction(
@@ -120,15 +128,15 @@ class KeepoutGuard:
         bounded = -self._rate <= command <= self._rate
         if self._free_steps > 0 and bounded:
             self._free_steps -= 1
-            self._under_way.append(command)
+            self._give(command, own.heading_rate, speed)
             return command
         self._free_steps = 0
-        free, motions = -1.0, []
+        free, motions, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
         for tube in self._candidates(time, own):
-            motion = self._relative(tube, time, own, speed)
+            motion = self._relative(tube, time, own, speed, to_come)
             free = self._free_when_far(motion)
             if free <= 0.0:
-                motion = self._prediction.when_acting(motion, self._under_way)
+                motion = self._prediction.when_acting(motion, self._given.under_way)
                 free = self._free_by_turning_away(command, motion)
             if free >= 0.0:
                 self._kept_off = tube
@@ -142,19 +150,29 @@ class KeepoutGuard:
             self.interventions += not self.intervening
             self.intervening = True
             command = self._mix(command, motions)
-        if not self._under_way:
-            self._under_way.extend([own.heading_rate] * (self._under_way.maxlen or 0))
-        self._under_way.append(command)
+        self._give(command, own.heading_rate, speed)
         return command
+
+    def _give(self, command: float, heading_rate: float, speed: float) -> None:
+        """Take note of a command: what is beyond the largest bank never comes [rad/s, rad/s, m/s]."""
+        if speed > self.turn_speed:
+            most = self._rate * self.turn_speed / speed
+            command = command if -most <= command <= most else math.copysign(most, command)
+        self._given.since.append(command)
+        self._given.rates.append(heading_rate)
+
+    def overruled(self, command: float) -> None:
+        """Take note of a heading rate that is flown in place of the last command [rad/s]."""
+        self._given.since[-1] = command
 
     def clearance(self, time: float, own: AirMotion, speed: float) -> float:
         """Return by how much the better turn away, begun now, keeps off [m]; negative if no command can keep off.
 
         Parameters are those of ``limit``. That no other commands do better is argued in docs/keepout_guard.md.
         """
-        best = -math.inf
+        best, to_come = -math.inf, self._given.still_to_come(own.heading_rate)
         for tube in self.tubes:
-            then = self._prediction.when_acting(self._relative(tube, time, own, speed), self._under_way)
+            then = self._prediction.when_acting(self._relative(tube, time, own, speed, to_come), self._given.under_way)
             start = (then[0], then[1], then[4], then[6])
             for side in (1.0, -1.0):
                 best = max(best, self._prediction.turn_away(side, start, then, self._until_acting, -math.inf)[0])
@@ -175,7 +193,7 @@ class KeepoutGuard:
         east = own.ground_east - tube.east - tube.velocity_east * since
         return math.hypot(north, east) - tube.radius - (tube.growth + 0.5 * tube.acceleration * since) * since
 
-    def _relative(self, tube: Tube, time: float, own: AirMotion, speed: float) -> Motion:
+    def _relative(self, tube: Tube, time: float, own: AirMotion, speed: float, to_come: float) -> Motion:
         """Return the vehicle's motion relative to a disc, with all that is uncertain in the disc's radius and growth."""
         since = time - tube.time
         return (
@@ -189,11 +207,13 @@ class KeepoutGuard:
             self._radius + self._drift_rate * own.lost + tube.radius + (tube.growth + 0.5 * tube.acceleration * since) * since,
             self._speed_error + tube.growth + tube.acceleration * since,
             tube.acceleration,
+            to_come,
+            self._given.change,
         )
 
     def _free_when_far(self, motion: Motion) -> float:
         """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
-        x, y, velocity_north, velocity_east, _, speed, _, radius, growth, acceleration = motion
+        x, y, velocity_north, velocity_east, _, speed, _, radius, growth, acceleration, *_ = motion
         duration = self._turn_time * max(1.0, speed / self.turn_speed)
         closing = speed + math.hypot(velocity_north, velocity_east) + growth
         gap = math.hypot(x, y) - radius - (closing + 0.5 * acceleration * duration) * duration

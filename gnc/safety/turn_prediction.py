@@ -3,19 +3,20 @@
 import math
 from collections import deque
 
+from gnc.safety.given_commands import commands_under_way
+
 _TURN = 0.125
 """Course turned between two points of a predicted turn, at most; half of it where the lag is shorter than that takes [rad]."""
 _TURN_MAX = 2.5 * math.pi
 """Course after which a turn away is over [rad]: once round, and what a turn the other way before it and the disc's motion add."""
 
-_WHOLE = 1e-6
-"""Of a step, by which a delay may exceed a whole number of them without counting as one more [-]."""
-
-Motion = tuple[float, float, float, float, float, float, float, float, float, float]
+Motion = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
 """A vehicle's motion relative to a disc, and how the disc grows.
 
 North and east of the disc's centre [m]; the disc's velocity north and east in the air mass [m/s]; the vehicle's course and speed
-there, and its heading rate [rad, m/s, rad/s]; radius of the disc now [m], rate of its growth [m/s] and of that [m/s^2].
+there, and its heading rate [rad, m/s, rad/s]; radius of the disc now [m], rate of its growth [m/s] and of that [m/s^2]; and what
+the heading rate lacks for the course that is still to come of earlier commands [rad/s]; their largest change of late, over a
+full reversal [-].
 """
 Start = tuple[float, float, float, float]
 """x, y, course and heading rate."""
@@ -47,7 +48,7 @@ class TurnPrediction:
         self._lag, self._delay = lag, delay
         self._hold = _held(time_step, lag)
         # Of the commands under way the first acts only for what of it lies within the delay.
-        self._first = _held(delay - (commands_under_way(delay, time_step) - 1) * time_step, lag)
+        self._first = _held(commands_under_way(delay, time_step)[1], lag)
         interval = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
         self._interval = _held(interval, lag)
         self._points_max = math.ceil(_TURN_MAX / (heading_rate_max * interval))
@@ -57,16 +58,14 @@ class TurnPrediction:
     def when_acting(self, motion: Motion, under_way: deque[float]) -> Motion:
         """Return the motion when a command given now begins to act: those before it cannot be taken back.
 
-        ``under_way`` holds those [rad/s] that act within the delay, the first perhaps in part, or none before the first call.
+        ``under_way`` holds those [rad/s] that act within the delay, the first perhaps in part.
         """
-        count = under_way.maxlen
-        if not count:
+        if not under_way:
             return motion
-        x, y, velocity_north, velocity_east, course, speed, heading_rate, *disc = motion
+        x, y, velocity_north, velocity_east, course, speed, heading_rate, radius, growth, acceleration, to_come, change = motion
         held = self._first
         begun, middles = course, 0.0
-        # Before the first call the commands under way are taken to be the turn that is flown.
-        for command in under_way or (heading_rate,) * count:
+        for command in under_way:
             duration, turned, mean, decay = held
             middles += duration * (course + mean * heading_rate + (0.5 * duration - mean) * command)
             course += turned * heading_rate + (duration - turned) * command
@@ -77,12 +76,13 @@ class TurnPrediction:
         chord = speed * (1.0 - half * half / 6.0)
         x += (chord * math.cos(middle) - velocity_north) * self._delay
         y += (chord * math.sin(middle) - velocity_east) * self._delay
-        radius, growth, acceleration = disc
-        return x, y, velocity_north, velocity_east, course, speed, heading_rate, radius, growth, acceleration
+        return (
+            x, y, velocity_north, velocity_east, course, speed, heading_rate, radius, growth, acceleration, to_come, change,
+        )  # fmt: skip
 
     def after(self, command: float, motion: Motion) -> Start:
         """Return where a command held for one time step leads."""
-        x, y, velocity_north, velocity_east, course, speed, heading_rate, _, _, _ = motion
+        x, y, velocity_north, velocity_east, course, speed, heading_rate, *_ = motion
         duration, turned, mean, decay = self._hold
         middle = course + mean * heading_rate + (0.5 * duration - mean) * command
         return (
@@ -108,7 +108,9 @@ class TurnPrediction:
         """
         cos, sin, sqrt = math.cos, math.sin, math.sqrt
         x, y, course, heading_rate = start
-        _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration = motion
+        _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration, to_come, change = motion
+        # What is to come counts where it is against the turn.
+        heading_rate += side * min(0.0, side * to_come)
         duration, turned, mean, decay = self._interval
         # At the largest bank a turn is the slower the faster the vehicle flies.
         stretch = max(1.0, speed / self._turn_speed)
@@ -117,14 +119,13 @@ class TurnPrediction:
         chord = speed * duration * self._chord
         north, east = velocity_north * duration, velocity_east * duration
         half, lag = 0.5 * acceleration, self._lag
-        # The farther the vehicle has to roll into the turn, the more it deviates; where it is now it does not yet.
-        deviation = self._deviation * max(0.0, 0.5 - 0.5 * side * heading_rate / self._rate)
+        # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
+        deviation = self._deviation * max(change, 0.5 - 0.5 * side * heading_rate / self._rate)
         fixed += deviation
         slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
         least = slack + deviation
         outward = side * (y * cos(course) - x * sin(course))
-        acting = time - self._delay
-        gain = -1.0
+        acting, gain = time - self._delay, -1.0
         least_rate, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
         for point in range(math.ceil(self._points_max * stretch)):
             if least < floor:
@@ -162,11 +163,6 @@ class TurnPrediction:
                 if gain == best or outward < 0.0:
                     break
         return least, gain * stretch / (2.0 * speed * self._rate)
-
-
-def commands_under_way(delay: float, time_step: float) -> int:
-    """Return how many commands, each held for ``time_step`` [s], act within a delay [s]: of the first perhaps a part."""
-    return math.ceil(delay / time_step - _WHOLE)
 
 
 def _range_rate(start: Start, motion: Motion) -> float:

@@ -1,26 +1,42 @@
 """The search over reversals of a design, repeated with thousands of them in several processes."""
 
+import math
 import os
 import signal
 import sys
 from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
 from pathlib import Path
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.spec import AircraftSpec
 from innerloop.designs.designed import Designed, Record
-from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.perturbed_aircraft import CASES, perturbed_aircraft
 from innerloop.flight.reversal_search import ReversalSearch, search_reversals
 from innerloop.flight.turn_reversal import TurnReversalResponse
 
-PART = 100
+PART = 200
 """Reversals that one flight consists of [-]: so many are lost at most where a search is interrupted."""
 
 _PROCESSES = 2
 
 Done = Callable[[int, float], None]
 """Is told how many reversals are flown, and the largest deviation so far [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Part:
+    """A part of the search: what flies it and from where, how many reversals, and the seed of their random numbers."""
+
+    spec: AircraftSpec
+    root: Path
+    start: Trim
+    bank: float
+    response: TurnReversalResponse
+    slow_lag: float
+    reversals: int
+    seed: int
 
 
 def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) -> Record:
@@ -36,19 +52,25 @@ def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) ->
     done : told after each part
     """
     schedule, own = found.design.schedule, found.record["turn_reversal"]
-    response = TurnReversalResponse(delay=own["delay_s"], lag=own["lag_s"])
-    counts = [min(PART, reversals - first) for first in range(0, reversals, PART)]
+    parts = [
+        # The design's own search has the seed 0.
+        _Part(
+            spec=schedule.spec,
+            root=root,
+            start=schedule.level(schedule.middle),
+            bank=schedule.envelope.bank,
+            response=TurnReversalResponse(delay=own["delay_s"], lag=own["lag_s"]),
+            slow_lag=found.record["heading_rate_lag_s"],
+            reversals=min(PART, reversals - first),
+            seed=seed,
+        )
+        for seed, first in enumerate(range(0, reversals, PART), start=1)
+    ]
     searches: list[ReversalSearch] = []
     with ProcessPoolExecutor(min(_PROCESSES, os.cpu_count() or 1), initializer=_leave_interrupts_alone) as pool:
-        parts: list[Future[ReversalSearch]] = [
-            # The design's own search has the seed 0.
-            pool.submit(
-                _search, schedule.spec, root, schedule.level(schedule.middle), schedule.envelope.bank, response, count, seed
-            )
-            for seed, count in enumerate(counts, start=1)
-        ]
+        running: list[Future[ReversalSearch]] = [pool.submit(_search, part) for part in parts]
         try:
-            for part in as_completed(parts):
+            for part in as_completed(running):
                 searches.append(part.result())
                 done(sum(search.reversals for search in searches), max(search.deviation for search in searches))
         except KeyboardInterrupt:
@@ -62,13 +84,19 @@ def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) ->
         "deviation_max_m": worst.deviation,
         "worst_command_before": worst.command_before,
         "worst_airspeed_before_mps": worst.airspeed_before,
+        "deviation_of_m": _largest(searches),
     }
 
 
-def _search(
-    spec: AircraftSpec, root: Path, start: Trim, bank: float, response: TurnReversalResponse, reversals: int, seed: int
-) -> ReversalSearch:
-    return search_reversals(AutopilotedAircraft(spec, root), start, bank, response, reversals=reversals, seed=seed)
+def _largest(searches: list[ReversalSearch]) -> dict[str, float]:
+    """Return the largest deviation of each aircraft that flew a reversal [m]."""
+    found = {case: max(search.deviations[i] for search in searches) for i, case in enumerate(CASES)}
+    return {case: deviation for case, deviation in found.items() if math.isfinite(deviation)}
+
+
+def _search(part: _Part) -> ReversalSearch:
+    aircraft = perturbed_aircraft(part.spec, part.root)
+    return search_reversals(aircraft, part.start, part.bank, part.response, part.slow_lag, reversals=part.reversals, seed=part.seed)
 
 
 def _leave_interrupts_alone() -> None:

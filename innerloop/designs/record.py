@@ -10,13 +10,14 @@ import numpy as np
 from aircraft.dynamics.equilibrium import Trim, TrimOutcome
 from aircraft.dynamics.trim import search_trim
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import Envelope
+from aircraft.spec import AircraftSpec, Envelope
 from common.units import STANDARD_GRAVITY
 from innerloop.analysis.checks import NOMINAL, REQUIRED, Check, Margin
 from innerloop.analysis.linear_model_check import verify_model
 from innerloop.analysis.margins import BREAK_NAMES, Loops
 from innerloop.designs.designed import Design, Record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.perturbed_aircraft import CASES, perturbed_aircraft
 from innerloop.flight.reversal_search import reversals_of_a_design, search_reversals
 from innerloop.flight.step_responses import Response, flown_step, measure_lag, model_step, predicted_step
 from innerloop.flight.turn_reversal import measure_turn_reversal
@@ -48,6 +49,7 @@ def design_record(design: Design, root: Path) -> Record:
     schedule = design.schedule
     aircraft = AutopilotedAircraft(schedule.spec, root)
     level = schedule.level(schedule.middle)
+    slow_lag = measure_lag(aircraft, level, schedule.envelope.bank)
     return {
         "aircraft": schedule.spec.name,
         "title": schedule.spec.title,
@@ -71,16 +73,25 @@ def design_record(design: Design, root: Path) -> Record:
         "loops": _loops(schedule),
         "responses": _responses(schedule, aircraft),
         "verification": verify_model(Fdm(schedule.spec), schedule.models[schedule.middle][LEVEL_GAINS], level),
-        "heading_rate_lag_s": measure_lag(aircraft, level, schedule.envelope.bank),
-        "turn_reversal": reversal_record(aircraft, level, schedule.envelope.bank),
+        "heading_rate_lag_s": slow_lag,
+        "turn_reversal": reversal_record(schedule.spec, root, level, schedule.envelope.bank, slow_lag),
     }
 
 
-def reversal_record(aircraft: AutopilotedAircraft, start: Trim, bank: float, *, reversals: int | None = None) -> Record:
-    """Return how the heading rate follows a reversal of a turn at ``bank`` [rad], and the deviations that a search found."""
-    response = measure_turn_reversal(aircraft, start, bank)
-    count = reversals or reversals_of_a_design(bank, start.airspeed)
-    found = search_reversals(aircraft, start, bank, response, reversals=count)
+def reversal_record(spec: AircraftSpec, root: Path, start: Trim, bank: float, slow_lag: float) -> Record:
+    """Return how the heading rate follows a reversal of a turn at ``bank`` [rad], and the deviations that a search found.
+
+    Parameters
+    ----------
+    spec, root : the aircraft, and a JSBSim root of its autopilot
+    start : straight and level equilibrium
+    bank : [rad]
+    slow_lag : by which the heading rate is behind slow commands [s]
+    """
+    aircraft = perturbed_aircraft(spec, root)
+    response = measure_turn_reversal(aircraft[0], start, bank)
+    count = reversals_of_a_design(bank, start.airspeed)
+    found = search_reversals(aircraft, start, bank, response, slow_lag, reversals=count)
     return {
         "bank_deg": math.degrees(bank),
         "airspeed_mps": start.airspeed,
@@ -91,6 +102,7 @@ def reversal_record(aircraft: AutopilotedAircraft, start: Trim, bank: float, *, 
         "deviation_max_m": found.deviation,
         "worst_command_before": found.command_before,
         "worst_airspeed_before_mps": found.airspeed_before,
+        "deviation_of_m": dict(zip(CASES, found.deviations, strict=True)),
     }
 
 

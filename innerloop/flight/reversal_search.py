@@ -1,38 +1,57 @@
 """How far an aircraft strays from its turn-reversal response: a search over reversals from whatever it was doing before.
 
-The guidance's keep-out guard predicts turns by a dead time and a lag (``innerloop.flight.turn_reversal``). Rolling,
-airspeed lost in the turn and integrators of the autopilot make the aircraft's path another one. What counts is by how
-much it comes nearer to what it turns away from: the deviation against the direction in which the turn leads, at any
-time until a quarter of a turn is flown, in proportion to the change of heading rate.
+The guidance's keep-out guard predicts turns by a dead time, a lag and the course that is still to come of earlier commands
+(docs/keepout_guard.md). Rolling, airspeed lost in the turn and integrators of the autopilot make the aircraft's path another
+one. What counts is by how much it comes nearer to what it turns away from: the deviation against the direction in which the
+turn leads, as long as the guard may rely on it, in proportion to the change of heading rate.
+
+A turn away from what is at rest comes closest to it within a quarter of a turn; from what closes in as fast as the sine of an
+angle over the aircraft's own speed, later by that angle. So the directions lean, and the turn is flown on by the largest.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.signal import lfilter
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.fdm import TIME_STEP
+from common.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
 from common.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.properties import HEADING_RATE
 
-_SEARCHED = (20, 100)
+_SEARCHED = (20, 150)
 """Fewest and most reversals of the search that is part of every design [-]; the command's ``--reversals`` flies more."""
 
 _SEARCHED_FOR = 1000.0
 """Flight time of that search, within those limits [s]."""
 
-_LEAST_CHANGE = 0.25
-"""Change of heading rate below which a turn is no reversal, over that of a full one [-]."""
+_NOT_CLIMBING = 0.5
+"""Share of the reversals whose commands owe nothing to the worst so far [-]."""
+
+_WORST = 2
+"""Of the worst so far, any of which a reversal's commands may be near [-]."""
+
+_CHANGE = 0.15
+"""Standard deviation by which these are changed: of a command over omega_max, and of the logarithm of its duration [-]."""
 
 _HELD = (0.1, 3.0)
 """Shortest and longest time for which a command is held before the turn, over 1/omega_max [-]."""
 
 _BEFORE = 3
 """Commands before the turn [-]."""
+
+_SETTLED = 3.0
+"""Time for which the turn is held out of which those to the other side begin, over 1/omega_max [-]."""
+
+_ROLLING, _BACK = (1.0, 1.5, 2.0), (0.2, 2.0, 3.0, 4.0)
+"""For how long the aircraft turns to the other side, and has turned back since, over dead time and lag [-]: in the middle of a roll
+it turns on; and heading rates oscillate for as long after it."""
 
 _LEANING = np.radians([0.0, 30.0, 60.0])
 """How far the direction away leans forward of abeam [rad]: more, the faster that moves from which the aircraft turns away."""
@@ -48,13 +67,15 @@ class ReversalSearch:
     ----------
     reversals : flown [-]
     deviation : largest, over the change of heading rate as a fraction of a full reversal [m]
-    usual : that 99 of 100 reversals stay below [m]
+    deviations : largest of each aircraft [m]; minus infinity of one that flew none
+    usual : that 99 of 100 reversals of the first half, which do not climb, stay below [m]
     command_before : heading-rate command just before the worst, over omega_max to the side of the turn [-]
     airspeed_before : airspeed at its beginning [m/s]
     """
 
     reversals: int
     deviation: float
+    deviations: tuple[float, ...]
     usual: float
     command_before: float
     airspeed_before: float
@@ -67,97 +88,176 @@ def reversals_of_a_design(bank: float, airspeed: float) -> int:
 
 
 def search_reversals(
-    aircraft: AutopilotedAircraft, start: Trim, bank: float, response: TurnReversalResponse, *, reversals: int, seed: int = 0
+    aircraft: Sequence[AutopilotedAircraft],
+    start: Trim,
+    bank: float,
+    response: TurnReversalResponse,
+    slow_lag: float,
+    *,
+    reversals: int,
+    seed: int = 0,
 ) -> ReversalSearch:
-    """Return the largest deviation of ``aircraft`` from its response in so many reversals, one after the other.
+    """Return the largest deviation of ``aircraft`` from their response in so many reversals, one after the other.
 
-    Each begins after a few commands of random size and duration: every second one is a full turn to one side.
+    The aircraft take turns. The first reversals begin after a roll to the other side, the next after a few full turns to random
+    sides for random durations; before every second one of these, a command is less than full. Those of the second half climb:
+    aircraft and commands are those of one of the worst so far, the commands changed at random.
 
     Parameters
     ----------
-    aircraft : with its autopilot; its flight is ended
+    aircraft : with their autopilot, as modelled and perturbed; their flight is ended
     start : straight and level equilibrium
     bank : whose coordinated turn is omega_max [rad]
     response : of the heading rate to a reversal
+    slow_lag : by which it is behind slow commands [s]
     reversals, seed : how many are flown, and of their random numbers
     """
     rate = STANDARD_GRAVITY * math.tan(bank) / start.airspeed
     generator = np.random.default_rng(seed)
-    flight = _Flight(aircraft, start)
-    late = max(1, round(response.delay / TIME_STEP))
-    duration = 0.5 * math.pi / rate + response.delay + response.lag
-    found: list[tuple[float, float, float]] = []
+    flights = [_Flight(each, start, response, slow_lag) for each in aircraft]
+    duration = (0.5 * math.pi + float(_LEANING[-1])) / rate + response.delay + response.lag
+    found: list[_Found] = []
+    rolls = _rolls((response.delay + response.lag) * rate)
+    first = math.ceil(_NOT_CLIMBING * reversals)
     for number in range(reversals):
-        full = number % 2 == 0
-        for _ in range(_BEFORE):
-            share = float(generator.choice([-1.0, 1.0]) if full else generator.uniform(-1.0, 1.0))
-            flight.fly(share * rate, float(generator.uniform(*_HELD)) / rate)
-        side = -math.copysign(1.0, share) if full else float(generator.choice([-1.0, 1.0]))
-        under_way = flight.commands[-late:]
-        course, speed, heading_rate = flight.course, flight.speed, flight.heading_rate
-        flown = flight.fly(side * rate, duration)
-        predicted = _predicted(response, [*under_way, side * rate], course, max(speed, start.airspeed), heading_rate, len(flown))
-        change = 0.5 - 0.5 * side * heading_rate / rate
-        if change > _LEAST_CHANGE:
-            found.append((_deviation(flown, predicted, side) / change, side * share, speed))
-    deviation, command_before, airspeed_before = max(found)
+        which = number % len(flights)
+        if number >= first:
+            worst = sorted(found, key=lambda entry: -entry.deviation)[:_WORST]
+            near = worst[int(generator.integers(len(worst)))]
+            which, before = near.which, _changed(near.before, generator)
+        elif number < len(rolls) * len(flights):
+            before = _changed(rolls[number % len(rolls)], generator)
+        else:
+            before = _random(generator, full=number % 2 == 0)
+        flight = flights[which]
+        for share, held in before.commands:
+            flight.fly(share * rate, held / rate)
+        turn, speed = before.side * rate, flight.speed
+        predicted, change = flight.predicted(turn, duration, max(speed, start.airspeed), rate)
+        deviation = _deviation(flight.fly(turn, duration), predicted, before.side) / change
+        found.append(_Found(deviation, which, before, speed))
+    worst_of_all = max(found, key=lambda entry: entry.deviation)
     return ReversalSearch(
         reversals=reversals,
-        deviation=max(0.0, deviation),
-        usual=max(0.0, float(np.quantile([entry[0] for entry in found], 0.99))),
-        command_before=command_before,
-        airspeed_before=airspeed_before,
+        deviation=max(0.0, worst_of_all.deviation),
+        deviations=tuple(
+            max((entry.deviation for entry in found if entry.which == which), default=-math.inf) for which in range(len(flights))
+        ),
+        usual=max(0.0, float(np.quantile([entry.deviation for entry in found[:first]], 0.99))),
+        command_before=worst_of_all.before.side * worst_of_all.before.commands[-1][0],
+        airspeed_before=worst_of_all.airspeed,
     )
 
 
-class _Flight:
-    """An aircraft under way, and the heading-rate commands that it was given at each time step."""
+@dataclass(frozen=True, slots=True)
+class _Before:
+    """What is flown before a reversal: commands over omega_max, for how long over 1/omega_max each; and the side turned to."""
 
-    def __init__(self, aircraft: AutopilotedAircraft, start: Trim) -> None:
+    commands: tuple[tuple[float, float], ...]
+    side: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """A reversal: deviation over its change of heading rate [m], which aircraft flew it, what before, at what airspeed [m/s]."""
+
+    deviation: float
+    which: int
+    before: _Before
+    airspeed: float
+
+
+def _rolls(late: float) -> list[_Before]:
+    """Return turns to the other side and back; ``late`` is dead time and lag over 1/omega_max [-]."""
+    return [_Before(((1.0, _SETTLED), (-1.0, rolling * late), (1.0, back * late)), 1.0) for rolling in _ROLLING for back in _BACK]
+
+
+def _random(generator: np.random.Generator, *, full: bool) -> _Before:
+    """Return random commands and a random side: full turns, of which one is a part of one unless all are ``full``."""
+    shares = generator.choice([-1.0, 1.0], _BEFORE)
+    if not full:
+        shares[generator.integers(_BEFORE)] = generator.uniform(-1.0, 1.0)
+    held = np.exp(generator.uniform(math.log(_HELD[0]), math.log(_HELD[1]), _BEFORE))
+    return _Before(tuple(zip(shares.tolist(), held.tolist(), strict=True)), float(generator.choice([-1.0, 1.0])))
+
+
+def _changed(before: _Before, generator: np.random.Generator) -> _Before:
+    """Return commands near others."""
+    commands = []
+    for share, held in before.commands:
+        turn, longer = _CHANGE * generator.standard_normal(2)
+        commands.append((float(np.clip(share + turn, -1.0, 1.0)), float(np.clip(held * math.exp(longer), *_HELD))))
+    return _Before(tuple(commands), before.side)
+
+
+class _Flight:
+    """An aircraft under way, the heading-rate commands that it was given at each time step, and what is to come of them."""
+
+    def __init__(self, aircraft: AutopilotedAircraft, start: Trim, response: TurnReversalResponse, slow_lag: float) -> None:
         aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
-        self._aircraft, fdm = aircraft, aircraft.fdm
+        self._aircraft, self._response, fdm = aircraft, response, aircraft.fdm
+        self._slow, self._doubt = slow_lag - response.delay, SLOW_LAG_ERROR * slow_lag
         self._north = fdm.node("velocities/v-north-fps").get_double_value
         self._east = fdm.node("velocities/v-east-fps").get_double_value
         self._rate = fdm.node(HEADING_RATE).get_double_value
-        self.commands: list[float] = [0.0] * round(10.0 / TIME_STEP)
-
-    @property
-    def course(self) -> float:
-        return math.atan2(self._east(), self._north())
+        self._late = max(1, round(response.delay / TIME_STEP))
+        self._kept = math.exp(-TIME_STEP / (FORGOTTEN * response.lag))
+        self._fading = math.exp(-TIME_STEP / (CHANGED * response.lag))
+        self._lack, self._change = 0.0, 0.0
+        self.commands: list[float] = [0.0] * self._late
 
     @property
     def speed(self) -> float:
         return math.hypot(self._north(), self._east()) * METRES_PER_FOOT
 
-    @property
-    def heading_rate(self) -> float:
-        return self._rate()
-
     def fly(self, heading_rate: float, duration: float) -> Array:
         """Return the path from here [m], shape (steps, 2), under a command that is held for ``duration`` [s]."""
         self._aircraft.command_heading_rate(heading_rate)
         steps = max(1, round(duration / TIME_STEP))
-        self.commands += [heading_rate] * steps
-        velocity = np.empty((steps, 2))
+        flown = np.empty((steps + 1, 3))
+        flown[0] = self._north(), self._east(), self._rate()
         run = self._aircraft.run
-        for i in range(steps):
+        for i in range(1, steps + 1):
             run()
-            velocity[i] = self._north(), self._east()
-        return np.asarray(np.cumsum(velocity, axis=0) * (TIME_STEP * METRES_PER_FOOT))
+            flown[i] = self._north(), self._east(), self._rate()
+        self._take_in(heading_rate, flown)
+        return np.asarray(np.cumsum(flown[1:, :2], axis=0) * (TIME_STEP * METRES_PER_FOOT))
 
+    def predicted(self, turn: float, duration: float, speed: float, rate: float) -> tuple[Array, float]:
+        """Return the path [m], shape (steps, 2), of a vehicle of that response that is commanded to turn from here on.
 
-def _predicted(
-    response: TurnReversalResponse, commands: list[float], course: float, speed: float, heading_rate: float, steps: int
-) -> Array:
-    """Return the path [m], shape (steps, 2), of a vehicle of that response; the last command is held on."""
-    acting = np.concatenate([commands[:-1], np.full(steps, commands[-1])])[:steps]
-    decay = math.exp(-TIME_STEP / response.lag)
-    rates, rate = np.empty(steps), heading_rate
-    for i, command in enumerate(acting.tolist()):
-        rate = command + (rate - command) * decay
-        rates[i] = rate
-    courses = course + np.cumsum(rates) * TIME_STEP
-    return np.asarray(np.cumsum(np.column_stack([np.cos(courses), np.sin(courses)]), axis=0) * speed * TIME_STEP)
+        With it, by how much its heading rate changes from when the command acts, over a full reversal.
+
+        Parameters
+        ----------
+        turn, duration : the command [rad/s], held on [s]
+        speed : of the vehicle [m/s]
+        rate : omega_max [rad/s]
+        """
+        lag, steps = self._response.lag, max(1, round(duration / TIME_STEP))
+        decay, side = math.exp(-TIME_STEP / lag), math.copysign(1.0, turn)
+        rates, now = np.empty(steps), self._rate()
+        to_come = math.copysign(max(0.0, abs(self._lack) - self._doubt * abs(now)), self._lack) / lag
+        for i, command in enumerate([*self.commands[-self._late :], *[turn] * (steps - self._late)]):
+            if i == self._late:
+                # What is to come counts where it is against the turn.
+                now += side * min(0.0, side * to_come)
+                change = 0.5 - 0.5 * side * now / rate
+            now = command + (now - command) * decay
+            rates[i] = now
+        courses = math.atan2(self._east(), self._north()) + np.cumsum(rates) * TIME_STEP
+        path = np.cumsum(np.column_stack([np.cos(courses), np.sin(courses)]), axis=0) * speed * TIME_STEP
+        return np.asarray(path), max(LEAST_CHANGE, self._change / (2.0 * rate), change)
+
+    def _take_in(self, heading_rate: float, flown: Array) -> None:
+        """Take in what was commanded and flown: the course that the aircraft has turned less than its response to the commands."""
+        steps = len(flown) - 1
+        self._change = max(abs(heading_rate - self.commands[-1]), self._change) * self._fading**steps
+        self.commands = [*self.commands[-self._late :], *[heading_rate] * steps]
+        acted = np.array(self.commands[:steps]) * TIME_STEP
+        courses = np.unwrap(np.arctan2(flown[:, 1], flown[:, 0]))
+        lacks = acted - np.diff(courses) - self._slow * np.diff(flown[:, 2])
+        self._lack = float(lfilter([1.0], [1.0, -self._kept], lacks, zi=[self._kept * self._lack])[0][-1])
 
 
 def _deviation(flown: Array, predicted: Array, side: float) -> float:

@@ -7,25 +7,28 @@ import numpy as np
 
 from reports.arena.data import ALL, Arena, Entrant
 from reports.arena.figures import CROSSINGS, EFFORT, ERROR, PLUME_TIME, SULPHUR, Figure
-from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.palette import Meaning
 from reports.document.ship_map import ship_panel
 from reports.run.columns import column
 from reports.run.surroundings import surroundings
 from reports.run.time_history import about_the_plume
 
-_FAMILIES = (
-    ("with the reference's turn fed forward", "blue"),
-    ("without it, on its tangent or circle (M1, M2)", "green"),
-    ("without it, at its place (M3)", "orange"),
+_FAMILIES: tuple[tuple[str, str, Style], ...] = (
+    ("with the reference's turn fed forward", "blue", "points"),
+    ("without it, on its tangent or circle (M1, M2)", "green", "diamonds"),
+    ("without it, at its place (M3)", "orange", "square"),
 )
-"""What a law makes use of, and its colour."""
+"""What a law makes use of, and the colour and style of its mark."""
 
 _WORD = (0.04, 0.03)
 """Width and height of a law's number, over those of a panel as wide as the page."""
 
-_MAPS = 9
-"""Tracks in a figure, in three columns: more would be small, and the figure higher than a page."""
+_LETTER, _OFF = 0.25, 0.35
+"""Width of a letter, and distance of a number from its mark, over the width of a law's number."""
+
+_MAPS = 6
+"""Tracks in a figure, in three columns: two such figures fill a page."""
 
 _SHOWN_S = 120.0
 """End of a flight that is drawn [s]."""
@@ -62,19 +65,25 @@ def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str, wor
     efforts = {entrant.name: arena.of(EFFORT, entrant, condition).mean for entrant in entrants}
     errors = {entrant.name: math.log10(max(arena.of(ERROR, entrant, condition).mean, 1e-3)) for entrant in entrants}
     lines, notes = [], []
-    for label, colour in _FAMILIES:
+    for label, colour, style in _FAMILIES:
         members = [entrant for entrant in entrants if _family(entrant) == label]
         x, y = (np.array([values[entrant.name] for entrant in members]) for values in (efforts, errors))
         if members:
-            lines.append(Line(x=x, y=y, label=label, colour=colour, style="points"))
+            lines.append(Line(x=x, y=y, label=label, colour=colour, style=style))
     known = [value for value in errors.values() if math.isfinite(value)] or [0.0]
     low, high = math.floor(min(known) - 0.1), math.ceil(max(known) + 0.1)
     reach = [value for value in efforts.values() if math.isfinite(value)] or [0.0]
     span = max(reach) - min(reach) or 0.1
     marks = {entrant.number: (efforts[entrant.name] / (1.16 * span), errors[entrant.name] / (high - low)) for entrant in entrants}
     for numbers, (x_mark, y_mark) in clusters(marks, word):
-        at = (1.16 * span * x_mark + 0.015 * span, (high - low) * y_mark)
-        notes.append(Note(x=at[0], y=at[1], text=", ".join(map(str, numbers)), align="left"))
+        text = ", ".join(map(str, numbers))
+        off, width, height = _OFF * word[0], _LETTER * word[0] * len(text), (high - low) * y_mark
+        # To the left of its marks where there is no room to the right.
+        if 1.16 * span * (x_mark + off + width) <= max(reach) + 0.1 * span:
+            notes.append(Note(x=1.16 * span * (x_mark + off), y=height, text=text, align="left"))
+        else:
+            first = min(marks[number][0] for number in numbers)
+            notes.append(Note(x=1.16 * span * (first - off), y=height, text=text, align="right"))
     return Panel(
         x_label="Heading rate, rms [rad/s]",
         y_label="Tracking error, rms [m]",
@@ -120,7 +129,7 @@ def _title(condition: str) -> str:
 
 
 def _family(entrant: Entrant) -> str:
-    forward, tangent, place = (label for label, _ in _FAMILIES)
+    forward, tangent, place = (label for label, _, _ in _FAMILIES)
     if "turn rate" in entrant.given or "curvature" in entrant.given:
         return forward
     return place if "M3" in entrant.given else tangent
@@ -212,7 +221,7 @@ def track_charts(arena: Arena, *, tracking: bool) -> list[Chart]:
     return [
         Chart(
             name=f"{'tracks' if tracking else 'circles'}{i // _MAPS + 1}",
-            caption=caption if not i else "As before, of the other laws.",
+            caption=caption if not i else f"{what} by the laws that come next, in the same flight.",
             panels=panels[i : i + _MAPS],
             columns=3,
             panel_height=0.33,

@@ -183,7 +183,7 @@ def _alike(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
             if entrant is not first and arena.of(ERROR, entrant, arena.together).as_good
         ]
         if others:
-            words.append(f"The flights do not tell {', '.join(others)} from {first.title}.")
+            words.append(f"The flights do not tell {' and '.join(others)} from {first.title}.")
     return " ".join(words)
 
 

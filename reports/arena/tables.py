@@ -29,10 +29,10 @@ def condition_table(arena: Arena) -> Table:
 def tracking_table(arena: Arena, *, tracking: bool) -> Table:
     """Return the figures of tracking of the laws of a task, over all conditions."""
     entrants = arena.ranked(ERROR, arena.in_task(tracking=tracking))
-    head = ["No.", "Law", *(figure.title for figure in TRACKING_FIGURES), "Settled", "after, median [s]", "Keep-out violations"]
+    head = ["No.", "Law", *(figure.title for figure in TRACKING_FIGURES), "Settled", "Settling, median [s]", "Keep-out violations"]
     extra = [_ending(entrant) for entrant in entrants]
     what = "Tracking" if tracking else "Circling"
-    widths = [0.4, 2.0, 1.75, 1.95, 1.95, 1.55, 0.85, 0.75, 0.95]
+    widths = [0.4, 2.0, 1.75, 1.9, 1.9, 1.45, 0.85, 0.95, 0.95]
     return _table(arena, entrants, TRACKING_FIGURES, head, extra, widths=widths, caption=f"{what}, over all conditions.")
 
 

@@ -39,7 +39,7 @@ def pair_charts(pairs: Pairs, found: dict[str, Difference]) -> list[Chart]:
     return [
         Chart(
             name=f"pairs{pairs.other.letter}-{i + 1}",
-            caption=caption if i == 0 else f"As before, of {_listed(shown[i : i + _FIGURES_MAX])}.",
+            caption=caption if i == 0 else f"Pairs of flights by {_listed(shown[i : i + _FIGURES_MAX])}, and the differences.",
             panels=[panel for row in panels[i : i + _FIGURES_MAX] for panel in row],
             columns=2,
             panel_height=0.27,

@@ -94,7 +94,7 @@ def signed(value: float, digits: int) -> str:
     """Return a difference with its sign: 0 where it is none at all, and two digits of one that is smaller than ``digits`` show."""
     if value == 0.0:
         return "0"
-    return f"{value:+.2g}" if abs(value) < 0.5 * 10.0**-digits else _pattern(digits, "+").format(value)
+    return number(value, "{:+.2g}" if abs(value) < 0.5 * 10.0**-digits else _pattern(digits, "+"))
 
 
 def _pattern(digits: int, sign: str = "") -> str:

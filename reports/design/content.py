@@ -87,7 +87,9 @@ def _equilibria(design: Record) -> Section:
     blocks += [Heading(title), trim_table(shown)]
     residuals = [float(t["residual"]) for t in design["trims"] if t.get("residual") is not None]
     if residuals:
-        blocks.append(Text(f"Largest residual of any of the {len(residuals)} equilibria: {max(residuals):.1e}."))
+        blocks.append(
+            Text(f"Largest acceleration left in any of the {len(residuals)} equilibria: {max(residuals):.1e} m/s2 or rad/s2.")
+        )
     return Section(anchor="equilibria", title="Equilibria", blocks=blocks)
 
 

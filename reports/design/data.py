@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+from reports.document.tables import minus
+
 Record = dict[str, Any]
 
 CONTROLS = ("elevator", "aileron", "throttle", "rudder")
@@ -74,11 +76,6 @@ def where(row: Record) -> str:
     """Return the point of the grid that a row belongs to."""
     bank = bank_deg(row)
     return f"{speed(row['airspeed_mps'])}, " + (minus(f"{bank:+g}°") if bank else "level")
-
-
-def minus(text: str) -> str:
-    """Return figures with a minus sign for their hyphen."""
-    return text.replace("-", "−")
 
 
 def case_name(row: Record) -> str:
@@ -166,11 +163,17 @@ def reversal_sentences(design: Record) -> str | None:
         return None
     said = (
         f"A reversal of the turn at {own['bank_deg']:.0f}° of bank is predicted by a dead time of {own['delay_s']:.2f} s and a lag"
-        f" of {own['lag_s']:.2f} s. In {own['reversals']} reversals from random commands the aircraft came up to"
+        f" of {own['lag_s']:.2f} s. In {own['reversals']} reversals that a search flew the aircraft came up to"
         f" {own['deviation_max_m']:.2f} m nearer to what it turned away from than predicted, in 99 of 100 of them no more than"
-        f" {own['deviation_99_percent_m']:.2f} m."
+        f" {own['deviation_99_percent_m']:.2f} m{_worst_case(own)}."
     )
     more = own.get("repeated_search")
     if more:
-        said += f" In {more['reversals']} others it came up to {more['deviation_max_m']:.2f} m nearer."
+        said += f" In {more['reversals']} others it came up to {more['deviation_max_m']:.2f} m nearer{_worst_case(more)}."
     return said
+
+
+def _worst_case(search: Record) -> str:
+    """Return which aircraft deviated most, unless the search flew it as modelled only."""
+    of = search.get("deviation_of_m", {})
+    return f" (the worst: {max(of, key=of.get)})" if len(of) > 1 else ""

@@ -90,5 +90,8 @@ def _rays(x_range: tuple[float, float], y_range: tuple[float, float], reach: flo
         end = length * direction
         lines.append(Line(x=np.array([0.0, end[0]]), y=np.array([0.0, end[1]]), label="equal damping", colour="grey", style="dot"))
         at = 0.88 * end
-        notes.append(Note(x=float(at[0]) + 0.03 * reach, y=float(at[1]) + 0.04 * reach, text=f"ζ = {ratio:g}", align="left"))
+        # To the left of a ray to the upper edge, where the limit of stability is not, and to the right of one to the left edge.
+        upper = bool(end[0] > x_range[0])
+        place = at + (-1.0 if upper else 1.0) * reach * np.array([0.03, 0.04])
+        notes.append(Note(x=float(place[0]), y=float(place[1]), text=f"ζ = {ratio:g}", align="right" if upper else "left"))
     return lines, notes

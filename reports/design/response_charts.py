@@ -5,8 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from reports.design.data import Record, minus, responses_of, speed
+from reports.design.data import Record, responses_of, speed
 from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.tables import minus
 
 RESPONSE_STYLES: dict[str, tuple[str, str, Style]] = {
     "model": ("reference model", "black", "dot"),

@@ -15,14 +15,13 @@ from reports.design.data import (
     grid_trims,
     loop_name,
     loops_of,
-    minus,
     responses_of,
     short_of,
     where,
     worst,
 )
 from reports.document.blocks import Table
-from reports.document.tables import number
+from reports.document.tables import minus, number
 
 
 def worst_margin_table(design: Record) -> Table:
@@ -42,7 +41,7 @@ def worst_margin_table(design: Record) -> Table:
             ]
         )
     head = ["Loop opened at", "Gain [dB]", "at", "Phase [deg]", "at", "Disk gain [dB]", "Disk phase [deg]", "at"]
-    return Table(head=head, rows=rows, widths=[1.15, 0.85, 1.15, 0.95, 1.15, 1.15, 1.25, 1.15])
+    return Table(head=head, rows=rows, widths=[1.15, 0.85, 1.35, 0.95, 1.35, 1.1, 1.1, 1.35])
 
 
 def _margin_cells(row: Record | None, key: str, loop: str) -> list[str]:

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reports.design.data import Record, bank_deg, climb_trims, grid_trims, minus, speed
+from reports.design.data import Record, bank_deg, climb_trims, grid_trims, speed
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
+from reports.document.tables import minus
 
 _NEAR_LIMIT = 0.4
 """Fraction of a control's travel from which its limit is drawn: nearer to neutral it would only flatten the curves."""
@@ -39,12 +40,13 @@ _YAW_RATE = _Quantity(key="yaw_rate_rad_s", label="Yaw rate [rad/s]")
 
 
 def trim_charts(design: Record) -> list[Chart]:
-    """Return the trim map, and the equilibria of straight climbs and descents where the record has some."""
+    """Return the equilibria of straight climbs and descents where the record has some, and the trim map."""
     climbs = climb_trims(design)
-    return [_trim_map(design), *([_climb_chart(design, climbs)] if len({t["climb_angle_rad"] for t in climbs}) > 1 else [])]
+    return [*([_climb_chart(design, climbs)] if len({t["climb_angle_rad"] for t in climbs}) > 1 else []), trim_map(design)]
 
 
-def _trim_map(design: Record) -> Chart:
+def trim_map(design: Record) -> Chart:
+    """Return the equilibria over airspeed, a curve for each bank."""
     trims = grid_trims(design)
     # Without a rudder its place goes to the yaw rate, so that no panel is empty.
     quantities = [q if q.key in trims[0] else _YAW_RATE for q in _QUANTITIES]

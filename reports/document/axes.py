@@ -28,17 +28,20 @@ _SPARE = 0.04
 
 
 def in_kilometres(panel: Panel) -> Panel:
-    """Return a panel with kilometres where metres would have five digits: on both axes if they are equally long."""
+    """Return a panel with kilometres where metres would have five digits: on both axes if they are equally long.
+
+    A logarithmic axis stays in metres: its least marks are small.
+    """
     x = _reach([np.array(panel.x_range)] if panel.x_range else [line.x for line in panel.lines])
     y = _reach([np.array(panel.y_range)] if panel.y_range else [line.y for line in panel.lines])
     if panel.equal:
         x = y = max(x, y)
-    if x >= _FAR and panel.x_label.endswith("[m]"):
+    if x >= _FAR and not panel.log_x and panel.x_label.endswith("[m]"):
         lines = [replace(line, x=line.x / 1000.0) for line in panel.lines]
         notes = [replace(note, x=note.x / 1000.0) for note in panel.notes]
         label, limits = panel.x_label.replace("[m]", "[km]"), _thousandth(panel.x_range)
         panel = replace(panel, lines=lines, notes=notes, x_label=label, x_range=limits)
-    if y >= _FAR and panel.y_label.endswith("[m]"):
+    if y >= _FAR and not panel.log_y and panel.y_label.endswith("[m]"):
         lines = [replace(line, y=line.y / 1000.0) for line in panel.lines]
         notes = [replace(note, y=note.y / 1000.0) for note in panel.notes]
         label, limits = panel.y_label.replace("[m]", "[km]"), _thousandth(panel.y_range)

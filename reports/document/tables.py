@@ -1,5 +1,6 @@
 """Tables that every report has, and how their cells are written."""
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -73,21 +74,26 @@ def vehicle_flown(run: RunData) -> str:
     return f"{aircraft} and of the kinematic vehicle" if fidelity == "both" else aircraft
 
 
+def minus(text: str) -> str:
+    """Return figures with a minus sign for their hyphen; that of an exponent stays."""
+    return re.sub(r"(?<!\w)-", "−", text)
+
+
 def number(value: Any, pattern: str) -> str:
     """Return a value by its pattern, and a dash if there is none."""
-    return "–" if value is None or pd.isna(value) else pattern.format(float(value))
+    return "–" if value is None or pd.isna(value) else minus(pattern.format(float(value)))
 
 
 def span(values: Array, pattern: str) -> str:
     """Return the least and the largest of some values, or the only one; a dash without any."""
     if not np.isfinite(values).any():
         return "–"
-    ends = [pattern.format(np.nanmin(values)), pattern.format(np.nanmax(values))]
+    ends = [number(np.nanmin(values), pattern), number(np.nanmax(values), pattern)]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 def outcome(row: "pd.Series[Any]") -> str:
-    """Return how a flight ended, in words, and why it is not met."""
+    """Return how a flight ended, in words, and which criteria it failed."""
     if row["criteria_met"]:
         return "met"
     ended, message = str(row["outcome"]).replace("_", " "), str(row["message"])

@@ -35,8 +35,8 @@ def height_chart(view: SearchView, name: str) -> Chart:
     panel = Panel(x_label="Time [s]", y_label="Height above the sea [m]", lines=lines, bands=view.modes())
     caption = (
         "Height of the plume's axis as it was believed after each pass, with its 95 % interval, and as it was; the altitude that"
-        " was flown. Tinted: what the guidance was doing; untinted it was"
-        " on its way to the orbit, or in a mode without a part in the search."
+        " was flown. Tinted: what the guidance was doing; untinted it had found the plume, was on its way to the orbit, or was in a"
+        " mode without a part in the search."
     )
     return Chart(name=f"search-height-{name}", caption=caption, panels=[panel], panel_height=0.42)
 

@@ -23,10 +23,9 @@ TWO_SIDED = 1.96
 """Standard deviations of a 95 % interval [-]."""
 
 _MODES = {
-    "searching": "orange", "found": "sky", "lost again": "plum", "sensor failed": "black", "departing": "green",
-    "holding off": "grey",
+    "searching": "orange", "lost again": "plum", "sensor failed": "black", "departing": "green", "holding off": "grey",
 }  # fmt: skip
-"""Modes of a search, and their colours: categories, and none that of the flight."""
+"""Modes of a search other than that it has found the plume, and their colours: categories, and none that of the flight."""
 
 Ellipse = tuple[float, float, float, float]
 """Centre to the right and above the sea, and one spread across and up [m]."""

@@ -23,7 +23,7 @@ def search_table(variants: list[Variant]) -> Table:
         caption="How soon plumes were found, how often they were hit, and what was measured of the sulphur. Over told: beside the"
         " same cases told where the axis is, median of the pairs.",
         head=[
-            "Variant", "Flights", f"Found within {FOUND_WITHIN / 60.0:g} min", "Time to find, median [s]", "95 % [s]",
+            "Variant", "Flights", f"Found within {FOUND_WITHIN / 60.0:g} min", "Time to find, median [s]", "95 % quantile [s]",
             "Hits after found", "FSC error, rms [% m/m]", "FSC 1σ stated, median [% m/m]", "1σ over told", "Its noise over told",
         ],
         rows=[

@@ -110,14 +110,14 @@ def _error_panel(variants: list[Variant]) -> Panel | None:
         error, deviation = (column(variant.rows, f"axis_height_{of}_3min_m") for of in ("error", "deviation"))
         known = np.isfinite(error) & np.isfinite(deviation)
         if known.any():
-            lines.append(Line(x=deviation[known], y=error[known], label=variant.name, colour=variant.colour, style="points"))
+            lines.append(Line(x=deviation[known], y=error[known], label=variant.name, colour=variant.colour, style=variant.marker))
             most = max(most, 1.05 * float(np.max(deviation[known])))
     ends = np.array([0.0, most])
     interval = [
         Line(x=ends, y=side * TWO_SIDED * ends, label="95 % interval", colour=Meaning.LIMIT, style="dash") for side in (1.0, -1.0)
     ]
     return (
-        Panel(x_label="Stated standard deviation [m]", y_label="Height believed less true [m]", lines=[*lines, *interval])
+        Panel(x_label="Stated standard deviation [m]", y_label="Height believed minus true [m]", lines=[*lines, *interval])
         if lines
         else None
     )

@@ -1,12 +1,14 @@
 """The report of flights: its sections are by what the run has."""
 
+from functools import partial
+
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Findings, Section, Text
 from reports.document.chart import Chart
 from reports.finding.flights import finding_sections
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import closest_and_typical, flights_in_words
-from reports.flights.names import flight_name
+from reports.flights.names import flight_name, swept_name, swept_value
 from reports.flights.parameter_tables import parameter_blocks
 from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
@@ -34,7 +36,7 @@ def flights_content(run: RunData) -> Findings:
         _overview(trials),
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
         comparison_section(run, trials),
-        Section(anchor="failed", title="Flights that are not met", nav_title="Not met", blocks=failed_blocks(run)),
+        Section(anchor="failed", title="Flights that failed a criterion", nav_title="Failed", blocks=failed_blocks(run)),
         flight_section(trials),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
@@ -70,8 +72,8 @@ def _trial(trial: Trial, *, only: bool) -> Section:
     if trial.kind is Kind.FAULTS and len(trial.flown):
         table.append(fault_table(trial))
     if trial.swept or (only and len(trial.rows) <= _LISTED_MAX):
-        head = "ν" if list(trial.swept) == ["nu"] else "Flight"
-        table.append(flight_table(trial.rows, head, lambda row: flight_name(trial, row).removeprefix("ν = ")))
+        head, name = (swept_name(trial), swept_value) if trial.swept else ("Flight", flight_name)
+        table.append(flight_table(trial.rows, head, partial(name, trial)))
     # The head of the report says what an only trial is.
     text: list[Block] = [] if only else [Text(str(trial.config["description"]))]
     title = trial.title if not only else "Over the speed ratio" if list(trial.swept) == ["nu"] else "Flights"

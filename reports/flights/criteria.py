@@ -1,5 +1,6 @@
 """The criteria of a trial beside the keep-out area, and the worst that was measured."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -94,7 +95,7 @@ def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
     if key == "within_altitudes":
         return _figure(trial, key, 0.0, _OUTSIDE)
     words = key.replace("_", " ").capitalize()
-    return Criterion(key=key, what=words, limit=parameter_value(value), worst="see the flights that are not met", failed=0)
+    return Criterion(key=key, what=words, limit=parameter_value(value), worst="see the flights that failed it", failed=0)
 
 
 def _figure(trial: Trial, key: str, value: float, measure: _Measure) -> Criterion:
@@ -102,7 +103,7 @@ def _figure(trial: Trial, key: str, value: float, measure: _Measure) -> Criterio
     known = measured[np.isfinite(measured)]
     worst = float(known.max()) if len(known) else float("nan")
     missing = len(measured) - len(known)
-    words = f"{measure.scale * worst:.3g} {measure.unit}" if len(known) else "none measured"
+    words = f"{_rounded(measure.scale * worst, measure.scale * value):.3g} {measure.unit}" if len(known) else "none measured"
     return Criterion(
         key=key,
         what=measure.what,
@@ -111,6 +112,11 @@ def _figure(trial: Trial, key: str, value: float, measure: _Measure) -> Criterio
         failed=int(np.count_nonzero(~(measured <= value))),
         fraction=worst / value if value else float("nan"),
     )
+
+
+def _rounded(value: float, most: float) -> float:
+    """Return a figure without what is less than a thousandth of its limit."""
+    return round(value, 3 - math.floor(math.log10(most))) if most > 0.0 else value
 
 
 def _mission(trial: Trial) -> Criterion:

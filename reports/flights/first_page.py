@@ -70,6 +70,7 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
         (trial, row, f"{what}: {distance}" if long else f"{what}: {name}, {distance}")
         for (trial, row, distance), (what, name) in zip(shown, names.items(), strict=True)
     ]
-    told = " Closest: the flight with the closest approach. Typical: the one whose closest approach is the median."
+    of = "" if len(flights) == sum(len(trial.flown) for trial in trials) else " of those with a time history"
+    told = f" Closest: the flight with the closest approach{of}. Typical: the one whose closest approach is the median."
     told += "".join(f" {what}: {name}." for what, name in names.items()) if long else ""
     return track_picture(shown, told=told * (len(shown) > 1))

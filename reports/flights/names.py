@@ -19,11 +19,28 @@ def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
     return f"Flight {int(counted[1])}" if counted else flight_id
 
 
+def swept_name(trial: Trial) -> str:
+    """Return what was swept, for the head of a column of ``swept_value``."""
+    first, *others = ("ν" if key == "nu" else input_name(key) for key in trial.swept)
+    return ", ".join([first, *(words[0].lower() + words[1:] for words in others)])
+
+
+def swept_value(trial: Trial, row: "pd.Series[Any]") -> str:
+    """Return the values of a flight of what was swept, without their names."""
+    return ", ".join(_value(key, trial.input(key)[str(row["flight_id"])]) for key in trial.swept)
+
+
 def _swept(key: str, value: Any) -> str:
     if key == "nu":
-        return f"ν = {value:.2f}"
+        return f"ν = {_value(key, value)}"
+    return f"{input_name(key)} {_value(key, value)}" if isinstance(value, float) else _value(key, value)
+
+
+def _value(key: str, value: Any) -> str:
+    if key == "nu":
+        return f"{value:.2f}"
     unit = input_unit(key)
-    return f"{input_name(key)} {value:.4g}{'' if unit == '-' else f' {unit}'}" if isinstance(value, float) else str(value)
+    return f"{value:.4g}{'' if unit == '-' else f' {unit}'}" if isinstance(value, float) else str(value)
 
 
 def fault_name(kind: object) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 from reports.document.blocks import Block, Heading, Table
 from reports.document.tables import parameter_value, span
-from reports.flights.names import flight_name, manoeuvre_name
+from reports.flights.names import manoeuvre_name, swept_name, swept_value
 from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
 from reports.monte_carlo.names import input_name, input_unit
 from reports.run.columns import column
@@ -24,8 +24,8 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
         blocks += [
             flight_table(
                 trials[0].flown,
-                "Flight",
-                partial(flight_name, trials[0]),
+                swept_name(trials[0]),
+                partial(swept_value, trials[0]),
                 OSCILLATION_COLUMNS,
                 caption="The reference's oscillation in each flight; equation numbers are the paper's.",
             ),

@@ -59,7 +59,8 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
     name = f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
     known = [("", "min_distance_m", "{:.1f} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", "{:.1f} m/s")]
     shown = [item for item in known if item[1] not in trial.swept and not pd.isna(row.get(item[1]))]
-    world = ", ".join(f"{words}{number(row[key], pattern)}" for words, key, pattern in shown)
+    # A name, its figure and its unit stay on one line.
+    world = ", ".join(f"{words}{number(row[key], pattern)}".replace(" ", "\N{NO-BREAK SPACE}") for words, key, pattern in shown)
     # Page 1 shows the tracks of a run's only flight.
     alone = len(trial.run.summary) == len(trial.flown) == 1
     view = flight_view(trial, row)

@@ -66,8 +66,8 @@ class _Histories:
     def _column(self, name: str) -> Array:
         return column(self._view.samples, name)
 
-    def _level(self, value: float, label: str, colour: str) -> Line:
-        return Line(x=self._view.ends, y=np.array([value, value]), label=label, colour=colour, style="dash")
+    def _level(self, value: float, label: str, colour: str, style: Style = "dash") -> Line:
+        return Line(x=self._view.ends, y=np.array([value, value]), label=label, colour=colour, style=style)
 
     def _distance_panel(self) -> Panel | None:
         if not self._view.vessel:
@@ -128,7 +128,8 @@ class _Histories:
         if rise > 0.0:
             levels["centre of oscillation"] = (funnel + rise, Meaning.PLUME)
         altitude, highest = self._column("altitude_m"), max(height for height, _ in levels.values())
-        lines = [self._level(height, label, colour) for label, (height, colour) in levels.items()]
+        # The true wind is dashed.
+        lines = [self._level(height, label, colour, "thin") for label, (height, colour) in levels.items()]
         y_range = min(funnel - 1.0, float(altitude.min()) - 0.2), max(highest + 1.0, float(altitude.max()) + 0.2)
         return Panel(x_label=_TIME, y_label="Height [m]", lines=[*lines, self._line(altitude)], y_range=y_range)
 

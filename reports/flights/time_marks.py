@@ -9,7 +9,7 @@ from reports.document.chart import Line, Note
 from reports.document.palette import Meaning
 from reports.run.columns import Array
 
-_LETTER, _HEIGHT = 0.024, 0.045
+_LETTER, _HEIGHT = 0.028, 0.05
 """Width of a letter and height of a word, over the size of what is shown."""
 
 _OFF = 0.02
@@ -17,6 +17,9 @@ _OFF = 0.02
 
 _PASSES_MAX = 1
 """Curves that may go through a word; one that would hide or be hidden by more has no mark either."""
+
+_POINTS = 200
+"""Points of a curve at least that are looked at: a straight line has two."""
 
 _APART = 0.12
 """Distance of words in a row at least, over its length."""
@@ -83,5 +86,15 @@ def _touch(one: _Word, other: _Word) -> bool:
 
 def _passes(line: Line, word: _Word) -> int:
     """Return how often a curve goes through a word."""
-    inside = (np.abs(line.x - word.middle[0]) < word.half[0]) & (np.abs(line.y - word.middle[1]) < word.half[1])
+    x, y = _filled(line)
+    inside = (np.abs(x - word.middle[0]) < word.half[0]) & (np.abs(y - word.middle[1]) < word.half[1])
     return int(np.count_nonzero(inside[1:] & ~inside[:-1])) + int(inside[:1].any())
+
+
+def _filled(line: Line) -> tuple[Array, Array]:
+    """Return points of a curve, also between those of a coarse one; marks that stand alone are as they are."""
+    count = len(line.x)
+    if line.style not in ("solid", "thin", "broad", "dash", "dot") or not 1 < count < _POINTS:
+        return line.x, line.y
+    at, every = np.arange(count), np.linspace(0.0, count - 1.0, _POINTS)
+    return np.interp(every, at, line.x), np.interp(every, at, line.y)

@@ -39,6 +39,9 @@ _UPRIGHT, _LARGE, _BESIDE, _WIDE, _FLAT = 0.66, 1.05, 1.2, 1.9, 4.8
 """Width over height: of one of two flights on page 1, of one of two of a flight there, of such on its own page, alone, and over
 the ground."""
 
+_ABOVE = 0.08
+"""Height of words above what is drawn over the ground, over the height of the panel."""
+
 _AWAY = 1.0
 """Way of the ship over the size of the track about her, from which there is a panel over the ground."""
 
@@ -115,9 +118,10 @@ class _Tracks:
             *view.marks(about_the_plume),
             *view.ends_of(about_the_plume),
         ]
-        marked, notes = self._times(about_the_plume, lines, until=view.settled_at)
+        ship = ship_lines(about, about.axis)
+        marked, notes = self._times(about_the_plume, [*ship, *lines], until=view.settled_at)
         lines += marked
-        return ship_panel(about, lines, title=title, notes=notes, shown=[*ship_lines(about, about.axis), *lines], aspect=aspect)
+        return ship_panel(about, lines, title=title, notes=notes, shown=[*ship, *lines], aspect=aspect)
 
     def _near(self, about: Surroundings, aspect: float) -> Panel | None:
         """Return the last of the flight from near; None where it never settled, or where the whole is no larger."""
@@ -156,7 +160,7 @@ class _Tracks:
             *view.marks(place, far=way is not None),
             *view.ends_of(place),
         ]
-        marked, notes = self._times(place, None if way is not None else lines, until=float(view.ends[1]))
+        marked, notes = self._times(place, lines, until=float(view.ends[1]), in_a_row=way is not None)
         labels = ("East [m]", "North [m]") if way is None else ("Along the ship's way [m]", "To port [m]")
         panel = Panel(x_label=labels[0], y_label=labels[1], title=title, lines=[*lines, *marked], notes=notes)
         wind = None if about is None else (about.wind[0], about.wind[1] - up)
@@ -183,16 +187,17 @@ class _Tracks:
         x, y = place(_reference_of(samples))
         return Line(x=x, y=y, label="reference", colour=Meaning.ASKED, style="thin")
 
-    def _times(self, place: Place, drawn: Sequence[Line] | None, *, until: float) -> tuple[list[Line], list[Note]]:
-        """Return marks at round times up to some [s]: beside a track among what is drawn, or in a row above one across the page."""
+    def _times(self, place: Place, drawn: Sequence[Line], *, until: float, in_a_row: bool = False) -> tuple[list[Line], list[Note]]:
+        """Return marks at round times up to some [s]: beside a track among what is drawn, or in a row above all of it."""
         times = np.arange(self._step, until - 0.3 * self._step, self._step)
         (x, y), flown = place(self.view.at_times(times)), place(self.view.samples)
         words = [_duration(time) for time in times.tolist()]
         wide, high = (float(np.ptp(of)) for of in flown)
-        if drawn is not None:
+        if not in_a_row:
             return marks_beside(x, y, words, drawn, max(wide, high) + self.view.radius)
-        top, across = float(np.max(flown[1])) + 0.4 * self.view.radius, _FLAT * (high + 2.0 * self.view.radius)
-        return marks_in_a_row(x, y, words, top, max(wide, across))
+        length = max(wide, _FLAT * (high + 2.0 * self.view.radius))
+        top = max(float(np.nanmax(line.y)) for line in drawn)
+        return marks_in_a_row(x, y, words, top + _ABOVE * length / _FLAT, length)
 
 
 def _reference_of(samples: pd.DataFrame) -> pd.DataFrame:

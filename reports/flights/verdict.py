@@ -30,7 +30,7 @@ from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
 _NAMED_MAX = 3
-"""Flights of a trial that are not met and that the verdict names one by one."""
+"""Flights of a trial that failed a criterion and that the verdict names one by one."""
 
 ROUNDING = 1e-9
 """What binary fractions may add to a figure that is limited by design [-]."""
@@ -113,7 +113,8 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
     if "required" in rows and (rows["required"] == "keep_out").any():
         alone = rows[rows["required"] == "keep_out"]
         sentences.append(
-            f"Of {len(alone):,} flights it is required to keep out, not to complete: {count(kept_out(alone)):,} kept out,"
+            f"Of {len(alone):,} flight{'s' * (len(alone) > 1)} it is required to keep out, not to complete:"
+            f" {count(kept_out(alone)):,} kept out,"
             f" {count(completed(alone)):,} completed. The exit status is about the first."
         )
     if run.manifest.get("state") != "complete":
@@ -136,18 +137,26 @@ def _closest(trials: list[Trial], flown: pd.DataFrame) -> str:
 
 
 def _not_met(trial: Trial) -> list[str]:
-    """Return which flights of a trial are not met: each of a few, else by criterion; then flights not flown yet."""
+    """Return which flights of a trial failed a criterion: each of a few, else by criterion; then flights not flown yet."""
     rows = trial.rows
     others, missing = rows[~met(rows)], trial.planned - len(rows)
     lines = [f"{trial.title}: {missing} of {trial.planned} not flown yet"] if missing else []
     if len(others) <= _NAMED_MAX:
-        named = [f"{row['flight_id']}: {row['outcome'].replace('_', ' ')}; {row['message']}" for _, row in others.iterrows()]
-        return [*named, *lines]
+        reasons: dict[str, list[str]] = {}
+        for _, row in others.iterrows():
+            reasons.setdefault(_reason(row), []).append(str(row["flight_id"]))
+        return [*(f"{', '.join(flights)}: {reason}" for reason, flights in reasons.items()), *lines]
     inside, depth = count(violated(rows)), largest(column(rows, "keepout_depth_m"))
     parts = [f"{inside} violated the keep-out area, by up to {number(depth, '{:.1f} m')}"] if inside else []
-    parts += [f"{c.failed} did not meet “{c.what}, {c.limit}”" for c in criteria_of(trial) if c.failed]
+    parts += [f"{c.failed}: {c.what}" + f", {c.limit}" * (c.key != "mission") for c in criteria_of(trial) if c.failed]
     why = f" ({'; '.join(parts)})" if parts else ""
-    return [f"{trial.title}: {len(others)} of {len(rows)} flights are not met{why}", *lines]
+    return [f"{trial.title}: {len(others)} of {len(rows)} flights failed a criterion{why}", *lines]
+
+
+def _reason(row: "pd.Series[Any]") -> str:
+    """Return why a flight failed a criterion; that it did not settle its message says already."""
+    ended = "" if row["outcome"] == "not_settled" else str(row["outcome"]).replace("_", " ")
+    return "; ".join(words for words in (ended, str(row["message"])) if words)
 
 
 def _noteworthy(flown: pd.DataFrame) -> list[str]:

@@ -64,7 +64,7 @@ def accuracy_table(statistics: Record) -> Table:
             ]
             for entry in rows
         ],
-        widths=[1.5, 1.5, 0.75, 1.0, 0.7, 1.0, 1.0, 1.0, 0.9, 0.9, 1.4],
+        widths=[1.8, 2.3, 0.8, 1.05, 0.95, 1.1, 1.0, 1.0, 0.9, 1.0, 1.9],
         left_columns=2,
     )  # fmt: skip
 

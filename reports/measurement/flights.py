@@ -8,6 +8,7 @@ import pandas as pd
 from common.binomial import percent
 from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.document.chart import Chart
+from reports.document.tables import number
 from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
 from reports.measurement.data import Record
 from reports.measurement.flight_charts import error_chart, operating_curve, sulphur_track_chart, trajectory_chart
@@ -54,7 +55,7 @@ def sulphur_cards(run: RunData) -> list[Card]:
     expected, found = (column(measured, name) for name in ("fsc_expected_percent", "fsc_percent"))
     inside = (column(measured, "fsc_low_percent") <= expected) & (expected <= column(measured, "fsc_high_percent"))
     return [
-        Card("Bias of the sulphur content, mean of flights", f"{float(np.mean(found - expected)):+.4f} %"),
+        Card("Bias of the sulphur content, mean of flights", number(np.mean(found - expected), "{:+.4f} %")),
         Card("Flights whose 95 % interval holds the truth", percent(float(np.mean(inside)))),
     ]
 

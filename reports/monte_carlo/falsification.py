@@ -173,5 +173,5 @@ def worst_table(flights: pd.DataFrame, worst: list[dict[str, Any]]) -> Table:
         "", "Flight", "Method", "Beyond r_min [m]", "Repeats that violate", "Closest of them [m]", "Planned margin [m]", "Fault",
         "ν", "Wind [m/s]", "Turbulence", "Guard [s]",
     ]  # fmt: skip
-    widths = [0.3, 1.4, 1.3, 0.8, 0.9, 0.9, 0.9, 1.1, 1.1, 0.7, 1.2, 0.7]
+    widths = [0.3, 1.3, 1.9, 0.8, 0.9, 0.9, 0.9, 1.5, 1.0, 0.7, 1.1, 0.7]
     return Table(head=head, rows=rows, widths=widths, left_columns=3)

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from reports.document.tables import minus
+
 _UNITS = {
     "_per_hour": "1/h", "_per_m2": "1/m2", "_per_m": "1/m", "_per_s": "1/s", "_deg_s": "deg/s", "_rad_s": "rad/s", "_mps2": "m/s2",
     "_mps": "m/s", "_deg": "deg", "_hz": "Hz", "_m": "m", "_s": "s",
@@ -34,15 +36,15 @@ class Figure:
 
     def text(self, value: float | None) -> str:
         """Return a value in digits, and a dash if there is none."""
-        return "–" if value is None else f"{self.scale * value:.{self.digits}f}"
+        return "–" if value is None else minus(f"{self.scale * value:.{self.digits}f}")
 
 
 FIGURES = {
-    "clearance_m": Figure(name="Distance kept beyond r_min", unit="m", digits=2),
+    "clearance_m": Figure(name="Distance kept beyond r_min", unit="m", digits=1),
     "min_distance_m": Figure(name="Closest approach", unit="m", digits=1),
-    "crossing_interval_error": Figure(name="Mean crossing interval off π/ω₀", unit="%", digits=3, scale=100.0),
+    "crossing_interval_error": Figure(name="Mean crossing interval off π/ω₀", unit="%", digits=2, scale=100.0),
     "crossing_distance_min_m": Figure(name="Nearest crossing", unit="m", digits=1),
-    "tracking_error_rms_m": Figure(name="Tracking error, rms after settling", unit="m", digits=3),
+    "tracking_error_rms_m": Figure(name="Tracking error, rms after settling", unit="m", digits=2),
     "settling_time_s": Figure(name="Settling time", unit="s", digits=1, missing="not settled"),
 }
 """By the keys of ``statistics.json``, in the order they are shown."""

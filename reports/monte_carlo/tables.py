@@ -84,7 +84,8 @@ def quantile_table(statistics: Record) -> Table:
 def _quantile(figure: Figure, quantile: Record | None) -> str:
     if quantile is None or quantile["value"] is None:
         return "–"
-    return f"{figure.text(quantile['value'])} ({figure.text(quantile['low'])} to {figure.text(quantile['high'])})"
+    # The interval stands below its quantile: beside it there is no room for most.
+    return f"{figure.text(quantile['value'])}\n({figure.text(quantile['low'])} to {figure.text(quantile['high'])})"
 
 
 def left_out_rows(sensitivity: Record) -> list[str]:

@@ -9,7 +9,7 @@ import pandas as pd
 
 from common.run_layout import BOUNDS
 from reports.design.section import innerloop_section
-from reports.document.blocks import Block, Findings, FlightContent, FlightPicker, Heading, Section, Table, Text
+from reports.document.blocks import Findings, FlightContent, FlightPicker, Heading, Section, Table, Text
 from reports.document.chart import Chart
 from reports.document.tables import length, number, outcome, parameter_table
 from reports.flights.flight_view import flight_view
@@ -32,7 +32,7 @@ def paper_content(run: RunData) -> Findings:
             anchor="numbers",
             title="The paper's numbers, and ours",
             nav_title="Numbers",
-            blocks=[Text(_NUMBERS), _number_table(run)],
+            blocks=[Text(_NUMBERS), _number_table(run), _flight_table(run)],
         ),
         *(
             Section(anchor=f"sim{i}", title=f"Simulation {i}: {title}", nav_title=f"Sim. {i}", blocks=[Text(text), *charts])
@@ -40,7 +40,7 @@ def paper_content(run: RunData) -> Findings:
             if (charts := [chart for chart in figures(run) if chart.panels])
         ),
         *([bounds_section(json.loads(bounds.read_text(encoding="utf-8")))] if bounds.is_file() else []),
-        _detail(run, _flights(run)),
+        _detail(_flights(run)),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(
             anchor="parameters",
@@ -102,9 +102,8 @@ _SIMULATIONS = (
 )
 
 
-def _detail(run: RunData, picker: FlightPicker) -> Section:
-    blocks: list[Block] = [_flight_table(run), *([picker] if picker.flights else [])]
-    return Section(anchor="flights", title="Every flight", nav_title="Flights", blocks=blocks)
+def _detail(picker: FlightPicker) -> Section:
+    return Section(anchor="flights", title="Single flights", nav_title="Flights", blocks=[picker] if picker.flights else [])
 
 
 def _flight_table(run: RunData) -> Table:
@@ -142,7 +141,7 @@ def _number_table(run: RunData) -> Table:
         return ["–" if row is None or pd.isna(row[key]) else show(row) for row in found]
 
     def against(key: str, printed: float, pattern: str) -> Callable[["pd.Series[Any]"], str]:
-        return lambda row: f"{number(row[key], pattern)} ({100.0 * (float(row[key]) / printed - 1.0):+.2f} %)"
+        return lambda row: f"{number(row[key], pattern)} ({number(100.0 * (float(row[key]) / printed - 1.0), '{:+.2f} %')})"
 
     def omega(row: "pd.Series[Any]") -> str:
         demand, limit = float(row[_DEMAND]), float(row["heading_rate_limit_rad_s"])

@@ -26,7 +26,7 @@ _PAPER = 1040
 """Width of figures of a page that is printed [px]; the page is drawn as wide as that of a large screen."""
 
 _LONG = 16
-"""Letters of a word from which it may go on over the next line."""
+"""Letters of a word from which it may go on over the next line, and of a cell beyond which it may."""
 
 
 def write_html(report: Content, path: Path) -> None:
@@ -45,6 +45,7 @@ def write_html(report: Content, path: Path) -> None:
         cards=report.verdict.cards,
         failures=report.verdict.first_failures,
         breakable=_breakable,
+        is_figures=_is_figures,
         paper_width=_PAPER,
     )
     path.write_text(page, encoding="utf-8")
@@ -55,6 +56,11 @@ def _breakable(words: str) -> Markup:
     keys = re.compile(rf"\S{{{_LONG},}}")
     text = keys.sub(lambda key: re.sub(r"([_.])(?=[a-z])", r"\1<wbr>", key[0]), str(escape(words)))
     return Markup(text)
+
+
+def _is_figures(cell: str) -> bool:
+    """Return whether a cell of a table stays on one line: it is short, or figures alone with units of one letter."""
+    return len(cell) <= _LONG or not re.search(r"[^\W\d_]{2}", cell.replace(" to ", " "))
 
 
 def _panels(picture: Chart) -> list[Chart]:

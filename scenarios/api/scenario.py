@@ -54,7 +54,7 @@ class Scenario:
         Parameters
         ----------
         keys : dotted keys (``**{"wind.speed_mps": 5.0}``), sections (``wind={"speed_mps": 5.0}``), keys without a section
-            (``seed=7``), and the words ``nu``, ``law``, ``shape``, ``track`` and ``plume``: ``docs/api.md``
+            (``seed=7``), and the words ``nu``, ``law``, ``shape``, ``track`` and ``plume``: ``docs/reference/api.md``
 
         Raises
         ------

@@ -68,6 +68,7 @@ def guard_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) -> 
         heading_rate_max=omega_max(scenario.guidance),
         lag=setup.reversal.lag,
         delay=setup.reversal.delay,
+        slow_lag=setup.lag,
         time_step=1.0 / scenario.guidance.rate_hz,
         # A gust may begin at any moment; and one that blows turns with the vehicle in the prediction, but not in the air.
         speed_error=f.speed_error_mps + air.gust_speed_mps if scenario.follows else 0.0,

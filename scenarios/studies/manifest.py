@@ -16,7 +16,7 @@ from common.run_layout import FORMAT, LOGO
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.schema.documented_parts import DIMENSIONLESS, split_unit
+from scenarios.schema.documented_parts import DIMENSIONLESS, line, split_unit
 from scenarios.schema.effect import unused
 from scenarios.schema.load import AnyStudy
 from scenarios.schema.parts import names_file, names_folder, part_names
@@ -121,7 +121,7 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
             continue
         values = section.model_dump(mode="json")
         for key, field in type(section).model_fields.items():
-            meaning, unit = split_unit(field.description or "")
+            meaning, unit = split_unit(line(field.description or ""))
             parameter = {
                 "key": f"{section_name}.{key}",
                 "value": values[key],

@@ -16,7 +16,6 @@ from aircraft.spec import AircraftSpec, Envelope
 from common.files import write_tree
 from innerloop.designs.cache import designed
 from innerloop.designs.designed import Designed
-from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.root import write_root
 from innerloop.synthesis.schedule import Schedule
@@ -147,15 +146,14 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
     run.write_json(run.innerloop, found.record, indent=None)
     start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.altitude, schedule.level(schedule.middle))
     turns = schedule.trims[schedule.middle]
-    reversal = found.record["turn_reversal"]
+    reversal, slow_lag = found.record["turn_reversal"], float(found.record["heading_rate_lag_s"])
     slower_or_faster = abs(start.airspeed / reversal["airspeed_mps"] - 1.0)
     if bank > schedule.envelope.bank + _SAME_BANK or slower_or_faster > _SAME_AIRSPEED:
         from innerloop.designs.record import reversal_record  # needs python-control
 
-        aircraft = AutopilotedAircraft(schedule.spec, run.model)
-        reversal = reversal_record(aircraft, start, max(bank, schedule.envelope.bank))
+        reversal = reversal_record(schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag)
     return VehicleSetup(
-        lag=float(found.record["heading_rate_lag_s"]),
+        lag=slow_lag,
         reversal=TurnReversalResponse(delay=reversal["delay_s"], lag=reversal["lag_s"]),
         response_error=reversal["deviation_max_m"],
         airspeed_bandwidth=found.design.bandwidths.airspeed,

@@ -74,7 +74,7 @@ def test_every_scenario_and_key_of_the_documentation_is_taken():
 def test_the_pages_write_commands_in_one_form():
     """``python -m`` is named beside ``plume-flight`` where the table of both is."""
     both = re.compile(r"python -m (scenarios\.run|innerloop\.design|reports\.)")
-    assert [page for page in DOCS if both.search((ROOT / page).read_text("utf-8"))] == ["docs/api.md"]
+    assert [page for page in DOCS if both.search((ROOT / page).read_text("utf-8"))] == ["docs/reference/api.md"]
 
 
 @pytest.mark.parametrize("word", sorted(commands()))

@@ -51,7 +51,7 @@ def test_no_meaning_is_of_a_column_that_nothing_writes():
 
 
 def test_the_samples_of_a_logged_flight_have_the_columns_that_are_said():
-    log = Path(__file__).parents[2] / "docs" / "example_flight.csv"
+    log = Path(__file__).parents[2] / "docs" / "examples" / "example_flight.csv"
     flight = read_flight(log, LogConfig())
     table = samples(estimate(flight.readings, LogConfig().instrument).signals, flight.place)
     assert list(table) == list(SAMPLE_MEANINGS)

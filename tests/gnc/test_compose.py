@@ -36,7 +36,7 @@ from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.orbit import half_widths
 from gnc.reference.shapes.sinusoid import Sinusoid
 
-GUARD = GuardParameters(radius=200.0, heading_rate_max=HEADING_RATE_MAX, lag=0.4, delay=0.0, time_step=TIME_STEP)
+GUARD = GuardParameters(radius=200.0, heading_rate_max=HEADING_RATE_MAX, lag=0.4, delay=0.0, slow_lag=0.4, time_step=TIME_STEP)
 APPROACH = ApproachParameters(blocked_radius=203.0, round_radius=230.0, join_distance=150.0, tracked=12.0, airspeed=SPEED + 2.0)
 PLAN_INTERVAL = 10
 FILTER = FilterParameters(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0)

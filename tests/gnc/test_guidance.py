@@ -14,7 +14,7 @@ from gnc.parameters import GuardParameters
 from gnc.reference.placement import PlumeAxis, distance_by_paper
 
 # 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py). These vehicles answer at once.
-GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, time_step=TIME_STEP)
+GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, slow_lag=0.0, time_step=TIME_STEP)
 
 
 class RecordingGuard:
@@ -136,6 +136,21 @@ def test_while_the_guard_intervenes_the_airspeed_is_not_trimmed(guarded_by, inte
     behind = (reference.north - 60.0 * math.cos(reference.course), reference.east - 60.0 * math.sin(reference.course))
     guidance.step(0.0, motion(*behind, reference.course))
     assert (guidance.airspeed_command, guidance.guarding) == (airspeed, intervening)
+
+
+def test_it_catches_up_once_the_guard_has_been_free_for_a_quarter_of_a_turn(guarded_by):
+    guard = RecordingGuard(0.0)
+    guidance = guarded_by(guard, airspeed_gain=0.15)
+    guidance.step(0.0, motion(-300.0, 0.0, 0.0))
+    guard.intervening = False
+    commanded = []
+    for step in range(1, 100):
+        reference = guidance.mission.tracker.reference
+        behind = (reference.north - 60.0 * math.cos(reference.course), reference.east - 60.0 * math.sin(reference.course))
+        guidance.step(step * TIME_STEP, motion(*behind, reference.course))
+        commanded.append(guidance.airspeed_command)
+    waiting = math.ceil(0.5 * math.pi / HEADING_RATE_MAX / TIME_STEP) - 1
+    assert commanded == [SPEED] * waiting + [SPEED + 1.0] * (99 - waiting)
 
 
 @pytest.mark.parametrize("nu", [0.1, 0.5, 0.8])

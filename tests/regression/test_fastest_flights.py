@@ -49,7 +49,7 @@ def test_a_speed_ratio_too_near_1_for_the_roll_rate_is_a_row_with_its_reason(tmp
 
 
 def test_a_shape_of_ones_own_is_steered_as_well(tmp_path):
-    # The example of docs/extending.md.
+    # The example of docs/howto/extending.md.
     (tmp_path / "myshape.py").write_text(
         "from dataclasses import dataclass\n\n"
         "from gnc.reference.shapes.sinusoid import Sinusoid\n\n\n"

@@ -24,7 +24,7 @@ _INTRODUCTION = """\
 # Every column
 
 Made from the code that writes the files. What each file is for, and how figures are measured:
-[the run directory](/results.md). A figure that a flight does not have is empty. *Settled* is said of the flight from its
+[the run directory](/reference/results.md). A figure that a flight does not have is empty. *Settled* is said of the flight from its
 settling time on; `rms` stands for the root mean square.
 """
 

@@ -17,7 +17,7 @@ _INTRODUCTION = """\
 
 Made from the schema that reads the files. `plume-flight describe KEY` says the same on the console, and
 `plume-flight new FILE.toml` writes a scenario with all of them. How sections and studies go together:
-[the scenario file](/scenarios.md).
+[the scenario file](/reference/scenarios.md).
 
 A key is a number in the unit that stands beside its default. *Acts with* names what a key needs to have an effect;
 where it has none it is refused.

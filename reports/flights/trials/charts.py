@@ -156,8 +156,10 @@ def _spread(trial: Trial) -> Panel | None:
 
 def _distances(trial: Trial) -> list[Chart]:
     statistics = trial.run.statistics
-    # A Monte Carlo study has the same figure among its distributions.
+    # A Monte Carlo study has the same histograms among its distributions.
     counted_there = statistics is not None and statistics.get("method") != "subset"
+    if counted_there and trial.kind is Kind.APPROACH:
+        return []
     all_flights = [(clearance(trial.flown), "all flights", Meaning.FLOWN)]
     counted = None if counted_there else histogram(all_flights, CLEARANCE, [_R_MIN])
     if trial.kind is Kind.APPROACH:
@@ -206,15 +208,16 @@ def _starts(trial: Trial) -> list[Chart]:
     never: Group = (np.isnan(settling), "never settled", "black")
     guarded: list[Group] = [
         (guard == 0.0, "no guard", "grey"),
-        ((guard > 0.0) & (guard <= 5.0), "guard for up to 5 s", Meaning.GUARD),
-        (guard > 5.0, "guard for longer", "plum"),
+        (guard > 0.0, "guard changed commands", Meaning.GUARD),
     ]
+    acted = bool(np.any(guard > 0.0))
     caption = (
         "Where flights began, seen from the ship with her plume up the page; she is to scale, and heads as in calm air. Coloured by"
-        " how long flights took to settle (left), and by how long the keep-out guard changed commands (right)."
+        f" how long flights took to settle{' (left), and by whether the keep-out guard changed commands (right)' if acted else ''}."
     )
     settled = classes(settling, quartiles(settling, 10.0), "settled", "s")
-    panels = [_places(trial, right, along, [*settled, never]), _places(trial, right, along, guarded)]
+    by_colour = [[*settled, never], *([guarded] if acted else [])]
+    panels = [_places(trial, right, along, groups) for groups in by_colour]
     return [_chart(trial, "starts", caption, panels, 0.48)]
 
 

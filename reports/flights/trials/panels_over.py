@@ -22,6 +22,9 @@ _OSCILLATIONS: tuple[tuple[str, str, str, Style], ...] = (
 _LIMIT: tuple[str, str, Style] = ("limit, two crossings a period", Meaning.LIMIT, "dot")
 """Label, colour and style of the shortest interval of any path."""
 
+_MARGINS_APART = 0.05
+"""Range of the planned margins, over the largest, from which they are an abscissa [-]."""
+
 _RATIOS = (-0.02, 1.02)
 """Speed ratios that a panel shows, however many are flown [-]."""
 
@@ -105,12 +108,12 @@ class PanelsOver:
         return self._panel("Heading rate [rad/s]", [command, self._limit("heading_rate_limit_rad_s", "ω_max")])
 
     def margin(self) -> Panel | None:
-        """Return what of the planned margin was left, over the margin if flights differ in it."""
+        """Return what of the planned margin was left, over the margin if flights differ in it by much."""
         planned, kept = column(self._rows, "keepout_margin_m"), clearance(self._rows)
         if not np.isfinite(planned).any():
             return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), level(self._span, 0.0, "r_min")])
-        if float(np.ptp(planned)) < 1e-6:
-            margin = level(self._span, float(planned[0]), "planned margin", Meaning.ASKED)
+        if float(np.ptp(planned)) <= _MARGINS_APART * float(np.max(planned)):
+            margin = level(self._span, float(np.mean(planned)), "planned margin", Meaning.ASKED)
             levels = [level(self._span, 0.0, "r_min"), margin]
             return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), *levels])
         ends = np.array([float(planned.min()), float(planned.max())])

@@ -18,7 +18,7 @@ from reports.run.time_history import keepout_distance
 from reports.run.trials import Trial
 
 FAILED_MAX = 40
-"""Flights that are not met and are listed."""
+"""Flights that failed a criterion and are listed."""
 
 _NOTHING = "–"
 
@@ -179,7 +179,7 @@ def _closest_after(trial: Trial, row: "pd.Series[Any]") -> float | None:
 
 
 def failed_blocks(run: RunData) -> list[Block]:
-    """Return the flights that are not met, keep-out violations first, ``FAILED_MAX`` at most, each with its reason."""
+    """Return the flights that failed a criterion, keep-out violations first, ``FAILED_MAX`` at most, each with its reason."""
     failed = run.summary[~met(run.summary)]
     if not len(failed):
         return []
@@ -194,12 +194,12 @@ def failed_blocks(run: RunData) -> list[Block]:
         ]
         for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()
     ]
-    head = ["Flight", "ν [-]", "Keep-out violations", "Closest [m]", "How it ended, and the criteria that are not met"]
+    head = ["Flight", "ν [-]", "Keep-out violations", "Closest [m]", "How it ended, and the criteria that it failed"]
     table = Table(
-        caption="Flights that are not met, keep-out violations first, each with its reason.",
+        caption="Flights that failed a criterion, keep-out violations first, each with its reason.",
         head=head,
         rows=rows,
-        widths=[2.4, 0.5, 0.9, 0.8, 4.0],
+        widths=[min(2.4, 0.12 * max(len(row[0]) for row in rows)), 0.5, 0.9, 0.8, 4.4],
         prose=True,
         left_columns=5,
         breakable=True,

@@ -47,7 +47,8 @@ class GuidanceConfig(Section):
     If not given: track in still air where the vessel is steady and known exactly, else follow.
     """
     law: str = "cascade"
-    """Steering law: cascade, eq. (30), lyapunov, eq. (24), line_of_sight, the baseline, those of docs/arena.md, or FILE.py:NAME."""
+    """Steering law: cascade, eq. (30), lyapunov, eq. (24), line_of_sight, the baseline, those of docs/explanation/arena.md, or
+    FILE.py:NAME."""
     airspeed_mps: Annotated[float, Field(ge=5.0, le=300.0)] = 19.42
     """V_r, speed of the reference and of the UAV [m/s]; the aircraft's own unless it is given."""
     bank_deg: Annotated[float, Field(gt=0.0, le=60.0)] = 45.0

@@ -71,7 +71,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
 
     Parameters
     ----------
-    path : of a table in one of the known layouts, or of NMEA sentences (docs/ais_and_wind.md)
+    path : of a table in one of the known layouts, or of NMEA sentences (docs/howto/ais_and_wind.md)
     mmsi : of the vessel; may be left out where the file has one vessel alone
 
     Raises

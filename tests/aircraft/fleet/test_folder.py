@@ -139,7 +139,7 @@ def test_settings_that_are_wrong_are_refused_in_a_line(heavy, text, why):
 
 
 def test_every_key_of_the_settings_is_documented():
-    page = (Path(__file__).parents[3] / "docs" / "aircraft.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "howto" / "aircraft.md").read_text(encoding="utf-8")
     for key in ModelSettings.model_fields:
         assert f"`{key}`" in page, key
 

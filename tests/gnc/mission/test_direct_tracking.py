@@ -26,7 +26,7 @@ from gnc.reference.placement import PlumeAxis, distance_by_paper
 from gnc.reference.shapes.sinusoid import Sinusoid
 
 NU = 0.1
-GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, time_step=TIME_STEP)
+GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, slow_lag=0.0, time_step=TIME_STEP)
 APPROACH = ApproachParameters(
     blocked_radius=200.75,
     round_radius=200.75 + 0.8 * SPEED / HEADING_RATE_MAX,

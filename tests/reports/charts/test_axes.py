@@ -1,5 +1,7 @@
 """Marks of logarithmic axes, and what a caption says of curves that leave their panels."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -79,6 +81,13 @@ def test_words_among_the_curves_go_along_to_kilometres():
     )
     (note,) = in_kilometres(panel).notes
     assert (note.x, note.y) == (10.0, 5.0)
+
+
+def test_a_logarithmic_axis_stays_in_metres_where_another_is_in_kilometres():
+    line = Line(x=np.array([0.0, 9.0]), y=np.array([0.1, 2e4]), label="", colour="blue")
+    panel = Panel(x_label="a [s]", y_label="b [m]", lines=[line])
+    assert in_kilometres(panel).y_label == "b [km]"
+    assert in_kilometres(replace(panel, log_y=True)).y_label == "b [m]"
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,13 @@ def test_a_word_stands_where_the_fewest_curves_are(drawn, align, above):
     assert (lines[0].x.tolist(), lines[0].y.tolist()) == ([50.0], [50.0])
 
 
+def test_a_straight_line_of_two_points_is_seen_where_it_goes_through_a_word():
+    # Four lines to the right of the mark, each from one edge to the other.
+    lines = [line([57.0 + 0.5 * i] * 2, [0.0, 100.0]) for i in range(4)]
+    _, (note,) = marked(lines)
+    assert note.align == "right"
+
+
 def test_a_mark_among_many_curves_is_left_out_with_its_word():
     curves = [line(np.linspace(20, 80, 200), np.full(200, y)) for y in np.linspace(30.0, 70.0, 40)]
     assert marked(curves) == ([], [])

@@ -39,7 +39,7 @@ def test_figures_of_whole_runs_are_those_of_their_summaries(report, first, large
     cells = {row[0]: row[1:] for row in table.rows}
     nearest = [pd.read_csv(path / "summary.csv")["min_distance_m"].min() for path in (first, larger)]
     assert cells["Closest approach of any flight [m]"][:2] == [f"{distance:.1f}" for distance in nearest]
-    assert cells["Flights that met every criterion"] == ["3 of 3", "0 of 3", "-3"]
+    assert cells["Flights that met every criterion"] == ["3 of 3", "0 of 3", "−3"]
     # Three crossings of three flights each, as the scenario asks for.
     assert cells["Plume crossings after settling, all flights"] == ["9", "9", "0"]
 
@@ -124,7 +124,7 @@ def test_a_flight_that_one_run_has_not_flown_yet_has_no_partner(first, same):
     (figures,) = blocks_of(report, Table, "figures")
     # Counts of 3 and of 2 flights have no difference that says anything.
     assert next(row for row in figures.rows if row[0] == "Flights that kept out")[1:] == ["3 of 3", "2 of 2", "–"]
-    assert [row[-1] for row in figures.rows] == ["-1"] + ["–"] * (len(figures.rows) - 1)
+    assert [row[-1] for row in figures.rows] == ["−1"] + ["–"] * (len(figures.rows) - 1)
 
 
 def test_the_headline_counts_both_directions(first, same):

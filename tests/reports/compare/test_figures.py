@@ -80,19 +80,19 @@ def test_the_table_counts_lower_and_higher_and_marks_an_interval_without_0():
     table = difference_table(pairs_of(np.zeros(8), np.ones(8)), found)
     row = next(i for i, cells in enumerate(table.rows) if cells[0].startswith("Tracking error"))
     # The first and the eighth of eight: 2/2^8 is left outside; with the second and the seventh it were 18/2^8, above 5 %.
-    assert table.rows[row][1:] == ["8", "0.000", "4.500", "+4.500", "+1.000 to +8.000", "+1.000 to +8.000", "0, 8"]
+    assert table.rows[row][1:] == ["8", "0.00", "4.50", "+4.50", "+1.00 to +8.00", "+1.00 to +8.00", "0, 8"]
     assert (row, 5) in table.bold
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.0, "0"), (-0.0, "0"), (1234.56, "+1,234.6"), (-0.04, "-0.04"), (-0.06, "-0.1"), (1.5e-7, "+1.5e-07")]
+    ("value", "text"), [(0.0, "0"), (-0.0, "0"), (1234.56, "+1,234.6"), (-0.04, "−0.04"), (-0.06, "−0.1"), (1.5e-7, "+1.5e-07")]
 )
 def test_a_difference_that_digits_would_hide_is_written_with_two(value, text):
     assert signed(value, 1) == text
 
 
 def test_the_median_of_counts_may_lie_between_two_of_them():
-    assert (signed(-6.5, 0), signed(1234.0, 0)) == ("-6.5", "+1,234")
+    assert (signed(-6.5, 0), signed(1234.0, 0)) == ("−6.5", "+1,234")
 
 
 def test_every_figure_has_a_unit_and_a_name_of_its_own():

@@ -15,7 +15,7 @@ from reports.design.loop_charts import disk_region, turned
 from reports.design.margin_charts import margin_charts
 from reports.design.section import innerloop_section
 from reports.design.section_charts import loop_charts
-from reports.design.trim_charts import trim_charts
+from reports.design.trim_charts import trim_map
 from reports.document.blocks import Heading, Table, Text
 from reports.document.chart import Chart
 from reports.errors import ReportError
@@ -60,7 +60,7 @@ def test_everything_is_in_its_place(report):
         "margins": ["diskmargins", "classicalmargins"],
         "loops": ["bode", "nichols"],
         "responses": ["turnresponse", "climbresponse"],
-        "equilibria": ["trims", "climbs"],
+        "equilibria": ["climbs", "trims"],
         "poles": ["gridpoles"],
         "linearisation": [],
         "weights": [],
@@ -143,7 +143,7 @@ def test_every_loop_has_a_nichols_panel_with_the_region_that_is_excluded(report)
 
 def test_the_trim_map_has_a_curve_per_bank_and_marks_what_is_at_a_limit():
     design = complete(record())
-    panels = {panel.y_label: panel for panel in trim_charts(design)[0].panels}
+    panels = {panel.y_label: panel for panel in trim_map(design).panels}
     labels = [line.label for line in panels["Rudder command [-]"].lines]
     assert labels[:3] == ["level", "bank +13°", "bank −13°"]
     assert len([label for label in labels if label.startswith("bank")]) == len(BANKS_DEG) - 1
@@ -158,7 +158,7 @@ def test_the_trim_map_has_a_curve_per_bank_and_marks_what_is_at_a_limit():
 def test_the_stall_is_drawn_where_it_is_near_the_grid(stall, drawn):
     design = complete(record())
     design["envelope"]["stall_airspeed_mps"] = stall
-    assert ("stall" in [line.label for line in trim_charts(design)[0].panels[0].lines]) == drawn
+    assert ("stall" in [line.label for line in trim_map(design).panels[0].lines]) == drawn
 
 
 def test_the_overshoot_is_counted_beyond_that_of_the_reference_model():

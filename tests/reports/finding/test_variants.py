@@ -101,7 +101,7 @@ def test_the_share_found_steps_up_at_each_flight_and_stays_below_one(trial):
     assert found.x.tolist() == [0.0, 10.0, 10.0, 50.0, 50.0, 300.0]
     assert found.y.tolist() == pytest.approx([0.0, 0.0, 1 / 3, 1 / 3, 2 / 3, 2 / 3])
     # Too few for a distribution of the times.
-    assert [panel.y_label for panel in errors.panels] == ["Height believed less true [m]"]
+    assert [panel.y_label for panel in errors.panels] == ["Height believed minus true [m]"]
 
 
 def test_hits_count_from_the_orbit_on(trial):

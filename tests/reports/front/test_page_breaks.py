@@ -51,12 +51,20 @@ def test_a_page_makes_room_for_a_figure_that_would_stand_alone_on_the_next(tmp_p
 
 
 def test_what_follows_a_table_begins_below_its_last_row(tmp_path):
-    rows = [[f"row {i}", "word " * (1 + 60 * (i % 3 == 0))] for i in range(90)]
+    rows = [[f"row {i}", "word " * (1 + 60 * (i % 3 == 0))] for i in range(78)]
     table = Table(head=["Row", "Words"], rows=rows, widths=[1.0, 3.0], breakable=True, caption="Table of rows")
     texts = pages_of([tall("one", 0.5), table, tall("two", 0.5)], tmp_path / "report.pdf")
-    begin, end = page_with(texts, "Table of rows"), page_with(texts, "row 89")
+    begin, end = page_with(texts, "Table of rows"), page_with(texts, "row 77")
     assert begin == page_with(texts, "Caption of one")
     assert end == begin + 2
     # Each page repeats the head.
     assert all("Words" in text for text in texts[begin - 1 : end])
     assert page_with(texts, "Caption of two") in (end, end + 1)
+
+
+def test_no_row_of_a_table_goes_on_over_the_next_page(tmp_path):
+    rows = [[f"row {i}", f"begin{i} " + "word " * 300 + f"end{i}"] for i in range(20)]
+    table = Table(head=["Row", "Words"], rows=rows, widths=[1.0, 3.0], breakable=True, caption="Table of rows")
+    texts = pages_of([table], tmp_path / "report.pdf")
+    assert page_with(texts, "end19") > page_with(texts, "begin0")
+    assert all(page_with(texts, f"begin{i} ") == page_with(texts, f"end{i}") for i in range(20))

@@ -20,14 +20,14 @@ from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
 
-DOCS = Path(__file__).parents[3] / "docs"
-EXAMPLE = ("docs/example_flight.csv", "docs/example_instrument.toml")
+ROOT = Path(__file__).parents[3]
+EXAMPLE = ("docs/examples/example_flight.csv", "docs/examples/example_instrument.toml")
 
 
 @pytest.fixture(scope="module")
 def run_directory(tmp_path_factory):
     out = tmp_path_factory.mktemp("measured")
-    flight, config = (str(DOCS / Path(name).name) for name in EXAMPLE)
+    flight, config = (str(ROOT / name) for name in EXAMPLE)
     assert main([flight, "--config", config, "--out", str(out), "--no-report"]) == 0
     return out
 

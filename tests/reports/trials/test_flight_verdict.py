@@ -18,11 +18,11 @@ def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
     assert not judged.verdict.holds
     assert judged.verdict.headline == "Keep-out violations in 1 of 4 flights, 2 in all"
     assert ("Closest approach, from the keep-out sphere's centre", "198.5 m", "≥ 200 m", False) in judged.verdict.figures
-    assert judged.verdict.failures == ["turns_00001: completed; "]
+    assert judged.verdict.failures == ["turns_00001: completed"]
     (picker,) = blocks_of(judged, FlightPicker, "flights")
     assert "deepest keep-out violation" in next(flight.title for flight in picker.flights if flight.flight_id == "turns_00001")
     # Keep-out violations and the closest approach, from r_min too, are in the trial's row.
-    assert rows_of(judged, "Turns")[0][7:10] == ["2", "198.5", "-1.5"]
+    assert rows_of(judged, "Turns")[0][7:10] == ["2", "198.5", "−1.5"]
 
 
 LOST = {"outcome": "aircraft_lost", "mode_at_end": "ditched", "criteria_met": False, "message": "it came down on the sea"}
@@ -56,6 +56,12 @@ def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
     assert (report.verdict.holds, report.verdict.complete) == (True, False)
     assert report.verdict.headline.endswith("; of 4, 1 did not complete the mission")
     assert report.verdict.failures == ["steady_00000: incomplete; flew 1 of 3 crossings"]
+
+
+def test_flights_of_one_reason_share_a_line(run):
+    values = {"outcome": "not_settled", "message": "did not settle within 300 s", "criteria_met": False}
+    report = content(with_values(with_values(run, 0, **values), 1, **values))
+    assert report.verdict.failures == ["steady_00000, steady_00001: did not settle within 300 s"]
 
 
 def test_flights_that_are_not_flown_yet_are_not_failed_ones(run):

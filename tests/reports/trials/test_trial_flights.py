@@ -16,6 +16,7 @@ from reports.flights.flight_view import flight_view
 from reports.flights.selection import PICKED_MAX, picked_flights
 from reports.flights.single_flight import flight_charts
 from reports.flights.trials.charts import trial_charts
+from reports.flights.trials.panels_over import PanelsOver, by_violation
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
@@ -114,8 +115,17 @@ def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):
     manifest["trials"]["turns"]["sweep"] = {"turbulence.level": ["none", "light"]}
     draws = run.draws.assign(**{"wind.speed_mps": [2.0, 4.0, 3.0, 3.0], "turbulence.level": ["none", "none", "none", "light"]})
     report = content(replace(run, manifest=manifest, draws=draws))
-    assert [row[0] for row in blocks_of(report, Table, "trial1")[0].rows] == ["Wind speed 2 m/s", "Wind speed 4 m/s"]
+    table = blocks_of(report, Table, "trial1")[0]
+    assert [table.head[0], *(row[0] for row in table.rows)] == ["Wind speed", "2 m/s", "4 m/s"]
     charts = blocks_of(report, Chart, "trial1")
     assert {panel.x_label for chart in charts for panel in chart.panels} == {"Wind speed [m/s]"}
     (words,) = blocks_of(report, Chart, "trial2")
     assert [name for _, name in words.panels[0].y_names] == ["none", "light"]
+
+
+@pytest.mark.parametrize(("margins", "over"), [([90.0, 90.1], "Speed ratio ν [-]"), ([60.0, 90.0], "Planned margin [m]")])
+def test_clearances_are_drawn_over_the_planned_margin_only_where_that_differs_by_much(run, margins, over):
+    for number, margin in enumerate(margins):
+        run = with_values(run, number, keepout_margin_m=margin)
+    trial = read_trials(run)[0]
+    assert PanelsOver(trial, "nu", by_violation(trial)).margin().x_label == over

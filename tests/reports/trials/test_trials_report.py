@@ -83,9 +83,16 @@ def test_a_criterion_without_a_figure_counts_as_failed(run):
     assert row[3] == "1"
 
 
+@pytest.mark.parametrize(("measured", "shown"), [(0.63712, "0.637 m"), (0.0063712, "0.006 m"), (12.345, "12.3 m")])
+def test_a_figure_has_three_digits_and_none_below_a_thousandth_of_its_limit(run, measured, shown):
+    both = with_values(with_values(run, 0, tracking_error_rms_m=measured), 1, tracking_error_rms_m=measured)
+    rows = rows_of(content(with_criterion(both, "steady", "tracking_error_rms_m", 1.5)), "Steady")
+    assert next(row for row in rows if row[0].startswith("Tracking error"))[2] == shown
+
+
 def test_a_criterion_that_the_report_does_not_know_is_shown_all_the_same(run):
     rows = rows_of(content(with_criterion(run, "turns", "loops_per_hour", 7)), "Turns")
-    assert ["Loops per hour", "7", "see the flights that are not met", "0"] in rows
+    assert ["Loops per hour", "7", "see the flights that failed it", "0"] in rows
 
 
 def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run_path, tmp_path):

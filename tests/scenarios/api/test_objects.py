@@ -22,7 +22,7 @@ SHORT = {
 
 @dataclass(frozen=True, kw_only=True)
 class Pursuit:
-    """The law of docs/extending.md."""
+    """The law of docs/howto/extending.md."""
 
     gain: float = 1.2
     lead_s: float = 1.0

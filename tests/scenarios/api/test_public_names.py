@@ -1,4 +1,7 @@
-"""Names and signatures that scripts rely on. Where one of these tests fails, scripts of users break: change docs/api.md with it."""
+"""Names and signatures that scripts rely on.
+
+Where one of these tests fails, scripts of users break: change docs/reference/api.md with it.
+"""
 
 import inspect
 import subprocess

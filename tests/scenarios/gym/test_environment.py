@@ -55,13 +55,13 @@ def test_gymnasium_finds_it_in_a_process_of_its_own_as_the_page_says():
     script = f"import gymnasium; print(gymnasium.make({name!r}, keys={{'fidelity': 'kinematic'}}).spec.id)"
     found = subprocess.run([sys.executable, "-c", script], cwd=PROJECT, capture_output=True, text=True, check=False)
     assert (found.stdout.split(), found.returncode) == ([ENVIRONMENT], 0), found.stderr
-    page = (PROJECT / "docs" / "gym.md").read_text(encoding="utf-8")
+    page = (PROJECT / "docs" / "howto" / "gym.md").read_text(encoding="utf-8")
     assert all(words in page for words in (name, f'"{ENVIRONMENT}"', "import gymnasium", "import scenarios.gym"))
 
 
 def test_it_passes_gymnasiums_check(kinematic):
     with warnings.catch_warnings():
-        # Actions are in SI, not normalised: docs/gym.md says how to rescale them.
+        # Actions are in SI, not normalised: docs/howto/gym.md says how to rescale them.
         warnings.filterwarnings("ignore", message=".*we recommend using a symmetric and normalized space")
         check_env(kinematic.unwrapped, skip_render_check=True)
 
@@ -195,7 +195,7 @@ def test_an_unknown_flight_is_refused_with_the_names_of_those_there_are(kinemati
 
 @pytest.mark.usefixtures("x8_design")
 def test_the_example_of_the_page_runs_as_it_stands_and_is_short(capsys):
-    page = (PROJECT / "docs" / "gym.md").read_text(encoding="utf-8")
+    page = (PROJECT / "docs" / "howto" / "gym.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
     assert len(example.splitlines()) <= 15
     exec(compile(example, "gym.md", "exec"), {})
@@ -205,6 +205,6 @@ def test_the_example_of_the_page_runs_as_it_stands_and_is_short(capsys):
 
 
 def test_every_entry_of_the_observation_is_documented_with_its_unit():
-    page = (PROJECT / "docs" / "gym.md").read_text(encoding="utf-8")
+    page = (PROJECT / "docs" / "howto" / "gym.md").read_text(encoding="utf-8")
     for name, (meaning, unit, _) in MEANINGS.items():
         assert f"| `{name}` | {unit} | {meaning} |" in page

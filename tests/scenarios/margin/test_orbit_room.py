@@ -16,7 +16,9 @@ from gnc.unicycle import lagged_move
 from scenarios.margin.orbit_room import orbit_distance
 
 SPEED, HEADING_RATE_MAX, TIME_STEP, LAG, DELAY = 19.42, 0.505, 0.05, 0.2, 0.2
-GUARD = GuardParameters(radius=200.0, heading_rate_max=HEADING_RATE_MAX, lag=LAG, delay=DELAY, time_step=TIME_STEP)
+GUARD = GuardParameters(
+    radius=200.0, heading_rate_max=HEADING_RATE_MAX, lag=LAG, delay=DELAY, slow_lag=DELAY + LAG, time_step=TIME_STEP
+)
 # AIS every 10 s, up to 2 s late, and looked at twice a second: a ship that brakes or turns by 0.25 m/s^2.
 AIS = tube(
     VesselReport(-12.5, 0.0, 0.0, 0.0, 0.0),

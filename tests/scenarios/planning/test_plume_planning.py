@@ -82,7 +82,7 @@ def test_the_flight_starts_at_its_altitude_and_keeps_out_of_the_sphere_about_the
 def test_the_sulphur_is_known_best_from_as_near_as_may_be(sensor, wind):
     scenario = load_study("sulphur", [f"payload.sensor={sensor}", "following.distance=best_measurement"])
     assert additional_distance(scenario, VESSEL, 220.0, wind) == 0.0
-    # Flights at 500 m had up to three times the noise of those at 200 m (docs/sulphur.md).
+    # Flights at 500 m had up to three times the noise of those at 200 m (docs/explanation/sulphur.md).
     near, far = information(scenario, VESSEL, np.array([200.0, 500.0]), wind)
     assert 1.5 < math.sqrt(near / far) < 4.0
 

@@ -28,8 +28,8 @@ def repeats_of(value, first, **settings):
 def test_intervals_hold_the_true_probability_as_often_as_they_claim(value, probability, noise):
     studies = 12 if noise else 30
     found = [rare_probability(repeats_of(value, i, flights=200, noise=noise), 0.95) for i in range(studies)]
-    # Measured with 500 flights a level (docs/operational_conditions.md): 0.94 to 0.99. Fewer of 30 (12) than are enough here would
-    # have a probability below 2 % at 0.95.
+    # Measured with 500 flights a level (docs/explanation/operational_conditions.md): 0.94 to 0.99. Fewer of 30 (12) than are
+    # enough here would have a probability below 2 % at 0.95.
     enough = studies - (4 if studies == 30 else 3)
     assert sum(study.low <= probability <= study.high for study in found) >= enough
     assert sum(probability <= study.upper for study in found) >= enough

@@ -1,0 +1,66 @@
+"""An aircraft that is not quite as modelled: another mass, other moments of inertia, other effectiveness of its controls."""
+
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from pathlib import Path
+
+_DEFLECTION = re.compile(r"^-?fcs/.*pos")
+"""Properties of surfaces' deflections, as JSBSim's own and those of models are called."""
+
+_MASSES, _MOMENTS = ("emptywt", "pointmass/weight"), ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+_TANKS = ("propulsion/tank/contents", "propulsion/tank/capacity")
+"""A tank that holds more than it can is no model."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Perturbation:
+    """By what factors an aircraft differs from its model.
+
+    Attributes
+    ----------
+    mass : of the empty aircraft, its point masses and its fuel [-]
+    inertia : of every moment of the empty aircraft [-]
+    effectiveness : of every deflection as the aerodynamics have it, but where a table is read at it [-]
+    """
+
+    mass: float = 1.0
+    inertia: float = 1.0
+    effectiveness: float = 1.0
+
+
+def perturb(model_file: Path, by: Perturbation) -> None:
+    """Change a JSBSim model's file. A model without perturbation is left as it is, to the last byte."""
+    if by == Perturbation():
+        return
+    document = ET.parse(model_file)
+    model = document.getroot()
+    balance = model.find("mass_balance")
+    if balance is not None:
+        for element in (found for path in _MASSES for found in balance.findall(path)):
+            _scale(element, by.mass)
+        for element in (found for path in _MOMENTS for found in balance.findall(path)):
+            _scale(element, by.inertia)
+    for path in _TANKS:
+        for element in model.findall(path):
+            _scale(element, by.mass)
+    aerodynamics = model.find("aerodynamics")
+    if aerodynamics is not None and by.effectiveness != 1.0:
+        _scale_deflections(aerodynamics, by.effectiveness)
+    document.write(model_file, encoding="utf-8", xml_declaration=True)
+
+
+def _scale(element: ET.Element, factor: float) -> None:
+    element.text = repr(float(element.text or 0.0) * factor)
+
+
+def _scale_deflections(parent: ET.Element, factor: float) -> None:
+    for i, child in enumerate(list(parent)):
+        if child.tag in ("property", "p") and _DEFLECTION.match((child.text or "").strip()):
+            product = ET.Element("product")
+            ET.SubElement(product, "value").text = repr(factor)
+            parent.remove(child)
+            product.append(child)
+            parent.insert(i, product)
+        else:
+            _scale_deflections(child, factor)
