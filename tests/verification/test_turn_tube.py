@@ -7,11 +7,15 @@ import pytest
 
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP
+from common.turn_tube import LEAST_CHANGE
 from common.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
+from gnc.safety.given_commands import GivenCommands
 from gnc.safety.keepout_guard import KeepoutGuard
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.reversal_search import _Flight
+from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.properties import HEADING_RATE
 
 RADIUS, STEP = 200.0, 0.05
@@ -112,3 +116,27 @@ def test_without_what_is_to_come_it_would_come_nearer_by_metres(rolled_back, rec
     lacks = lacking(rolled_back, record, remembers=False)
     assert lacks.max() > 2.0 * lacking(rolled_back, record, remembers=True).max()
     assert lacks.max() > 4.0
+
+
+def test_the_search_and_the_guard_mean_the_same_by_what_is_still_to_come(x8_root, x8_schedule, record):
+    level = x8_schedule.level(x8_schedule.middle)
+    response = TurnReversalResponse(delay=record["delay_s"], lag=record["lag_s"])
+    searched = _Flight(AutopilotedAircraft(X8, x8_root), level, response, record["slow_lag_s"])
+    rate = STANDARD_GRAVITY * math.tan(X8.envelope.bank) / level.airspeed
+    guarded = GivenCommands(
+        lag=response.lag, delay=response.delay, slow_lag=record["slow_lag_s"], time_step=STEP, heading_rate_max=rate
+    )
+    guarded.still_to_come(0.0)
+    lacks = []
+    for share, duration in ((1.0, 4.0), (-1.0, 0.5), (0.3, 1.0), (-1.0, 2.0)):
+        for _ in range(round(duration / STEP)):
+            guarded.since.append(share * rate)
+            guarded.rates.append(searched._rate())
+            searched.fly(share * rate, STEP)
+            guarded.still_to_come(searched._rate())
+            lacks.append((searched._lack, guarded._lack))
+        assert guarded.change == pytest.approx(max(LEAST_CHANGE, searched._change / (2.0 * rate)), rel=0.01)
+    own, others = np.array(lacks).T
+    assert np.max(np.abs(own)) > 0.05
+    # The search takes the dead time to whole steps of the simulation, 4 ms at most, and the course, of which 0.5 rad/s make 2 mrad.
+    np.testing.assert_allclose(own, others, rtol=0.0, atol=4e-3)
