@@ -85,10 +85,10 @@ class GivenCommands:
             most = self._lack_max
             self._lack = lack if -most <= lack <= most else math.copysign(most, lack)
             # What changed little by little between two looks counts as if it had changed at once.
-            last = self._given
-            range_ = (max(*since, last) - min(*since, last)) / self._reversal
-            self.change = max(range_, self.change * self._fading ** len(since), LEAST_CHANGE)
-            self._given = since[-1]
+            since.append(self._given)
+            changed = (max(since) - min(since)) / self._reversal
+            self.change = max(changed, self.change * self._fading ** len(rates), LEAST_CHANGE)
+            self._given = since[-2]
             since.clear()
             rates.clear()
         if self._lag == 0.0:

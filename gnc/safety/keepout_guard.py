@@ -58,6 +58,8 @@ class KeepoutGuard:
         "_given",
         "_kept_off",
         "_lag",
+        "_note",
+        "_note_rate",
         "_prediction",
         "_radius",
         "_rate",
@@ -97,6 +99,7 @@ class KeepoutGuard:
             time_step=time_step,
             heading_rate_max=heading_rate_max,
         )
+        self._note, self._note_rate = self._given.since.append, self._given.rates.append
         # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
         self._speed_error, self._drift_rate = speed_error + drift_rate, drift_rate
         self._prediction = TurnPrediction(
@@ -128,7 +131,8 @@ class KeepoutGuard:
         bounded = -self._rate <= command <= self._rate
         if self._free_steps > 0 and bounded:
             self._free_steps -= 1
-            self._give(command, own.heading_rate, speed)
+            self._note(command if speed <= self.turn_speed else self._turned(command, speed))
+            self._note_rate(own.heading_rate)
             return command
         self._free_steps = 0
         free, motions, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
@@ -150,16 +154,14 @@ class KeepoutGuard:
             self.interventions += not self.intervening
             self.intervening = True
             command = self._mix(command, motions)
-        self._give(command, own.heading_rate, speed)
+        self._note(command if speed <= self.turn_speed else self._turned(command, speed))
+        self._note_rate(own.heading_rate)
         return command
 
-    def _give(self, command: float, heading_rate: float, speed: float) -> None:
-        """Take note of a command: what is beyond the largest bank never comes [rad/s, rad/s, m/s]."""
-        if speed > self.turn_speed:
-            most = self._rate * self.turn_speed / speed
-            command = command if -most <= command <= most else math.copysign(most, command)
-        self._given.since.append(command)
-        self._given.rates.append(heading_rate)
+    def _turned(self, command: float, speed: float) -> float:
+        """Return what of a command comes at such a speed, at the largest bank [rad/s]."""
+        most = self._rate * self.turn_speed / speed
+        return command if -most <= command <= most else math.copysign(most, command)
 
     def overruled(self, command: float) -> None:
         """Take note of a heading rate that is flown in place of the last command [rad/s]."""
