@@ -21,6 +21,16 @@ RATIOS = (0.2, 0.5, 0.8)
 AIS = ("reports.interval_s=[2,10]", "reports.latency_max_s=2")
 SHIP = ("following.vessel_acceleration_mps2=0.25", "following.vessel_speed_max_mps=15")
 
+TOGETHER = (
+    *AIS,
+    *SHIP,
+    "sensors.position_sigma_m=1.5",
+    "following.speed_error_mps=0.5",
+    "turbulence.level=light",
+    "turbulence.gusts=3",
+    "turbulence.gust_speed_mps=4",
+)
+
 DECLARATIONS: dict[str, tuple[str, ...]] = {
     "everything known": (),
     "satellite navigation, 1.5 m": ("sensors.position_sigma_m=1.5",),
@@ -35,10 +45,8 @@ DECLARATIONS: dict[str, tuple[str, ...]] = {
     "AIS, by 0.25 m/s²": (*AIS, *SHIP),
     "AIS every 30 s, by 0.1 m/s²": ("reports.interval_s=[2,30]", AIS[1], "following.vessel_acceleration_mps2=0.1"),
     "AIS every 30 s, by 0.25 m/s²": ("reports.interval_s=[2,30]", AIS[1], *SHIP),
-    "all of sea_together": (
-        *AIS, *SHIP, "sensors.position_sigma_m=1.5", "following.speed_error_mps=0.5", "turbulence.level=light",
-        "turbulence.gusts=3", "turbulence.gust_speed_mps=4",
-    ),
+    "all of sea_together": TOGETHER,
+    "all of it, and turns that deviate by 6.8 m": (*TOGETHER, "following.turn_deviation_m=6.8"),
 }  # fmt: skip
 """What is declared, and the keys that do so."""
 

@@ -64,7 +64,7 @@ def guard_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) -> 
     f, air = scenario.following, scenario.turbulence
     return GuardParameters(
         radius=radius,
-        deviation=setup.response_error,
+        deviation=max(setup.response_error, f.turn_deviation_m if scenario.follows else 0.0),
         heading_rate_max=omega_max(scenario.guidance),
         lag=setup.reversal.lag,
         delay=setup.reversal.delay,

@@ -196,7 +196,7 @@ RULES = (
         keys=(
             "following.touches_per_hour", "following.margin_min_m", "following.speed_ratio_max", "following.standoff_m",
             "following.vessel_acceleration_mps2", "following.vessel_speed_max_mps", "following.speed_error_mps",
-            "following.drift_rate_mps",
+            "following.drift_rate_mps", "following.turn_deviation_m",
         ),
         acts=lambda s: s.follows,
         user=_FOLLOWS,

@@ -187,6 +187,8 @@ class FollowingConfig(Section):
     own."""
     drift_rate_mps: NonNegative = 1.0
     """How fast dead reckoning may go wrong without satellite navigation [m/s]."""
+    turn_deviation_m: NonNegative = 0.0
+    """By how much nearer than predicted a reversal of the turn may come; what the autopilot's record says if that is more [m]."""
     plume: Literal["predicted", "estimated", "told"] = "predicted"
     """How the axis of exhaust is known: predicted from load, wind and vessel, estimated from what a sniffer reads, or told."""
     search: Literal["information", "ladder"] = "information"

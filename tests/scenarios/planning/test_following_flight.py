@@ -48,6 +48,12 @@ def test_dead_reckoning_is_reckoned_with_where_satellite_navigation_is_declared_
     assert plan(scenario(following={"drift_rate_mps": 2.0})).guidance.guard.drift_rate == 0.0
 
 
+def test_the_guard_keeps_the_deviation_that_is_declared():
+    # The kinematic vehicle has none of its own.
+    assert plan(scenario()).guidance.guard.deviation == 0.0
+    assert plan(scenario(following={"turn_deviation_m": 6.8})).guidance.guard.deviation == 6.8
+
+
 def test_a_vessel_data_fault_silences_its_reports():
     fault = {"kind": "vessel_data", "at_s": (100.0, 100.0), "vessel_data_s": 60.0}
     times = [when for when, _ in plan(scenario(reports={"interval_s": (2.0, 4.0)}, fault=fault)).sensing.received]

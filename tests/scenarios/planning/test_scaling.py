@@ -26,7 +26,7 @@ SPEED, GRAVITY = 19.42, 9.80665
 
 NOT_SCALED = {
     # The aircraft's own.
-    "guidance.airspeed_mps",
+    "guidance.airspeed_mps", "following.turn_deviation_m",
     # World and equipment, and what is written for a circle about which the scenario says everything.
     "vessel.speed_mps", "vessel.gap_max_s", "plume.source_height_m", "keepout.radius_m", "reference.radius_m", "wind.speed_mps",
     "wind.roughness_m", "wind.height_m",

@@ -128,7 +128,7 @@ VALUES = {
     "following.touches_per_hour": 1e-6, "following.margin_min_m": 60.0, "following.speed_ratio_max": 0.2,
     "following.apparent_wind_min_mps": 12.0, "following.standoff_m": 50.0, "following.join_distance_m": 20.0,
     "following.tracked_m": 4.0, "following.vessel_acceleration_mps2": 0.3, "following.speed_error_mps": 1.0,
-    "following.drift_rate_mps": 5.0, "following.vessel_speed_max_mps": 7.5,
+    "following.drift_rate_mps": 5.0, "following.turn_deviation_m": 15.0, "following.vessel_speed_max_mps": 7.5,
     "following.plume": "estimated", "following.search": "ladder", "following.distance": "best_measurement",
     "following.source_height_m": [20.0, 40.0], "following.load": [0.1, 0.4], "following.climb_gradient": 0.02,
     "flight.until": "verdict", "flight.altitude_m": 50.0,
