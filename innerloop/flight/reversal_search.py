@@ -3,7 +3,8 @@
 The guidance's keep-out guard predicts turns by a dead time, a lag and the course that is still to come of earlier commands
 (docs/keepout_guard.md). Rolling, airspeed lost in the turn and integrators of the autopilot make the aircraft's path another
 one. What counts is by how much it comes nearer to what it turns away from: the deviation against the direction in which the
-turn leads, as long as the guard may rely on it, in proportion to the change of heading rate.
+turn leads, as long as the guard may rely on it, in proportion to the change of heading rate, or of command of late if that is
+larger. The aircraft is flown as modelled and perturbed.
 
 A turn away from what is at rest comes closest to it within a quarter of a turn; from what closes in as fast as the sine of an
 angle over the aircraft's own speed, later by that angle. So the directions lean, and the turn is flown on by the largest.
