@@ -96,7 +96,8 @@ class TurnPrediction:
         """Return by how much a full turn away keeps the radius [m], and for how long [s] no command before it can change that.
 
         It is over once the vehicle recedes and its turn makes it recede faster: by going on until it heads straight away, and
-        straight on then, it recedes for good. The search ends early below ``floor``.
+        straight on then, it recedes for good. From a disc that closes in faster than it flies it turns no farther than that, and is
+        followed for as long as a turn takes. The search ends early below ``floor``.
 
         Parameters
         ----------
@@ -120,8 +121,7 @@ class TurnPrediction:
         north, east = velocity_north * duration, velocity_east * duration
         half, lag = 0.5 * acceleration, self._lag
         # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
-        deviation = self._deviation * max(change, 0.5 - 0.5 * side * heading_rate / self._rate)
-        fixed += deviation
+        fixed += (deviation := self._deviation * max(change, 0.5 - 0.5 * side * heading_rate / self._rate))
         slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
         least = slack + deviation
         outward = side * (y * cos(course) - x * sin(course))
@@ -149,6 +149,9 @@ class TurnPrediction:
                 if gain >= 0.0:
                     break
                 least = slack if slack < least else least
+                if before_outward >= 0.0 > outward and side * heading_rate > 0.0:
+                    # It heads straight away, and still the disc gains on it: nothing does better, and so it flies straight on.
+                    heading_rate = ahead = gained = won = outward = 0.0
                 continue
             if point == 0:
                 # There is no point before; the rate at the start stands in for it.
