@@ -35,6 +35,21 @@ def test_the_clearance_is_that_of_the_better_turn_away_flown_in_small_steps(lag,
         assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
 
 
+@pytest.mark.parametrize("aspect_deg", [60.0, 90.0, 120.0])
+def test_a_disc_that_closes_in_a_little_faster_than_the_vehicle_flies_is_a_little_worse(aspect_deg):
+    # A flight of a search violated r_min because it seemed to be 267 m worse: the vehicle was taken to fly on, once round.
+    guard = make_guard(lag=0.25, delay=0.25)
+    closings = SPEED * np.linspace(0.9, 1.1, 41)
+    found = np.array(
+        [guard.clearance(0.0, -300.0, 0.0, -closing, math.radians(aspect_deg - 90.0), SPEED, 0.1) for closing in closings]
+    )
+    # By 0.5 % of the speed, for no longer than a turn and what follows it are predicted, 2.5 pi/omega_max: 1.5 m. Straight away is met
+    # to an eighth of a radian, and so as much again.
+    longest = 2.5 * math.pi / HEADING_RATE_MAX
+    assert np.all(np.diff(found) <= 0.0)
+    assert np.all(np.diff(found) >= -3.0 * np.diff(closings) * longest)
+
+
 def closest_by(values, starts, velocities, lag):
     """Return the closest approaches [m] of many vehicles under many commands: first-order lag, equation (1) by small steps."""
     piece = 0.05
