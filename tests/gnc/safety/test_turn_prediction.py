@@ -43,7 +43,7 @@ def test_a_disc_that_closes_in_a_little_faster_than_the_vehicle_flies_is_a_littl
     found = np.array(
         [guard.clearance(0.0, -300.0, 0.0, -closing, math.radians(aspect_deg - 90.0), SPEED, 0.1) for closing in closings]
     )
-    # By 0.5 % of the speed, for no longer than a turn and what follows it are predicted, 2.5 pi/omega_max: 1.5 m. Straight away is met
+    # By 0.5 % of the speed, while a turn and what follows it are predicted, 2.5 pi/omega_max: 1.5 m. Straight away is met
     # to an eighth of a radian, and so as much again.
     longest = 2.5 * math.pi / HEADING_RATE_MAX
     assert np.all(np.diff(found) <= 0.0)
