@@ -149,7 +149,7 @@ class TurnPrediction:
                 if gain >= 0.0:
                     break
                 least = slack if slack < least else least
-                if before_outward >= 0.0 > outward and side * heading_rate > 0.0:
+                if before_outward >= 0.0 > outward and x * cos_m + y * sin_m > 0.0 and side * heading_rate > 0.0:
                     # It heads straight away, and still the disc gains on it: nothing does better, and so it flies straight on.
                     heading_rate = ahead = gained = won = outward = 0.0
                 continue
