@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from common.binomial import percent, upper_bound
+from common.intervals import percent, upper_bound
 from measurement.plume.passes import FOUND_WITHIN
 from reports.document.blocks import Table
 from reports.document.tables import number

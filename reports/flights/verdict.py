@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.binomial import CONFIDENCE, percent, upper_bound
+from common.intervals import CONFIDENCE, percent, upper_bound
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import limit, number
 from reports.flights.criteria import MEASURED, Criterion, criteria_of

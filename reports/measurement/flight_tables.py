@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from common.binomial import percent
+from common.intervals import percent
 from reports.document.blocks import Table
 from reports.document.tables import number
 from reports.measurement.data import Record

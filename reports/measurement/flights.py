@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.binomial import percent
+from common.intervals import percent
 from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.document.chart import Chart
 from reports.document.tables import number

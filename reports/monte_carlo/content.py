@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from common.binomial import percent
+from common.intervals import percent
 from reports.document.blocks import Block, Heading, Section, Text
 from reports.monte_carlo.driver_charts import driver_charts, scatter_charts
 from reports.monte_carlo.spread_charts import spread_charts

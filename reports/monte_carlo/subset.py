@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from common.binomial import percent
+from common.intervals import percent
 from reports.document.blocks import Block, Section, Table, Text
 from reports.monte_carlo.names import input_name, input_unit
 from reports.monte_carlo.subset_charts import curve_chart, distance_chart, input_charts

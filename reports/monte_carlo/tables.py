@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from common.binomial import percent
+from common.intervals import percent
 from common.run_layout import SUMMARY
 from reports.document.blocks import Table
 from reports.monte_carlo.names import FIGURES, Figure, input_name

@@ -1,7 +1,6 @@
 """Statistics of independent flights: intervals, sensitivity indices and stopping rules."""
 
-from common.binomial import upper_bound
-from common.intervals import Interval, clopper_pearson, quantile_interval
+from common.intervals import Interval, clopper_pearson, quantile_interval, upper_bound
 from scenarios.statistics.estimates import study_statistics
 from scenarios.statistics.sensitivity import InputIndices, Sensitivity, sensitivity_indices
 from scenarios.statistics.stopping import confidence_at, looks, tight_enough

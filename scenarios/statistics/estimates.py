@@ -19,8 +19,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from common.binomial import upper_bound
-from common.intervals import clopper_pearson, quantile_interval
+from common.intervals import clopper_pearson, quantile_interval, upper_bound
 from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.statistics.stopping import confidence_at
 from scenarios.statistics.violations import Violations, count_violations

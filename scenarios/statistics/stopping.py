@@ -12,8 +12,7 @@ L. DeMets, "Discrete sequential boundaries for clinical trials", Biometrika 70 (
 import numpy as np
 import pandas as pd
 
-from common.binomial import upper_bound
-from common.intervals import quantile_interval
+from common.intervals import quantile_interval, upper_bound
 from scenarios.statistics.violations import count_violations
 
 FIRST_LOOK = 256

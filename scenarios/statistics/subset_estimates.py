@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from common.binomial import upper_bound
+from common.intervals import upper_bound
 from scenarios.statistics.subset_levels import Array, Indices, Simulation
 
 CURVE_POINTS = 80

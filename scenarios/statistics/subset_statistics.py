@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import pandas as pd
 
-from common.binomial import upper_bound
+from common.intervals import upper_bound
 from scenarios.statistics.estimates import Json, counted, named, share, without_nan
 from scenarios.statistics.subset_estimates import InputShift, RareProbability, curve, noise_floor, rare_probability
 from scenarios.statistics.subset_levels import Level, Simulation

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from common.binomial import CONFIDENCE
+from common.intervals import CONFIDENCE
 from common.run_layout import (
     COMPARISON,
     CROSSINGS,

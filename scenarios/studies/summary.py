@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Self
 
-from common.binomial import CONFIDENCE, percent, upper_bound
+from common.intervals import CONFIDENCE, percent, upper_bound
 from common.run_layout import SUMMARY
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.binomial import CONFIDENCE, percent, upper_bound
+from common.intervals import CONFIDENCE, percent, upper_bound
 from common.run_layout import SUMMARY
 from reports.document.blocks import Block, Table, Text
 from reports.document.tables import ending, number, outcome, span
