@@ -29,6 +29,17 @@ class Perturbation:
     effectiveness: float = 1.0
 
 
+PERTURBATIONS = {
+    "control effectiveness +20 %": Perturbation(effectiveness=1.2),
+    "control effectiveness -20 %": Perturbation(effectiveness=0.8),
+    "mass +20 %": Perturbation(mass=1.2),
+    "mass -20 %": Perturbation(mass=0.8),
+    "inertia +20 %": Perturbation(inertia=1.2),
+    "inertia -20 %": Perturbation(inertia=0.8),
+}
+"""As little as an aircraft is taken to be known: a design's margins and its search over reversals allow for it."""
+
+
 def perturb(model_file: Path, by: Perturbation) -> None:
     """Change a JSBSim model's file. A model without perturbation is left as it is, to the last byte."""
     if by == Perturbation():

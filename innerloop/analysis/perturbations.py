@@ -10,6 +10,7 @@ import numpy.typing as npt
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.linear_model import LinearModel
 from aircraft.dynamics.linearise import BODY_STATES
+from aircraft.simulation.perturbed_model import PERTURBATIONS, Perturbation
 from common.units import STANDARD_GRAVITY
 from innerloop.analysis.checks import NOMINAL
 
@@ -102,14 +103,25 @@ def gravity_and_turning(trim: Trim, states: tuple[str, ...]) -> npt.NDArray[np.f
     return result
 
 
+def _changed(by: Perturbation) -> Change:
+    """Return the changes of a linear aircraft that are those of its model."""
+    changes = [
+        change(factor)
+        for change, factor in ((_effectiveness, by.effectiveness), (_mass, by.mass), (_inertia, by.inertia))
+        if factor != 1.0
+    ]
+
+    def change(model: LinearModel, trim: Trim) -> LinearModel:
+        for each in changes:
+            model = each(model, trim)
+        return model
+
+    return change
+
+
 CASES: dict[str, tuple[Change, int]] = {
     NOMINAL: (_unchanged, 0),
-    "control effectiveness +20 %": (_effectiveness(1.2), 0),
-    "control effectiveness -20 %": (_effectiveness(0.8), 0),
-    "mass +20 %": (_mass(1.2), 0),
-    "mass -20 %": (_mass(0.8), 0),
-    "inertia +20 %": (_inertia(1.2), 0),
-    "inertia -20 %": (_inertia(0.8), 0),
+    **{name: (_changed(by), 0) for name, by in PERTURBATIONS.items()},
     "one more step of delay": (_unchanged, 1),
 }
 """Each perturbation by name: the change of the linear aircraft, and by how many of its steps the autopilot is late."""

@@ -1,8 +1,6 @@
 """The search over reversals of a design, repeated with thousands of them in several processes."""
 
-import math
 import os
-import signal
 import sys
 from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
@@ -11,8 +9,9 @@ from pathlib import Path
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.spec import AircraftSpec
+from common.interrupt import follow_parent
 from innerloop.designs.designed import Designed, Record
-from innerloop.flight.perturbed_aircraft import CASES, perturbed_aircraft
+from innerloop.flight.perturbed_aircraft import deviations_by_case, perturbed_aircraft
 from innerloop.flight.reversal_search import ReversalSearch, search_reversals
 from innerloop.flight.turn_reversal import TurnReversalResponse
 
@@ -27,7 +26,7 @@ Done = Callable[[int, float], None]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Part:
-    """A part of the search: what flies it and from where, how many reversals, and the seed of their random numbers."""
+    """A part of the search: with which aircraft and from where, how many reversals, and the seed of their random numbers."""
 
     spec: AircraftSpec
     root: Path
@@ -67,7 +66,7 @@ def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) ->
         for seed, first in enumerate(range(0, reversals, PART), start=1)
     ]
     searches: list[ReversalSearch] = []
-    with ProcessPoolExecutor(min(_PROCESSES, os.cpu_count() or 1), initializer=_leave_interrupts_alone) as pool:
+    with ProcessPoolExecutor(min(_PROCESSES, os.cpu_count() or 1), initializer=follow_parent) as pool:
         running: list[Future[ReversalSearch]] = [pool.submit(_search, part) for part in parts]
         try:
             for part in as_completed(running):
@@ -84,21 +83,10 @@ def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) ->
         "deviation_max_m": worst.deviation,
         "worst_command_before": worst.command_before,
         "worst_airspeed_before_mps": worst.airspeed_before,
-        "deviation_of_m": _largest(searches),
+        "deviation_of_m": deviations_by_case(searches),
     }
-
-
-def _largest(searches: list[ReversalSearch]) -> dict[str, float]:
-    """Return the largest deviation of each aircraft that flew a reversal [m]."""
-    found = {case: max(search.deviations[i] for search in searches) for i, case in enumerate(CASES)}
-    return {case: deviation for case, deviation in found.items() if math.isfinite(deviation)}
 
 
 def _search(part: _Part) -> ReversalSearch:
     aircraft = perturbed_aircraft(part.spec, part.root)
     return search_reversals(aircraft, part.start, part.bank, part.response, part.slow_lag, reversals=part.reversals, seed=part.seed)
-
-
-def _leave_interrupts_alone() -> None:
-    """Let the process that started this one decide."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)

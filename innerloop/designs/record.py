@@ -17,7 +17,7 @@ from innerloop.analysis.linear_model_check import verify_model
 from innerloop.analysis.margins import BREAK_NAMES, Loops
 from innerloop.designs.designed import Design, Record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.perturbed_aircraft import CASES, perturbed_aircraft
+from innerloop.flight.perturbed_aircraft import deviations_by_case, perturbed_aircraft
 from innerloop.flight.reversal_search import reversals_of_a_design, search_reversals
 from innerloop.flight.step_responses import Response, flown_step, measure_lag, model_step, predicted_step
 from innerloop.flight.turn_reversal import measure_turn_reversal
@@ -102,7 +102,7 @@ def reversal_record(spec: AircraftSpec, root: Path, start: Trim, bank: float, sl
         "deviation_max_m": found.deviation,
         "worst_command_before": found.command_before,
         "worst_airspeed_before_mps": found.airspeed_before,
-        "deviation_of_m": dict(zip(CASES, found.deviations, strict=True)),
+        "deviation_of_m": deviations_by_case([found]),
     }
 
 

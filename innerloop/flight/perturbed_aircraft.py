@@ -1,24 +1,19 @@
 """The aircraft that a search over reversals flies: as modelled, and those with which the design's margins are checked."""
 
+import math
 import shutil
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
+from aircraft.simulation.perturbed_model import PERTURBATIONS, Perturbation, perturb
 from aircraft.spec import AircraftSpec
 from innerloop.analysis.checks import NOMINAL
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.jsbsim.perturbed import Perturbation, perturb
+from innerloop.flight.reversal_search import ReversalSearch
 
-CASES = {
-    NOMINAL: Perturbation(),
-    "control effectiveness +20 %": Perturbation(effectiveness=1.2),
-    "control effectiveness -20 %": Perturbation(effectiveness=0.8),
-    "mass +20 %": Perturbation(mass=1.2),
-    "mass -20 %": Perturbation(mass=0.8),
-    "inertia +20 %": Perturbation(inertia=1.2),
-    "inertia -20 %": Perturbation(inertia=0.8),
-}
-"""Each perturbation by name, as of ``innerloop.analysis.perturbations``."""
+CASES = {NOMINAL: Perturbation(), **PERTURBATIONS}
+"""The aircraft by name, in the order in which ``perturbed_aircraft`` returns them."""
 
 
 def perturbed_aircraft(spec: AircraftSpec, root: Path) -> list[AutopilotedAircraft]:
@@ -30,3 +25,9 @@ def perturbed_aircraft(spec: AircraftSpec, root: Path) -> list[AutopilotedAircra
             perturb(copy / "aircraft" / spec.files.model / f"{spec.files.model}.xml", case)
             aircraft.append(AutopilotedAircraft(spec, copy))
     return aircraft
+
+
+def deviations_by_case(searches: Sequence[ReversalSearch]) -> dict[str, float]:
+    """Return the largest deviation of each aircraft that flew a reversal in one of the searches [m]."""
+    found = {case: max(search.deviations[i] for search in searches) for i, case in enumerate(CASES)}
+    return {case: deviation for case, deviation in found.items() if math.isfinite(deviation)}
