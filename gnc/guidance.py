@@ -35,9 +35,9 @@ class Guidance:
 
     # Methods of parts are bound once: each is called at every step.
     __slots__ = (
-        "_airspeed", "_catching_up_from", "_keep_out", "_limit", "_locate", "_plan", "_quarter_turn", "_sense", "_speed",
-        "_until_plan", "airspeed_command", "altitude_command", "guard", "guarding", "heading_rate_command", "mission", "monitor",
-        "own", "plan_interval", "target",
+        "_airspeed", "_catching_up_from", "_keep_out", "_limit", "_locate", "_plan", "_quarter_turn", "_reckoned", "_sense",
+        "_speed", "_until_plan", "airspeed_command", "altitude_command", "guard", "guarding", "heading_rate_command", "mission",
+        "monitor", "own", "plan_interval", "target",
     )  # fmt: skip
 
     def __init__(
@@ -58,6 +58,8 @@ class Guidance:
         self._sense, self._locate, self._plan = own.update, target.update, mission.plan
         self._keep_out, self._airspeed = guard.limit if guard is not None else None, airspeed_law.command
         self._speed, self._limit = speed, heading_rate_max
+        # Airspeed that the guard reckons with.
+        self._reckoned = speed
         self.plan_interval, self._until_plan = plan_interval, 0
         self.guarding = False
         # A vehicle that catches up turns the wider. It does so once the guard has been free for a quarter of a turn: before that,
@@ -88,7 +90,7 @@ class Guidance:
         monitor = self.monitor
         if monitor is not None and monitor.check(measurement, self.airspeed_command, self.heading_rate_command):
             mission.leave(monitor.fault)
-        tracker, overriding, guarding = mission.tracker, mission.overriding, False
+        tracker, overriding, waiting = mission.tracker, mission.overriding, False
         course, speed, heading_rate, north, east = own.course, own.speed, own.heading_rate, own.north, own.east
         reference = tracker.reference
         ahead_of = reference.course
@@ -105,8 +107,14 @@ class Guidance:
             # Faster than it can turn at omega_max the vehicle turns the wider the faster it becomes: as fast as commanded.
             if self.airspeed_command > guard.turn_speed and self.airspeed_command > least:
                 least = self.airspeed_command
+            # The airspeed rises only where the faster vehicle can turn away, too: a turn that was safe must remain so.
+            if least > self._reckoned and not (overriding and mission.leaving):
+                waiting = not guard.allows(command, time, own, speed if speed > least else least)
+                if waiting:
+                    least = self._reckoned
+            self._reckoned = least
             command = keep_out(command, time, own, speed if speed > least else least)
-            self.guarding = guarding = guard.intervening
+            self.guarding = guard.intervening
         tracker.heading_rate_command = command
         command /= own.air_ratio
         limit = self._limit
@@ -115,25 +123,25 @@ class Guidance:
             if guard is not None:
                 guard.overruled(command * own.air_ratio)
         self.heading_rate_command = command
-        self._choose_airspeed(time, along, guarding)
+        self._choose_airspeed(time, along, self.guarding or waiting)
 
-    def _choose_airspeed(self, time: float, along: float, guarding: bool) -> None:
+    def _choose_airspeed(self, time: float, along: float, slowly: bool) -> None:
         """Command an airspeed, and the altitude to which a vehicle that leaves climbs; ``along`` is that of an airspeed law [m]."""
         mission = self.mission
-        if guarding:
+        if slowly:
             self._catching_up_from = time + self._quarter_turn
         if not mission.overriding:
-            self.airspeed_command = self._airspeed(along, self.own, guarding or time < self._catching_up_from)
+            self.airspeed_command = self._airspeed(along, self.own, slowly or time < self._catching_up_from)
         elif mission.leaving:
             self.airspeed_command, self.altitude_command = mission.airspeed, mission.altitude
-        elif guarding:
+        elif slowly:
             self.airspeed_command = self._airspeed(0.0, self.own, True)
         else:
             self.airspeed_command = mission.airspeed
 
     def overruled(self, heading_rate: float, airspeed: float) -> None:
         """Take note of commands that are flown in place of the last ones [rad/s, m/s]: what is predicted follows them."""
-        self.heading_rate_command, self.airspeed_command = heading_rate, airspeed
+        self.heading_rate_command, self.airspeed_command, self._reckoned = heading_rate, airspeed, max(self._speed, airspeed)
         self.mission.tracker.heading_rate_command = turning = heading_rate * self.own.air_ratio
         if self.guard is not None:
             self.guard.overruled(turning)

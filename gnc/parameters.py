@@ -26,6 +26,7 @@ class GuardParameters:
     speed_error: float = 0.0
     deviation: float = 0.0
     drift_rate: float = 0.0
+    turbulence: float = 0.0
     turn_speed: float = math.inf
 
 

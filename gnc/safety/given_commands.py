@@ -31,8 +31,8 @@ class GivenCommands:
     """
 
     __slots__ = (
-        "_changing", "_doubt", "_fading", "_first", "_given", "_kept", "_lack", "_lack_max", "_lag", "_last", "_reversal", "_slow",
-        "_time_step", "change", "rates", "since", "under_way",
+        "_begun", "_changing", "_doubt", "_fading", "_first", "_given", "_kept", "_lack", "_lack_max", "_lag", "_last", "_reversal",
+        "_slow", "_time_step", "change", "rates", "since", "under_way",
     )  # fmt: skip
 
     def __init__(self, *, lag: float, delay: float, slow_lag: float, time_step: float, heading_rate_max: float) -> None:
@@ -54,7 +54,7 @@ class GivenCommands:
             turned = time_step / -math.expm1(-time_step / lag)
             self._last = turned - lag
             self._changing = time_step - self._first + turned * math.expm1((self._first - time_step) / lag)
-        self._lack = 0.0
+        self._lack, self._begun = 0.0, False
         self.under_way: deque[float] = deque(maxlen=count)
         self.since: list[float] = []
         self.rates: list[float] = []
@@ -68,11 +68,12 @@ class GivenCommands:
             estimate of the wind does to that no autopilot makes up for
         """
         since, rates, under_way = self.since, self.rates, self.under_way
-        if not since:
+        if not (since or self._begun):
             # A flight begins: the turn that is flown is under way.
-            self._lack, self._given = 0.0, rate
+            self._given = rate
             under_way.extend([rate] * (under_way.maxlen or 0))
-        else:
+        elif since:
+            self._begun = True
             acting = under_way[0] if under_way else 0.0
             acted = self._time_step * sum(since) + self._course_under_way()
             under_way.extend(since)

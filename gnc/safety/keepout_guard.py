@@ -39,6 +39,7 @@ class KeepoutGuard:
     time_step : for which a command is held [s]
     speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together [m/s]
     drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
+    turbulence : of the radius, what is kept for turbulence, which takes the vehicle off any turn predicted [m]
     turn_speed : up to which it can turn at ``heading_rate_max``; faster it turns at the same acceleration across [m/s]
 
     Attributes
@@ -47,13 +48,13 @@ class KeepoutGuard:
     tubes : discs that contain the vessel; whoever knows of it sets them, the one known best first
     intervening : whether the last command was changed
     interventions : how often interventions began
-    lost : whether, at the last step, no turn away kept off by more than deviation, speed error and resolution explain;
-        the best is flown
+    lost : whether, at the last step, no turn away kept off by more than deviation, speed error, turbulence and resolution
+        explain; the best is flown
     """
 
     __slots__ = (
-        "_deviation",
         "_drift_rate",
+        "_explained",
         "_free_steps",
         "_given",
         "_kept_off",
@@ -87,9 +88,10 @@ class KeepoutGuard:
         slow_lag: float | None = None,
         speed_error: float = 0.0,
         drift_rate: float = 0.0,
+        turbulence: float = 0.0,
         turn_speed: float = math.inf,
     ) -> None:
-        self._radius, self._deviation, self.turn_speed = radius, deviation, turn_speed
+        self._radius, self.turn_speed = radius, turn_speed
         self._rate, self._time_step = heading_rate_max, time_step
         self._lag, self._until_acting = lag, delay
         self._given = GivenCommands(
@@ -112,6 +114,8 @@ class KeepoutGuard:
         )
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
         self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * self._lag + self._until_acting + time_step
+        # What the declared errors may take from the slack of a turn that was safe.
+        self._explained = deviation + self._speed_error * self._turn_time + turbulence
         self._side, self._free_steps = 0.0, 0
         self._kept_off: Tube | None = None
         self.tubes: Sequence[Tube] = ()
@@ -135,17 +139,7 @@ class KeepoutGuard:
             self._note_rate(own.heading_rate)
             return command
         self._free_steps = 0
-        free, motions, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
-        for tube in self._candidates(time, own):
-            motion = self._relative(tube, time, own, speed, to_come)
-            free = self._free_when_far(motion)
-            if free <= 0.0:
-                motion = self._prediction.when_acting(motion, self._given.under_way)
-                free = self._free_by_turning_away(command, motion)
-            if free >= 0.0:
-                self._kept_off = tube
-                break
-            motions.append((motion, tube))
+        free, motions = self._look(command, time, own, speed)
         if free >= 0.0:
             self.intervening = self.lost = False
             if bounded:
@@ -163,6 +157,16 @@ class KeepoutGuard:
         most = self._rate * self.turn_speed / speed
         return command if -most <= command <= most else math.copysign(most, command)
 
+    def allows(self, command: float, time: float, own: AirMotion, speed: float) -> bool:
+        """Return whether ``limit`` would let the command pass at a speed; if so, it looks anew, at the speed that it is then given.
+
+        Parameters are those of ``limit``, which is to be called next.
+        """
+        allowed = self._look(command, time, own, speed)[0] >= 0.0
+        if allowed:
+            self._free_steps = 0
+        return allowed
+
     def overruled(self, command: float) -> None:
         """Take note of a heading rate that is flown in place of the last command [rad/s]."""
         self._given.since[-1] = command
@@ -179,6 +183,24 @@ class KeepoutGuard:
             for side in (1.0, -1.0):
                 best = max(best, self._prediction.turn_away(side, start, then, self._until_acting, -math.inf)[0])
         return best
+
+    def _look(self, command: float, time: float, own: AirMotion, speed: float) -> tuple[float, list[tuple[Motion, Tube]]]:
+        """Return for how long [s] no command can spoil the turn away that follows this one, negative if there is none.
+
+        Then it is told of the motions relative to the discs, too, when the command begins to act.
+        """
+        free, motions, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
+        for tube in self._candidates(time, own):
+            motion = self._relative(tube, time, own, speed, to_come)
+            free = self._free_when_far(motion)
+            if free <= 0.0:
+                motion = self._prediction.when_acting(motion, self._given.under_way)
+                free = self._free_by_turning_away(command, motion)
+            if free >= 0.0:
+                self._kept_off = tube
+                break
+            motions.append((motion, tube))
+        return free, motions
 
     def _candidates(self, time: float, own: AirMotion) -> Sequence[Tube]:
         """Return the disc that reaches least far towards the vehicle, and the one that was kept off last."""
@@ -237,17 +259,12 @@ class KeepoutGuard:
     def _mix(self, command: float, motions: Sequence[tuple[Motion, Tube]]) -> float:
         """Return the command with the least of a turn away that keeps off, or the turn that was safe before [rad/s]."""
         slack, side, motion, tube = self._best_turn(motions)
-        x, y, _, _, course, speed, heading_rate, *_ = motion
         self._side = side
-        turn = side * self._rate
-        floor = _RESOLUTION * speed / self._rate
-        self.lost = slack < -self._deviation - self._speed_error * self._turn_time - floor
+        turn, left = self._turn(side, motion)
+        floor = _RESOLUTION * motion[5] / self._rate
+        self.lost = slack < -self._explained - floor
         if slack < 0.0:
-            # Away from the disc and no farther.
-            left = math.remainder(math.atan2(y, x) - course - self._lag * heading_rate, 2.0 * math.pi)
-            if abs(left) < self._rate * self._time_step:
-                return left / self._time_step
-            # Beyond that by less than a right angle it turns back: going on would lead once round, towards the disc.
+            # Beyond straight away by less than a right angle it turns back: going on would lead once round, towards the disc.
             return math.copysign(turn, left) if abs(left) < 0.5 * math.pi else turn
         self._kept_off = tube
         begun = self._until_acting + self._time_step
@@ -263,13 +280,19 @@ class KeepoutGuard:
                 low = fraction
         return mixed
 
+    def _turn(self, side: float, motion: Motion) -> tuple[float, float]:
+        """Return the command of a turn away [rad/s], straight away from the disc and no farther; and the course to there [rad]."""
+        x, y, _, _, course, _, heading_rate, *_ = motion
+        left = math.remainder(math.atan2(y, x) - course - self._lag * heading_rate, 2.0 * math.pi)
+        return left / self._time_step if abs(left) < self._rate * self._time_step else side * self._rate, left
+
     def _best_turn(self, motions: Sequence[tuple[Motion, Tube]]) -> tuple[float, float, Motion, Tube]:
         """Return slack [m], side, motion and disc of the turn away to fly: the one that was safe, or the best if it is not."""
         begun = self._until_acting + self._time_step
         found: list[tuple[float, float, Motion, Tube]] = []
         for motion, tube in motions:
             for side in (self._side, -self._side) if self._side else (1.0, -1.0):
-                after = self._prediction.after(side * self._rate, motion)
+                after = self._prediction.after(self._turn(side, motion)[0], motion)
                 slack, _ = self._prediction.turn_away(side, after, motion, begun, -math.inf)
                 found.append((slack, side, motion, tube))
                 if self._side and slack >= 0.0:

@@ -165,7 +165,7 @@ class TurnPrediction:
                 best, gain = gain, max(gain, min(least_rate, rise / duration))
                 if gain == best or outward < 0.0:
                     break
-        return least, gain * stretch / (2.0 * speed * self._rate)
+        return least, max(gain, 0.0) * stretch / (2.0 * speed * self._rate)
 
 
 def _range_rate(start: Start, motion: Motion) -> float:

@@ -80,7 +80,7 @@ def following_flight(
     _check_declared(scenario, vessel, limits)
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
-    guarded = guard_parameters(scenario, setup, radius + level)
+    guarded = guard_parameters(scenario, setup, radius, turbulence=level)
     widest = widest_tube(limits, scenario.reports, plan_period=PLAN_PERIOD)
     oscillation = oscillation_at(g, scenario.reference, nu)
     if scenario.stands_off:

@@ -59,11 +59,11 @@ def guidance_lag(scenario: Scenario, setup: VehicleSetup) -> float:
     return setup.lag + 0.5 / scenario.guidance.rate_hz
 
 
-def guard_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) -> GuardParameters:
-    """Return the guard that keeps a radius [m] about wherever the vessel may be."""
+def guard_parameters(scenario: Scenario, setup: VehicleSetup, radius: float, *, turbulence: float = 0.0) -> GuardParameters:
+    """Return the guard that keeps a radius [m], and what is kept for turbulence [m], about wherever the vessel may be."""
     f, air = scenario.following, scenario.turbulence
     return GuardParameters(
-        radius=radius,
+        radius=radius + turbulence,
         deviation=max(setup.response_error, f.turn_deviation_m if scenario.follows else 0.0),
         heading_rate_max=omega_max(scenario.guidance),
         lag=setup.reversal.lag,
@@ -73,6 +73,7 @@ def guard_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) -> 
         # A gust may begin at any moment; and one that blows turns with the vehicle in the prediction, but not in the air.
         speed_error=f.speed_error_mps + air.gust_speed_mps if scenario.follows else 0.0,
         drift_rate=f.drift_rate_mps if SATELLITES in scenario.declared_faults else 0.0,
+        turbulence=turbulence,
         turn_speed=setup.turning_airspeed(omega_max(scenario.guidance)),
     )
 

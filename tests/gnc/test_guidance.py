@@ -22,15 +22,31 @@ class RecordingGuard:
 
     turn_speed = 30.0
 
-    def __init__(self, answer, *, intervening=True):
+    def __init__(self, answer, *, intervening=True, allowed=True):
         self.answer = answer
-        self.intervening = intervening
-        self.asked, self.tubes = [], ()
+        self.intervening, self.allowed = intervening, allowed
+        self.asked, self.asked_to_allow, self.tubes = [], [], ()
+
+    def allows(self, _command, _time, _own, speed):
+        self.asked_to_allow.append(speed)
+        return self.allowed
 
     def limit(self, _, time, own, speed):
         motion = own.ground_north, own.ground_east, own.wind_north, own.wind_east, own.course, own.heading_rate
         self.asked.append((time, *motion, speed))
         return self.answer
+
+
+class OnItsWay:
+    """A mission that overrides its tracker at all times, at an airspeed of its own."""
+
+    overriding, leaving = True, False
+
+    def __init__(self, mission, airspeed):
+        self.tracker, self.altitude, self.airspeed, self.plan = mission.tracker, mission.altitude, airspeed, mission.plan
+
+    def command(self):
+        return 0.1
 
 
 @pytest.fixture
@@ -126,6 +142,19 @@ def test_the_guard_reckons_with_the_airspeed_that_comes_back(guarded_by):
     guidance = guarded_by(RecordingGuard(0.0))
     guidance.step(0.0, motion(-300.0, 20.0, 0.7, SPEED - 1.0, 0.1))
     assert guidance.guard.asked[0][-1] == SPEED
+
+
+@pytest.mark.parametrize("allowed", [True, False])
+def test_on_the_way_it_flies_faster_only_where_the_guard_allows_that(guarded_by, allowed):
+    guard = RecordingGuard(0.0, intervening=False, allowed=allowed)
+    guidance = guarded_by(guard)
+    guidance.mission = OnItsWay(guidance.mission, SPEED + 2.0)
+    for step in range(3):
+        guidance.step(step * TIME_STEP, motion(-300.0, 20.0, 0.7))
+        assert guidance.airspeed_command == (SPEED + 2.0 if allowed else SPEED)
+    # Once allowed it need not be asked again; what it is asked with, it goes on with.
+    assert guard.asked_to_allow == [SPEED + 2.0] * (1 if allowed else 3)
+    assert [asked[-1] for asked in guard.asked] == [SPEED + 2.0 if allowed else SPEED] * 3
 
 
 @pytest.mark.parametrize(("intervening", "airspeed"), [(True, SPEED), (False, SPEED + 1.0)])

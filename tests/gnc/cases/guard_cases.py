@@ -54,6 +54,10 @@ class DiscGuard:
         self._east += TIME_STEP * velocity_east
         return answer
 
+    def allows(self, command, x, y, velocity_north, velocity_east, course, speed, heading_rate):
+        own = self._own(x, y, velocity_north, velocity_east, course, heading_rate, 0.0)
+        return self.guard.allows(command, self._time, own, speed)
+
     def clearance(self, x, y, velocity_north, velocity_east, course, speed, heading_rate):
         own = self._own(x, y, velocity_north, velocity_east, course, heading_rate, 0.0)
         return self.guard.clearance(self._time, own, speed)

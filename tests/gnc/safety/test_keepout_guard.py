@@ -130,6 +130,41 @@ def test_looking_less_often_where_nothing_can_happen_changes_nothing(lag, delay)
     assert skipped > 300
 
 
+@LAGS
+def test_it_allows_what_it_would_let_pass_and_is_none_the_wiser_for_having_been_asked(lag, delay):
+    velocity, answers = (0.3 * SPEED, 0.0), []
+    guard, asked = make_guard(lag=lag, delay=delay), make_guard(lag=lag, delay=delay)
+    state = (500.0, 40.0, math.pi, 0.0)
+    under_way = deque([state[3]] * round(delay / TIME_STEP))
+    for step in range(600):
+        x, y, course, heading_rate = state
+        motion = (x, y, *velocity, course, SPEED, heading_rate)
+        want = aim_at_the_centre(step, x, y, course)
+        allowed = asked.allows(want, *motion)
+        command = guard.limit(want, *motion)
+        assert asked.limit(want, *motion) == command
+        assert allowed != guard.intervening
+        answers.append(allowed)
+        under_way.append(command)
+        x, y, course, heading_rate = moved(state, under_way.popleft(), lag, TIME_STEP)
+        state = (x - velocity[0] * TIME_STEP, y - velocity[1] * TIME_STEP, course, heading_rate)
+    assert 50 < sum(answers) < 550
+
+
+def test_what_is_allowed_at_a_speed_is_safe_at_that_speed_from_then_on():
+    # Head on, at just the distance from which it can still turn away; not so if it were half as fast again.
+    far = next(
+        distance for distance in np.arange(205.0, 400.0) if make_guard().allows(0.0, -distance, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0)
+    )
+    assert not make_guard().allows(0.0, -far, 0.0, 0.0, 0.0, 0.0, 1.5 * SPEED, 0.0)
+    guard = make_guard()
+    # It need not look for a while, and does so all the same before the vehicle becomes faster.
+    guard.limit(0.0, -far - 60.0, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0)
+    assert guard.guard._free_steps > 0
+    assert guard.allows(0.0, -far - 60.0, 0.0, 0.0, 0.0, 0.0, 1.5 * SPEED, 0.0)
+    assert guard.guard._free_steps == 0
+
+
 @examples(200)
 @given(bearing=courses, farther=st.floats(0.0, 5000.0), course=courses, command=commands, turn=commands, nu=st.floats(0.0, 0.9))
 def test_a_vehicle_far_away_is_left_alone(bearing, farther, course, command, turn, nu):
@@ -201,6 +236,26 @@ def test_lost_is_said_and_the_better_turn_is_flown():
     assert closest - RADIUS == pytest.approx(best, abs=0.05)
     # And it is found again.
     assert not any(lost[-200:])
+
+
+def test_what_is_kept_for_turbulence_explains_as_much():
+    # 3 m of the radius are taken already; a guard that knows nothing of turbulence has no explanation.
+    motion = (0.0, RADIUS - 3.0, 0.0, 0.0, 0.5 * math.pi, SPEED, 0.0)
+    for turbulence in (0.0, 10.0):
+        guard = make_guard(turbulence=turbulence)
+        guard.limit(0.0, *motion)
+        assert guard.intervening
+        assert guard.lost == (turbulence == 0.0)
+
+
+@pytest.mark.parametrize("off", [0.0, 0.01, -0.01])
+def test_a_vehicle_that_heads_straight_away_from_what_closes_in_flies_on(off):
+    # The disc gains on it by 0.1 m/s: 1.5 m within the time that is looked ahead. Once round it would gain 250 m.
+    guard = make_guard(deviation=3.0)
+    command = guard.limit(HEADING_RATE_MAX, 0.0, RADIUS + 1.0, 0.0, SPEED + 0.1, 0.5 * math.pi + off, SPEED, 0.0)
+    assert guard.intervening
+    assert not guard.lost
+    assert command == pytest.approx(-off / TIME_STEP)
 
 
 @pytest.mark.parametrize("want", [HEADING_RATE_MAX, -HEADING_RATE_MAX, 0.0])
