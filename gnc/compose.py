@@ -14,6 +14,7 @@ from gnc.mission.plume_following import FollowingParameters, PlumeFollowing
 from gnc.mission.standoff import StandoffOrbit, StandoffParameters
 from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters, ReportedVessel
 from gnc.safety.keepout_guard import KeepoutGuard
+from gnc.safety.speed_reckoning import SpeedReckoning
 
 
 def keepout_guard(parameters: GuardParameters) -> KeepoutGuard:
@@ -49,6 +50,9 @@ def compose(parameters: GuidanceParameters) -> Guidance:
         mission=mission,
         guard=guard,
         airspeed_law=p.airspeed_law,
+        reckoning=SpeedReckoning(
+            speed=p.speed, bandwidth=p.airspeed_bandwidth, overshoot=p.airspeed_overshoot, time_step=p.tracking.time_step
+        ),
         monitor=HealthMonitor(p.health) if p.health else None,
         speed=p.speed,
         heading_rate_max=p.tracking.heading_rate_max,

@@ -9,6 +9,10 @@ from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
 from gnc.mission.mission import Mission
 from gnc.safety.keepout_guard import KeepoutGuard
+from gnc.safety.speed_reckoning import SpeedReckoning
+
+_UNASKED = 0.05
+"""By how much the pace may rise without the guard's being asked [m/s]: a turn away comes nearer by less than 0.1 m for it."""
 
 
 class Guidance:
@@ -21,6 +25,7 @@ class Guidance:
     guard : of the keep-out area, or none
     airspeed_law : keeps the vehicle beside its reference
     monitor : of the vehicle's health, or none
+    reckoning : of the speed that the guard predicts turns away with
     speed : V_r [m/s]
     heading_rate_max : omega_max; no command exceeds it [rad/s]
     altitude : to hold [m]
@@ -28,16 +33,16 @@ class Guidance:
 
     Attributes
     ----------
-    own, target, mission, guard, monitor, plan_interval : as above
+    own, target, mission, guard, monitor, reckoning, plan_interval : as above
     guarding : whether the keep-out guard changed the last command
     heading_rate_command, airspeed_command, altitude_command : last commands [rad/s, m/s, m]
     """
 
     # Methods of parts are bound once: each is called at every step.
     __slots__ = (
-        "_airspeed", "_catching_up_from", "_keep_out", "_limit", "_locate", "_plan", "_quarter_turn", "_reckoned", "_sense",
+        "_airspeed", "_catching_up_from", "_keep_out", "_limit", "_locate", "_pace", "_plan", "_quarter_turn", "_sense",
         "_speed", "_until_plan", "airspeed_command", "altitude_command", "guard", "guarding", "heading_rate_command", "mission",
-        "monitor", "own", "plan_interval", "target",
+        "monitor", "own", "plan_interval", "reckoning", "target",
     )  # fmt: skip
 
     def __init__(
@@ -49,6 +54,7 @@ class Guidance:
         guard: KeepoutGuard | None,
         airspeed_law: AirspeedLaw,
         monitor: HealthMonitor | None,
+        reckoning: SpeedReckoning,
         speed: float,
         heading_rate_max: float,
         altitude: float,
@@ -56,10 +62,9 @@ class Guidance:
     ) -> None:
         self.own, self.target, self.mission, self.guard, self.monitor = own, target, mission, guard, monitor
         self._sense, self._locate, self._plan = own.update, target.update, mission.plan
-        self._keep_out, self._airspeed = guard.limit if guard is not None else None, airspeed_law.command
-        self._speed, self._limit = speed, heading_rate_max
-        # Airspeed that the guard reckons with.
-        self._reckoned = speed
+        self._keep_out = guard.limit if guard is not None else None
+        self._pace, self._airspeed = airspeed_law.pace, airspeed_law.airspeed
+        self.reckoning, self._speed, self._limit = reckoning, speed, heading_rate_max
         self.plan_interval, self._until_plan = plan_interval, 0
         self.guarding = False
         # A vehicle that catches up turns the wider. It does so once the guard has been free for a quarter of a turn: before that,
@@ -90,7 +95,7 @@ class Guidance:
         monitor = self.monitor
         if monitor is not None and monitor.check(measurement, self.airspeed_command, self.heading_rate_command):
             mission.leave(monitor.fault)
-        tracker, overriding, waiting = mission.tracker, mission.overriding, False
+        tracker, overriding, slower = mission.tracker, mission.overriding, False
         course, speed, heading_rate, north, east = own.course, own.speed, own.heading_rate, own.north, own.east
         reference = tracker.reference
         ahead_of = reference.course
@@ -98,23 +103,23 @@ class Guidance:
         command = tracker.step(north, east, course, speed, heading_rate)
         if overriding:
             command = mission.command()
-        keep_out, guard, least = self._keep_out, self.guard, self._speed
+        catching_up, leaving = time >= self._catching_up_from, overriding and mission.leaving
+        pace = mission.airspeed if overriding else self._pace(along) if catching_up else self._speed
+        keep_out, guard, reckoning = self._keep_out, self.guard, self.reckoning
         if keep_out is not None and guard is not None:
-            # A turn away is flown at V_r at least, or at the airspeed of the way to the reference: what an airspeed law has
-            # taken from the airspeed comes back in it.
-            if overriding and mission.airspeed > least:
-                least = mission.airspeed
-            # Faster than it can turn at omega_max the vehicle turns the wider the faster it becomes: as fast as commanded.
-            if self.airspeed_command > guard.turn_speed and self.airspeed_command > least:
-                least = self.airspeed_command
-            # The airspeed rises only where the faster vehicle can turn away, too: a turn that was safe must remain so.
-            if least > self._reckoned and not (overriding and mission.leaving):
-                waiting = not guard.allows(command, time, own, speed if speed > least else least)
-                if waiting:
-                    least = self._reckoned
-            self._reckoned = least
-            command = keep_out(command, time, own, speed if speed > least else least)
+            fastest = reckoning.fastest(pace)
+            # It flies faster only where the faster vehicle can turn away, too: a turn that was safe must remain so.
+            faster = pace > reckoning.highest + _UNASKED and not leaving
+            if faster and not guard.allows(command, time, own, speed if speed > fastest else fastest):
+                pace, slower = reckoning.highest, True
+                fastest = reckoning.fastest(pace)
+            command = keep_out(command, time, own, speed if speed > fastest else fastest)
             self.guarding = guard.intervening
+            if self.guarding and not leaving:
+                # A vehicle that catches up meanwhile turns the wider.
+                pace, slower, catching_up = self._speed, True, False
+                self._catching_up_from = time + self._quarter_turn
+            reckoning.note(pace)
         tracker.heading_rate_command = command
         command /= own.air_ratio
         limit = self._limit
@@ -123,25 +128,14 @@ class Guidance:
             if guard is not None:
                 guard.overruled(command * own.air_ratio)
         self.heading_rate_command = command
-        self._choose_airspeed(time, along, self.guarding or waiting)
-
-    def _choose_airspeed(self, time: float, along: float, slowly: bool) -> None:
-        """Command an airspeed, and the altitude to which a vehicle that leaves climbs; ``along`` is that of an airspeed law [m]."""
-        mission = self.mission
-        if slowly:
-            self._catching_up_from = time + self._quarter_turn
-        if not mission.overriding:
-            self.airspeed_command = self._airspeed(along, self.own, slowly or time < self._catching_up_from)
-        elif mission.leaving:
-            self.airspeed_command, self.altitude_command = mission.airspeed, mission.altitude
-        elif slowly:
-            self.airspeed_command = self._airspeed(0.0, self.own, True)
-        else:
-            self.airspeed_command = mission.airspeed
+        self.airspeed_command = pace if overriding and not slower else self._airspeed(pace, own, slower or not catching_up)
+        if leaving:
+            self.altitude_command = mission.altitude
 
     def overruled(self, heading_rate: float, airspeed: float) -> None:
         """Take note of commands that are flown in place of the last ones [rad/s, m/s]: what is predicted follows them."""
-        self.heading_rate_command, self.airspeed_command, self._reckoned = heading_rate, airspeed, max(self._speed, airspeed)
+        self.heading_rate_command, self.airspeed_command = heading_rate, airspeed
+        self.reckoning.note(airspeed)
         self.mission.tracker.heading_rate_command = turning = heading_rate * self.own.air_ratio
         if self.guard is not None:
             self.guard.overruled(turning)

@@ -63,6 +63,7 @@ class GuidanceParameters:
     speed, altitude : V_r, and the altitude to hold [m/s, m]
     tracking : of the tracker
     airspeed_law : keeps the vehicle beside its reference
+    airspeed_bandwidth, airspeed_overshoot : of the airspeed behind its command, and over a rise of it [rad/s, -]
     navigation : of the estimated own motion; None where it is known exactly, in still air
     vessel : how it is known from reports, or its velocity north and east where that is known exactly and steady [m/s]
     guard : of the keep-out area
@@ -74,6 +75,8 @@ class GuidanceParameters:
     altitude: float
     tracking: TrackingParameters
     airspeed_law: AirspeedLaw
+    airspeed_bandwidth: float
+    airspeed_overshoot: float
     navigation: NavigationParameters | None
     vessel: ReportedVessel | tuple[float, float]
     guard: GuardParameters | None

@@ -1,4 +1,4 @@
-"""What an airspeed law is."""
+"""What an airspeed law is: it says at which pace to fly, a speed over the mean air, and what airspeed to command for it."""
 
 from typing import Protocol
 
@@ -8,12 +8,20 @@ from gnc.estimation.own_motion import OwnMotion
 class AirspeedLaw(Protocol):
     """What airspeed keeps the vehicle beside its reference."""
 
-    def command(self, along: float, own: OwnMotion, guarding: bool, /) -> float:
-        """Return the airspeed to command [m/s].
+    def pace(self, along: float, /) -> float:
+        """Return the pace that brings the vehicle beside a reference that is so far ahead along its course [m/s].
 
         Parameters
         ----------
-        along : how far the reference is ahead, along its course [m]
+        along : [m]
+        """
+
+    def airspeed(self, pace: float, own: OwnMotion, guarding: bool, /) -> float:
+        """Return the airspeed to command for a pace [m/s].
+
+        Parameters
+        ----------
+        pace : [m/s]
         own : the vehicle's motion
         guarding : whether the keep-out guard turns the vehicle away, or did so of late
         """

@@ -21,14 +21,10 @@ class AlongTrackTrim:
     gain: float
     change_max: float
 
-    def command(self, along: float, _own: OwnMotion, guarding: bool, /) -> float:
-        """Return the airspeed to command [m/s]; a turn away from the keep-out area is flown at V_r.
+    def pace(self, along: float, /) -> float:
+        """Return the pace that brings the vehicle beside a reference that is so far ahead along its course [m/s]."""
+        return self.speed + limited(self.gain * along, self.change_max) if self.gain else self.speed
 
-        Parameters
-        ----------
-        along : how far the reference is ahead, along its course [m]
-        guarding : whether the keep-out guard turns the vehicle away, or did so of late
-        """
-        if guarding or not self.gain:
-            return self.speed
-        return self.speed + limited(self.gain * along, self.change_max)
+    def airspeed(self, pace: float, _own: OwnMotion, _guarding: bool, /) -> float:
+        """Return the airspeed to command for a pace: in still air they are the same [m/s]."""
+        return pace

@@ -89,18 +89,23 @@ class PaceHold:
     hold: SpeedHold
     turn_speed: float = math.inf
 
-    def command(self, along: float, own: OwnMotion, guarding: bool, /) -> float:
-        """Return the airspeed to command [m/s].
+    def pace(self, along: float, /) -> float:
+        """Return the pace that brings the vehicle beside a reference that is so far ahead along its course [m/s]."""
+        hold, pace = self.hold, self.speed + self.hold.gain * along
+        if pace > hold.airspeed_max:
+            return hold.airspeed_max
+        return hold.airspeed_min if pace < hold.airspeed_min else pace
+
+    def airspeed(self, pace: float, own: OwnMotion, guarding: bool, /) -> float:
+        """Return the airspeed to command for a pace [m/s].
 
         Parameters
         ----------
-        along : how far the reference is ahead, along its course [m]
+        pace : [m/s]
         own : the vehicle's motion
         guarding : whether the keep-out guard turns the vehicle away, or did so of late
         """
-        # The guard reckons with V_r: a vehicle that catches up meanwhile turns the wider. It catches up afterwards.
-        behind = 0.0 if guarding else along
-        command = airspeed_to_hold(self.hold, along=behind, reference_speed=self.speed, speed=own.speed, airspeed=own.airspeed)
+        command = airspeed_to_hold(self.hold, along=0.0, reference_speed=pace, speed=own.speed, airspeed=own.airspeed)
         return self.turn_speed if guarding and command > self.turn_speed else command
 
 

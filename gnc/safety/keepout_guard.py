@@ -281,10 +281,13 @@ class KeepoutGuard:
         return mixed
 
     def _turn(self, side: float, motion: Motion) -> tuple[float, float]:
-        """Return the command of a turn away [rad/s], straight away from the disc and no farther; and the course to there [rad]."""
+        """Return the command of a turn away [rad/s], straight away from the disc and no farther, and the course to there [rad]."""
         x, y, _, _, course, _, heading_rate, *_ = motion
         left = math.remainder(math.atan2(y, x) - course - self._lag * heading_rate, 2.0 * math.pi)
-        return left / self._time_step if abs(left) < self._rate * self._time_step else side * self._rate, left
+        if side * left >= self._rate * self._time_step or abs(left) >= 0.5 * math.pi:
+            return side * self._rate, left
+        back = left / self._time_step
+        return math.copysign(min(abs(back), self._rate), back), left
 
     def _best_turn(self, motions: Sequence[tuple[Motion, Tube]]) -> tuple[float, float, Motion, Tube]:
         """Return slack [m], side, motion and disc of the turn away to fly: the one that was safe, or the best if it is not."""

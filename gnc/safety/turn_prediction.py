@@ -31,7 +31,7 @@ class TurnPrediction:
     """
 
     __slots__ = (
-        "_chord", "_delay", "_deviation", "_first", "_hold", "_interval", "_lag", "_points_max", "_rate", "_turn_speed",
+        "_chord", "_delay", "_deviation", "_first", "_hold", "_interval", "_lag", "_passed", "_points_max", "_rate", "_turn_speed",
     )  # fmt: skip
 
     def __init__(
@@ -47,6 +47,8 @@ class TurnPrediction:
         self._rate, self._deviation, self._turn_speed = heading_rate_max, deviation, turn_speed
         self._lag, self._delay = lag, delay
         self._hold = _held(time_step, lag)
+        # Sine of the angle by which straight away is passed by a turn that ends there: by its lag, and a step of holding commands.
+        self._passed = math.sin(min(heading_rate_max * (lag + time_step), 0.5 * math.pi))
         # Of the commands under way the first acts only for what of it lies within the delay.
         self._first = _held(commands_under_way(delay, time_step)[1], lag)
         interval = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
@@ -117,16 +119,17 @@ class TurnPrediction:
         stretch = max(1.0, speed / self._turn_speed)
         turn = side * self._rate / stretch
         ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - decay) * turn
-        chord = speed * duration * self._chord
-        north, east = velocity_north * duration, velocity_east * duration
+        chord, north, east = speed * duration * self._chord, velocity_north * duration, velocity_east * duration
         half, lag = 0.5 * acceleration, self._lag
         # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
         fixed += (deviation := self._deviation * max(change, 0.5 - 0.5 * side * heading_rate / self._rate))
-        slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
+        slack = (away := sqrt(x * x + y * y)) - fixed - (error + half * time) * time
         least = slack + deviation
         outward = side * (y * cos(course) - x * sin(course))
-        acting, gain = time - self._delay, -1.0
-        least_rate, rise, fade = math.inf, 0.0, self._hold[3] if acting > 0.0 else 1.0
+        if -self._passed * away < outward < 0.0 and x * cos(course) + y * sin(course) > 0.0:
+            # As far beyond straight away as a turn leads that ends there: it is over.
+            outward = 0.0
+        acting, gain, least_rate, rise, fade = time - self._delay, -1.0, math.inf, 0.0, self._hold[3] if time > self._delay else 1.0
         for point in range(math.ceil(self._points_max * stretch)):
             if least < floor:
                 break

@@ -170,6 +170,8 @@ def _guidance(
         altitude=scenario.altitude,
         tracking=tracking,
         airspeed_law=PaceHold(speed=g.airspeed_mps, hold=hold, turn_speed=setup.turning_airspeed(omega_max(g))),
+        airspeed_bandwidth=setup.airspeed_bandwidth,
+        airspeed_overshoot=setup.airspeed_overshoot,
         navigation=navigation_parameters(scenario, setup),
         vessel=ReportedVessel(filter=filter_parameters(scenario.reports), limits=limits),
         guard=guard,

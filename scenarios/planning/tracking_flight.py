@@ -137,6 +137,8 @@ def _guidance(
         altitude=altitude,
         tracking=tracking_parameters(scenario, setup, steering),
         airspeed_law=trim,
+        airspeed_bandwidth=setup.airspeed_bandwidth,
+        airspeed_overshoot=setup.airspeed_overshoot,
         navigation=None,
         vessel=vessel,
         guard=guard,

@@ -63,6 +63,7 @@ class VehicleSetup:
     reversal : how the heading rate follows a reversal of the turn
     response_error : how much nearer a full reversal may come than with that response [m]
     airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
+    airspeed_overshoot : of the airspeed over a step of its command [-]
     altitude_reach : difference of the altitude from its command within which the autopilot removes it for certain [m]
     turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed; empty without a limit [m/s, rad/s]
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
@@ -75,6 +76,7 @@ class VehicleSetup:
     airspeed_bandwidth: float
     airspeed_min: float
     airspeed_max: float
+    airspeed_overshoot: float = 0.0
     altitude_reach: float = math.inf
     turn_airspeeds: tuple[float, ...] = ()
     turn_rates: tuple[float, ...] = ()
@@ -159,6 +161,11 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
         airspeed_bandwidth=found.design.bandwidths.airspeed,
         airspeed_min=schedule.envelope.airspeed_min,
         airspeed_max=schedule.envelope.airspeed_max,
+        airspeed_overshoot=next(
+            response["overshoot"]
+            for response in found.record["responses"]
+            if (response["kind"], response["command"]) == ("flown", "airspeed")
+        ),
         altitude_reach=schedule.weights.altitude_error_max,
         turn_airspeeds=tuple(schedule.airspeeds),
         turn_rates=_slower_turns(schedule),

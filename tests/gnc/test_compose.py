@@ -81,6 +81,8 @@ def following(*, guard=GUARD, climb=0.0):
         altitude=60.0,
         tracking=tracking_parameters(lag=0.4),
         airspeed_law=PaceHold(speed=SPEED, hold=SpeedHold(gain=0.3, airspeed_min=15.0, airspeed_max=25.0)),
+        airspeed_bandwidth=1.3,
+        airspeed_overshoot=0.1,
         navigation=NavigationParameters(
             crab_banks=(-1.0, 1.0), crab_offsets=(0.0, 0.0), airspeed_sigma=0.5, course_sigma=0.03, wind_drift=0.02,
             wind_prior=10.0, wind_interval=PLAN_INTERVAL, time_step=TIME_STEP,

@@ -157,9 +157,11 @@ def test_on_the_way_it_flies_faster_only_where_the_guard_allows_that(guarded_by,
     assert [asked[-1] for asked in guard.asked] == [SPEED + 2.0 if allowed else SPEED] * 3
 
 
-@pytest.mark.parametrize(("intervening", "airspeed"), [(True, SPEED), (False, SPEED + 1.0)])
-def test_while_the_guard_intervenes_the_airspeed_is_not_trimmed(guarded_by, intervening, airspeed):
-    guidance = guarded_by(RecordingGuard(0.0, intervening=intervening), airspeed_gain=0.15)
+@pytest.mark.parametrize(
+    ("intervening", "allowed", "airspeed"), [(True, True, SPEED), (False, False, SPEED), (False, True, SPEED + 1.0)]
+)
+def test_it_catches_up_only_where_the_guard_allows_that_and_does_not_intervene(guarded_by, intervening, allowed, airspeed):
+    guidance = guarded_by(RecordingGuard(0.0, intervening=intervening, allowed=allowed), airspeed_gain=0.15)
     # Far behind the reference: trimmed by all of 1 m/s.
     reference = guidance.mission.tracker.reference
     behind = (reference.north - 60.0 * math.cos(reference.course), reference.east - 60.0 * math.sin(reference.course))

@@ -131,6 +131,8 @@ def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=
         altitude=60.0,
         tracking=tracking_parameters(**tracking),
         airspeed_law=AlongTrackTrim(speed=SPEED, gain=airspeed_gain, change_max=1.0),
+        airspeed_bandwidth=math.inf,
+        airspeed_overshoot=0.0,
         navigation=None,
         vessel=vessel,
         guard=guard,
