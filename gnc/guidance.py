@@ -12,7 +12,7 @@ from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.safety.speed_reckoning import SpeedReckoning
 
 _UNASKED = 0.05
-"""By how much the pace may rise without the guard's being asked [m/s]: a turn away comes nearer by less than 0.1 m for it."""
+"""By how much the pace may exceed what the guard was asked about [m/s]: a turn away comes nearer by less than 0.1 m for it."""
 
 
 class Guidance:
@@ -108,18 +108,19 @@ class Guidance:
         keep_out, guard, reckoning = self._keep_out, self.guard, self.reckoning
         if keep_out is not None and guard is not None:
             fastest = reckoning.fastest(pace)
-            # It flies faster only where the faster vehicle can turn away, too: a turn that was safe must remain so.
+            # It flies faster only where the faster vehicle can turn away, too: a turn that was safe must remain so. Against a disc
+            # that closes in a slower one may come nearer; so it must be safe as slow as the vehicle is, too.
             faster = pace > reckoning.highest + _UNASKED and not leaving
-            if faster and not guard.allows(command, time, own, speed if speed > fastest else fastest):
+            if faster and not guard.allows(command, time, own, speed if speed > fastest else fastest, speed):
                 pace, slower = reckoning.highest, True
                 fastest = reckoning.fastest(pace)
-            command = keep_out(command, time, own, speed if speed > fastest else fastest)
+            command = keep_out(command, time, own, speed if speed > fastest else fastest, speed)
             self.guarding = guard.intervening
             if self.guarding and not leaving:
-                # A vehicle that catches up meanwhile turns the wider.
-                pace, slower, catching_up = self._speed, True, False
+                # A vehicle that catches up meanwhile turns the wider; one that becomes slower is caught up with.
+                pace, slower, catching_up = reckoning.highest, True, False
                 self._catching_up_from = time + self._quarter_turn
-            reckoning.note(pace)
+            reckoning.note(pace if faster or pace < reckoning.highest else reckoning.highest)
         tracker.heading_rate_command = command
         command /= own.air_ratio
         limit = self._limit
@@ -135,7 +136,7 @@ class Guidance:
     def overruled(self, heading_rate: float, airspeed: float) -> None:
         """Take note of commands that are flown in place of the last ones [rad/s, m/s]: what is predicted follows them."""
         self.heading_rate_command, self.airspeed_command = heading_rate, airspeed
-        self.reckoning.note(airspeed)
+        self.reckoning.include(airspeed)
         self.mission.tracker.heading_rate_command = turning = heading_rate * self.own.air_ratio
         if self.guard is not None:
             self.guard.overruled(turning)

@@ -21,8 +21,13 @@ from gnc.safety.turn_prediction import Motion, TurnPrediction
 
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
+_SAME_SPEED = 0.5
+"""Speeds that differ by no more are predicted as one: a turn away keeps off by the same to 0.2 m [m/s]."""
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away, which is found to 1/32."""
+
+Situation = tuple[tuple[Motion, ...], Tube]
+"""The vehicle's motion relative to a disc, as fast as it may become, and as slow as it is if that is much less."""
 
 
 class KeepoutGuard:
@@ -122,7 +127,7 @@ class KeepoutGuard:
         self.intervening = self.lost = False
         self.interventions = 0
 
-    def limit(self, command: float, time: float, own: AirMotion, speed: float) -> float:
+    def limit(self, command: float, time: float, own: AirMotion, speed: float, slowest: float = math.inf) -> float:
         """Return the command, or as much of a turn away as is needed [rad/s].
 
         Parameters
@@ -130,7 +135,8 @@ class KeepoutGuard:
         command : that the guidance demands [rad/s]
         time : now [s]
         own : the vehicle's motion
-        speed : of the vehicle in the air mass, to reckon with [m/s]
+        speed : of the vehicle in the air mass, to reckon with: as fast as it may become [m/s]
+        slowest : as slow as it may be meanwhile [m/s]; a turn away has to keep off at both
         """
         bounded = -self._rate <= command <= self._rate
         if self._free_steps > 0 and bounded:
@@ -139,7 +145,7 @@ class KeepoutGuard:
             self._note_rate(own.heading_rate)
             return command
         self._free_steps = 0
-        free, motions = self._look(command, time, own, speed)
+        free, situations = self._look(command, time, own, speed, slowest)
         if free >= 0.0:
             self.intervening = self.lost = False
             if bounded:
@@ -147,7 +153,7 @@ class KeepoutGuard:
         else:
             self.interventions += not self.intervening
             self.intervening = True
-            command = self._mix(command, motions)
+            command = self._mix(command, situations)
         self._note(command if speed <= self.turn_speed else self._turned(command, speed))
         self._note_rate(own.heading_rate)
         return command
@@ -157,12 +163,12 @@ class KeepoutGuard:
         most = self._rate * self.turn_speed / speed
         return command if -most <= command <= most else math.copysign(most, command)
 
-    def allows(self, command: float, time: float, own: AirMotion, speed: float) -> bool:
+    def allows(self, command: float, time: float, own: AirMotion, speed: float, slowest: float = math.inf) -> bool:
         """Return whether ``limit`` would let the command pass at a speed; if so, it looks anew, at the speed that it is then given.
 
         Parameters are those of ``limit``, which is to be called next.
         """
-        allowed = self._look(command, time, own, speed)[0] >= 0.0
+        allowed = self._look(command, time, own, speed, slowest)[0] >= 0.0
         if allowed:
             self._free_steps = 0
         return allowed
@@ -184,23 +190,27 @@ class KeepoutGuard:
                 best = max(best, self._prediction.turn_away(side, start, then, self._until_acting, -math.inf)[0])
         return best
 
-    def _look(self, command: float, time: float, own: AirMotion, speed: float) -> tuple[float, list[tuple[Motion, Tube]]]:
+    def _look(self, command: float, time: float, own: AirMotion, speed: float, slowest: float) -> tuple[float, list[Situation]]:
         """Return for how long [s] no command can spoil the turn away that follows this one, negative if there is none.
 
-        Then it is told of the motions relative to the discs, too, when the command begins to act.
+        Then it is told of the situations, too: the motions relative to each disc when the command begins to act.
         """
-        free, motions, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
+        free, situations, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
         for tube in self._candidates(time, own):
             motion = self._relative(tube, time, own, speed, to_come)
             free = self._free_when_far(motion)
+            motions: tuple[Motion, ...] = ()
             if free <= 0.0:
-                motion = self._prediction.when_acting(motion, self._given.under_way)
-                free = self._free_by_turning_away(command, motion)
+                acting, under_way = self._prediction.when_acting, self._given.under_way
+                motions = (acting(motion, under_way),)
+                if slowest < speed - _SAME_SPEED:
+                    motions = (*motions, acting(self._relative(tube, time, own, slowest, to_come), under_way))
+                free = self._free_by_turning_away(command, motions)
             if free >= 0.0:
                 self._kept_off = tube
                 break
-            motions.append((motion, tube))
-        return free, motions
+            situations.append((motions, tube))
+        return free, situations
 
     def _candidates(self, time: float, own: AirMotion) -> Sequence[Tube]:
         """Return the disc that reaches least far towards the vehicle, and the one that was kept off last."""
@@ -243,37 +253,44 @@ class KeepoutGuard:
         gap = math.hypot(x, y) - radius - (closing + 0.5 * acceleration * duration) * duration
         return min(gap / (closing + 1.5 * acceleration * duration), duration)
 
-    def _free_by_turning_away(self, command: float, motion: Motion) -> float:
+    def _free_by_turning_away(self, command: float, motions: tuple[Motion, ...]) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
-        after = self._prediction.after(command, motion)
-        x, y, course, _ = after
-        floor = _RESOLUTION * motion[5] / self._rate
+        x, y, course, _ = self._prediction.after(command, motions[0])
+        floor = _RESOLUTION * motions[0][5] / self._rate
         nearer = 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
         for side in (nearer, -nearer):
-            slack, free = self._prediction.turn_away(side, after, motion, self._until_acting + self._time_step, floor)
+            slack, free = self._slack(side, command, motions, floor)
             if slack >= floor:
                 self._side = side
                 return free
         return -1.0
 
-    def _mix(self, command: float, motions: Sequence[tuple[Motion, Tube]]) -> float:
+    def _slack(self, side: float, command: float, motions: tuple[Motion, ...], floor: float) -> tuple[float, float]:
+        """Return slack [m] of a turn away after a command, and for how long no command can spoil it [s], at the worse speed."""
+        prediction, begun = self._prediction, self._until_acting + self._time_step
+        slack, free = prediction.turn_away(side, prediction.after(command, motions[0]), motions[0], begun, floor)
+        if len(motions) > 1 and slack >= floor:
+            slower, free_slower = prediction.turn_away(side, prediction.after(command, motions[1]), motions[1], begun, floor)
+            slack, free = min(slack, slower), min(free, free_slower)
+        return slack, free
+
+    def _mix(self, command: float, situations: Sequence[Situation]) -> float:
         """Return the command with the least of a turn away that keeps off, or the turn that was safe before [rad/s]."""
-        slack, side, motion, tube = self._best_turn(motions)
+        slack, side, motions, tube = self._best_turn(situations)
         self._side = side
-        turn, left = self._turn(side, motion)
-        floor = _RESOLUTION * motion[5] / self._rate
+        turn, left = self._turn(side, motions[0])
+        floor = _RESOLUTION * motions[0][5] / self._rate
         self.lost = slack < -self._explained - floor
         if slack < 0.0:
             # Beyond straight away by less than a right angle it turns back: going on would lead once round, towards the disc.
             return math.copysign(turn, left) if abs(left) < 0.5 * math.pi else turn
         self._kept_off = tube
-        begun = self._until_acting + self._time_step
         mixed = turn
         low, high = 0.0, 1.0
         for _ in range(_BISECTIONS):
             fraction = 0.5 * (low + high)
             trial = command + fraction * (turn - command)
-            slack, _ = self._prediction.turn_away(side, self._prediction.after(trial, motion), motion, begun, floor)
+            slack, _ = self._slack(side, trial, motions, floor)
             if slack >= floor:
                 high, mixed = fraction, trial
             else:
@@ -289,15 +306,13 @@ class KeepoutGuard:
         back = left / self._time_step
         return math.copysign(min(abs(back), self._rate), back), left
 
-    def _best_turn(self, motions: Sequence[tuple[Motion, Tube]]) -> tuple[float, float, Motion, Tube]:
-        """Return slack [m], side, motion and disc of the turn away to fly: the one that was safe, or the best if it is not."""
-        begun = self._until_acting + self._time_step
-        found: list[tuple[float, float, Motion, Tube]] = []
-        for motion, tube in motions:
+    def _best_turn(self, situations: Sequence[Situation]) -> tuple[float, float, tuple[Motion, ...], Tube]:
+        """Return slack [m], side, motions and disc of the turn away to fly: the one that was safe, or the best if it is not."""
+        found: list[tuple[float, float, tuple[Motion, ...], Tube]] = []
+        for motions, tube in situations:
             for side in (self._side, -self._side) if self._side else (1.0, -1.0):
-                after = self._prediction.after(self._turn(side, motion)[0], motion)
-                slack, _ = self._prediction.turn_away(side, after, motion, begun, -math.inf)
-                found.append((slack, side, motion, tube))
+                slack, _ = self._slack(side, self._turn(side, motions[0])[0], motions, -math.inf)
+                found.append((slack, side, motions, tube))
                 if self._side and slack >= 0.0:
                     return found[-1]
         return max(found, key=lambda entry: entry[:2])

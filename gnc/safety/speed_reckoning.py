@@ -33,7 +33,11 @@ class SpeedReckoning:
     def fastest(self, pace: float) -> float:
         """Return the speed that it may come to if a pace [m/s] were commanded now, and V_r after it [m/s]."""
         highest = pace if pace > self.highest else self.highest
-        return highest + self._overshoot * (highest - self.lowest)
+        return highest + self._overshoot * (highest - (pace if pace < self.lowest else self.lowest))
+
+    def include(self, pace: float) -> None:
+        """Take note of a pace that is flown in place of the last one [m/s]."""
+        self.highest, self.lowest = max(self.highest, pace), min(self.lowest, pace)
 
     def note(self, pace: float) -> None:
         """Take note of the pace that is commanded for this step [m/s]."""

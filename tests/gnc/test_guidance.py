@@ -27,11 +27,11 @@ class RecordingGuard:
         self.intervening, self.allowed = intervening, allowed
         self.asked, self.asked_to_allow, self.tubes = [], [], ()
 
-    def allows(self, _command, _time, _own, speed):
+    def allows(self, _command, _time, _own, speed, _slowest):
         self.asked_to_allow.append(speed)
         return self.allowed
 
-    def limit(self, _, time, own, speed):
+    def limit(self, _, time, own, speed, _slowest):
         motion = own.ground_north, own.ground_east, own.wind_north, own.wind_east, own.course, own.heading_rate
         self.asked.append((time, *motion, speed))
         return self.answer

@@ -17,8 +17,8 @@ def made(**changes):
 @pytest.mark.parametrize("pace", [SPEED, 21.0, 15.0])
 def test_a_vehicle_that_flew_v_r_is_reckoned_with_at_the_faster_of_that_and_its_pace(pace):
     assert made(overshoot=0.0).fastest(pace) == max(SPEED, pace)
-    # Returning from a slower pace counts once it was commanded.
-    assert made().fastest(pace) == pytest.approx(max(SPEED, pace) + 0.13 * max(0.0, pace - SPEED))
+    # And it overshoots the rise, or the return from a slower pace.
+    assert made().fastest(pace) == pytest.approx(max(SPEED, pace) + 0.13 * abs(pace - SPEED))
 
 
 def test_a_slow_pace_adds_the_overshoot_of_the_return_and_is_forgotten():
@@ -53,3 +53,10 @@ def test_a_vehicle_that_answers_at_once_has_nothing_to_be_reckoned_with_but_its_
     for pace in (25.0, 15.0, 20.0):
         reckoning.note(pace)
         assert (reckoning.highest, reckoning.lowest) == (max(pace, SPEED), pace)
+
+
+def test_what_is_flown_in_place_of_a_pace_counts_as_well():
+    reckoning = made()
+    reckoning.include(24.0)
+    reckoning.include(17.0)
+    assert (reckoning.highest, reckoning.lowest) == (24.0, 17.0)
