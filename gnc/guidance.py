@@ -101,24 +101,23 @@ class Guidance:
         ahead_of = reference.course
         along = (reference.north - north) * math.cos(ahead_of) + (reference.east - east) * math.sin(ahead_of)
         command = tracker.step(north, east, course, speed, heading_rate)
-        if overriding:
-            command = mission.command()
+        command = mission.command() if overriding else command
         catching_up, leaving = time >= self._catching_up_from, overriding and mission.leaving
-        pace = mission.airspeed if overriding else self._pace(along) if catching_up else self._speed
+        pace = (mission.airspeed if overriding else self._pace(along)) if catching_up or leaving else self._speed
         keep_out, guard, reckoning = self._keep_out, self.guard, self.reckoning
         if keep_out is not None and guard is not None:
-            fastest = reckoning.fastest(pace)
+            fastest, slowest = reckoning.fastest(pace), speed if speed < self._speed else self._speed
             # It flies faster only where the faster vehicle can turn away, too: a turn that was safe must remain so. Against a disc
             # that closes in a slower one may come nearer; so it must be safe as slow as the vehicle is, too.
             faster = pace > reckoning.highest + _UNASKED and not leaving
-            if faster and not guard.allows(command, time, own, speed if speed > fastest else fastest, speed):
+            if faster and not guard.allows(command, time, own, speed if speed > fastest else fastest, slowest):
                 pace, slower = reckoning.highest, True
                 fastest = reckoning.fastest(pace)
-            command = keep_out(command, time, own, speed if speed > fastest else fastest, speed)
+            command = keep_out(command, time, own, speed if speed > fastest else fastest, slowest)
             self.guarding = guard.intervening
             if self.guarding and not leaving:
-                # A vehicle that catches up meanwhile turns the wider; one that becomes slower is caught up with.
-                pace, slower, catching_up = reckoning.highest, True, False
+                # A vehicle that catches up meanwhile turns the wider.
+                pace, slower, catching_up = self._speed, True, False
                 self._catching_up_from = time + self._quarter_turn
             reckoning.note(pace if faster or pace < reckoning.highest else reckoning.highest)
         tracker.heading_rate_command = command
@@ -129,7 +128,8 @@ class Guidance:
             if guard is not None:
                 guard.overruled(command * own.air_ratio)
         self.heading_rate_command = command
-        self.airspeed_command = pace if overriding and not slower else self._airspeed(pace, own, slower or not catching_up)
+        held = slower or not catching_up
+        self.airspeed_command = pace if leaving or (overriding and not held) else self._airspeed(pace, own, held)
         if leaving:
             self.altitude_command = mission.altitude
 

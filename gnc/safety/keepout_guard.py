@@ -164,14 +164,17 @@ class KeepoutGuard:
         return command if -most <= command <= most else math.copysign(most, command)
 
     def allows(self, command: float, time: float, own: AirMotion, speed: float, slowest: float = math.inf) -> bool:
-        """Return whether ``limit`` would let the command pass at a speed; if so, it looks anew, at the speed that it is then given.
+        """Return whether ``limit`` lets the command pass at a speed. It is to be called next, with the same if so.
 
-        Parameters are those of ``limit``, which is to be called next.
+        Parameters are those of ``limit``.
         """
-        allowed = self._look(command, time, own, speed, slowest)[0] >= 0.0
-        if allowed:
-            self._free_steps = 0
-        return allowed
+        free, _ = self._look(command, time, own, speed, slowest)
+        if free < 0.0:
+            return False
+        self.intervening = self.lost = False
+        # It need not look once more.
+        self._free_steps = max(1, int(free / self._time_step))
+        return True
 
     def overruled(self, command: float) -> None:
         """Take note of a heading rate that is flown in place of the last command [rad/s]."""

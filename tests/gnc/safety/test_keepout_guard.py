@@ -160,9 +160,9 @@ def test_what_is_allowed_at_a_speed_is_safe_at_that_speed_from_then_on():
     guard = make_guard()
     # It need not look for a while, and does so all the same before the vehicle becomes faster.
     guard.limit(0.0, -far - 60.0, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0)
-    assert guard.guard._free_steps > 0
+    free = guard.guard._free_steps
     assert guard.allows(0.0, -far - 60.0, 0.0, 0.0, 0.0, 0.0, 1.5 * SPEED, 0.0)
-    assert guard.guard._free_steps == 0
+    assert 0 < guard.guard._free_steps < free
 
 
 @examples(200)
