@@ -28,6 +28,12 @@ class SpeedHold(NamedTuple):
     airspeed_min: float
     airspeed_max: float
 
+    def within(self, airspeed: float) -> float:
+        """Return the airspeed nearest to this one that can be commanded [m/s]."""
+        if airspeed > self.airspeed_max:
+            return self.airspeed_max
+        return self.airspeed_min if airspeed < self.airspeed_min else airspeed
+
 
 def design_speed_hold(*, bandwidth: float, speed: float, look_ahead: float, airspeed_min: float, airspeed_max: float) -> SpeedHold:
     """Return the parameters for a vehicle and a look-ahead.
@@ -68,10 +74,7 @@ def airspeed_to_hold(hold: SpeedHold, *, along: float, reference_speed: float, s
     speed : horizontal, over the mean air [m/s]
     airspeed : as measured, against the gusty air [m/s]
     """
-    demand = airspeed + reference_speed + hold.gain * along - speed
-    if demand > hold.airspeed_max:
-        return hold.airspeed_max
-    return hold.airspeed_min if demand < hold.airspeed_min else demand
+    return hold.within(airspeed + reference_speed + hold.gain * along - speed)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,10 +94,7 @@ class PaceHold:
 
     def pace(self, along: float, /) -> float:
         """Return the pace that brings the vehicle beside a reference that is so far ahead along its course [m/s]."""
-        hold, pace = self.hold, self.speed + self.hold.gain * along
-        if pace > hold.airspeed_max:
-            return hold.airspeed_max
-        return hold.airspeed_min if pace < hold.airspeed_min else pace
+        return self.hold.within(self.speed + self.hold.gain * along)
 
     def airspeed(self, pace: float, own: OwnMotion, guarding: bool, /) -> float:
         """Return the airspeed to command for a pace [m/s].

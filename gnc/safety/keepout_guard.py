@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from gnc.estimation.own_motion import AirMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.safety.given_commands import GivenCommands
-from gnc.safety.turn_prediction import Motion, TurnPrediction
+from gnc.safety.turn_prediction import Motion, Start, TurnPrediction
 
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
@@ -49,7 +49,6 @@ class KeepoutGuard:
 
     Attributes
     ----------
-    turn_speed : as above
     tubes : discs that contain the vessel; whoever knows of it sets them, the one known best first
     intervening : whether the last command was changed
     interventions : how often interventions began
@@ -58,28 +57,10 @@ class KeepoutGuard:
     """
 
     __slots__ = (
-        "_drift_rate",
-        "_explained",
-        "_free_steps",
-        "_given",
-        "_kept_off",
-        "_lag",
-        "_note",
-        "_note_rate",
-        "_prediction",
-        "_radius",
-        "_rate",
-        "_side",
-        "_speed_error",
-        "_time_step",
-        "_turn_time",
-        "_until_acting",
-        "intervening",
-        "interventions",
-        "lost",
-        "tubes",
-        "turn_speed",
-    )
+        "_drift_rate", "_explained", "_free_steps", "_given", "_kept_off", "_lag", "_note", "_note_rate", "_prediction", "_radius",
+        "_rate", "_side", "_speed_error", "_time_step", "_turn_speed", "_turn_time", "_until_acting", "intervening",
+        "interventions", "lost", "tubes",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -96,7 +77,7 @@ class KeepoutGuard:
         turbulence: float = 0.0,
         turn_speed: float = math.inf,
     ) -> None:
-        self._radius, self.turn_speed = radius, turn_speed
+        self._radius, self._turn_speed = radius, turn_speed
         self._rate, self._time_step = heading_rate_max, time_step
         self._lag, self._until_acting = lag, delay
         self._given = GivenCommands(
@@ -141,38 +122,32 @@ class KeepoutGuard:
         bounded = -self._rate <= command <= self._rate
         if self._free_steps > 0 and bounded:
             self._free_steps -= 1
-            self._note(command if speed <= self.turn_speed else self._turned(command, speed))
-            self._note_rate(own.heading_rate)
-            return command
-        self._free_steps = 0
-        free, situations = self._look(command, time, own, speed, slowest)
-        if free >= 0.0:
-            self.intervening = self.lost = False
-            if bounded:
-                self._free_steps = max(0, int(free / self._time_step) - 1)
         else:
-            self.interventions += not self.intervening
-            self.intervening = True
-            command = self._mix(command, situations)
-        self._note(command if speed <= self.turn_speed else self._turned(command, speed))
+            self._free_steps = 0
+            free, situations = self._look(command, time, own, speed, slowest)
+            if free >= 0.0:
+                self.intervening = self.lost = False
+                if bounded:
+                    self._free_steps = max(0, int(free / self._time_step) - 1)
+            else:
+                self.interventions += not self.intervening
+                self.intervening = True
+                command = self._mix(command, situations)
+        self._note(command if speed <= self._turn_speed else self._turned(command, speed))
         self._note_rate(own.heading_rate)
         return command
 
     def _turned(self, command: float, speed: float) -> float:
         """Return what of a command comes at such a speed, at the largest bank [rad/s]."""
-        most = self._rate * self.turn_speed / speed
+        most = self._rate * self._turn_speed / speed
         return command if -most <= command <= most else math.copysign(most, command)
 
     def allows(self, command: float, time: float, own: AirMotion, speed: float, slowest: float = math.inf) -> bool:
-        """Return whether ``limit`` lets the command pass at a speed. It is to be called next, with the same if so.
-
-        Parameters are those of ``limit``.
-        """
+        """Return whether ``limit``, which is to be called next, lets the command pass if it is given the same parameters."""
         free, _ = self._look(command, time, own, speed, slowest)
         if free < 0.0:
             return False
         self.intervening = self.lost = False
-        # It need not look once more.
         self._free_steps = max(1, int(free / self._time_step))
         return True
 
@@ -194,7 +169,7 @@ class KeepoutGuard:
         return best
 
     def _look(self, command: float, time: float, own: AirMotion, speed: float, slowest: float) -> tuple[float, list[Situation]]:
-        """Return for how long [s] no command can spoil the turn away that follows this one, negative if there is none.
+        """Return for how long [s] no command can spoil the turn away that follows this one, negative if no turn away keeps off.
 
         Then it is told of the situations, too: the motions relative to each disc when the command begins to act.
         """
@@ -251,29 +226,34 @@ class KeepoutGuard:
     def _free_when_far(self, motion: Motion) -> float:
         """Return for how long [s] the disc stays beyond all that both can close during a turn away; negative if it is nearer."""
         x, y, velocity_north, velocity_east, _, speed, _, radius, growth, acceleration, *_ = motion
-        duration = self._turn_time * max(1.0, speed / self.turn_speed)
+        duration = self._turn_time * max(1.0, speed / self._turn_speed)
         closing = speed + math.hypot(velocity_north, velocity_east) + growth
         gap = math.hypot(x, y) - radius - (closing + 0.5 * acceleration * duration) * duration
         return min(gap / (closing + 1.5 * acceleration * duration), duration)
 
     def _free_by_turning_away(self, command: float, motions: tuple[Motion, ...]) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
-        x, y, course, _ = self._prediction.after(command, motions[0])
+        starts = self._after(command, motions)
+        x, y, course, _ = starts[0]
         floor = _RESOLUTION * motions[0][5] / self._rate
         nearer = 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
         for side in (nearer, -nearer):
-            slack, free = self._slack(side, command, motions, floor)
+            slack, free = self._slack(side, starts, motions, floor)
             if slack >= floor:
                 self._side = side
                 return free
         return -1.0
 
-    def _slack(self, side: float, command: float, motions: tuple[Motion, ...], floor: float) -> tuple[float, float]:
-        """Return slack [m] of a turn away after a command, and for how long no command can spoil it [s], at the worse speed."""
-        prediction, begun = self._prediction, self._until_acting + self._time_step
-        slack, free = prediction.turn_away(side, prediction.after(command, motions[0]), motions[0], begun, floor)
+    def _after(self, command: float, motions: tuple[Motion, ...]) -> list[Start]:
+        """Return where a command held for one time step leads, at each speed."""
+        return [self._prediction.after(command, motion) for motion in motions]
+
+    def _slack(self, side: float, starts: Sequence[Start], motions: tuple[Motion, ...], floor: float) -> tuple[float, float]:
+        """Return slack [m] of a turn away, and for how long no command can spoil it [s], at the worse speed."""
+        begun = self._until_acting + self._time_step
+        slack, free = self._prediction.turn_away(side, starts[0], motions[0], begun, floor)
         if len(motions) > 1 and slack >= floor:
-            slower, free_slower = prediction.turn_away(side, prediction.after(command, motions[1]), motions[1], begun, floor)
+            slower, free_slower = self._prediction.turn_away(side, starts[1], motions[1], begun, floor)
             slack, free = min(slack, slower), min(free, free_slower)
         return slack, free
 
@@ -288,12 +268,11 @@ class KeepoutGuard:
             # Beyond straight away by less than a right angle it turns back: going on would lead once round, towards the disc.
             return math.copysign(turn, left) if abs(left) < 0.5 * math.pi else turn
         self._kept_off = tube
-        mixed = turn
-        low, high = 0.0, 1.0
+        low, high, mixed = 0.0, 1.0, turn
         for _ in range(_BISECTIONS):
             fraction = 0.5 * (low + high)
             trial = command + fraction * (turn - command)
-            slack, _ = self._slack(side, trial, motions, floor)
+            slack, _ = self._slack(side, self._after(trial, motions), motions, floor)
             if slack >= floor:
                 high, mixed = fraction, trial
             else:
@@ -306,15 +285,15 @@ class KeepoutGuard:
         left = math.remainder(math.atan2(y, x) - course - self._lag * heading_rate, 2.0 * math.pi)
         if side * left >= self._rate * self._time_step or abs(left) >= 0.5 * math.pi:
             return side * self._rate, left
-        back = left / self._time_step
-        return math.copysign(min(abs(back), self._rate), back), left
+        return math.copysign(min(abs(left) / self._time_step, self._rate), left), left
 
     def _best_turn(self, situations: Sequence[Situation]) -> tuple[float, float, tuple[Motion, ...], Tube]:
         """Return slack [m], side, motions and disc of the turn away to fly: the one that was safe, or the best if it is not."""
         found: list[tuple[float, float, tuple[Motion, ...], Tube]] = []
         for motions, tube in situations:
             for side in (self._side, -self._side) if self._side else (1.0, -1.0):
-                slack, _ = self._slack(side, self._turn(side, motions[0])[0], motions, -math.inf)
+                starts = self._after(self._turn(side, motions[0])[0], motions)
+                slack, _ = self._slack(side, starts, motions, -math.inf)
                 found.append((slack, side, motions, tube))
                 if self._side and slack >= 0.0:
                     return found[-1]

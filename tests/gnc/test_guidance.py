@@ -20,8 +20,6 @@ GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.
 class RecordingGuard:
     """Says what it was asked, and answers a fixed command."""
 
-    turn_speed = 30.0
-
     def __init__(self, answer, *, intervening=True, allowed=True):
         self.answer = answer
         self.intervening, self.allowed = intervening, allowed
