@@ -2,8 +2,8 @@
 
 Flights are flown and recorded at the rate of the guidance: one beside a steady vessel in still air, which has the
 paper's composition, one that follows a plume in wind, by sensors and reports, and that one again as it searches for its
-plume, beside a slow and a fast ship. What is measured in each is then sent to its guidance, step by step, all in turn
-for several rounds; what a search costs is compared with the same way without it.
+plume, beside a slow and a fast ship. What the guidance was given in each is then sent to another one, step by step, all in
+turn for several rounds: it commands what was flown. A search is compared with the flight that is told its plume.
 """
 
 import io
@@ -13,8 +13,8 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
-import numpy as np
 import pandas as pd
 
 from aircraft.fleet.x8 import X8
@@ -88,9 +88,8 @@ def report_guidance(rounds: int, setup: VehicleSetup) -> None:
         f" plume, {100.0 * added:.0f} % more"
     )
     for name, speed in (("slow", 3.0), ("fast", 12.0)):
-        predicted, _, _ = _flown(searching(speed, "predicted"), setup)
-        plan, measured, passed_on = _flown(searching(speed, "estimated"), setup)
-        pairs = [(_step_time(predicted, measured), _step_time(plan, measured, passed_on)) for _ in range(rounds)]
+        predicted, estimated = (_flown(searching(speed, plume), setup) for plume in ("predicted", "estimated"))
+        pairs = [(_step_time(*predicted), _step_time(*estimated)) for _ in range(rounds)]
         without, with_it = (statistics.median(times) for times in zip(*pairs, strict=True))
         ratio = statistics.median(b / a for a, b in pairs)
         print(f"  beside a {name} ship: {without:.1f} us without a search, {with_it:.1f} us with one, {ratio:.2f} times as long")
@@ -113,17 +112,17 @@ def searching(vessel_speed: float, plume: str) -> Scenario:
 def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measured, PlumeReadings]:
     """Return the plan of a flight, what its guidance measures at each step, and what a search would be told."""
     work = FlightWork(experiments=(Experiment("bench", scenario),), histories=1, setup=setup, spreads=PredictedSpreads())
-    plan, result = work.plan(work.request(Task(number=0))), work.fly(Task(number=0))
+    measured: list[tuple[float, Any]] = []
+    step = Guidance.step
+
+    def noted(guidance: Guidance, at: float, measurement: Any) -> None:
+        measured.append((at, measurement))
+        step(guidance, at, measurement)
+
+    with mock.patch.object(Guidance, "step", noted):
+        result = work.fly(Task(number=0))
     history = pd.read_parquet(io.BytesIO(result.files[time_history_path(result.tables[SUMMARY][0]["flight_id"])]))
-    names = ["time_s", "north_m", "east_m", "velocity_north_mps", "velocity_east_mps", "heading_rate_rad_s"]
-    motions = history[names].itertuples(index=False, name=None)
-    if plan.sensing is None or plan.world is None:
-        return plan, [(at, motion) for at, *motion in motions], []
-    wind = plan.world.weather.wind.at(history["time_s"], history["altitude_m"])
-    v_north, v_east = (history[f"velocity_{axis}_mps"] - of_air for axis, of_air in zip(("north", "east"), wind, strict=True))
-    air_data = zip(history["airspeed_mps"], np.arctan2(v_east, v_north), history["roll_rad"], strict=True)
-    measured = [(at, (place, *read, rate, 0.0)) for (at, *place, rate), read in zip(motions, air_data, strict=True)]
-    return plan, measured, _plume_readings(history)
+    return work.plan(work.request(Task(number=0))), measured, _plume_readings(history)
 
 
 def _plume_readings(history: pd.DataFrame) -> PlumeReadings:
