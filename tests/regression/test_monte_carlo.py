@@ -9,6 +9,8 @@ from scenarios.engine.executors import ExecutorFactory
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
+pytestmark = pytest.mark.study
+
 FLIGHTS = 12
 
 
