@@ -13,6 +13,7 @@ from gnc.mission.mission import Mission
 from gnc.mission.plume_following import FollowingParameters, PlumeFollowing
 from gnc.mission.standoff import StandoffOrbit, StandoffParameters
 from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters, ReportedVessel
+from gnc.safety.guarded_commands import GuardedCommands
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.safety.speed_reckoning import SpeedReckoning
 
@@ -48,14 +49,18 @@ def compose(parameters: GuidanceParameters) -> Guidance:
         own=own,
         target=target,
         mission=mission,
-        guard=guard,
+        keep_out=_guarded_commands(guard, p) if guard else None,
         airspeed_law=p.airspeed_law,
-        reckoning=SpeedReckoning(
-            speed=p.speed, bandwidth=p.airspeed_bandwidth, overshoot=p.airspeed_overshoot, time_step=p.tracking.time_step
-        ),
         monitor=HealthMonitor(p.health) if p.health else None,
         speed=p.speed,
         heading_rate_max=p.tracking.heading_rate_max,
         altitude=p.altitude,
         plan_interval=p.mission.plan_interval,
     )
+
+
+def _guarded_commands(guard: KeepoutGuard, p: GuidanceParameters) -> GuardedCommands:
+    reckoning = SpeedReckoning(
+        speed=p.speed, bandwidth=p.airspeed_bandwidth, overshoot=p.airspeed_overshoot, time_step=p.tracking.time_step
+    )
+    return GuardedCommands(guard, reckoning=reckoning, speed=p.speed, heading_rate_max=p.tracking.heading_rate_max)
