@@ -48,12 +48,14 @@ OPERATIONAL = "operational"
 
 _OPERATIONAL_STUDIES = ("sea", "monte_carlo", "falsify")
 
-CATALOG = Path(__file__).parents[1] / "catalog"
+CATALOG, BASES = Path(__file__).parents[1] / "catalog", "bases"
+"""The directory of the catalog, whose folders hold a kind of scenario each, and the one of them with bases."""
 
 
 def catalog() -> dict[str, Path]:
     """Return the scenarios that come with the project, by name."""
-    return {path.stem: path for path in sorted(CATALOG.glob("*.toml"))}
+    files = [path for path in CATALOG.glob("*/*.toml") if path.parent.name != BASES]
+    return {path.stem: path for path in sorted(files, key=lambda path: path.stem)}
 
 
 def is_flight(name: str) -> bool:
@@ -118,7 +120,7 @@ def _section(override: str) -> str:
 
 def bases() -> dict[str, Path]:
     """Return the bases that scenarios may extend, by name."""
-    return {path.stem: path for path in sorted((CATALOG / "bases").glob("*.toml"))}
+    return {path.stem: path for path in sorted((CATALOG / BASES).glob("*.toml"))}
 
 
 def scenario_path(name: str, folder: Path | None = None) -> Path:
