@@ -68,7 +68,7 @@ class Path:
 
     def covered(self, places: Array, weights: Array) -> float:
         """Return the sum of the weights of those places across, in order, that the way goes over."""
-        first, last = places.searchsorted((min(self.across), max(self.across)))
+        first, last = places.searchsorted((self.across.min(), self.across.max()))
         return float(weights[first:last].sum())
 
     def _nearest(self, across: float) -> int:
