@@ -137,6 +137,18 @@ def test_a_guidance_that_follows_a_plume_can_do_without(part):
     assert guidance.guarding is False
 
 
+def test_no_command_exceeds_its_bound_in_gusts_from_behind():
+    # A gust between two looks at the wind takes a fifth of the airspeed: the same acceleration turns the airframe the faster.
+    guidance = reported(following())
+    for step in range(50):
+        airspeed = SPEED if step % PLAN_INTERVAL == 0 else 0.8 * SPEED
+        guidance.step(step * TIME_STEP, readings(-400.0, 0.0, course=math.pi, airspeed=airspeed))
+        assert abs(guidance.heading_rate_command) <= HEADING_RATE_MAX
+    # It was in the way, and the guidance goes on from what is flown.
+    assert guidance.own.air_ratio < 0.9
+    assert abs(guidance.heading_rate_command) == HEADING_RATE_MAX
+
+
 def test_flights_share_nothing():
     parameters = paper(guard=GUARD)
     one = fly(compose(parameters), (-300.0, 40.0, 0.5), duration=20.0)

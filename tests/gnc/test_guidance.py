@@ -23,13 +23,14 @@ class RecordingGuard:
     def __init__(self, answer, *, intervening=True, allowed=True):
         self.answer = answer
         self.intervening, self.allowed = intervening, allowed
-        self.asked, self.asked_to_allow, self.tubes = [], [], ()
+        self.asked, self.slowest, self.asked_to_allow, self.tubes = [], [], [], ()
 
     def allows(self, _command, _time, _own, speed, _slowest):
         self.asked_to_allow.append(speed)
         return self.allowed
 
-    def limit(self, _, time, own, speed, _slowest):
+    def limit(self, _, time, own, speed, slowest):
+        self.slowest.append(slowest)
         motion = own.ground_north, own.ground_east, own.wind_north, own.wind_east, own.course, own.heading_rate
         self.asked.append((time, *motion, speed))
         return self.answer
@@ -140,6 +141,8 @@ def test_the_guard_reckons_with_the_airspeed_that_comes_back(guarded_by):
     guidance = guarded_by(RecordingGuard(0.0))
     guidance.step(0.0, motion(-300.0, 20.0, 0.7, SPEED - 1.0, 0.1))
     assert guidance.guard.asked[0][-1] == SPEED
+    # And to be as slow as it is, for against a disc that closes in the slower vehicle may come nearer.
+    assert guidance.guard.slowest[0] == pytest.approx(SPEED - 1.0, rel=1e-14)
 
 
 @pytest.mark.parametrize("allowed", [True, False])

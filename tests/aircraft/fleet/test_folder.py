@@ -129,7 +129,10 @@ def test_settings_say_title_commands_properties_and_envelope(heavy):
             "[envelope]\nairspeed_min_mps=50\nairspeed_mps=45\nairspeed_max_mps=55\nbank_deg=30",
             "airspeed_mps is 45; it must lie between",
         ),
-        ("[envelope]\nairspeed = 45", r"unknown key 'envelope.airspeed'|is missing"),
+        (
+            "[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=55\nbank_deg=30\nairspeed=45",
+            "unknown key 'envelope.airspeed'",
+        ),
         ("title = ", r"heavy\.toml: not valid TOML"),
     ],
 )

@@ -12,6 +12,7 @@ from aircraft.fleet.find import find_spec
 from aircraft.model_files import ModelFiles
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.model_copy import copy_model
+from aircraft.simulation.state import RigidBodyState
 from aircraft.spec import MODELS
 
 ROOT = find_spec("c172x").root
@@ -125,11 +126,15 @@ def test_engines_propellers_and_systems_of_the_common_folders_come_along(tmp_pat
     assert len(list((tmp_path / "engine").iterdir())) < 5
 
 
-@pytest.mark.parametrize(("name", "prop"), [("c310", "ap/elevator_cmd"), ("c172x", "ap/heading_hold")])
-def test_a_stock_aircrafts_own_autopilot_is_off(name, prop):
+@pytest.mark.parametrize("name", ["c310", "c172x"])
+def test_a_stock_aircrafts_own_autopilot_is_off(name):
     fdm = Fdm(find_spec(name))
-    fdm.step(3)
-    assert fdm.read(prop) == 0.0
+    fdm.place(RigidBodyState(altitude=1000.0, roll=0.3, pitch=0.1, velocity_body=(60.0, 0.0, 0.0)))
+    # Switched on, it would level the wings and hold its altitude at once.
+    for mode in ("attitude_hold", "heading_hold", "altitude_hold"):
+        fdm.write(f"ap/{mode}", 1.0)
+    fdm.step(30)
+    assert (fdm.read("ap/elevator_cmd"), fdm.read("ap/aileron_cmd")) == (0.0, 0.0)
 
 
 def test_a_copy_flies_under_the_stick_alone_as_the_original_does(tmp_path):
@@ -138,8 +143,6 @@ def test_a_copy_flies_under_the_stick_alone_as_the_original_does(tmp_path):
     spec = find_spec("T37")
     shutil.copytree(spec.root / "engine", tmp_path / "engine")
     shutil.copytree(spec.root / "aircraft" / "T37", tmp_path / "aircraft" / "T37")
-    from aircraft.simulation.state import RigidBodyState
-
     state = RigidBodyState(altitude=1000.0, roll=0.1, pitch=0.05, velocity_body=(80.0, 0.0, 4.0))
     flights = []
     for fdm in (Fdm(spec), Fdm(spec, tmp_path)):
@@ -151,10 +154,16 @@ def test_a_copy_flies_under_the_stick_alone_as_the_original_does(tmp_path):
 
 
 def test_an_original_with_an_output_into_a_file_leaves_none(tmp_path, monkeypatch):
+    spec = find_spec("c172x")
+    assert 'type="CSV"' in spec.files.file.read_text(encoding="utf-8")
+    copy_model(spec.files, tmp_path)
     monkeypatch.chdir(tmp_path)
-    fdm = Fdm(find_spec("c172x"))
-    fdm.step(10)
-    assert list(tmp_path.iterdir()) == []
+    before = sorted(tmp_path.rglob("*"))
+    # JSBSim opens an output as soon as the aircraft is placed, in the root that it flies from.
+    fdm = Fdm(spec, tmp_path)
+    fdm.place(RigidBodyState(altitude=1000.0, roll=0.0, pitch=0.0, velocity_body=(55.0, 0.0, 0.0)))
+    fdm.step(60)
+    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_the_projects_own_models_are_copied_as_they_are(tmp_path):

@@ -125,8 +125,14 @@ def test_course_rate_is_the_derivative_of_the_course_along_a_banking_turning_pat
 def test_while_the_bank_changes_the_course_rate_is_not_the_rate_of_yaw_and_sideslip():
     # The note of course_rate: at 45 degrees of bank and alpha = 0.08 rad, course and psi + beta differ by about
     # alpha sin(bank) = 0.06 rad. Tolerance: its one digit.
-    ahead, right, _ = level(body_velocity(20.0, 0.08, 0.0), math.radians(45.0), 0.06)
+    bank, velocity = math.radians(45.0), body_velocity(20.0, 0.08, 0.0)
+    ahead, right, _ = level(velocity, bank, 0.06)
     assert abs(math.atan2(right, ahead)) == pytest.approx(0.06, abs=0.005)
+    # Rolling about its own axis, nose level, at 0.7 rad/s: yaw and sideslip stay, and the course turns by alpha cos(bank) of that.
+    rates = (0.7, 0.0, 0.0)
+    assert euler_rates(rates, bank, 0.0)[2] == 0.0
+    turned = course_rate(velocity, tuple(float(a) for a in np.cross(rates, velocity)), bank, 0.0)
+    assert turned == pytest.approx(-0.7 * 0.08 * math.cos(bank), rel=0.01)
 
 
 def test_with_wind_adds_the_wind_whatever_the_attitude():

@@ -1,3 +1,4 @@
+import copy
 import math
 
 import pytest
@@ -61,9 +62,12 @@ def test_a_surface_that_stays_away_from_where_it_was_told_to_go_is_stuck_before_
 
 def test_a_stuck_surface_is_what_is_wrong_also_where_the_airspeed_has_gone():
     health = make()
-    for _ in range(10):
-        health.check(2.0, AIRSPEED, 0.0, 0.0, 0.0)
-    assert health.check(100.0, AIRSPEED, 0.0, 0.0, 1.0) is Fault.ACTUATOR_STUCK
+    # It slows down all the while: one that does not has its thrust, however much it lacks.
+    for step in range(10):
+        health.check(2.0, AIRSPEED - 0.1 * step, 0.0, 0.0, 0.0)
+    without = copy.copy(health)
+    assert without.check(100.0, AIRSPEED - 1.0, 0.0, 0.0, 0.0) is Fault.THRUST_LOST
+    assert health.check(100.0, AIRSPEED - 1.0, 0.0, 0.0, 1.0) is Fault.ACTUATOR_STUCK
 
 
 def test_a_reading_of_one_moment_that_a_surface_is_off_by_a_fifth_is_none():
@@ -93,5 +97,12 @@ def test_a_fault_once_detected_stays():
 def test_gusts_that_come_and_go_are_no_fault():
     health = make()
     # 6 m/s at 0.1 Hz: the mean of 2 s keeps 1/sqrt(1 + (0.2 pi 2)^2) = 0.62 of it, 3.7 m/s, above the limit; at 1 Hz 0.48 m/s.
+    # It slows down all the while, by a little: one that does not has its thrust, however much it lacks.
     for step in range(2000):
-        assert health.check(6.0 * math.sin(2.0 * math.pi * step * TIME_STEP), AIRSPEED, 0.0, 0.0, 0.0) is Fault.NONE
+        lack = 6.0 * math.sin(2.0 * math.pi * step * TIME_STEP)
+        assert health.check(lack, 100.0 - 0.01 * step, 0.0, 0.0, 0.0) is Fault.NONE
+    health = make()
+    slower = (
+        health.check(6.0 * math.sin(0.2 * math.pi * step * TIME_STEP), 100.0 - 0.01 * step, 0.0, 0.0, 0.0) for step in range(200)
+    )
+    assert Fault.THRUST_LOST in slower

@@ -85,8 +85,10 @@ def test_the_circle_is_joined_outside_of_its_place():
 
 
 def test_a_vessel_that_outruns_the_vehicle_is_followed():
-    _, circling = flown(NpfgLaw(), 60.0, vessel=(1.1 * SPEED, 0.0))
+    distances, circling = flown(NpfgLaw(), 60.0, vessel=(1.1 * SPEED, 0.0))
     assert circling.mode is Mode.OUTRUN
+    # Behind her, and somewhat to the side after its turn: she gains a tenth of its speed.
+    assert (distances[-1] - distances[-201]) / (200 * TIME_STEP) == pytest.approx(0.1 * SPEED, rel=0.03)
     # On her course, north.
     assert circling.tracker.heading_rate_demand == pytest.approx(0.0, abs=1e-6)
 

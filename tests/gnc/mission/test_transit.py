@@ -83,13 +83,21 @@ def test_the_relative_velocity_lies_along_the_way_to_the_target_where_that_is_cl
 @given(**geometry)
 @examples(100)
 def test_mirrored_geometry_gives_the_mirrored_course(distance, bearing, target, course, speed, heading):
-    one, other = Transit(TURN_RADIUS), Transit(TURN_RADIUS)
-    found = course_of(one, polar(distance, bearing), polar(TARGET_DISTANCE, target), velocity=polar(speed, heading), course=course)
-    mirrored = course_of(
-        other, polar(distance, -bearing), polar(TARGET_DISTANCE, -target), velocity=polar(speed, -heading), course=-course
-    )
-    # Where both sides are as long the first is taken, mirrored or not.
-    assume(one.side in (0, -other.side))
+    def asked(side, nudge=0.0):
+        transit = Transit(TURN_RADIUS)
+        found = course_of(
+            transit,
+            polar(distance, side * bearing),
+            polar(TARGET_DISTANCE, side * (target + nudge)),
+            velocity=polar(speed, side * heading),
+            course=side * (course + nudge),
+        )
+        return transit.side, found
+
+    # Where both sides are as long, or the way is just clear, the first is taken, mirrored or not: a hair's breadth decides.
+    assume(len({asked(1, nudge)[0] for nudge in (-1e-6, 0.0, 1e-6)}) == 1)
+    (one, found), (other, mirrored) = asked(1), asked(-1)
+    assert one == -other
     assert math.remainder(found + mirrored, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
 
 
@@ -103,6 +111,15 @@ def test_it_passes_on_the_shorter_side(sign):
     assert transit.side == sign
     expected = bearing + math.pi - sign * math.asin(ROUND / 600.0)
     assert math.remainder(found - expected, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_of_two_ways_nearly_as_long_it_takes_the_one_that_it_need_not_turn_to(sign):
+    # From 0.02 rad to the other side, so that the way round on this one is 0.04 rad of the round circle longer; it heads there.
+    transit, bearing = Transit(TURN_RADIUS), -sign * 0.02
+    lean = math.asin(ROUND / 600.0)
+    course_of(transit, polar(600.0, bearing), (-TARGET_DISTANCE, 0.0), course=bearing + math.pi - sign * lean)
+    assert transit.side == sign
 
 
 def test_it_keeps_the_side_that_it_has_chosen_until_the_way_is_clear():

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import aircraft
+import common
 import innerloop
 from aircraft.errors import AircraftError
 from aircraft.fleet.aerosonde import AEROSONDE
@@ -139,10 +140,12 @@ def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(
     assert len(remembered()) == 1
 
 
-@pytest.mark.parametrize(("package", "file"), [("aircraft", "dynamics/trim.py"), ("innerloop", "synthesis/weights.py")])
+@pytest.mark.parametrize(
+    ("package", "file"), [("aircraft", "dynamics/trim.py"), ("common", "units.py"), ("innerloop", "synthesis/weights.py")]
+)
 def test_any_changed_source_file_is_another_key(monkeypatch, tmp_path, package, file):
     before = design_key(X8, 100.0)
-    source = {"aircraft": aircraft, "innerloop": innerloop}[package]
+    source = {"aircraft": aircraft, "common": common, "innerloop": innerloop}[package]
     folder = shutil.copytree(next(iter(source.__path__)), tmp_path / package)
     monkeypatch.setattr(cache, package, SimpleNamespace(__path__=[str(folder)]))
     assert design_key(X8, 100.0) == before
@@ -150,10 +153,11 @@ def test_any_changed_source_file_is_another_key(monkeypatch, tmp_path, package, 
     assert design_key(X8, 100.0) != before
 
 
-def test_another_version_of_a_package_is_another_key(monkeypatch):
+@pytest.mark.parametrize("package", ["jsbsim", "numpy", "scipy", "control", "slycot"])
+def test_another_version_of_a_package_is_another_key(monkeypatch, package):
     before = design_key(X8, 100.0)
     version = cache.importlib.metadata.version
-    monkeypatch.setattr(cache.importlib.metadata, "version", lambda name: "0.0" if name == "jsbsim" else version(name))
+    monkeypatch.setattr(cache.importlib.metadata, "version", lambda name: "0.0" if name == package else version(name))
     assert design_key(X8, 100.0) != before
 
 

@@ -66,6 +66,8 @@ def test_the_record_has_each_step_predicted_and_flown_alike(record):
 
 
 def test_poles_are_recorded_in_conjugate_pairs_and_stable_when_closed(record):
+    # Of each of the 25 operating points.
+    assert len({(poles["airspeed_mps"], poles["bank_rad"]) for poles in record["poles"]}) == len(record["poles"]) == 25
     for poles in record["poles"]:
         assert all([re, -im] in poles["closed_loop"] for re, im in poles["closed_loop"])
         assert max(re for re, _ in poles["closed_loop"]) < 0.0

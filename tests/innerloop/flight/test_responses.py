@@ -100,7 +100,10 @@ def test_an_answer_that_never_gets_there_has_no_rise_time():
 
 
 def test_the_largest_deviation_counts_both_ways():
-    assert second_order().largest("altitude") == pytest.approx(0.3 * (1.0 + second_order().overshoot()), rel=1e-9)
+    peak = 1.0 + second_order().overshoot()
+    # Up to 0.3 m below, and up to 2 m/s above.
+    assert second_order().largest("altitude") == pytest.approx(0.3 * peak, rel=1e-9)
+    assert second_order().largest("airspeed") == pytest.approx(2.0 * peak, rel=1e-9)
 
 
 def test_a_predicted_step_starts_at_rest_and_scales_with_its_size(x8_schedule):

@@ -66,7 +66,10 @@ def test_a_stuck_elevon_is_noticed_half_a_second_after_a_turn_was_asked_of_it(fa
 def test_a_stuck_throttle_is_no_stuck_surface(failable, x8_schedule):
     watch = release(failable, x8_schedule)
     failable.fail("throttle")
+    failable.command_airspeed(25.0)
     errors, _ = watched(failable, watch, lambda _: 0.3, 5.0)
+    # Much more is asked of it than it gives.
+    assert failable.fdm.read("autopilot/throttle-command") - failable.fdm.read("fcs/throttle-cmd-norm") > 0.2
     assert max(errors) < 0.1
 
 

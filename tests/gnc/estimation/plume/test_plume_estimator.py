@@ -121,7 +121,9 @@ def test_stated_intervals_hold_the_truth() -> None:
 def test_innovations_are_those_of_a_consistent_filter() -> None:
     estimator = estimated(MadePlume(height=68.0), AROUND)
     # Chances of a hit are near 1, where squares are 0.02 unless there is a miss.
-    assert 0.0 < estimator.innovation < 1.5
+    assert 0.0 < estimator.innovation < 0.2
+    # And of one that reckons with a plume elsewhere, far above one, which it begins with: there are misses where hits are sure.
+    assert estimated(MadePlume(height=68.0, peak=0.0), AROUND).innovation > 2.0
 
 
 def test_a_plume_that_goes_is_lost_again() -> None:
@@ -144,6 +146,21 @@ def test_a_sensor_that_does_not_work_is_recognised_and_says_nothing(broken: floa
     assert estimator.state is PlumeState.SEARCHING
     # Only the drift of 45 s is left, 1.3 m of 12 m.
     assert np.abs(estimator.cells - before).max() < 0.05 * before.max()
+
+
+def test_a_pass_in_which_the_sensor_failed_says_nothing() -> None:
+    """The last third of each pass is stuck at 100 ppm more than clean air, which looks like the edge of a plume."""
+    estimator, generator = PlumeEstimator(PRIOR), np.random.default_rng(7)
+    before = estimator.cells.copy()
+    for i in range(round(4.0 * 18.0 / 0.1)):
+        estimator.predict(0.1)
+        stuck = (0.1 * i) % 9.0 > 6.0
+        reading = 520.0 if stuck else 420.0 + SENSOR.noise * generator.standard_normal()
+        estimator.update(230.0, 60.0 * math.cos(math.pi * 0.1 * i / 9.0), 65.0, reading if i % 2 == 0 else math.nan)
+    assert estimator.passes > 4
+    assert estimator.state is PlumeState.SEARCHING
+    # Only the drift of a minute is left.
+    assert np.abs(estimator.cells - before).max() < 0.1 * before.max()
 
 
 def test_a_sensor_that_comes_back_is_believed_again() -> None:
