@@ -82,7 +82,8 @@ def test_columns_units_and_places_are_mapped(logged, capsys):
     assert found["fsc_percent"] == pytest.approx(expected["fsc_percent"], rel=1e-9)
     samples = pd.read_csv(logged.parent / "mapped" / "samples.csv")
     # A degree is kept to 1e-16 of itself and the file to six digits.
-    np.testing.assert_allclose(samples["east_m"], table["east_m"], atol=0.01)
+    for name in ("north_m", "east_m"):
+        np.testing.assert_allclose(samples[name], table[name], rtol=0.0, atol=0.01, err_msg=name)
     capsys.readouterr()
 
 

@@ -46,6 +46,7 @@ def test_corners_that_a_search_has_found_are_kept_out_of(settings, tmp_path):
     rows = pd.read_csv(tmp_path / "run" / "summary.csv")
     # None of them was refused: every one has a closest approach.
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+    assert rows["guard_interventions"].sum() > 0
     assert rows["guard_lost_s"].sum() == 0.0
 
 

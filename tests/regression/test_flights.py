@@ -96,12 +96,14 @@ def test_from_anywhere_about_the_ship_nothing_enters(fly, seed, nu, approach):
 
 
 @pytest.mark.parametrize("course", [-150, -60, 30, 120])
-def test_starting_ahead_of_the_vessel_the_guard_finds_a_way_round(fly, course):
-    row, _ = fly(
-        f"start.course_deg={course}", "start.spread_deg=180", "start.distance_m=[300, 500]", "seed=4", "flight.crossings=4", nu=0.3
-    )
+def test_starting_ahead_of_the_vessel_without_an_approach_the_guard_keeps_out_and_it_gets_round(fly, course):
+    # With an approach it goes round by itself, and the guard has nothing to do.
+    words = [f"start.course_deg={course}", "start.spread_deg=180", "start.distance_m=[300, 500]", "guidance.approach=false"]
+    row, _ = fly(*words, "seed=4", "flight.crossings=4", nu=0.3)
+    assert abs(row["start_aspect_deg"]) > 90.0
     assert row["outcome"] == "completed"
     assert row["keepout_violations"] == 0
+    assert row["guard_interventions"] > 0
 
 
 def test_preview_and_airspeed_trim_each_take_away_error(fly):

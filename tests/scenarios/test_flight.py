@@ -68,6 +68,7 @@ def test_a_flight_for_a_while_completes_if_it_settles_and_crosses(changed, outco
     ).row
     assert (row["outcome"], row["criteria_met"]) == (outcome, outcome == "completed"), row["message"]
     assert words in row["message"]
+    assert row["mode_at_end"] == ("holding off" if "fault" in changed else "tracking")
 
 
 def test_manoeuvres_that_begin_after_the_end_of_the_flight_are_counted():

@@ -8,6 +8,7 @@ import pytest
 from PIL import Image
 
 from common.run_layout import REPORT_SETTINGS
+from scenarios import fly
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.schema.sections.report import ReportConfig
@@ -81,6 +82,7 @@ def test_neither_the_hash_nor_a_flight_depends_on_the_report(scenario, tmp_path)
     plain.write_text(SHORT, encoding="utf-8")
     assert hash_of(scenario) == hash_of(plain) == hash_of(plain, "report.title=2026")
     assert hash_of(plain) != hash_of(plain, "seed=4")
+    assert fly(plain, report={"title": "2026", "author": "A. Author"}).history.equals(fly(plain).history)
 
 
 def test_a_complete_run_that_is_resumed_with_another_report_flies_nothing_and_is_reported_anew(scenario, tmp_path):

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from plume_cases import EMISSION, air, straight
+from plume_cases import air, straight
 
 WIND, TRUE_WIND = 5.0, 7.0
 STEP = 2.0
@@ -65,13 +65,6 @@ def test_upwind_of_the_funnel_and_before_the_track_there_is_nothing():
     assert np.isnan(sample.age).all()
     # 249 m behind is what was emitted 49.8 s before.
     assert plume.sample(*np.array([[0.0], [-249.0], [0.0], [85.0]])).age[0] == pytest.approx(49.8)
-
-
-def test_excess_of_a_gas_is_its_rate_times_the_dilution_whatever_the_gas():
-    sample = straight(WIND, TRUE_WIND).sample(np.zeros(1), np.array([-200.0]), np.zeros(1), np.full(1, 75.0))
-    excess = np.array(EMISSION.rates) * sample.dilution
-    # Section 0, item 1: the ratio is immune to the plume.
-    assert excess[0] / excess[1] == pytest.approx(EMISSION.rates[0] / EMISSION.rates[1], rel=1e-12)
 
 
 def test_the_axis_is_the_largest_of_a_cross_section():

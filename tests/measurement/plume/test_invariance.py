@@ -31,21 +31,6 @@ def assert_same(one, other, rtol, names=NAMES):
         np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=rtol, atol=1e-6 * rtol, err_msg=name)
 
 
-def test_one_velocity_more_for_ship_wind_and_uav_changes_nothing():
-    time, north, east = TRACK
-    when, *place = flight()
-    velocity = np.array([13.0, -7.0])
-
-    def in_the_air(times, axis, values, wind):
-        # Over ground, and back to the air mass by the wind's integral: what a caller computes.
-        return (values + (4.0 + velocity[axis]) * times) - (wind + velocity[axis]) * times
-
-    moved = [in_the_air(time, k, values, 4.0) for k, values in enumerate((north, east))]
-    at = [in_the_air(when, k, values, 4.0) for k, values in enumerate(place[:2])]
-    # Rounding of 3 km is 1e-12 m; in the tails a millionth of a spread changes the exponential by as much.
-    assert_same(plume(TRACK).sample(when, *place), plume((time, *moved)).sample(when, *at, place[2]), 1e-8)
-
-
 @pytest.mark.parametrize(("turn", "shift", "later"), [(0.7, (0.0, 0.0), 0.0), (0.0, (5e4, -2e4), 0.0), (0.0, (0.0, 0.0), 1e4)])
 def test_where_and_when_the_frame_begins_changes_nothing(turn, shift, later):
     def seen(north, east):

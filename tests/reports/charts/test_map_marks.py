@@ -8,6 +8,7 @@ import pytest
 from measurement.emission.ship import ship_names, ship_preset
 from reports.document.chart import Line, Panel
 from reports.document.map_marks import arrow, hull_line, on_map, plume_lines
+from reports.document.palette import Meaning
 from reports.run.ship import ANY, HULLS, hull_of
 from reports.run.time_history import turned
 
@@ -62,6 +63,9 @@ def test_calm_air_has_no_arrow_and_what_is_not_known_no_word():
     assert [note.text for note in a_map(north=0.0, wind=(0.0, 0.0)).notes] == [" 100 m", "calm air", "N"]
     assert [note.text for note in a_map(north=None).notes] == [" 100 m"]
     assert [note.text for note in a_map(north=0.0, wind=(7.04, 0.3)).notes][1] == "wind 7.0 m/s"
+    # An arrow is a shaft and a head.
+    for wind, lines in (((0.0, 0.0), 0), ((7.04, 0.3), 2), (None, 0)):
+        assert sum(line.colour == Meaning.WIND for line in a_map(north=0.0, wind=wind).lines) == lines
 
 
 def test_a_plume_begins_at_the_funnel_and_is_as_wide_as_given():

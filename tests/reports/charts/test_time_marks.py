@@ -54,9 +54,13 @@ def test_a_mark_among_many_curves_is_left_out_with_its_word():
 def test_words_of_marks_that_are_near_each_other_do_not_overlap():
     _, notes = marked([], [f"{i} min" for i in range(1, 9)])
     assert 1 < len(notes) < 8
+    # A letter is a hundredth of the page wide at least.
+    shift = {"left": 0.5, "right": -0.5, "center": 0.0}
     for one, other in itertools.combinations(notes, 2):
-        # Of one side, a word's height apart at least; otherwise on different sides of the mark.
-        assert one.align != other.align or abs(one.y - other.y) >= 0.045 * SIZE
+        (middle, half), (its, its_half) = (
+            (note.x + shift[note.align] * 0.01 * SIZE * len(note.text), 0.005 * SIZE * len(note.text)) for note in (one, other)
+        )
+        assert abs(one.y - other.y) >= 0.045 * SIZE or abs(middle - its) >= half + its_half
 
 
 def test_words_in_a_row_are_apart_and_every_mark_is_kept():

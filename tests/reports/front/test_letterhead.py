@@ -64,7 +64,13 @@ def test_reports_of_a_run_that_exists_take_another_title_and_logo_and_leave_the_
     assert (run_path / "manifest.json").read_bytes() == before
 
 
-def test_a_run_without_a_date_or_settings_has_the_scenarios_title():
+def test_a_run_without_a_date_or_settings_has_the_scenarios_title(run_path):
+    manifest = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))
+    del manifest["begun_utc"], manifest["report"]
+    (run_path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    report = content(read_run(run_path))
+    assert report.title == "Short"
+    assert (report.letterhead.when, report.letterhead.signature, report.letterhead.logo) == ("date not recorded", "", None)
     assert parse_settings([]) == {}
 
 

@@ -3,12 +3,13 @@
 import numpy as np
 import pandas as pd
 import pytest
-from flight_cases import fly
+from flight_cases import fly, plan, scenario
 
 from scenarios.errors import InputError
 from scenarios.schema.load import CATALOG, load_study
 from scenarios.schema.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
+from scenarios.world.ais.reports import read_ais
 
 DANISH = {"track": str(CATALOG / "ais" / "made_danish.csv"), "mmsi": 219999001}
 DECLARED = {"vessel_acceleration_mps2": 0.1, "vessel_speed_max_mps": 8.0, "speed_error_mps": 0.5}
@@ -34,6 +35,13 @@ def test_an_hour_beside_a_ship_from_a_file_keeps_out_and_crossings_resume(hour):
 
 
 def test_the_vessel_is_heard_at_the_times_of_the_file_alone(hour):
+    flight = plan(scenario(vessel=DANISH, following=DECLARED, flight=LONG, wind={"speed_mps": 5.0, "from_deg": 60.0}))
+    times = np.array([when for when, _ in flight.sensing.received])
+    assert [report.time for _, report in flight.sensing.received] == times.tolist()
+    # The flight begins with the first report; rounding of seconds since 1970.
+    said = read_ais(DANISH["track"], DANISH["mmsi"]).time
+    flown = hour.row["duration_s"]
+    assert times[times <= flown] == pytest.approx((said - said[0])[said - said[0] <= flown], abs=1e-6)
     seen = np.hypot(*(hour.history[f"vessel_seen_{axis}_m"] - hour.history[f"vessel_{axis}_m"] for axis in ("north", "east")))
     # Errors of the reports are 3 m, and reports up to 20 s old.
     assert 0.5 < np.sqrt(np.mean(seen**2)) < 10.0

@@ -283,6 +283,8 @@ def test_reading_writes_nothing_beside_it(tmp_path):
     tmp_path.chmod(0o500)
     journal = Journal(path, reading=True)
     assert rows(journal) == [{"a": 1}]
+    # While it is open, too: SQLite removes what is its own as it closes, and root may write anywhere.
+    assert [each.name for each in tmp_path.iterdir()] == ["journal.sqlite"]
     journal.close()
     tmp_path.chmod(0o700)
     assert [each.name for each in tmp_path.iterdir()] == ["journal.sqlite"]

@@ -181,11 +181,14 @@ def test_without_time_for_any_ship_the_order_is_empty():
     assert inserted_order(served, 0j, 0.0, [0]).ships == exact_order(served, 0j, 0.0, [0]).ships == ()
 
 
-def test_of_few_ships_every_order_is_tried_and_of_many_some():
+def test_of_few_ships_every_order_is_tried_and_of_many_some(monkeypatch):
     air = Air(6 - 2j, V_R)
-    for count, made in ((4, exact_order), (EXACT_MAX + 1, inserted_order)):
-        served = prospect(ships(6, count, air=air), air)
-        assert best_order(served, 0j, 0.0, range(count)) == made(served, 0j, 0.0, range(count))
+    # Four ships of which insertion misses the best order.
+    few, many = prospect(ships(2, 4, air=air), air, endurance=2500.0), prospect(ships(6, EXACT_MAX + 1, air=air), air)
+    assert best_order(few, 0j, 0.0, range(4)) == exact_order(few, 0j, 0.0, range(4)) != inserted_order(few, 0j, 0.0, range(4))
+    expected = inserted_order(many, 0j, 0.0, range(EXACT_MAX + 1))
+    monkeypatch.setattr("scenarios.studies.patrol.order.exact_order", lambda *_: pytest.fail("every order of many is tried"))
+    assert best_order(many, 0j, 0.0, range(EXACT_MAX + 1)) == expected
 
 
 def test_a_leg_without_a_length_stays_where_it_is():

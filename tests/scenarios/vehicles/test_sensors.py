@@ -58,6 +58,14 @@ def test_noise_and_biases_are_as_large_as_they_say():
     assert np.std(biases) == pytest.approx(1.0 / math.sqrt(12.0), rel=0.25)
 
 
+def test_the_bias_of_the_heading_is_even_over_what_is_said():
+    exact = SENSORS.model_copy(update={"heading_sigma_deg": 0.0})
+    biases = np.degrees([readings(errors(exact, steps=1, seed=seed), 1)[0, 5] for seed in range(600)])
+    assert np.abs(biases).max() <= 2.0
+    # Even over 4 degrees: deviation 4/sqrt(12); of 600 (the kurtosis of a uniform is 1.8) known to 1.8 %; 4 sigma.
+    assert biases.std() == pytest.approx(4.0 / math.sqrt(12.0), rel=0.075)
+
+
 def test_the_error_of_satellite_navigation_has_its_deviation_from_the_first_reading_on():
     first = np.array([readings(errors(steps=1, seed=seed), 1)[0, :2] for seed in range(6000)])
     # 12,000 independent values: known to 0.65 %; 4 sigma. Were the first noise to count twice, it would be 4 % too large.
