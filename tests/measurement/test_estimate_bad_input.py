@@ -134,10 +134,14 @@ def test_areas_need_a_response_that_is_given():
 def test_random_records_give_an_estimate_or_a_line():
     generator = np.random.default_rng(3)
     spec = sensor_preset("unspecified")
+    lines = 0
     for _ in range(40):
         length = int(generator.integers(0, 60))
         time = np.cumsum(generator.exponential(1.0, length))
         values = generator.normal(0.0, 10.0 ** generator.uniform(-2, 4), (length, 4)) + np.array([0.0, 420.0, 0.0, 0.0])
         values[generator.random(values.shape) < 0.05] = np.nan
         found = outcome(Readings(time, values), spec)
-        assert "\n" not in found if isinstance(found, str) else found.quality == "C" or found.total_percent > 0.05
+        # Of noise nothing is known.
+        assert "\n" not in found if isinstance(found, str) else found.quality == "C"
+        lines += isinstance(found, str)
+    assert 0 < lines < 40
