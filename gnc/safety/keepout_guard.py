@@ -261,12 +261,11 @@ class KeepoutGuard:
         """Return the command with the least of a turn away that keeps off, or the turn that was safe before [rad/s]."""
         slack, side, motions, tube = self._best_turn(situations)
         self._side = side
-        turn, left = self._turn(side, motions[0])
+        turn = self._turn(side, motions[0])
         floor = _RESOLUTION * motions[0][5] / self._rate
         self.lost = slack < -self._explained - floor
         if slack < 0.0:
-            # Beyond straight away by less than a right angle it turns back: going on would lead once round, towards the disc.
-            return math.copysign(turn, left) if abs(left) < 0.5 * math.pi else turn
+            return turn
         self._kept_off = tube
         low, high, mixed = 0.0, 1.0, turn
         for _ in range(_BISECTIONS):
@@ -279,20 +278,23 @@ class KeepoutGuard:
                 low = fraction
         return mixed
 
-    def _turn(self, side: float, motion: Motion) -> tuple[float, float]:
-        """Return the command of a turn away [rad/s], straight away from the disc and no farther, and the course to there [rad]."""
+    def _turn(self, side: float, motion: Motion) -> float:
+        """Return the command of a turn away [rad/s]: straight away from the disc and no farther.
+
+        Beyond straight away by less than a right angle it turns back: going on would lead once round, towards the disc.
+        """
         x, y, _, _, course, _, heading_rate, *_ = motion
         left = math.remainder(math.atan2(y, x) - course - self._lag * heading_rate, 2.0 * math.pi)
         if side * left >= self._rate * self._time_step or abs(left) >= 0.5 * math.pi:
-            return side * self._rate, left
-        return math.copysign(min(abs(left) / self._time_step, self._rate), left), left
+            return side * self._rate
+        return math.copysign(min(abs(left) / self._time_step, self._rate), left)
 
     def _best_turn(self, situations: Sequence[Situation]) -> tuple[float, float, tuple[Motion, ...], Tube]:
         """Return slack [m], side, motions and disc of the turn away to fly: the one that was safe, or the best if it is not."""
         found: list[tuple[float, float, tuple[Motion, ...], Tube]] = []
         for motions, tube in situations:
             for side in (self._side, -self._side) if self._side else (1.0, -1.0):
-                starts = self._after(self._turn(side, motions[0])[0], motions)
+                starts = self._after(self._turn(side, motions[0]), motions)
                 slack, _ = self._slack(side, starts, motions, -math.inf)
                 found.append((slack, side, motions, tube))
                 if self._side and slack >= 0.0:

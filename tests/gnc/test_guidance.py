@@ -145,6 +145,16 @@ def test_the_guard_reckons_with_the_airspeed_that_comes_back(guarded_by):
     assert guidance.guard.slowest[0] == pytest.approx(SPEED - 1.0, rel=1e-14)
 
 
+def test_an_airspeed_that_is_flown_in_place_of_the_one_commanded_is_reckoned_with(guarded_by):
+    guard = RecordingGuard(0.0)
+    guard.overruled = lambda _: None
+    guidance = guarded_by(guard)
+    guidance.step(0.0, motion(-300.0, 20.0, 0.7))
+    guidance.overruled(0.1, SPEED + 3.0)
+    guidance.step(TIME_STEP, motion(-300.0, 20.0, 0.7))
+    assert guard.asked[-1][-1] == SPEED + 3.0
+
+
 @pytest.mark.parametrize("allowed", [True, False])
 def test_on_the_way_it_flies_faster_only_where_the_guard_allows_that(guarded_by, allowed):
     guard = RecordingGuard(0.0, intervening=False, allowed=allowed)

@@ -46,17 +46,19 @@ class DiscGuard:
         self.guard.tubes = (Tube(*place, radius_inflation, 0.0, self._acceleration),)
         return KnownMotion(ground_north=self._north + x, ground_east=self._east + y, course=course, heading_rate=heading_rate)
 
-    def limit(self, command, x, y, velocity_north, velocity_east, course, speed, heading_rate, *, radius_inflation=0.0):
+    def limit(
+        self, command, x, y, velocity_north, velocity_east, course, speed, heading_rate, *, radius_inflation=0.0, slowest=math.inf
+    ):
         own = self._own(x, y, velocity_north, velocity_east, course, heading_rate, radius_inflation)
-        answer = self.guard.limit(command, self._time, own, speed)
+        answer = self.guard.limit(command, self._time, own, speed, slowest)
         self._time += TIME_STEP
         self._north += TIME_STEP * velocity_north
         self._east += TIME_STEP * velocity_east
         return answer
 
-    def allows(self, command, x, y, velocity_north, velocity_east, course, speed, heading_rate):
+    def allows(self, command, x, y, velocity_north, velocity_east, course, speed, heading_rate, *, slowest=math.inf):
         own = self._own(x, y, velocity_north, velocity_east, course, heading_rate, 0.0)
-        return self.guard.allows(command, self._time, own, speed)
+        return self.guard.allows(command, self._time, own, speed, slowest)
 
     def clearance(self, x, y, velocity_north, velocity_east, course, speed, heading_rate):
         own = self._own(x, y, velocity_north, velocity_east, course, heading_rate, 0.0)

@@ -4,8 +4,9 @@ import math
 from collections import deque
 
 import numpy as np
-from gnc_cases import SPEED
-from guard_cases import LAGS, TIME_STEP, aim_at_the_centre, make_guard, moved
+import pytest
+from gnc_cases import HEADING_RATE_MAX, SPEED
+from guard_cases import LAGS, RADIUS, TIME_STEP, aim_at_the_centre, make_guard, moved
 
 
 @LAGS
@@ -41,3 +42,39 @@ def test_what_is_allowed_at_a_speed_is_safe_at_that_speed_from_then_on():
     free = guard.guard._free_steps
     assert guard.allows(0.0, -far - 60.0, 0.0, 0.0, 0.0, 0.0, 1.5 * SPEED, 0.0)
     assert 0 < guard.guard._free_steps < free
+
+
+def test_it_allows_nothing_that_a_slower_vehicle_could_not_turn_away_after():
+    # Heading off from a disc that closes in at 0.8 of its speed: 12 m are left over, and at three quarters of its speed 7 m lack.
+    motion = (-215.0, 0.0, -0.8 * SPEED, 0.0, math.radians(120.0), SPEED, 0.0)
+    for slowest, allowed in ((math.inf, True), (SPEED - 0.4, True), (0.75 * SPEED, False)):
+        guard = make_guard()
+        assert guard.allows(0.0, *motion, slowest=slowest) == allowed
+        assert (guard.limit(0.0, *motion, slowest=slowest) == 0.0) == allowed
+        assert guard.intervening != allowed
+
+
+def test_it_remembers_of_a_fast_vehicle_no_more_than_it_can_turn():
+    guard = make_guard(turn_speed=SPEED)
+    for speed in (SPEED, 1.5 * SPEED):
+        guard.limit(HEADING_RATE_MAX, 1000.0, 0.0, 0.0, 0.0, 0.0, speed, 0.0)
+        # Flown at the largest bank; the command itself is passed on as it is.
+        assert guard.guard._given.since[-1] == HEADING_RATE_MAX * SPEED / speed
+
+
+@pytest.mark.parametrize("speed", [SPEED, 1.5 * SPEED])
+def test_far_away_it_need_not_look_for_as_long_as_nothing_can_happen(speed):
+    # Straight at each other, the disc speeding up all the while: at the end of that time, and no later, a turn may be needed.
+    acceleration = 0.3
+    guard = make_guard(turn_speed=SPEED, acceleration=acceleration)
+
+    def free_from(distance, closing):
+        return guard.guard._free_when_far((-distance, 0.0, -closing, 0.0, 0.0, speed, 0.0, RADIUS, 0.0, acceleration, 0.0, 0.0))
+
+    duration = 1.5 * math.pi / HEADING_RATE_MAX * speed / SPEED
+    for distance in (800.0, 1000.0, 1200.0):
+        free = free_from(distance, 5.0)
+        then = distance - (speed + 5.0) * free - 0.5 * acceleration * free**2
+        assert free_from(then, 5.0 + acceleration * free) >= -1e-9
+        # What is left is what both can close in a full turn, which takes the longer the faster it flies.
+        assert free == 0.0 or then - RADIUS > (speed + 5.0 + acceleration * free) * duration

@@ -13,8 +13,6 @@ from gnc.estimation.reachable_set import Tube
 from gnc.numeric import wrap
 from gnc.safety.keepout_guard import KeepoutGuard
 
-pytestmark = pytest.mark.study
-
 HUNTED = pytest.mark.parametrize("hunter", HUNTERS, ids=lambda hunter: hunter.__name__)
 
 

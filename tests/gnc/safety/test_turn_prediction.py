@@ -3,20 +3,21 @@ import math
 import numpy as np
 import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
-from guard_cases import LAGS, RADIUS, TURN_RADIUS, make_guard, moved, random_start, random_velocity
+from guard_cases import LAGS, RADIUS, TIME_STEP, TURN_RADIUS, make_guard, moved, random_start, random_velocity
 
 from gnc.numeric import wrap
+from gnc.safety.turn_prediction import TurnPrediction
 
 
-def turn_by_hand(side, state, velocity, lag, delay):
+def turn_by_hand(side, state, velocity, lag, delay, speed=SPEED, rate=HEADING_RATE_MAX):
     """Return by how much a full turn keeps the radius [m], flown in small steps for two turns or until it heads straight away."""
     x, y, course, turn = state
     closest, piece = math.inf, 0.005
-    for i in range(round(30.0 / piece)):
+    for i in range(round(30.0 * HEADING_RATE_MAX / rate / piece)):
         begun = i * piece >= delay - 1e-9
         if begun:
             closest = min(closest, math.hypot(x, y))
-        x, y, course, turn = moved((x, y, course, turn), side * HEADING_RATE_MAX if begun else turn, lag, piece)
+        x, y, course, turn = moved((x, y, course, turn), side * rate if begun else turn, lag, piece, speed)
         x, y = x - velocity[0] * piece, y - velocity[1] * piece
         if begun and side * turn > 0.0 and 0.0 <= side * wrap(math.atan2(y, x) - course) < 0.05:
             break
@@ -33,6 +34,49 @@ def test_the_clearance_is_that_of_the_better_turn_away_flown_in_small_steps(lag,
         flown = max(turn_by_hand(side, state, velocity, lag, delay) for side in (1.0, -1.0))
         # The points are 0.125 rad apart; the closest approach between them is predicted to 0.04 m (gnc/safety/turn_prediction.py).
         assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
+
+
+def test_a_vehicle_faster_than_it_can_turn_at_omega_max_is_predicted_to_turn_as_it_can():
+    generator = np.random.default_rng(8)
+    for _ in range(6):
+        velocity, state = random_velocity(generator, 0.6 * SPEED), random_start(generator, nearest=RADIUS)
+        found = make_guard(turn_speed=SPEED).clearance(*state[:2], *velocity, state[2], 1.5 * SPEED, state[3])
+        rate = HEADING_RATE_MAX / 1.5
+        flown = max(turn_by_hand(side, state, velocity, 0.4, 0.0, 1.5 * SPEED, rate) for side in (1.0, -1.0))
+        assert found == pytest.approx(flown, abs=1e-3 * 1.5**2 * TURN_RADIUS)
+
+
+def away(side=1.0, *, turn=0.0, course=0.0, closing=0.0, to_come=0.0, change=0.0, deviation=0.0, **start):
+    """Return by how much a turn away keeps off [m], which is begun 250 m from the centre of a disc of 200 m, due south of it."""
+    prediction = TurnPrediction(heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=0.0, time_step=TIME_STEP, deviation=deviation)
+    place = {"x": -250.0, "y": 0.0} | start
+    motion = (*place.values(), closing, 0.0, course, SPEED, turn, RADIUS, 0.0, 0.0, to_come, change)
+    return prediction.turn_away(side, (*place.values(), course, turn), motion, 0.0, -math.inf)[0]
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_what_is_to_come_of_earlier_commands_counts_against_a_turn_and_not_for_it(side):
+    alone = away(side)
+    # As if it turned the other way by as much, and not as if it turned already.
+    assert away(side, to_come=-side * 0.3) == away(side, turn=-side * 0.3)
+    # 0.3 rad/s for 0.25 s are 0.075 rad, of a turn radius of 39 m.
+    assert away(side, to_come=-side * 0.3) < alone - 2.0
+    assert away(side, to_come=side * 0.3) == alone
+
+
+def test_the_deviation_counts_by_the_larger_of_the_roll_ahead_and_the_one_of_late():
+    # In the turn already none lies ahead, and half of it if wings are level; the other way all of it.
+    for turn, ahead in ((HEADING_RATE_MAX, 0.0), (0.0, 0.5), (-HEADING_RATE_MAX, 1.0)):
+        for change in (0.2, 0.7):
+            kept = away(turn=turn, change=change) - away(turn=turn, change=change, deviation=8.0)
+            assert kept == pytest.approx(8.0 * max(ahead, change), abs=1e-9)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("beyond", [0.0, 0.05, 0.1])
+def test_a_turn_that_begins_just_beyond_straight_away_is_over(side, beyond):
+    # The disc gains on the vehicle by 0.1 m/s, and by as much as the course is off. Once round it would gain 250 m.
+    assert away(side, course=math.pi + side * beyond, closing=-SPEED - 0.1) > 0.0
 
 
 @pytest.mark.parametrize("aspect_deg", [60.0, 90.0, 120.0])
