@@ -1,21 +1,16 @@
-# On a fresh machine: `make sweep_nu` flies the study and reports, `make test` runs the tests. Each installs what it
+# On a fresh machine: `make sweep_nu` flies the study and reports, `make test` runs every test. Each installs what it
 # needs into .venv, once.
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
-PYTEST := $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: sweep_nu test studies check docs bench lock clean
+.PHONY: sweep_nu test check docs bench lock clean
 
 sweep_nu: .venv
 	@$(BIN)/python -m scenarios.run sweep_nu
 
 test: .venv/.developer
-	@$(PYTEST) -m 'not study'
-
-# The tests that take longest: whole studies, long searches, designs of other aircraft.
-studies: .venv/.developer
-	@$(PYTEST) -m study
+	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 check: .venv/.developer
 	$(BIN)/ruff check .

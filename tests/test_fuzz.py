@@ -27,8 +27,6 @@ from scenarios.studies.registry import study_of
 from tests.in_process import run_command
 from tests.scenarios.short_trial import short_trial
 
-pytestmark = pytest.mark.study
-
 DEPTH = int(os.environ.get("FUZZ_DEPTH", "1"))
 TIME_MAX = 60
 """Longest example [s]."""

@@ -7,8 +7,6 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pytest
 
-pytestmark = pytest.mark.study
-
 TUTORIALS = Path(__file__).parents[2] / "docs" / "tutorials"
 
 PRINTED = {

@@ -16,8 +16,6 @@ from measurement.estimate.record import checked_record
 from measurement.gases import fsc_factor
 from measurement.sniffer import Readings, sensor_preset
 
-pytestmark = pytest.mark.study
-
 REPEATS = 400
 """They give a standard deviation to 3.5 %; a tenth, which is asked for, is nearly three times that."""
 

@@ -5,8 +5,6 @@ import math
 import pytest
 from study_runs import assert_flown_as_the_issue_asks, fly_study
 
-pytestmark = pytest.mark.study
-
 NUS = (0.3, 0.5, 0.7)
 
 

@@ -9,8 +9,6 @@ import pytest
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
-pytestmark = pytest.mark.study
-
 SILENT_BRAKING = [
     "sea_faults", "draws=[]", "flights=2", "fault.kind=vessel_data", "fault.at_s=[200,200]", "flight.duration_max_s=300",
     "vessel.speed_mps=12", "vessel.manoeuvres=[{at_s=200,speed_mps=2,acceleration_mps2=0.25}]",

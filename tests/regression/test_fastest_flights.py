@@ -4,8 +4,6 @@ import pytest
 
 from tests.regression.study_runs import assert_flown_as_the_issue_asks, fly_study
 
-pytestmark = pytest.mark.study
-
 FASTEST = "reference.shape=fastest"
 
 

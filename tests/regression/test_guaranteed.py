@@ -7,8 +7,6 @@ from reports.build import build_reports
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
-pytestmark = pytest.mark.study
-
 
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory):

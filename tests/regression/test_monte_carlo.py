@@ -9,8 +9,6 @@ from scenarios.engine.executors import ExecutorFactory
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
-pytestmark = pytest.mark.study
-
 FLIGHTS = 12
 
 

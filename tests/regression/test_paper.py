@@ -21,8 +21,6 @@ from scenarios.studies import paper
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
-pytestmark = pytest.mark.study
-
 BOTH = pytest.mark.parametrize("fidelity", ["kinematic", "six_dof"])
 
 

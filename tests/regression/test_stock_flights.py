@@ -12,8 +12,6 @@ from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.errors import InputError
 
-pytestmark = pytest.mark.study
-
 # The speed ratios, as many as fit into the suite's three minutes. All of them, the c172x and the c310 fly all three; a
 # flight of the 737 took up to 13 s and is left to the command line; its design is checked in tests/verification.
 NUS = (0.3, 0.5)

@@ -17,8 +17,6 @@ from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.spec import MODELS
 
-pytestmark = pytest.mark.study
-
 AIRSPEED, ALTITUDE = 25.0, 100.0  # m/s, m: where the authors start their simulations
 WORLD = bm.World(standard_density, equatorial_gravity(ALTITUDE))
 LAGS = bm.Lags()

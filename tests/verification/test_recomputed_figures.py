@@ -15,8 +15,6 @@ from scenarios.engine.executors import ExecutorFactory
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
-pytestmark = pytest.mark.study
-
 # Issue: to 1 mm and 1e-5 s.
 METRES, SECONDS = 1e-3, 1e-5
 

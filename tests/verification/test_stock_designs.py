@@ -8,8 +8,6 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import flown_step, model_step
 from innerloop.jsbsim.root import write_root
 
-pytestmark = pytest.mark.study
-
 STOCK = ("T37", "737", "c172p")
 TURN = 0.5
 """Of the heading rate that the study's turn has, in the step that is flown [-]."""

@@ -5,8 +5,6 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.study
-
 SCRIPTS = Path(__file__).parents[3] / "docs" / "scripts"
 
 PRINTED = {

@@ -13,8 +13,6 @@ from scenarios.statistics.subset_statistics import subset_statistics
 from tests.scenarios.statistics.rare_events import DIMENSION, linear, noisy, simulated
 from tests.scenarios.study_rows import study_rows
 
-pytestmark = pytest.mark.study
-
 REPEATS = 5
 
 

@@ -17,8 +17,6 @@ from tests.scenarios.statistics.rare_events import (
     simulated,
 )
 
-pytestmark = pytest.mark.study
-
 
 def estimates(value, count, **settings):
     return np.array([simulated(value, [20261201, i], **settings)[0].below(0.0) for i in range(count)])

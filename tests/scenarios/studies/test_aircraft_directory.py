@@ -15,8 +15,6 @@ from reports.build import build_reports
 from scenarios.schema.load import load_document
 from tests.in_process import assert_refused, run_command
 
-pytestmark = pytest.mark.study
-
 SCRIPT = Path(__file__).parents[3] / "docs" / "scripts" / "aircraft_directory.py"
 SWEEP = ["--set", "sweep.nu=[0.3, 0.6]", "--set", "flight.crossings=10", "--set", "comparison.variants=[]", "--set", "histories=2"]
 

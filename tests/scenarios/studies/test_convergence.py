@@ -18,8 +18,6 @@ from scenarios.studies.convergence.cases import REFERENCES, draw_case, reference
 from scenarios.studies.convergence.ensemble import COLUMNS, convergence_blocks, convergence_table, counterexamples, trajectory_of
 from scenarios.studies.convergence.study import ConvergenceWork
 
-pytestmark = pytest.mark.study
-
 # The paper's vehicle (reference/paper-notes.md) and the guidance of the catalogue's scenarios.
 SPEED, HEADING_RATE_MAX, BAND = 19.42, 0.503, 5.0
 LOOK_AHEAD = look_ahead(0.005, 60.0)

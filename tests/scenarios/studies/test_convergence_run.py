@@ -14,8 +14,6 @@ from scenarios.schema.load import load_study
 from scenarios.schema.sections.convergence import ConvergenceScenario
 from scenarios.studies.registry import run_study
 
-pytestmark = pytest.mark.study
-
 FEW = ["ensemble.trajectories=30", "ensemble.distance_max_m=300", "ensemble.samples=2"]
 
 

@@ -18,8 +18,6 @@ from scenarios.studies.falsification import study as falsification
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 
-pytestmark = pytest.mark.study
-
 POPULATION, GENERATIONS, KEPT, CONFIRMATIONS = 16, 7, 3, 2
 
 METHODS = ("corners", "differential_evolution", "local", "cma")

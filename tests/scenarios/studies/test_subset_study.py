@@ -18,8 +18,6 @@ from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from scenarios.world.noise import Noise
 
-pytestmark = pytest.mark.study
-
 RARE = """
 study = "monte_carlo"
 method = "subset"
