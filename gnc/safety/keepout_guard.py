@@ -279,12 +279,10 @@ class KeepoutGuard:
         return mixed
 
     def _turn(self, side: float, motion: Motion) -> float:
-        """Return the command of a turn away [rad/s]: straight away from the disc and no farther.
-
-        Beyond straight away by less than a right angle it turns back: going on would lead once round, towards the disc.
-        """
+        """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""
         x, y, _, _, course, _, heading_rate, *_ = motion
         left = math.remainder(math.atan2(y, x) - course - self._lag * heading_rate, 2.0 * math.pi)
+        # From less than a right angle beyond it turns back: going on would lead once round, towards the disc.
         if side * left >= self._rate * self._time_step or abs(left) >= 0.5 * math.pi:
             return side * self._rate
         return math.copysign(min(abs(left) / self._time_step, self._rate), left)
