@@ -19,8 +19,8 @@ from aircraft.simulation.fdm import TIME_STEP, Fdm
 from benchmarks.engine import REFERENCE_STEP, report_engine
 from benchmarks.guidance import report_guidance
 from benchmarks.reports import report_reports
+from benchmarks.vehicle import x8_setup
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from scenarios.engine.run_directory import RunDirectory
 from scenarios.metrics.figures import flight_figures
 from scenarios.metrics.relative_state import flight_history
 from scenarios.planning.planner import plan_flight
@@ -28,7 +28,7 @@ from scenarios.schema.load import checked, load_document
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.release import release
-from scenarios.vehicles.vehicle_setup import VehicleSetup, aircraft_setup, design_of
+from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 ROUNDS, STUDIES = 15, 3
 """Rounds of the loops, and of whole studies."""
@@ -49,12 +49,7 @@ def main() -> None:
     words = ["vessel.speed_ratio=0.5", "start.course_deg=0.0", f"flight.duration_max_s={SIMULATED_TIME}", "flight.crossings=10000"]
     scenario = checked(load_document("sweep_nu", words), Scenario)
     with tempfile.TemporaryDirectory() as folder:
-        designed, refusal = design_of(X8, scenario.plume.source_height_m)
-        if designed is None:
-            raise SystemExit(f"error: {refusal}")
-        run_directory = RunDirectory(Path(folder) / "run")
-        run_directory.open("", resume=False)
-        setup = aircraft_setup(designed, scenario, run_directory)
+        setup = x8_setup(scenario, Path(folder))[1]
         runs, parts = _loops(scenario, setup, Path(folder))
         for run in runs.values():
             run()

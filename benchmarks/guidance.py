@@ -17,13 +17,12 @@ from unittest import mock
 
 import pandas as pd
 
-from aircraft.fleet.x8 import X8
+from benchmarks.vehicle import x8_setup
 from common.run_layout import SUMMARY, time_history_path
 from gnc.compose import compose
 from gnc.estimation.target_motion import ReportedTarget
 from gnc.guidance import Guidance
 from gnc.mission.searched_axis import SearchedAxis
-from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
@@ -35,7 +34,7 @@ from scenarios.schema.sections.flight import FlightConfig, StartConfig
 from scenarios.schema.sections.guidance import FollowingConfig
 from scenarios.schema.sections.world import EmissionConfig, PlumeConfig, VesselConfig, WindConfig
 from scenarios.simulation.plume_readings import axis_of
-from scenarios.vehicles.vehicle_setup import VehicleSetup, aircraft_setup, design_of
+from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 ROUNDS = 9
 """Rounds of the benchmark alone."""
@@ -171,12 +170,7 @@ def _step_through(guidance: Guidance, measured: Measured, reports: list[Any], pa
 def main() -> None:
     """Print the benchmark alone."""
     with tempfile.TemporaryDirectory() as folder:
-        design, refusal = design_of(X8, FOLLOWING.plume.source_height_m)
-        if design is None:
-            raise SystemExit(f"error: {refusal}")
-        run_directory = RunDirectory(Path(folder) / "run")
-        run_directory.open("", resume=False)
-        report_guidance(ROUNDS, aircraft_setup(design, FOLLOWING, run_directory))
+        report_guidance(ROUNDS, x8_setup(FOLLOWING, Path(folder))[1])
 
 
 if __name__ == "__main__":

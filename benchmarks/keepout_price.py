@@ -8,12 +8,11 @@ import math
 import tempfile
 from pathlib import Path
 
-from scenarios.engine.run_directory import RunDirectory
+from benchmarks.vehicle import x8_setup
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.spreads import predicted_spreads
 from scenarios.schema.load import load_study
 from scenarios.schema.scenario import Scenario
-from scenarios.vehicles.vehicle_setup import aircraft_setup, design_of, spec_of
 
 RATIOS = (0.2, 0.5, 0.8)
 """Speed ratios of the table [-]."""
@@ -60,13 +59,9 @@ def prices(scenario_file: Path) -> dict[str, list[float]]:
 def _margin(scenario_file: Path, keys: tuple[str, ...], ratio: float) -> float:
     known = ("start.aspect_deg=0", "start.course_deg=0")
     scenario = load_study(str(scenario_file), [*keys, *known, f"vessel.speed_ratio={ratio}"])
-    spec = spec_of(scenario) if isinstance(scenario, Scenario) else None
-    if spec is None or not isinstance(scenario, Scenario):
-        raise TypeError("the price is that of flights of an aircraft")
-    design, why = design_of(spec, scenario.plume.source_height_m)
-    if design is None:
-        raise RuntimeError(why)
-    setup = aircraft_setup(design, scenario, RunDirectory(scenario_file.parent / "run"))
+    if not isinstance(scenario, Scenario):
+        raise TypeError("the price is that of flights")
+    design, setup = x8_setup(scenario, scenario_file.parent)
     spreads = predicted_spreads([scenario], design, setup)
     plan = plan_flight(scenario, flight_id="price", seed=1, setup=setup, spreads=spreads)
     return plan.margin.total if plan.margin else math.nan
