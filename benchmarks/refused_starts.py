@@ -18,6 +18,7 @@ import numpy as np
 from benchmarks.vehicle import x8_setup
 from gnc.errors import InfeasibleError
 from gnc.reference.oscillation import bank_for_heading_rate, heading_rate_for_bank
+from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.experiment.sampling import Points
 from scenarios.planning.limits import omega_max
@@ -128,7 +129,11 @@ def main() -> None:
     """Print how many starts are refused, and from how many of them the search finds an escape."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("keys", nargs="*", metavar="KEY=VALUE", help="keys of the scenario")
-    starts = list(refused_starts(parser.parse_args().keys))
+    asked = parser.parse_args()
+    try:
+        starts = list(refused_starts(asked.keys))
+    except InputError as error:
+        parser.exit(2, f"error: {error}\n")
     refused = [start for start in starts if start is not None]
     print(f"{len(starts)} starts, {len(refused)} refused")
     for title, full_throttle in (("the guidance's airspeed", False), ("full throttle", True)):
