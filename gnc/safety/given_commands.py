@@ -1,4 +1,7 @@
-"""Commands that a vehicle has been given, and what is still to come of them (docs/keepout_guard.md, "What is still to come")."""
+"""Commands that a vehicle has been given, and what is still to come of them.
+
+docs/keepout_guard.md, "Course that earlier commands still bring", says how that is known.
+"""
 
 import math
 from collections import deque
