@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from common.units import STANDARD_GRAVITY
 from gnc.laws.path.adapter import PathLaw, PathMotion, path_motion, turn_rate
 from gnc.laws.steering_law import NO_CIRCLE, ON_CIRCLE, Surroundings, steering_law
 from gnc.numeric import wrap
@@ -145,7 +146,7 @@ def decided(angle: float, last: float, *, bearing: float, yaw: float) -> float:
 
 def roll_command(acceleration: float, pitch: float = 0.0) -> int:
     """Return the roll for a lateral acceleration [m/s2] at a pitch [rad], in whole hundredths of a degree."""
-    roll = math.degrees(math.atan(acceleration / (9.80665 * math.cos(clip(pitch, -math.pi / 3.0, math.pi / 3.0)))))
+    roll = math.degrees(math.atan(acceleration / (STANDARD_GRAVITY * math.cos(clip(pitch, -math.pi / 3.0, math.pi / 3.0)))))
     return int(100.0 * clip(roll, -90.0, 90.0))
 
 

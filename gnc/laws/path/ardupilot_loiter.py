@@ -7,12 +7,12 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from common.units import STANDARD_GRAVITY
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
 from gnc.laws.path.ardupilot_l1 import ONE_OVER_PI, decided
 from gnc.laws.steering_law import CIRCLES_ALONE, ON_OSCILLATION, steering_law
 from gnc.vectors import Vector, along, clip, course_of, cross, dot, minus, norm, plus, scaled
 
-_G = 9.80665
 _QUARTER = 1.5708
 _CENTRE = 0.1
 """Distance from the centre within which it has no bearing [m]."""
@@ -109,7 +109,7 @@ def loiter_radius(radius: float, *, true_over_equivalent_airspeed: float, bank_l
     scale = true_over_equivalent_airspeed**2
     if bank_limit == 0.0 or airspeed == 0.0:
         return radius * scale
-    smallest = airspeed * airspeed / (_G * math.tan(bank_limit))
+    smallest = airspeed * airspeed / (STANDARD_GRAVITY * math.tan(bank_limit))
     return radius * scale if smallest > radius else max(smallest * scale, radius)
 
 

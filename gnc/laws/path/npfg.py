@@ -8,12 +8,10 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from common.units import STANDARD_GRAVITY
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
 from gnc.laws.steering_law import steering_law
 from gnc.vectors import Vector, clip, course_of, cross, dot, minus, norm, plus, right_of, scaled
-
-G = 9.80665
-"""Standard gravity [m/s2]."""
 
 _EPSILON = 1e-6
 _RADIUS_MIN = 0.5
@@ -134,7 +132,7 @@ def npfg(
         feed_forward=feed_forward,
         airspeed=norm(reference),
         heading=course_of(reference),
-        roll=clip(math.atan(acceleration / G), -p.roll_limit, p.roll_limit),
+        roll=clip(math.atan(acceleration / STANDARD_GRAVITY), -p.roll_limit, p.roll_limit),
         bearing=course_of(bearing),
         period=period,
         error_bound=bound,
