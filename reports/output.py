@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from reports.document.chart import Chart
+    from reports.export import Exporter
 
 TRACKS = "tracks"
 """Name of the figure of where a flight went."""
@@ -86,33 +87,32 @@ def write_flight(run: RunData, flight_id: str, path: Path) -> None:
 
     Raises
     ------
-    ReportError : no format has this suffix, or the flight has no time history
+    ReportError : no format has this suffix, or its packages are missing, or the flight has no time history
     PluginError : an exporter does not load
     """
     if not run.has_history(flight_id):
         raise _without_history(flight_id)
-    if (exporter := _exporter(path.name)) is not None:
-        written(path, lambda part: exporter(run.of_flight(flight_id), part))
+    exporters = _exporters()
+    if (suffix := next((suffix for suffix in exporters if path.name.endswith(suffix)), None)) is not None:
+        write = exporters[suffix]().write
+        written(path, lambda part: write(run.of_flight(flight_id), part))
         return
     writers = {".parquet": _as_parquet, ".arrow": _as_arrow, ".csv": _as_csv}
     if path.suffix not in writers:
-        known = [*writers, *_suffixes()]
+        known = [*writers, *exporters]
         guess = did_you_mean(path.suffix, known) or ";"
         raise ReportError(f"'{path.name}' ends in {path.suffix!r}{guess} formats of a flight are {', '.join(known)}")
     source = run.path / time_history_path(flight_id)
     written(path, lambda part: writers[path.suffix](source, part))
 
 
-def _suffixes() -> dict[str, Callable[[RunData, Path], None]]:
-    """Return the writers of the exporters by their suffixes, the longest first."""
+def _exporters() -> "dict[str, type[Exporter]]":
+    """Return the exporters by their suffixes, the longest first; none is made yet, as packages of another may be missing."""
     from reports.export import EXPORTERS
 
-    found = [EXPORTERS.get(name)() for name in EXPORTERS.names()]
-    return {exporter.suffix: exporter.write for exporter in sorted(found, key=lambda exporter: -len(exporter.suffix))}
-
-
-def _exporter(name: str) -> Callable[[RunData, Path], None] | None:
-    return next((write for suffix, write in _suffixes().items() if name.endswith(suffix)), None)
+    found = [EXPORTERS.get(name) for name in EXPORTERS.names()]
+    suffixes = {part.suffix if hasattr(part, "suffix") else part().suffix: part for part in found}
+    return dict(sorted(suffixes.items(), key=lambda item: -len(item[0])))
 
 
 def _as_parquet(source: Path, path: Path) -> None:

@@ -158,10 +158,14 @@ def _run(
         print(line)
     print(f"results: {result.directory}")
     if result.interrupted:
-        again = "".join(f"--set {shlex.quote(item)} " for item in overrides)
-        again = f"{shlex.quote(name)} {again}--out {shlex.quote(str(directory))} --resume"
+        again = [word for item in overrides for word in ("--set", item)]
+        if replayed:
+            # That of other runs is among the overrides.
+            again += ["--aircraft-dir", str(aircraft_dir)] if aircraft_dir is not None else []
+            again += ["--flightgear", flightgear] if flightgear is not None else []
+        again = ["plume-flight", "run", name, *again, "--out", str(directory), "--resume"]
         kept = f"{result.summary.done} of {result.planned} {result.what} are done and kept"
-        print(f"interrupted; {kept}. Continue with: plume-flight run {again}", file=sys.stderr)
+        print(f"interrupted; {kept}. Continue with: {shlex.join(again)}", file=sys.stderr)
         return INTERRUPTED
     reported = all((directory / name).is_file() for name in (REPORT_HTML, REPORT_PDF))
     status = MET if no_report or (reported and not result.changed) else _report(directory)

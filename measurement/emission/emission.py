@@ -76,8 +76,6 @@ def emission_of(
     speed: float | None = None,
     power: float | None = None,
     air_temperature: float = AIR_TEMPERATURE,
-    air_pressure: float = AIR_PRESSURE,
-    no2_share: float = NO2_SHARE,
 ) -> Emission:
     """Return what ``ship`` emits on ``fuel`` at a speed through the water or at a power.
 
@@ -86,19 +84,16 @@ def emission_of(
     ship, fuel : who burns what
     speed : [m/s], 0 to the ship's largest; the power is its cube's share, and at least 5 % (dead slow)
     power : [W], above 0 to the ship's largest; give speed or power
-    air_temperature, air_pressure : around the funnel [K, Pa]
-    no2_share : NO2 of NOx by mole [-]
+    air_temperature : around the funnel [K]
 
     Raises
     ------
-    MeasurementError : speed, power or share out of range, both or neither of the first two, or air hotter than the exhaust
+    MeasurementError : speed, power or temperature out of range, both or neither of the first two, or air hotter than the exhaust
 
     Sources: P = P_max (v/v_max)^3, BSH library 188756, p. 17; consumption with load, STEAM2, ACP 12:2641 (2012); exhaust at part
     load, MAN B&W project guide 198 43 20-3.3, figs. 6.04.11 and 6.04.12, applied to all ships; fluxes, Briggs, as in AERMOD.
     """
-    check_air(air_temperature, air_pressure)
-    if not 0.0 <= no2_share <= 1.0:
-        raise MeasurementError(f"share of NO2 in NOx is {no2_share:g}; give 0 to 1, usually 0.05 to 0.15")
+    check_air(air_temperature, AIR_PRESSURE)
     load = _load(ship, speed, power)
     energy_rate = load * ship.power_max / _KILOWATT_HOUR
     fuel_rate = 1e-3 * _SFOC_G_KWH[ship.stroke][fuel.residual] * (0.455 * load**2 - 0.71 * load + 1.28) * energy_rate
@@ -106,8 +101,8 @@ def emission_of(
     rates = (
         fuel_rate * fuel.so2_per_fuel,
         fuel_rate * fuel.co2_per_fuel / MOLAR_MASS["co2"],
-        (1.0 - no2_share) * nox,
-        no2_share * nox,
+        (1.0 - NO2_SHARE) * nox,
+        NO2_SHARE * nox,
     )
     temperature = ship.exhaust_temperature_c + 273.15 + 262.0 * load**2 - 413.0 * load + 151.0
     if not temperature > air_temperature:
@@ -116,7 +111,7 @@ def emission_of(
         )
     more_percent = 37.0 * load**3 - 83.0 * load**2 + 31.0 * load + 15.0
     mass_rate = ship.exhaust_per_energy_kg_kwh * (1.0 + more_percent / 100.0) * energy_rate
-    volume_rate = mass_rate / _EXHAUST_MOLAR_MASS * GAS_CONSTANT * temperature / air_pressure
+    volume_rate = mass_rate / _EXHAUST_MOLAR_MASS * GAS_CONSTANT * temperature / AIR_PRESSURE
     quarter = ship.stack_diameter**2 / 4.0
     exhaust_speed = volume_rate / (math.pi * quarter)
     ratio = air_temperature / temperature

@@ -78,15 +78,10 @@ def fuel_preset(name: str, sulphur_percent: float | None = None) -> Fuel:
     return Fuel(**fields if sulphur_percent is None else {**fields, "sulphur_percent": sulphur_percent})
 
 
-def expected_fsc(fuel: Fuel, carbon_fraction: float = CARBON_FRACTION) -> float:
-    """Return the FSC [% m/m] that a perfect instrument reads: without the sulphate, and with the carbon that is assumed.
+def expected_fsc(fuel: Fuel) -> float:
+    """Return the FSC [% m/m] that a perfect instrument reads: without the sulphate, and with the carbon of ``CARBON_FRACTION``.
 
     Gas oil of 0.1000 reads 0.0972, residual fuel of 0.5000 reads 0.5003: there the two errors cancel. An estimate is judged
     against this; what is between it and the fuel's own is a bias of the method.
-
-    Parameters
-    ----------
-    fuel : what is burnt
-    carbon_fraction : carbon by mass [-] that the evaluation assumes
     """
-    return fuel.sulphur_percent * SULPHUR_AS_SO2 * carbon_fraction / fuel.carbon_fraction
+    return fuel.sulphur_percent * SULPHUR_AS_SO2 * CARBON_FRACTION / fuel.carbon_fraction

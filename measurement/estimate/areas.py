@@ -48,19 +48,6 @@ class Areas:
     interval_s: float
 
 
-def overlap_ratio(interval: float, instrument: SnifferSpec) -> float:
-    """Return what areas over troughs read of the truth where narrow passes follow at an interval [s].
-
-    An area over the line between troughs is 1 - q/(e^q - 1) of the whole, q = interval/tau; the ratio is that of SO2 over that of
-    CO2. A channel with two poles counts by the sum of its time constants.
-    """
-    kept = []
-    for gas in ("so2", "co2"):
-        q = interval / sum(instrument.known(gas).constants)
-        kept.append(1.0 - q / math.expm1(q) if q < 500.0 else 1.0)
-    return kept[0] / kept[1]
-
-
 def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> Areas:
     """Return the ratio of the areas of SO2, corrected for the gases that its cell responds to, and of CO2.
 

@@ -7,13 +7,10 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
-from common.intervals import quantile_interval
+from common.intervals import CONFIDENCE, quantile_interval
 from reports.compare.pairs import Pairs
 from reports.monte_carlo.names import FIGURES, Figure
 from reports.run.columns import Array, clearance, column, interval_error
-
-CONFIDENCE = 0.95
-"""Of the interval of a median."""
 
 PAIRS_MIN = 6
 """Pairs from which on a median has an interval: of fewer, all lie on one side of it more often than in 5 %."""

@@ -15,8 +15,11 @@ from reports.run.trials import Trial, read_trials
 RUNS_MAX = 6
 """Runs that fit side by side."""
 
-_WITHOUT_FLIGHTS = ("design", "measurement", "convergence")
-"""Studies that fly nothing."""
+_NOT_COMPARED = {
+    **dict.fromkeys(("design", "measurement", "convergence"), "which has no flights to compare"),
+    "patrol": "whose rows are patrols of several ships and not single flights",
+}
+"""Studies whose runs are not compared, and why."""
 
 _ENTRIES = (
     *FLIGHT_ENTRIES, "name", "overrides", "config_hash", "fingerprint", "packages", "git_revision", "python", "platform",
@@ -89,8 +92,8 @@ def read_runs(paths: Sequence[Path]) -> list[Run]:
 
 def _read(letter: str, path: Path) -> Run:
     data = read_run(path)
-    if (study := data.manifest.get("study")) in _WITHOUT_FLIGHTS:
-        raise ReportError(f"'{path}' is of the study '{study}', which has no flights to compare; name a run with flights")
+    if reason := _NOT_COMPARED.get(str(study := data.manifest.get("study"))):
+        raise ReportError(f"'{path}' is of the study '{study}', {reason}; name a run of flights")
     refuse_other_version(data, _ENTRIES)
     if missing := [name for name in _COLUMNS if name not in data.summary]:
         raise ReportError(

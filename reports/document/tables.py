@@ -1,7 +1,7 @@
 """Tables that every report has, and how their cells are written."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,13 +13,13 @@ from reports.run.columns import Array
 from reports.run.run_data import RunData
 
 
-def parameter_table(run: RunData, derived: Sequence[list[str]] = ()) -> Table:
-    """Return every parameter of the run with its unit and meaning, and rows for what follows from them."""
+def parameter_table(run: RunData) -> Table:
+    """Return every parameter of the run with its unit and meaning."""
     rows = [[p["key"], parameter_value(p["value"], p["key"]), p["unit"], p["meaning"]] for p in run.manifest["parameters"]]
     return Table(
         caption="Every parameter, with its unit and meaning.",
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
-        rows=[*rows, *derived],
+        rows=rows,
         widths=[2.7, 1.9, 0.7, 3.6],
         left_columns=4,
         prose=True,

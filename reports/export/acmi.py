@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from reports.export.exporter import EXPORTERS
-from reports.export.geographic import Body, GeographicFlight, recorded_flights, utc_text
+from reports.export.geographic import Body, GeographicFlight, recorded_flights
 from reports.run.run_data import RunData
 
 _UAV, _VESSEL = "a1", "b2"
@@ -20,7 +20,7 @@ class Acmi:
     def write(self, run: RunData, path: Path) -> None:
         """Write one flight."""
         flight = next(recorded_flights(run))
-        start = utc_text(flight.start)
+        start = flight.epoch
         lines = [
             "FileType=text/acmi/tacview",
             "FileVersion=2.2",

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.export.exporter import EXPORTERS
-from reports.export.geographic import Body, GeographicFlight, recorded_flights, utc_text
+from reports.export.geographic import Body, GeographicFlight, recorded_flights
 from reports.run.run_data import RunData
 
 _UAV_COLOUR, _VESSEL_COLOUR, _PLUME_COLOUR, _KEEPOUT_COLOUR = (
@@ -23,8 +23,8 @@ class Czml:
     def write(self, run: RunData, path: Path) -> None:
         """Write one flight."""
         flight = next(recorded_flights(run))
-        while_flown = f"{utc_text(flight.start + float(flight.time[0]))}/{utc_text(flight.start + float(flight.time[-1]))}"
-        clock = {"interval": while_flown, "currentTime": utc_text(flight.start), "multiplier": 1, "range": "LOOP_STOP"}
+        while_flown = f"{flight.utc(0)}/{flight.utc(-1)}"
+        clock = {"interval": while_flown, "currentTime": flight.epoch, "multiplier": 1, "range": "LOOP_STOP"}
         packets: list[dict[str, Any]] = [
             {"id": "document", "name": flight.flight_id, "version": "1.0", "clock": clock},
             _moving(flight, "uav", "UAV", flight.uav, flight.uav.altitude.tolist(), while_flown)
@@ -57,7 +57,7 @@ def _moving(
     for time, longitude, latitude, height in zip(flight.time, body.longitude, body.latitude, heights, strict=True):
         samples += [round(float(time), 3), round(float(longitude), 8), round(float(latitude), 8), round(float(height), 3)]
     position = {
-        "epoch": utc_text(flight.start),
+        "epoch": flight.epoch,
         "cartographicDegrees": samples,
         "interpolationAlgorithm": "LAGRANGE",
         "interpolationDegree": 1,

@@ -9,12 +9,16 @@ import numpy as np
 import pandas as pd
 
 from common.geodesy import LocalFrame
+from common.times import utc_text
 from reports.errors import ReportError
 from reports.run.columns import Array, column
 from reports.run.run_data import RunData
 
 PLUME_LENGTH = 1000.0
 """How much of the plume's axis is shown [m]."""
+
+_RING_POINTS = 48
+"""Sides of the polygon that stands for a keep-out circle."""
 
 NO_PLACE = (0.0, 0.0)
 """Latitude and longitude of flights that no place is given for [deg]: on the equator, where JSBSim flies them."""
@@ -91,31 +95,31 @@ class GeographicFlight:
     keepout_radius: float
     crossings: pd.DataFrame
 
+    @property
+    def epoch(self) -> str:
+        """Return the start in ISO 8601, to a millisecond."""
+        return utc_text(self.start, milliseconds=True)
+
     def utc(self, i: int) -> str:
         """Return the time of a sample in ISO 8601, to a millisecond."""
-        return utc_text(self.start + float(self.time[i]))
+        return utc_text(self.start + float(self.time[i]), milliseconds=True)
 
     def every(self, seconds: float) -> list[int]:
         """Return the numbers of samples that are some time [s] apart, the first and the last among them."""
         step = max(1, round(seconds / max(1e-9, float(np.median(np.diff(self.time))) if len(self.time) > 1 else seconds)))
         return sorted({*range(0, len(self.time), step), len(self.time) - 1})
 
-    def keepout_ring(self, i: int, points: int = 48) -> list[tuple[float, float]]:
+    def keepout_ring(self, i: int) -> list[tuple[float, float]]:
         """Return longitude and latitude [deg] of a circle about the vessel at a sample, closed and counter-clockwise."""
         if self.vessel is None:
             return []
         frame = LocalFrame(math.radians(self.vessel.latitude[i]), math.radians(self.vessel.longitude[i]))
-        angle = np.linspace(0.0, -2.0 * math.pi, points + 1)
+        angle = np.linspace(0.0, -2.0 * math.pi, _RING_POINTS + 1)
         latitude, longitude = frame.to_geodetic(self.keepout_radius * np.cos(angle), self.keepout_radius * np.sin(angle))
         # In one piece, also where it lies over the date line.
         centre = float(self.vessel.longitude[i])
         around = centre + (np.degrees(longitude) - centre + 180.0) % 360.0 - 180.0
         return list(zip(around.tolist(), np.degrees(latitude).tolist(), strict=True))
-
-
-def utc_text(seconds: float) -> str:
-    """Return a time since 1970 [s] in ISO 8601, to a millisecond."""
-    return datetime.fromtimestamp(round(seconds, 3), UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
 def recorded_flights(run: RunData) -> Iterator[GeographicFlight]:

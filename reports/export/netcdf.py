@@ -67,13 +67,14 @@ class NetCdf:
 
 
 def _about(run: RunData) -> dict[str, str]:
+    begun, command = run.manifest.get("begun_utc", "time not recorded"), run.manifest.get("command") or "a program made the run"
     return {
         "Conventions": "CF-1.8",
         "featureType": "trajectory",
         "title": str(run.manifest.get("title", "Plume flight study")),
         "source": "simulation by plume-flight-study",
         "institution": "plume-flight-study",
-        "history": str(run.manifest.get("created", "exported from a run")),
+        "history": f"{begun}: {command}",
         "references": "none",
         "comment": "The UAV and the vessel that it flies about.",
     }

@@ -29,6 +29,6 @@ class TracksCsv:
         with path.open("w", encoding="utf-8", newline="") as file:
             for number, flight_id in enumerate(recorded):
                 history = run.history(flight_id)
-                rows = pd.DataFrame() if history is None else history.reindex(columns=list(COLUMNS))
+                rows = pd.DataFrame(columns=list(COLUMNS)) if history is None else history.reindex(columns=list(COLUMNS))
                 rows.insert(0, "flight_id", str(cell(flight_id)))
                 rows.to_csv(file, index=False, header=number == 0, float_format="%.3f")

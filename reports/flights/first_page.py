@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from common.units import SECONDS_PER_HOUR
 from reports.document.chart import Chart
 from reports.document.tables import vehicle_flown
 from reports.flights.names import flight_name
@@ -37,7 +38,7 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
 
 def hours(flown: pd.DataFrame) -> str:
     """Return how long all flights took together."""
-    time = total(flown, "duration_s") / 3600.0
+    time = total(flown, "duration_s") / SECONDS_PER_HOUR
     return f"{time:,.0f} h" if time >= 100.0 else f"{time:.2g} h"
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from common.wind import wind_velocity
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning
@@ -93,9 +94,8 @@ class _Histories:
         north, east = self._column("wind_north_mps"), self._column("wind_east_mps")
         if not np.nanmax(np.abs([north, east]), initial=0.0) > NOTICEABLE:
             return None
-        # Wind is given by where it comes from.
-        towards, speed = math.radians(float(self._view.row["wind_from_deg"])) + math.pi, float(self._view.row["wind_speed_mps"])
-        lines = [self._level(speed * part, "true wind", "black") for part in (math.cos(towards), math.sin(towards))]
+        speed, origin = (float(self._view.row[name]) for name in ("wind_speed_mps", "wind_from_deg"))
+        lines = [self._level(part, "true wind", "black") for part in wind_velocity(speed, origin)]
         lines += [self._line(north, "estimate, north", Meaning.WIND), self._line(east, "estimate, east", Meaning.WIND, "dot")]
         return Panel(x_label=_TIME, y_label="Wind [m/s]", lines=lines)
 

@@ -45,20 +45,22 @@ _ABOVE = 0.08
 _AWAY = 1.0
 """Way of the ship over the size of the track about her, from which there is a panel over the ground."""
 
+_PICTURE = "picture"
+"""Name of the large picture."""
+
 
 def track_chart(view: FlightView) -> Chart:
     """Return where one flight went: about the ship, her plume up the page, from near, and over the ground."""
     return _Tracks(view).chart()
 
 
-def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: str = "", *, name: str = "picture") -> Chart | None:
+def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: str = "") -> Chart | None:
     """Return a large picture of flights side by side, each about its ship; all tracks of a flight that is alone.
 
     Parameters
     ----------
     shown : trial, row and title of each flight
     told : what the caption says besides
-    name : of the chart
 
     Returns
     -------
@@ -69,10 +71,10 @@ def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: st
         return None
     if len(found) == 1:
         chart = found[0][0].chart(_LARGE)
-        return replace(chart, name=name, caption=chart.caption + told)
+        return replace(chart, name=_PICTURE, caption=chart.caption + told)
     drawn = [tracks.picture(title) for tracks, title in found]
     panels = [panel for panel, _ in drawn]
-    return Chart(name=name, caption=drawn[0][1] + told, panels=panels, columns=len(panels), panel_height=0.42)
+    return Chart(name=_PICTURE, caption=drawn[0][1] + told, panels=panels, columns=len(panels), panel_height=0.42)
 
 
 class _Tracks:

@@ -18,9 +18,6 @@ from reports.run.columns import column
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
 
-_TRUTH = {"co2_true_ppm": "co2_ppm", "so2_true_ppb": "so2_ppb"}
-"""What figures call the truth, and what a time history does."""
-
 _FEW = 8
 """Flights of which figures are not spread: of so few there are no statistics."""
 

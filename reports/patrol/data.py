@@ -10,6 +10,8 @@ import pandas as pd
 
 from common.files import is_file
 from common.run_layout import PHASES, SHIPS
+from common.units import SECONDS_PER_HOUR
+from common.wind import wind_towards
 from reports.run.columns import Array, column
 from reports.run.run_data import RunData
 
@@ -38,7 +40,7 @@ class Patrol:
     @property
     def wind(self) -> tuple[float, float]:
         """Return the wind's speed [m/s] and the course that it blows to [rad]."""
-        return float(self.row["wind_speed_mps"]), math.radians(float(self.row["wind_from_deg"])) + math.pi
+        return float(self.row["wind_speed_mps"]), wind_towards(float(self.row["wind_from_deg"]))
 
     def track(self, ship: "pd.Series[Any]") -> tuple[Array, Array]:
         """Return north and east of a ship at the start, and when she was measured or the patrol ended, shape (2,) each [m]."""
@@ -70,7 +72,7 @@ class Patrols:
     @property
     def hours(self) -> float:
         """Return the duration of all patrols [h]."""
-        return float(np.nansum(column(self.run.summary, "duration_s"))) / 3600.0
+        return float(np.nansum(column(self.run.summary, "duration_s"))) / SECONDS_PER_HOUR
 
     @property
     def share(self) -> float:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.wind import wind_velocity
 from reports.document.scene import Scene
 from reports.run.columns import Array, column
 from reports.run.plume_shape import PlumeShape, plume_shape
@@ -85,7 +86,7 @@ def _plume(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame) -> PlumeS
     """Return the plume's shape, in the wind and at the vessel's speed that the flight began with."""
     north, east = (float(column(history, f"vessel_velocity_{axis}_mps")[0]) for axis in ("north", "east"))
     wind, origin = (float(np.nan_to_num(row.get(name, 0.0))) for name in ("wind_speed_mps", "wind_from_deg"))
-    towards = math.radians(origin) + math.pi
-    apparent = math.hypot(wind * math.cos(towards) - north, wind * math.sin(towards) - east)
+    wind_north, wind_east = wind_velocity(wind, origin)
+    apparent = math.hypot(wind_north - north, wind_east - east)
     length = _PLUME_LENGTH * float(row["keepout_radius_m"])
     return plume_shape(trial.config, speed=math.hypot(north, east), wind=wind, apparent_wind=apparent, length=length)

@@ -86,9 +86,10 @@ def _smoke(config: Config, distance: Array, *, speed: float, wind: float, appare
     plume, emitted, air = config["plume"], config["emission"], config["wind"]
     settings = PlumeSettings(**{f.name: plume[f.name] for f in fields(PlumeSettings) if f.name in plume})
     ship, fuel = ship_preset(emitted["ship"]), fuel_preset(emitted["fuel"], emitted["sulphur_percent"])
-    load = emitted["load"]
-    emission = emission_of(ship, fuel, speed=speed) if load is None else emission_of(ship, fuel, power=load * ship.power_max)
-    marine = MarineAir(wind_speed=wind, temperature=air["temperature_c"] + _ZERO_CELSIUS, brunt_vaisala=air["stability_per_s"])
+    load, temperature = emitted["load"], air["temperature_c"] + _ZERO_CELSIUS
+    moving = {"speed": speed} if load is None else {"power": load * ship.power_max}
+    emission = emission_of(ship, fuel, **moving, air_temperature=temperature)
+    marine = MarineAir(wind_speed=wind, temperature=temperature, brunt_vaisala=air["stability_per_s"])
     age = distance / apparent_wind
     table = spreads(emission, marine, float(plume["source_height_m"]), np.array([apparent_wind]), float(age[-1]), settings)
     ages = STEP * np.arange(table.height.shape[1])

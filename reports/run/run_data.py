@@ -29,6 +29,9 @@ from common.run_layout import (
 from reports.errors import ReportError
 from reports.run.files import refuse_running
 
+_NAMES = ("flight_id", "trial", "variant", "beside", "confirms")
+"""Columns of names, which stay text where they are all digits."""
+
 WITHOUT_SUMMARY = ("design", "measurement")
 """Studies that have nothing to count."""
 
@@ -165,7 +168,7 @@ def _record(path: Path, unread: set[str]) -> dict[str, Any] | None:
 def _table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
     if not path.is_file():
         return pd.DataFrame(columns=columns or ["flight_id"])
-    frame = pd.read_csv(path, keep_default_na=False, na_values=[""])
+    frame = pd.read_csv(path, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(_NAMES, str))
     for name in frame.select_dtypes(exclude=["number", "bool"]).columns:
         frame[name] = frame[name].map(from_cell)
     for name in ("criteria_met", "kept_out"):

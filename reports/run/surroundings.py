@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.wind import wind_towards
 from reports.run.columns import column
 from reports.run.plume_shape import PlumeShape, plume_shape
 from reports.run.ship import Hull, hull_of
@@ -80,4 +81,4 @@ def surroundings(config: Mapping[str, Any], row: "pd.Series[Any]", history: pd.D
 def _wind(row: "pd.Series[Any]") -> tuple[float, float]:
     """Return the wind's speed and the course that it blows along: it is given by where it comes from."""
     speed, origin = (float(row.get(name, math.nan)) for name in ("wind_speed_mps", "wind_from_deg"))
-    return (speed, math.radians(origin) + math.pi) if speed > 0.0 and math.isfinite(origin) else (0.0, 0.0)
+    return (speed, wind_towards(origin)) if speed > 0.0 and math.isfinite(origin) else (0.0, 0.0)

@@ -5,7 +5,7 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -166,8 +166,7 @@ def _directory(out: str | os.PathLike[str] | None) -> Iterator[tuple[Path, Keepi
 def _shown(*, progress: bool) -> Iterator["Progress"]:
     """Yield what is called as the flights advance: a progress bar, or nothing."""
     if not progress:
-        with nullcontext():
-            yield lambda *_: None
+        yield lambda *_: None
         return
     from scenarios.engine.progress import progress_bar
 

@@ -230,7 +230,6 @@ def _registry(key: str) -> Registry[Any]:
 
     registries: dict[str, Registry[Any]] = {
         **PART_REGISTRIES,
-        "payload.instruments": PART_REGISTRIES["payload"],
         "aircraft": AIRCRAFT,
         "search.methods": SEARCH_METHODS,
         "study": STUDIES,

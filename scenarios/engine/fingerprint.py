@@ -1,4 +1,4 @@
-"""The software that results depend on: versions of packages, and the project's own source."""
+"""The software that results depend on: versions of packages, and the project's own source with its data."""
 
 import functools
 import hashlib
@@ -8,20 +8,33 @@ from collections.abc import Mapping
 from pathlib import Path
 
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic", "cma")
-_SOURCE = ("aircraft", "common", "gnc", "innerloop", "scenarios")
+SOURCE = ("aircraft", "common", "gnc", "innerloop", "measurement", "scenarios")
+"""Packages of the project that results depend on: all that flies or measures; ``reports`` only shows it."""
+
+_SUFFIXES = (".json", ".py", ".toml", ".xml")
+"""Source, and the data that it reads: aircraft models, presets and tables."""
+
+_CATALOG = "scenarios/catalog/"
+"""Left out: a run is compared by what its scenario contains, wherever that was read from."""
 
 
 @functools.cache
 def fingerprint() -> dict[str, str]:
     """Return the versions of Python and of the packages that results depend on, and a hash of the project's source."""
     versions = {package: importlib.metadata.version(package) for package in _PACKAGES}
+    return {"python": platform.python_version(), **versions, "source": source_hash(Path(__file__).parents[2])}
+
+
+def source_hash(project: Path) -> str:
+    """Return a hash of the files of a project that results depend on, by their paths in it and their contents."""
     digest = hashlib.sha256()
-    project = Path(__file__).parents[2]
-    for package in _SOURCE:
-        for path in sorted((project / package).rglob("*.py")):
-            digest.update(str(path.relative_to(project)).encode())
-            digest.update(path.read_bytes())
-    return {"python": platform.python_version(), **versions, "source": digest.hexdigest()[:16]}
+    for package in SOURCE:
+        for path in sorted((project / package).rglob("*.*")):
+            name = path.relative_to(project).as_posix()
+            if path.suffix in _SUFFIXES and not name.startswith(_CATALOG):
+                digest.update(name.encode())
+                digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def differences(theirs: Mapping[str, str]) -> list[str]:

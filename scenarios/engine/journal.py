@@ -31,6 +31,9 @@ _ATTEMPTS = 6
 _WAIT = 0.05
 """Longest wait between two attempts [s]; drawn at random, so that the two do not meet again."""
 
+CONTINUE = "continue with --resume"
+"""What to do once a run can be written again."""
+
 _COLUMNS = ("number", "point", "items", "lost", "tables", "checksum")
 
 _SCHEMA = (
@@ -49,7 +52,7 @@ class Journal:
 
     Raises
     ------
-    InputError : another program is writing to it, or it is damaged
+    InputError : another program is writing to it, it is damaged, or it cannot be used
     """
 
     def __init__(self, path: Path, *, reading: bool = False) -> None:
@@ -62,7 +65,7 @@ class Journal:
                 break
             except sqlite3.DatabaseError as error:
                 if _code(error) not in _BUSY:
-                    raise damaged(path) if is_damaged(error) else error from None
+                    raise self._explained(error, reading=reading) from None
                 if attempt == _ATTEMPTS:
                     raise InputError(
                         f"another program is writing to '{path.parent}'; wait until it has ended, or choose another --out"
@@ -72,10 +75,16 @@ class Journal:
             self._check()
         except sqlite3.DatabaseError as error:
             self._database.close()
-            raise damaged(path) if is_damaged(error) else error from None
+            raise self._explained(error, reading=reading) from None
         except InputError:
             self._database.close()
             raise
+
+    def _explained(self, error: sqlite3.DatabaseError, *, reading: bool) -> Exception:
+        """Return the error to raise for one of SQLite; that of a full disk as it is."""
+        if is_full(error) and not reading:
+            return error
+        return unusable(self._path, error, then="try again" if reading else CONTINUE)
 
     def _check(self) -> None:
         """Raise an InputError if a result is not as it was added."""
@@ -171,6 +180,13 @@ def is_full(error: sqlite3.DatabaseError) -> bool:
 def is_damaged(error: sqlite3.DatabaseError) -> bool:
     """Return whether the file is damaged, or not a journal."""
     return _code(error) in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_MISMATCH)
+
+
+def unusable(path: Path, error: sqlite3.DatabaseError, *, then: str = CONTINUE) -> InputError:
+    """Return the error to raise for a journal that SQLite cannot use; ``then`` is what to do once it can."""
+    if is_damaged(error):
+        return damaged(path)
+    return InputError(f"'{path}' cannot be used: {error}; make the file and its directory writable, then {then}")
 
 
 def damaged(path: Path, what: str = "") -> InputError:

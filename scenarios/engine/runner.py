@@ -12,7 +12,7 @@ from typing import Any, Protocol
 from common.files import remove_reports, write_whole
 from common.run_layout import FILES
 from scenarios.engine.executor import Executor
-from scenarios.engine.journal import Journal, damaged, is_damaged, is_full
+from scenarios.engine.journal import CONTINUE, Journal, is_full, unusable
 from scenarios.engine.memory import peak_memory
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.task import Task, Work
@@ -132,7 +132,7 @@ def fly_study(
 
     Raises
     ------
-    InputError : the directory cannot be used, or the disk is full; finished results are kept
+    InputError : the directory or its journal cannot be used, or the disk is full; finished results are kept
     """
     run = RunDirectory(directory)
     before = run.open(study.config_hash, resume=resume)
@@ -264,14 +264,12 @@ def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, tuple
         write_whole(run.path / name, write)
 
 
-def _explained(error: OSError | sqlite3.DatabaseError, run: RunDirectory) -> Exception:
+def _explained(error: OSError | sqlite3.DatabaseError, run: RunDirectory) -> InputError:
     """Return the error to raise for an error of the disk or of the journal."""
     full = error.errno in (errno.ENOSPC, errno.EDQUOT) if isinstance(error, OSError) else is_full(error)
     if full:
-        return InputError(
-            f"the disk of '{run.path}' is full; finished results are kept: free some space and continue with --resume"
-        )
+        return InputError(f"the disk of '{run.path}' is full; finished results are kept: free some space and {CONTINUE}")
     if isinstance(error, OSError):
         where = error.filename or run.path
-        return InputError(f"'{where}' cannot be used: {error.strerror or error}; fix that, then continue with --resume")
-    return damaged(run.journal) if is_damaged(error) else error
+        return InputError(f"'{where}' cannot be used: {error.strerror or error}; fix that, then {CONTINUE}")
+    return unusable(run.journal, error)

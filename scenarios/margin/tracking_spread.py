@@ -28,9 +28,6 @@ from gnc.tracker import TrackingParameters
 from innerloop.analysis.gust_statistics import GustStatistics
 from innerloop.synthesis.schedule import Schedule
 
-TOUCHES_PER_HOUR = 1e-3
-"""Hundred flights of five minutes are 8.3 hours: one chance in a hundred and twenty that any of them touches the area [1/h]."""
-
 FREQUENCIES = np.logspace(-2.5, 1.9, 400)
 """Where spectra are integrated [rad/s]: from far below the corner of a gust, V/L = 0.09, to beyond the hold of the commands."""
 
@@ -130,43 +127,30 @@ def tracking_spread(
     )
 
 
-def planned_margin(
-    spread: Spread, *, other_sigma: float = 0.0, other_sigma_rate: float = 0.0, touches_per_hour: float = TOUCHES_PER_HOUR
-) -> float:
+def planned_margin(spread: Spread, *, touches_per_hour: float) -> float:
     """Return the margin [m] to plan between orbit and keep-out area.
 
     Parameters
     ----------
     spread : in turbulence
-    other_sigma, other_sigma_rate : standard deviations of independent errors, such as those of navigation and of the vessel's
-        place, and of their rate [m, m/s]
-    touches_per_hour : how often the area may be touched [1/h]
+    touches_per_hour : how often the area may be touched, above 0 [1/h]
 
     Raises
     ------
-    ValueError : ``touches_per_hour`` is not above 0, a deviation is below 0, or there are errors none of which varies
+    ValueError : ``touches_per_hour`` is not above 0, or the spread has a deviation and never varies
     """
-    if not (other_sigma >= 0.0 and other_sigma_rate >= 0.0):
-        raise ValueError(f"other_sigma is {other_sigma:g} m, its rate {other_sigma_rate:g} m/s; standard deviations are at least 0")
-    sigma, rate = math.hypot(spread.radial, other_sigma), math.hypot(spread.radial_rate, other_sigma_rate)
-    return level_crossed(sigma, rate, touches_per_hour) + beyond_limits(spread, touches_per_hour)
-
-
-def crossings_per_hour(sigma: float, sigma_rate: float, level: float) -> float:
-    """Return how often a Gaussian process goes above a level [1/h]: Rice's formula.
-
-    Parameters
-    ----------
-    sigma, sigma_rate : standard deviations of the process and of its rate [m, m/s]
-    level : above the mean [m]
-    """
-    return SECONDS_PER_HOUR * sigma_rate / (2.0 * math.pi * sigma) * math.exp(-0.5 * (level / sigma) ** 2)
+    return level_crossed(spread.radial, spread.radial_rate, touches_per_hour) + beyond_limits(spread, touches_per_hour)
 
 
 def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
     """Return the level that a Gaussian process goes above so often; 0 if it does so less often even at its mean.
 
-    Parameters are those of ``crossings_per_hour``; ``per_hour`` is above 0 [1/h].
+    By Rice's formula it goes above a level L ``sigma_rate/(2 pi sigma) exp(-(L/sigma)^2/2)`` times a second.
+
+    Parameters
+    ----------
+    sigma, sigma_rate : standard deviations of the process and of its rate [m, m/s]
+    per_hour : how often, above 0 [1/h]
 
     Raises
     ------
@@ -177,8 +161,9 @@ def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
     if sigma == 0.0:
         return 0.0
     if not sigma_rate > 0.0:
-        raise ValueError(f"an error of {sigma:g} m that never varies crosses no level: give how fast it does (other_sigma_rate)")
-    return sigma * math.sqrt(2.0 * math.log(max(1.0, crossings_per_hour(sigma, sigma_rate, 0.0) / per_hour)))
+        raise ValueError(f"the rate of an error of {sigma:g} m has a deviation of {sigma_rate:g} m/s; it must vary: give above 0")
+    mean_per_hour = SECONDS_PER_HOUR * sigma_rate / (2.0 * math.pi * sigma)
+    return sigma * math.sqrt(2.0 * math.log(max(1.0, mean_per_hour / per_hour)))
 
 
 def beyond_limits(spread: Spread, per_hour: float) -> float:

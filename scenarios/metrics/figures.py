@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.atmosphere.wind import CALM
+from common.times import utc_text
 from gnc.mission.mode import Mode
 from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
@@ -14,7 +15,7 @@ from scenarios.metrics.sample import rms
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.record import FlightRecord
 from scenarios.world.ais.track import AisVessel
-from scenarios.world.place import Place, utc_text
+from scenarios.world.place import Place
 
 Array = npt.NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""What the columns of a run's tables mean, by table and name. Time histories have theirs in ``scenarios.simulation.record``.
+"""What the columns of a run's tables mean, by table and name. Time histories have theirs in ``scenarios.simulation``.
 
 Units are the ends of the names. "Settled" is said of the flight from its settling time on.
 """
@@ -100,7 +100,7 @@ _MEASURED = {
     "guard_interventions": "how often the keep-out guard changed commands",
     "guard_time_s": "for how long altogether",
     "guard_after_settling_s": "for how long of it settled",
-    "guard_lost_s": "for how long neither turn away held the guard's radius",
+    "guard_lost_s": "for how long no turn away held the guard's radius, by more than the declared errors explain",
     "wind_error_rms_mps": "error of the estimated wind, settled",
     "vessel_error_rms_m": "error of the vessel's place as the guidance has it, settled",
     "vessel_error_max_m": "the largest, over the whole flight",
@@ -249,29 +249,6 @@ CONVERGENCE_MEANINGS = {
     "duration_s": "time that was integrated",
     "distance_max_m": "largest distance to the reference",
     "heading_rate_max_rad_s": "largest heading rate",
-    "reference_terms": "number of terms of a random reference",
+    "reference_terms": "heading rate of the reference as JSON: its mean, and amplitude, frequency and phase of each oscillation",
 }
 """Of ``summary.csv`` and ``counterexamples.csv`` of a study of convergence."""
-
-INSTRUMENT_MEANINGS = {
-    **{
-        name: text
-        for gas in ("so2_ppb", "co2_ppm", "no_ppb", "no2_ppb")
-        for name, text in (
-            (gas, "true concentration along the path"),
-            (gas.replace("_", "_reading_"), "reading, which stands until the next"),
-        )
-    },
-    "plume_across_m": "place across the plume's mean axis",
-    "plume_above_m": "height above the plume's mean axis",
-    "plume_fraction": "concentration over that in the centre of the plume",
-    "axis_height_estimated_m": "height of the plume's axis as believed",
-    "axis_height_deviation_m": "its standard deviation",
-    "axis_offset_estimated_m": "place of the axis across that predicted, as believed",
-    "axis_offset_deviation_m": "its standard deviation",
-    "axis_spread_estimated_m": "vertical spread of the plume as believed",
-    "axis_spread_across_estimated_m": "horizontal spread of the plume as believed",
-    "axis_measurable": "probability, as believed, that the plume can be crossed within the limits of the altitude",
-    "axis_innovation": "mean normalised innovation squared of the passes, 1 where the filter is consistent",
-}
-"""Of time histories, of a sniffer and of a search for the plume."""

@@ -110,5 +110,10 @@ def largest_speed(scenario: Scenario) -> float:
 def farthest_start(scenario: Scenario) -> float:
     """Return about how far from the reference a flight may start [m]: as far as from the vessel."""
     start = scenario.start
-    distance = math.hypot(*start.place_m) if start.place_m else start.distance_m[1]
+    if start.place_m is not None:
+        distance = math.hypot(*start.place_m)
+    elif start.range_m is not None:
+        distance = start.range_m
+    else:
+        distance = start.distance_m[1]
     return max(distance, 10.0 * scenario.flight.settling_band_m)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 
+from common.times import utc_text
 from gnc.airspeed.pace_hold import PaceHold
 from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
@@ -41,7 +42,6 @@ from scenarios.world.ais_reports import no_outage, received_reports
 from scenarios.world.exhaust import exhaust_of
 from scenarios.world.faults import VESSEL_DATA, sampled_fault
 from scenarios.world.noise import EXHAUST, Noise, own_generator, streams
-from scenarios.world.place import utc_text
 from scenarios.world.vessel import SteadyVessel, VesselTruth, largest_acceleration, largest_speed
 from scenarios.world.weather import sampled_weather
 from scenarios.world.world import (

@@ -1,15 +1,16 @@
 """Which keys of a scenario act: one that no part of its flights uses is refused, with the part that would use it."""
 
 import functools
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from scenarios.errors import InputError
 from scenarios.schema.effect_rules import OPERATIONAL, RULES, Rule
+from scenarios.schema.keys import known_keys
 from scenarios.schema.scenario import Scenario
 
 
 def refuse_unused(scenario: Scenario, given: Iterable[str]) -> None:
-    """Refuse keys that no part of a scenario's flights uses.
+    """Refuse keys that no part of a scenario's flights uses, those among them that are swept or sampled.
 
     Parameters
     ----------
@@ -20,9 +21,16 @@ def refuse_unused(scenario: Scenario, given: Iterable[str]) -> None:
     ------
     InputError : a key has no effect; the message names the part that would use it
     """
-    for key in sorted(given):
+    given = sorted(given)
+    for key in given:
         if user := unused(scenario, key):
             raise InputError(f"key '{key}' has no effect here: it is used by {user}")
+    for section, key in _varied_by(scenario, given):
+        if key == "fidelity":
+            raise InputError("key 'fidelity' has no effect in sweep; leave it out there, and set fidelity to 'both'")
+        # What is said of an unknown key comes when it is set.
+        if _is_known(key) and (user := unused(scenario, key)):
+            raise InputError(f"key '{key}' in {section} has no effect here: it is used by {user}")
 
 
 def unused(scenario: Scenario, key: str) -> str:
@@ -30,6 +38,8 @@ def unused(scenario: Scenario, key: str) -> str:
     varied = {*scenario.sweep.root, *(draw.key for draw in scenario.draws)}
     varied |= {other for variant in scenario.comparison.variants for other in variant.set}
     varied |= {other for case in scenario.cases for other in (*case.set, *case.set_kinematic)}
+    if scenario.study == "arena":
+        varied |= {"guidance.law", "guidance.mission", *(other for of in scenario.arena.conditions for other in of.set)}
     # A mission that is given does not follow from the air, the vessel or the equipment.
     mission = ("guidance.mission", *(OPERATIONAL if scenario.guidance.mission is None else ()))
     for rule in _rules_of(key):
@@ -37,6 +47,25 @@ def unused(scenario: Scenario, key: str) -> str:
         if not rule.acts(scenario) and not any(named_by(other, depends) for other in varied):
             return rule.user
     return ""
+
+
+def _varied_by(scenario: Scenario, given: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """Yield the keys that given keys sweep or sample, each with the section that does."""
+    names = [key.replace('"', "") for key in given]
+    for key in scenario.sweep.root:
+        if "sweep" in names or f"sweep.{key}" in names:
+            yield "sweep", key
+    if any(name == "draws" or (name.startswith("draws.") and name.endswith(".key")) for name in names):
+        yield from (("draws", draw.key) for draw in scenario.draws)
+
+
+def _is_known(key: str) -> bool:
+    return ".".join("0" if part.isdecimal() else part for part in key.split(".")) in _known_keys()
+
+
+@functools.cache
+def _known_keys() -> frozenset[str]:
+    return frozenset(known_keys(Scenario))
 
 
 @functools.lru_cache(maxsize=1024)

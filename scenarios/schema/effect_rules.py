@@ -114,7 +114,7 @@ RULES = (
         acts=lambda s: not s.follows and _six_dof(s) and s.guidance.law == "cascade",
         user="the bound on the cascade law's commands, for an aircraft that tracks the paper's reference",
         by_mission=True,
-        depends=("guidance.law",),
+        depends=("guidance.law", "fidelity"),
     ),
     Rule(
         keys=("guidance.approach",),
@@ -145,15 +145,16 @@ RULES = (
         by_mission=True,
     ),
     Rule(keys=("following.margin_law",), acts=lambda s: s.follows and not s.turbulence.calm, user="a margin for turbulence: set"
-         " turbulence.level", by_mission=True, depends=("turbulence.level",)),
+         " turbulence.level", by_mission=True, depends=("turbulence.level", "turbulence.gusts")),
     Rule(keys=("guidance.bank_deg",), acts=lambda s: s.guidance.heading_rate_max_rad_s is None, user="omega_max, which"
          " guidance.heading_rate_max_rad_s gives directly: leave one of them out"),
     Rule(keys=("reference.radius_m",), acts=lambda s: s.circles, user="a circle: set reference.path to 'circle'",
          depends=("reference.path",)),
     Rule(keys=("guidance.preview",), acts=lambda s: _six_dof(s) or s.kinematic.heading_rate_lag_s > 0.0,
          user="a vehicle that lags behind its commands: set fidelity to 'six_dof', or kinematic.heading_rate_lag_s",
-         depends=("kinematic.heading_rate_lag_s",)),
-    Rule(keys=("kinematic.",), acts=_kinematic, user="the kinematic vehicle: set fidelity to 'kinematic'"),
+         depends=("kinematic.heading_rate_lag_s", "fidelity")),
+    Rule(keys=("kinematic.",), acts=_kinematic, user="the kinematic vehicle: set fidelity to 'kinematic'",
+         depends=("fidelity",)),
     Rule(keys=("turbulence.gust_length_s",), acts=lambda s: s.turbulence.gusts > 0, user="gusts: set turbulence.gusts",
          depends=("turbulence.gusts",)),
     Rule(keys=("emission.fuel", "emission.sulphur_percent", "emission.load", "wind.temperature_c", "wind.stability_per_s",
@@ -161,13 +162,13 @@ RULES = (
          acts=lambda s: s.emission.ship is not None, user="a ship with exhaust: set emission.ship", depends=("emission.ship",)),
     Rule(keys=("following.plume", "following.distance", "following.source_height_m", "following.load"),
          acts=lambda s: s.emission.ship is not None and not s.stands_off,
-         user="an oscillation in exhaust: set emission.ship", depends=("emission.ship",)),
+         user="an oscillation in exhaust: set emission.ship", depends=("emission.ship", "guidance.mission")),
     Rule(keys=("following.climb_gradient",), acts=lambda s: s.emission.ship is not None,
          user="a plume that rises: set emission.ship", depends=("emission.ship",)),
     Rule(keys=("following.search",), acts=lambda s: s.following.plume == "estimated",
          user="a plume that is searched for: set following.plume to 'estimated'", depends=("following.plume",)),
     Rule(keys=("flight.until",), acts=lambda s: "sniffer" in s.payload.instruments and not s.stands_off,
-         user="a sniffer: put 'sniffer' into payload.instruments", depends=("payload.instruments",)),
+         user="a sniffer: put 'sniffer' into payload.instruments", depends=("payload.instruments", "guidance.mission")),
     Rule(keys=("criteria.time_to_find_s", "criteria.within_altitudes"), acts=lambda s: "sniffer" in s.payload.instruments,
          user="a sniffer: put 'sniffer' into payload.instruments", depends=("payload.instruments",)),
     Rule(keys=("flight.altitude_m",), acts=lambda s: s.follows and not s.stands_off,
@@ -191,7 +192,7 @@ RULES = (
          by_mission=True, depends=("plume.direction",)),
     Rule(keys=("following.join_distance_m", "following.tracked_m"),
          acts=lambda s: s.follows or (s.guidance.approach and not s.circles),
-         user="the way to the orbit: set guidance.approach to true", by_mission=True),
+         user="the way to the orbit: set guidance.approach to true", by_mission=True, depends=("guidance.approach",)),
     Rule(
         keys=(
             "following.touches_per_hour", "following.margin_min_m", "following.speed_ratio_max", "following.standoff_m",
@@ -227,7 +228,8 @@ RULES = (
         " vessel: leave guidance.mission out, or set it to 'follow'",
         by_mission=True,
     ),
-    Rule(keys=("vessel.speed_mps",), acts=lambda s: s.vessel.speed_ratio is None and "nu" not in s.sweep.root,
+    Rule(keys=("vessel.speed_mps",),
+         acts=lambda s: s.vessel.speed_ratio is None and not {"nu", "vessel.speed_ratio"} & s.sweep.root.keys(),
          user="a vessel whose speed is not given by sweep.nu or vessel.speed_ratio: leave one of them out"),
     Rule(keys=("start.distance_m",), acts=lambda s: s.start.place_m is None and s.start.range_m is None,
          user="a random distance: leave out start.place_m and start.range_m", depends=("start.",)),
@@ -239,6 +241,7 @@ RULES = (
         keys=("criteria.tracking_error_rms_m", "criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"),
         acts=lambda s: s.criteria.settles,
         user="flights that must settle: set criteria.settles to true",
+        depends=("criteria.settles",),
     ),
     Rule(keys=("criteria.crossing_interval_error", "criteria.crossing_interval_s", "criteria.crossing_distance_m",
                "criteria.modes_at_end"),
@@ -270,7 +273,7 @@ RULES = (
     Rule(keys=("comparison.flights",), acts=lambda s: bool(s.comparison.variants), user="variants: give comparison.variants"),
     *(
         Rule(keys=(f"guidance.{key}",), acts=used, user=f"the steering law {laws}: set guidance.law",
-             by_mission=True, depends=("guidance.law",))
+             by_mission=True, depends=("guidance.law", "guidance.tuning"))
         for key, laws, used in LAW_KEYS
     ),
 )  # fmt: skip

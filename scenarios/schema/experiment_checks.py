@@ -18,7 +18,7 @@ def check_subset(scenario: "Scenario") -> None:
     """Refuse subset simulation of what is not one probability."""
     if not scenario.draws:
         raise ValueError("method is 'subset' and draws is empty; give the random variables, or set method to 'plain'")
-    if scenario.sweep.root or scenario.cases or scenario.comparison.variants or scenario.fidelity == "both":
+    if scenario.several_points:
         raise ValueError(
             "method is 'subset' beside a sweep, cases, a comparison or two vehicles; it estimates one probability: give each"
             " point a run of its own, or set method to 'plain'"
@@ -34,7 +34,7 @@ def check_search(scenario: "Scenario") -> None:
     """Refuse a search that has nothing to search over, or is not of one point."""
     if not scenario.draws:
         raise ValueError("draws is empty; give the keys to search over, each with its range")
-    if scenario.sweep.root or scenario.cases or scenario.comparison.variants or scenario.fidelity == "both":
+    if scenario.several_points:
         raise ValueError(
             "study is 'falsify' beside a sweep, cases, a comparison or two vehicles; it searches one point: remove them"
         )

@@ -27,7 +27,7 @@ def key_parts(kind: type[BaseModel], dotted: str) -> list[str]:
     parts = dotted.split(".")
     model: type[BaseModel] = kind
     for depth, part in enumerate(parts[:-1], start=1):
-        field = None if part.isdigit() else model.model_fields.get(part)
+        field = None if part.isdecimal() else model.model_fields.get(part)
         found = next(models_in(field.annotation), None) if field else None
         if found is None:
             break
@@ -40,7 +40,7 @@ def key_parts(kind: type[BaseModel], dotted: str) -> list[str]:
 def suggestion(kind: type[BaseModel], key: str) -> str:
     """Return the end of the message about an unknown key: the most similar known key, or the known keys of its section."""
     *parents, last = key.split(".")
-    section = ["0" if part.isdigit() else part for part in parents]
+    section = ["0" if part.isdecimal() else part for part in parents]
     known = [name.split(".") for name in known_keys(kind)]
     siblings = [name[-1] for name in known if name[:-1] == section]
     # A key without its section, such as speed_mps, is likelier than another key that is spelt similarly.
@@ -57,7 +57,7 @@ def entry_model(kind: type[BaseModel], parts: Sequence[str]) -> type[BaseModel] 
     """Return the schema of the entries of the list that a key names; None if it is not a list of sections."""
     found: tuple[type[BaseModel], bool] | None = kind, False
     for part in parts:
-        if found and not part.isdigit():
+        if found and not part.isdecimal():
             field = found[0].model_fields.get(part)
             found = next(models_in(field.annotation), None) if field else None
     return found[0] if found and found[1] else None

@@ -253,7 +253,7 @@ def _explain(key: str, error_type: str, message: str, value: object, kind: type[
         return f"unknown key '{key}'{suggestion(kind, key)}"
     if error_type == "missing":
         *parents, last = key.split(".")
-        if last.isdigit():
+        if last.isdecimal():
             return f"{'.'.join(parents)} has too few values; give one more, as in [400, 800]"
         return f"key '{key}' is missing; add it to the scenario"
     text = message.removeprefix("Value error, ")

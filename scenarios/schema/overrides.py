@@ -3,7 +3,7 @@
 import json
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from datetime import datetime
 from typing import Any
 
@@ -14,6 +14,9 @@ from scenarios.schema.keys import entry_model, example_value, key_parts
 
 Document = dict[str, Any]
 """A scenario as read from TOML, before it is checked."""
+
+_SHORT = {"vessel.speed_ratio": "nu"}
+"""Short names that a sweep has for keys."""
 
 
 def parse_override(override: str) -> tuple[str, object]:
@@ -40,7 +43,7 @@ def parse_override(override: str) -> tuple[str, object]:
 
 
 def apply_override(document: Document, key: str, value: object, kind: type[BaseModel]) -> None:
-    """Set a key for every flight of a document: no case and no random variable sets it otherwise.
+    """Set a key for every flight of a document: no case, no sweep and no random variable sets it otherwise.
 
     Parameters
     ----------
@@ -62,13 +65,29 @@ def apply_override(document: Document, key: str, value: object, kind: type[BaseM
             values[key] = value
         return
     set_value(document, key, value, kind)
-    for values in setting:
-        del values[key]
+    short = _SHORT.get(key, key)
+    for values in tables:
+        for name in (key, f"sweep.{short}"):
+            values.pop(name, None)
+    if isinstance(swept := document.get("sweep"), dict):
+        document["sweep"] = _without(swept, {key, short})
     draws = document.get("draws", [])
     if key != "draws" and isinstance(draws, list):
         document["draws"] = [draw for draw in draws if not (isinstance(draw, dict) and draw.get("key") == key)]
         if not draws and "draws" in document:
             del document["draws"]
+
+
+def _without(values: Document, keys: Collection[str], before: str = "") -> Document:
+    """Return the values of a sweep without those of some dotted keys, which may stand in tables of their own."""
+    rest: Document = {}
+    for name, value in values.items():
+        if isinstance(value, dict):
+            if below := _without(value, keys, f"{before}{name}."):
+                rest[name] = below
+        elif f"{before}{name}" not in keys:
+            rest[name] = value
+    return rest
 
 
 def set_value(document: Document, dotted: str, value: object, kind: type[BaseModel]) -> None:
@@ -86,7 +105,7 @@ def set_value(document: Document, dotted: str, value: object, kind: type[BaseMod
             child = section[key]
         else:
             key = name
-            if parts[depth + 1].isdigit() and not section.get(name) and entry_model(kind, parts[: depth + 1]):
+            if parts[depth + 1].isdecimal() and not section.get(name) and entry_model(kind, parts[: depth + 1]):
                 section[name] = []
             child = section.setdefault(name, {})
         if isinstance(child, tuple):
@@ -106,7 +125,7 @@ def _index(entries: list[Any], parts: list[str], depth: int, value: object, kind
     InputError : the list has no such entry; the message says how to add one to an empty list
     """
     name, parents = parts[depth], parts[:depth]
-    if name.isdigit() and int(name) < len(entries):
+    if name.isdecimal() and int(name) < len(entries):
         return int(name)
     message = f"unknown key '{'.'.join(parts)}'; {'.'.join(parents)} "
     model = entry_model(kind, parents)

@@ -1,7 +1,7 @@
 """The parts that a scenario names: by a registered name, or by a Python file, FILE.py:NAME."""
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,28 +21,35 @@ _AIRCRAFT = "aircraft"
 _PICTURE = "logo"
 """Last word of the key whose value is the file of a picture."""
 
+_TRIALS = "trials"
+"""Key whose values may be scenario files."""
+
 
 def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
     """Yield the key and the name of each part of a scenario, those that its random variables may choose among them."""
-    yield _AIRCRAFT, scenario.aircraft
-    yield "reference.shape", scenario.reference.shape
-    yield "guidance.law", scenario.guidance.law
-    yield "vessel.track", scenario.vessel.track
-    yield "plume.model", scenario.plume.model
-    if scenario.wind.table is not None:
-        yield "wind.table", scenario.wind.table
-    yield from (("search.methods", name) for name in scenario.search.methods)
-    names: list[tuple[str, object]] = [("payload", scenario.payload.instruments)]
-    names += [(draw.key, choice) for draw in scenario.draws for choice in draw.choice or ()]
-    for key, value in names:
-        if key in ("reference.shape", "guidance.law", "vessel.track", "plume.model", "wind.table"):
-            yield key, str(value)
-        elif key == "payload" and isinstance(value, Iterable):
+    named: dict[str, object] = {
+        _AIRCRAFT: scenario.aircraft,
+        "study": scenario.study,
+        "reference.shape": scenario.reference.shape,
+        "guidance.law": scenario.guidance.law,
+        "following.margin_law": scenario.following.margin_law,
+        "vessel.track": scenario.vessel.track,
+        "plume.model": scenario.plume.model,
+        "wind.table": scenario.wind.table,
+        "search.methods": scenario.search.methods,
+        "payload.instruments": scenario.payload.instruments,
+    }
+    drawn = [(draw.key, choice) for draw in scenario.draws if draw.key in named for choice in draw.choice or ()]
+    for key, value in [*named.items(), *drawn]:
+        if isinstance(value, list | tuple):
             yield from ((key, str(name)) for name in value)
+        elif value is not None:
+            yield key, str(value)
 
 
 def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
-    """Return a document, or a value of one, in which the files of parts and of data, and folders of aircraft, have absolute paths.
+    """Return a document, or a value of one, in which the files of parts, data and trials, and folders of aircraft, have absolute
+    paths.
 
     Parameters
     ----------
@@ -59,7 +66,7 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
         return {name: with_absolute_files(below, folder, named if name == "choice" else name) for name, below in value.items()}
     if isinstance(value, list):
         return [with_absolute_files(below, folder, key) for below in value]
-    if isinstance(value, str) and value and last == _PICTURE:
+    if isinstance(value, str) and ((value and last == _PICTURE) or (key == _TRIALS and value.endswith(".toml"))):
         return os.path.normpath(folder.absolute() / value)
     named_by_file = isinstance(value, str) and (
         is_file_part(value) or (last in _DATA and is_data_file(value)) or names_folder(last, value)

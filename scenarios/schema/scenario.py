@@ -174,11 +174,22 @@ class Scenario(Section):
         return self.vessel.speed_mps / self.guidance.airspeed_mps if ratio is None else ratio
 
     @property
+    def several_points(self) -> bool:
+        """Return whether its experiment has points that differ otherwise than at random: by a sweep, cases, a comparison or two
+        vehicles."""
+        return bool(self.sweep.root or self.cases or self.comparison.variants) or self.fidelity == "both"
+
+    @property
     def sampled_at_random(self) -> bool:
-        """Return whether its flights are a random sample: of the random variables, or of starts; those of a search are not."""
+        """Return whether its flights are a random sample: of the random variables, or of starts that differ in their seeds.
+
+        Those of a search and of subset simulation are not: each depends on what was flown before.
+        """
+        if self.study == "falsify" or self.method == "subset" or self.cases:
+            return False
         start = self.start
         given = start.place_m is not None or (start.range_m is not None and start.aspect_deg is not None)
-        return self.study != "falsify" and not self.cases and (bool(self.draws) or not (given and start.course_deg is not None))
+        return bool(self.draws) or (self.flight_seed is None and not (given and start.course_deg is not None))
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scenario":

@@ -14,6 +14,29 @@ from scenarios.engine.task import Row, Task
 from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.record import MEANINGS, unit_of
 
+INSTRUMENT_MEANINGS = {
+    **{
+        name: text
+        for gas in ("so2_ppb", "co2_ppm", "no_ppb", "no2_ppb")
+        for name, text in (
+            (gas, "true concentration along the path"),
+            (gas.replace("_", "_reading_"), "reading, which stands until the next"),
+        )
+    },
+    "plume_across_m": "place across the plume's mean axis",
+    "plume_above_m": "height above the plume's mean axis",
+    "plume_fraction": "concentration over that in the centre of the plume",
+    "axis_height_estimated_m": "height of the plume's axis as believed",
+    "axis_height_deviation_m": "its standard deviation",
+    "axis_offset_estimated_m": "place of the axis across that predicted, as believed",
+    "axis_offset_deviation_m": "its standard deviation",
+    "axis_spread_estimated_m": "vertical spread of the plume as believed",
+    "axis_spread_across_estimated_m": "horizontal spread of the plume as believed",
+    "axis_measurable": "probability, as believed, that the plume can be crossed within the limits of the altitude",
+    "axis_innovation": "mean normalised innovation squared of the passes, 1 where the filter is consistent",
+}
+"""Of time histories, of a sniffer and of a search for the plume."""
+
 UNFINISHED = (Outcome.NOT_SETTLED.value, Outcome.INCOMPLETE.value)
 """Outcomes of missions that were not completed though the aircraft came through."""
 
@@ -59,9 +82,9 @@ def history_files(
 
 def as_parquet(history: pd.DataFrame) -> bytes:
     """Return a time history as a Parquet file; unit and meaning of each column are in the metadata of its field."""
-    table = pa.Table.from_pandas(history, preserve_index=False)
+    table, meanings = pa.Table.from_pandas(history, preserve_index=False), MEANINGS | INSTRUMENT_MEANINGS
     described = [
-        field.with_metadata({"unit": unit_of(field.name), "meaning": MEANINGS.get(field.name, "")}) for field in table.schema
+        field.with_metadata({"unit": unit_of(field.name), "meaning": meanings.get(field.name, "")}) for field in table.schema
     ]
     buffer = io.BytesIO()
     pq.write_table(table.cast(pa.schema(described, metadata=table.schema.metadata)), buffer)

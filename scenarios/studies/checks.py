@@ -30,6 +30,7 @@ PART_REGISTRIES: dict[str, Registry[Any]] = {
     "vessel.track": VESSEL_TRACKS,
     "plume.model": PLUME_MODELS,
     "payload": PAYLOADS,
+    "payload.instruments": PAYLOADS,
 }
 """Where the parts are found that neither the schema nor the design of the autopilot looks up."""
 
@@ -92,9 +93,7 @@ def _check_names(experiment: Experiment) -> None:
 
 
 def _check_fault(scenario: Scenario) -> None:
-    kinds = {scenario.fault.kind}
-    for draw in scenario.draws:
-        kinds |= {str(kind) for kind in draw.choice or ()} if draw.key == "fault.kind" else set()
+    kinds = scenario.declared_faults
     known = set(NOT_OF_AIRCRAFT)
     if scenario.fidelity == "six_dof" and kinds - known:
         known |= set(fault_names(find_spec(scenario.aircraft)))

@@ -2,9 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 
-from scenarios.engine.task import Task
+from scenarios.engine.task import Row, Task
 from scenarios.schema.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
+
+
+def clearance(row: Row, *, unmeasured: float) -> float:
+    """Return how far from the keep-out area a flight stayed at its closest, or ``unmeasured`` if that is not known [m]."""
+    return float(row["min_distance_m"] - row["keepout_radius_m"]) if "min_distance_m" in row else unmeasured
 
 
 class ChosenFlightsStudy(FlightStudy):

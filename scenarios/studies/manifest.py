@@ -8,10 +8,11 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic_core import to_jsonable_python
 
+from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
 from aircraft.simulation.model_copy import model_hash
 from common.provenance import provenance
-from common.registry import file_hash, file_of
+from common.registry import PluginError, file_hash, file_of
 from common.run_layout import FORMAT, LOGO
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
@@ -77,10 +78,21 @@ def write_logo(report: ReportConfig, run: RunDirectory) -> None:
 def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
     """Return a hash of each file, and of the files of each aircraft, that scenarios take parts from, by the part: a resumed run
     and a replay have to find the same.
+
+    Raises
+    ------
+    InputError : a file or an aircraft cannot be read
     """
-    names = dict.fromkeys(named for scenario in scenarios for named in part_names(scenario))
-    folders = {name: model_hash(find_spec(name).files)[:_HASH_LENGTH] for key, name in names if names_folder(key, name)}
-    return {name: file_hash(name) for _, name in names if names_file(name)} | folders
+    found = {}
+    for key, name in dict.fromkeys(named for scenario in scenarios for named in part_names(scenario)):
+        try:
+            if names_folder(key, name):
+                found[name] = model_hash(find_spec(name).files)[:_HASH_LENGTH]
+            elif names_file(name):
+                found[name] = file_hash(name)
+        except (AircraftError, PluginError) as error:
+            raise InputError(f"{key}: {error}") from None
+    return found
 
 
 def refuse_changed(then: Mapping[str, str], now: Mapping[str, str]) -> None:

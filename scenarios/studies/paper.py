@@ -131,8 +131,9 @@ def _guaranteed(request: FlightRequest, reserve: float) -> Row:
 class PaperStudy(FlightStudy):
     """Flights of cases; ``bounds.json`` bounds their commands."""
 
-    def postprocess(self, run: RunDirectory, _journal: Journal, progress: Progress) -> None:
+    def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
         """Bound the commands of the flights."""
+        super().postprocess(run, journal, progress)
         progress("bounding commands", self.planned, self.planned)
         ((_, scenario),) = self.trials.items()
         ((_, experiment),) = self.experiments.items()

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 from common.intervals import CONFIDENCE, percent, upper_bound
 from common.run_layout import SUMMARY
+from common.units import SECONDS_PER_HOUR
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
 
@@ -109,9 +110,10 @@ class FlightCounts:
     def bound_line(self) -> str:
         """Return the bound on the probability of a keep-out violation, if flights are a random sample; none of a search."""
         bound, confidence = (percent(p).replace("\N{NO-BREAK SPACE}", " ") for p in (self._bound, CONFIDENCE))
+        hours = self.duration / SECONDS_PER_HOUR
         return (
-            f"{self.flown - self.kept_out} of {self.flown} flights ({self.duration / 3600.0:.3g} h) violated the keep-out area or"
-            f" ended unknown: at most {bound} of flights sampled as these were, at {confidence} confidence"
+            f"{self.flown - self.kept_out} of {self.flown} flights ({hours:.3g} h) violated the keep-out area or ended unknown:"
+            f" at most {bound} of flights sampled as these were, at {confidence} confidence"
         )
 
     @property

@@ -96,9 +96,10 @@ def emission(scenario: Scenario, *, speed: float, load: float | None = None) -> 
     MeasurementError : the ship has no such speed
     """
     ship = ship_preset(scenario.emission.ship or "")
+    air_temperature = scenario.wind.temperature_c + _ZERO_CELSIUS
     if load is None:
-        return emission_of(ship, fuel_of(scenario), speed=speed)
-    return emission_of(ship, fuel_of(scenario), power=load * ship.power_max)
+        return emission_of(ship, fuel_of(scenario), speed=speed, air_temperature=air_temperature)
+    return emission_of(ship, fuel_of(scenario), power=load * ship.power_max, air_temperature=air_temperature)
 
 
 def exhaust_of(

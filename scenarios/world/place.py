@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from functools import cached_property
 
 from common.geodesy import LocalFrame
@@ -39,9 +38,3 @@ def given_place(config: PlaceConfig, altitude: float) -> Place:
         altitude=altitude,
         utc=math.nan if config.utc is None else config.utc.timestamp(),
     )
-
-
-def utc_text(seconds: float) -> str:
-    """Return a time since 1970 [s] in ISO 8601, to a millisecond where it is no whole second."""
-    time = datetime.fromtimestamp(seconds, UTC)
-    return time.isoformat(timespec="milliseconds" if time.microsecond else "seconds").replace("+00:00", "Z")

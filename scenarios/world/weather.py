@@ -8,6 +8,7 @@ from aircraft.atmosphere.gusts import Gust
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
 from aircraft.atmosphere.wind import CALM, WindField, constant_wind, over_the_sea
+from common.wind import wind_velocity
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.world import WindConfig
 from scenarios.world.place import Place
@@ -18,8 +19,7 @@ STILL_AIR = Weather(wind=CALM, turbulence=None, gusts=(), seed=0)
 
 def wind_ned(wind: WindConfig) -> tuple[float, float]:
     """Return north and east velocity of the air mass [m/s]: where the wind blows to."""
-    to = math.radians(wind.from_deg) + math.pi
-    return wind.speed_mps * math.cos(to), wind.speed_mps * math.sin(to)
+    return wind_velocity(wind.speed_mps, wind.from_deg)
 
 
 def wind_of(scenario: Scenario, place: Place) -> WindField:

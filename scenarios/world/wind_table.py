@@ -11,10 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.atmosphere.wind import WindField, over_the_sea
+from common.times import utc_text
+from common.wind import wind_velocity
 from scenarios.errors import InputError
 from scenarios.schema.sections.world import WindConfig
 from scenarios.world.ais.rows import number_of, seconds_of
-from scenarios.world.place import Place, utc_text
+from scenarios.world.place import Place
 from scenarios.world.wind_netcdf import read_netcdf
 
 Array = npt.NDArray[np.float64]
@@ -143,8 +145,7 @@ def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, 
                 f"wind.table: {path}, line {line}: {','.join(row)[:80]!r}; speeds go from 0 to {_SPEED_MAX:g} m/s, directions"
                 " from 0 to 360 deg, heights are above 0: correct the line, or delete it"
             )
-        to = math.radians(direction) + math.pi
-        yield line, time, height, speed * math.cos(to), speed * math.sin(to)
+        yield line, time, height, *wind_velocity(speed, direction)
 
 
 def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> TabledWind:

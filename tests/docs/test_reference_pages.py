@@ -16,8 +16,9 @@ from measurement.estimate.flight_log.config import LogConfig
 from measurement.estimate.flight_log.csv_file import read_flight
 from measurement.estimate.flight_log.run_files import SAMPLE_MEANINGS, samples
 from scenarios.console.main import commands
-from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, INSTRUMENT_MEANINGS, MEANINGS
+from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, MEANINGS
 from scenarios.schema.documented import documented_keys
+from scenarios.simulation.time_history import INSTRUMENT_MEANINGS
 from scenarios.studies.patrol.meanings import MEANINGS as PATROL_MEANINGS
 
 

@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from crossings import changed, crossings, plain_sniffer, read
-from scipy.integrate import quad
 
 from measurement.estimate import estimate
-from measurement.estimate.areas import area_ratio, overlap_ratio
+from measurement.estimate.areas import area_ratio
 from measurement.estimate.fit.regression import fitted
 from measurement.estimate.fit.signals import make_signals
 from measurement.estimate.passes import find_passes
@@ -43,19 +42,6 @@ def test_regression_of_unequal_responses_is_unbiased_where_samples_are_dense(sec
     assert found.fsc_percent == pytest.approx(0.25, rel=1e-3)
 
 
-@pytest.mark.parametrize(("t90", "expected"), [(20.0, 0.45), (5.0, 0.95), (2.0, 1.00)])
-def test_areas_over_troughs_read_what_the_closed_form_says(t90, expected):
-    # The periodic response to puffs every P is e^(-t/tau)/(1 - e^-q)/tau: its area over the trough, by quadrature.
-    interval, tau = 9.5, t90 / math.log(10.0)
-    q = interval / tau
-    trough = math.exp(-q) / (1.0 - math.exp(-q)) / tau
-    area, _ = quad(lambda t: math.exp(-t / tau) / (1.0 - math.exp(-q)) / tau - trough, 0.0, interval, epsabs=1e-12)
-    # A CO2 channel so fast that it keeps all of its area leaves the share of SO2 alone.
-    assert overlap_ratio(interval, plain_sniffer(t90, 1e-3)) == pytest.approx(area, abs=1e-6)
-    # Figures of the specification, given to two digits, of which 0.95 is 0.944.
-    assert area == pytest.approx(expected, abs=0.006)
-
-
 def test_the_sniffer_makes_the_overlap_that_the_closed_form_says():
     # Puffs of two steps of 1 ms every 9.5 s, in the periodic state: width and sampling count for less than 1e-4 of 0.45.
     step, count = 1e-3, 9500
@@ -63,7 +49,11 @@ def test_the_sniffer_makes_the_overlap_that_the_closed_form_says():
     puffs[1::count] = 1.0
     reading = lag(puffs, step, TAU)[-count:]
     area = np.trapezoid(reading - reading[-1], dx=step) / step
-    assert area == pytest.approx(overlap_ratio(9.5, plain_sniffer(20.0, 1e-3)), abs=5e-4)
+    # The periodic response to puffs every P is e^(-t/tau)/(1 - e^-q)/tau, q = P/tau: over its trough it has 1 - q/(e^q - 1).
+    q = 9.5 / TAU
+    assert area == pytest.approx(1.0 - q / math.expm1(q), abs=5e-4)
+    # The figure of the specification, given to two digits.
+    assert area == pytest.approx(0.45, abs=0.005)
 
 
 def test_a_window_after_a_puff_holds_what_the_closed_form_says():

@@ -54,9 +54,10 @@ def test_noise_in_co2_does_not_attenuate_the_slope():
     clean = regress(make_signals(checked_record(read(plain_sniffer(), air, step=1.0), plain_sniffer()), plain_sniffer())).slope
     spec = plain_sniffer(co2_noise=4.0)
     slopes, _ = repeated(spec, air, lambda record: (regress(make_signals(record, spec)).slope, 0.0))
-    record = checked_record(read(spec, air, step=1.0), spec)
-    found = regress(make_signals(record, spec))
-    attenuation = found.co2_noise_energy / found.co2_energy
+    signals = make_signals(checked_record(read(spec, air, step=1.0), spec), spec)
+    co2, _ = signals.excess()
+    noise_energy = signals.noise("co2") ** 2 * signals.noise_energy("co2")
+    attenuation = noise_energy / (float(co2 @ co2) - noise_energy)
     error = np.std(slopes) / math.sqrt(REPEATS)
     # A quotient of noisy sums keeps a bias of second order, its relative variance; without the correction the slope would be
     # attenuated by the noise's share of the CO2 energy, several times as much.

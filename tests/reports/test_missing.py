@@ -6,8 +6,10 @@ import shutil
 import pytest
 
 from reports.document.blocks import Table
+from reports.output import flight_figure
 from reports.registry import content
 from reports.run.run_data import read_run
+from reports.run.trials import read_trials
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.in_process import assert_refused, run_command
@@ -39,6 +41,18 @@ def had(run, *names):
     manifest = json.loads((run / "manifest.json").read_text(encoding="utf-8"))
     manifest["files"] = sorted([*manifest["files"], *names])
     (run / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+
+
+def test_flights_of_a_scenario_whose_name_is_all_digits_are_found(copy):
+    for table in copy.glob("*.csv"):
+        table.write_text(table.read_text(encoding="utf-8").replace(",short,", ",2026,"), encoding="utf-8")
+    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    manifest["trials"] = {"2026": manifest["trials"]["short"]}
+    (copy / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    run = read_run(copy)
+    (trial,) = read_trials(run)
+    assert list(trial.rows["flight_id"]) == ["short_00000", "short_00001"]
+    assert len(flight_figure(run, "short_00001").axes) > 1
 
 
 def test_of_a_whole_run_nothing_is_missing(whole):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from scenarios.engine.runner import RunResult, StudySummary
 from scenarios.run import main
 from tests import in_process
 
@@ -178,6 +180,29 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
         pd.read_csv(broken / "summary.csv")[columns], pd.read_csv(whole / "summary.csv")[columns], check_exact=True
     )
     assert (broken / "crossings.csv").read_bytes() == (whole / "crossings.csv").read_bytes()
+
+
+def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(tmp_path, run_here, monkeypatch):
+    out, flight = tmp_path / "a run", tmp_path / "before" / "flights" / "nu_0.30"
+    flight.parent.mkdir(parents=True)
+    (flight.parents[1] / "manifest.json").touch()
+    calls = []
+
+    def interrupted(study, directory, *, resume, **_):
+        calls.append((study, directory, resume))
+        summary = StudySummary(done=0, met=False, lines=[], manifest={})
+        return RunResult(directory=directory, what="flights", planned=1, summary=summary, interrupted=True)
+
+    monkeypatch.setattr("scenarios.engine.runner.fly_study", interrupted)
+    monkeypatch.setattr("scenarios.studies.replay.Replay", lambda name, viewer, **given: (name, viewer, given))
+    ended = run_here(flight, "--aircraft-dir", "my fleet", "--flightgear", "localhost:5550", "--out", out)
+    assert ended.returncode == 130
+    program, command, *arguments = shlex.split(ended.stderr.rpartition("Continue with: ")[2])
+    assert (program, command) == ("plume-flight", "run")
+    run_here(*arguments)
+    (study, directory, _), (again, there, resume) = calls
+    assert study == again == (str(flight), ("localhost", 5550), {"aircraft_dir": Path("my fleet")})
+    assert (there, resume) == (directory, True)
 
 
 def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tmp_path, run_here):

@@ -10,11 +10,12 @@ from reports.export.tracks_csv import COLUMNS as TRACK_COLUMNS
 from scenarios.instruments.sniffer import SnifferOnBoard
 from scenarios.metrics.columns import CROSSING_COLUMNS, INPUT_COLUMNS, INTERVENTION_COLUMNS, SEARCH_COLUMNS, SUMMARY_COLUMNS
 from scenarios.metrics.finding import FINDING_FIGURES
-from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, INSTRUMENT_MEANINGS, MEANINGS
+from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, MEANINGS
 from scenarios.metrics.window import MEASURED_COLUMNS, WINDOW_COLUMNS
 from scenarios.simulation.plume_readings import PlumeBelief
 from scenarios.simulation.record import MEANINGS as HISTORY_MEANINGS
 from scenarios.simulation.record import unit_of
+from scenarios.simulation.time_history import INSTRUMENT_MEANINGS
 from scenarios.studies.arena.study import TUNING_COLUMNS
 from scenarios.studies.convergence.ensemble import COLUMNS as CONVERGENCE_COLUMNS
 from scenarios.studies.patrol.meanings import MEANINGS as PATROL_MEANINGS

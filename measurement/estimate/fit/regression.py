@@ -19,16 +19,12 @@ class Slope:
     noise : its standard deviation by the noise [ppb/ppm]
     misfit : mean square of the residuals over that of the stated noise [-]
     residual_energy : sum of squares of the residuals [ppb^2]
-    co2_energy : sum of squares of the CO2 excess without that of its noise [ppm^2]
-    co2_noise_energy : that of its noise [ppm^2]
     """
 
     slope: float
     noise: float
     misfit: float
     residual_energy: float
-    co2_energy: float
-    co2_noise_energy: float
 
 
 def fitted(signals: Signals) -> tuple[float, Array]:
@@ -49,8 +45,8 @@ def regress(signals: Signals) -> Slope:
     """
     slope, residual = fitted(signals)
     co2, _ = signals.excess()
-    noise_energy, residual_energy = _noise_energy(signals, 0.0, 1.0), float(residual @ residual)
-    energy = float(co2 @ co2) - noise_energy
+    residual_energy = float(residual @ residual)
+    energy = float(co2 @ co2) - _noise_energy(signals, 0.0, 1.0)
     if not math.isfinite(slope):
         misfit = variance = math.nan
     else:
@@ -63,8 +59,6 @@ def regress(signals: Signals) -> Slope:
         noise=math.sqrt(variance * max(1.0, misfit)),
         misfit=misfit,
         residual_energy=residual_energy,
-        co2_energy=energy,
-        co2_noise_energy=noise_energy,
     )
 
 

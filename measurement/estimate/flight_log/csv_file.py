@@ -41,7 +41,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
 
     Raises
     ------
-    MeasurementError : the file cannot be read, or lacks a column or has words in it
+    MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, or has words in it
     """
     try:
         table = pd.read_csv(path, skipinitialspace=True, low_memory=False)
@@ -52,6 +52,10 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
             f"'{path}' is not CSV: {str(error).splitlines()[0].strip()}; give a CSV file with a head line"
         ) from None
     table.columns = table.columns.map(str).str.strip()
+    if len(twice := table.columns[table.columns.duplicated()]):
+        raise MeasurementError(f"'{path}' has the column '{twice[0]}' twice; rename or remove one of them")
+    if table.empty:
+        raise MeasurementError(f"'{path}' has a head line and 0 readings; it needs a row per reading")
     time = _time(table, config.columns["time"], path)
     values = np.full((len(table), len(GASES)), np.nan)
     for i, gas in enumerate(GASES):

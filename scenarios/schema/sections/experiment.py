@@ -275,7 +275,7 @@ class TrialList(Section):
     description: str = ""
     """In a sentence or two, for the head of the report."""
     trials: Annotated[tuple[str, ...], Field(min_length=1)]
-    """Scenarios of flights, by their names in the catalog or their paths."""
+    """Scenarios of flights, by their names in the catalog or the paths of their files, relative to that of the list."""
     share: Annotated[float, Field(gt=0.0, le=1.0)] = 1.0
     """Fraction of each trial's flights that are flown, for a quick look [-]."""
     seed: Seed | None = None

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from common.intervals import CONFIDENCE
 from scenarios.engine.task import Row
 from scenarios.metrics.window import MEASURED_COLUMNS
 from scenarios.planning.theory.speed_ratio import crossing_limit
 from scenarios.schema.sections.experiment import ArenaConfig
 from scenarios.schema.sections.guidance import GuidanceConfig
+from scenarios.statistics.estimates import without_nan
 from scenarios.statistics.paired_bootstrap import paired_estimates
 from scenarios.studies.arena.entrants import TRACKING, Entrant, Refused
 
@@ -33,17 +35,18 @@ GREATER_IS_BETTER = ("crossings_per_minute", *MEASURED_COLUMNS)
 _TRACKING_ONLY = ("error_rms_m", "effort_rms_rad_s", "excess_rms_rad_s", "saturated_share")
 """Figures that compare laws of one task alone: their references differ between the tasks."""
 
-CONFIDENCE = 0.95
-
 
 def tuned_record(entrants: Sequence[Entrant], rows: Iterable[Row]) -> list[dict[str, Any]]:
-    """Return what each law was given: its parameters by default and as tuned, and what either costs the tuner."""
+    """Return what each law was given: its parameters by default and as tuned, and what either costs the tuner.
+
+    A row without a cost stands for a tuning whose process was lost.
+    """
     of: dict[str, list[Row]] = {entrant.name: [] for entrant in entrants}
     for row in rows:
         of[row["entrant"]].append(row)
     record = []
     for entrant in entrants:
-        tried = sorted(of[entrant.name], key=lambda row: row["evaluation"])
+        tried = sorted((row for row in of[entrant.name] if "cost_m" in row), key=lambda row: row["evaluation"])
         entry = asdict(entrant) | {"defaults": dict(entrant.defaults), "evaluations": len(tried), "tuned": dict(entrant.defaults)}
         if tried:
             least = min(tried, key=lambda row: row["cost_m"])
@@ -89,7 +92,7 @@ def estimates(
                     strict=True,
                 ):
                     entry = {"figure": figure, "condition": condition, "entrant": entrants[i].name}
-                    found.append(entry | _plain(asdict(estimate)) | {"as_good": estimate.as_good})
+                    found.append(entry | without_nan(asdict(estimate)) | {"as_good": estimate.as_good})
     return found
 
 
@@ -130,8 +133,3 @@ def _table(rows: Sequence[Row], figure: str, entrants: int) -> Array:
     """Return a figure of a condition's flights, shape (entrants, flights)."""
     values = [float(value) if (value := row.get(figure)) is not None else math.nan for row in rows]
     return np.array(values, dtype=np.float64).reshape(entrants, -1)
-
-
-def _plain(values: dict[str, Any]) -> dict[str, Any]:
-    """Return values as they go into JSON: what is not a number is none."""
-    return {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in values.items()}

@@ -42,7 +42,7 @@ class ArenaStudy(FlightStudy):
     chooses_flights = True
 
     def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
-        if scenario.sweep.root or scenario.cases or scenario.comparison.variants or scenario.fidelity == "both":
+        if scenario.several_points:
             raise InputError(
                 "study is 'arena' beside a sweep, cases, a comparison or two vehicles; what differs are the laws (laws) and the"
                 " conditions (arena.conditions): remove them"
@@ -83,6 +83,7 @@ class ArenaStudy(FlightStudy):
         """Tune every law; then fly all of them, and some of each again for their tracks."""
         if self._arena.evaluations:
             fly(Task(number=self._numbers + i) for i in range(len(self.entrants)))
+            self._refuse_untuned(journal)
             self._take_tuned(journal)
         fly(self.task(number) for number in range(self._numbers))
         # The report draws the first flight of each law in the first condition.
@@ -95,6 +96,18 @@ class ArenaStudy(FlightStudy):
         entrant = self.entrants[number // self._scenario.flights % len(self.entrants)]
         chosen = self._chosen.get(entrant.name, {})
         return Task(number=number, labels=tuple((f"guidance.{key}", repr(value)) for key, value in chosen.items()))
+
+    @staticmethod
+    def _refuse_untuned(journal: Journal) -> None:
+        """Raise an InputError if the process that tuned a law was lost: with its defaults it would not be compared fairly."""
+        lost = {row["entrant"]: row["message"] for row in journal.rows(TUNING_TABLE) if "cost_m" not in row}
+        if lost:
+            name, reason = next(iter(lost.items()))
+            more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
+            raise InputError(
+                f"the tuning of '{name}'{more} was lost ({reason}), and a law that is not tuned is not compared: continue with"
+                " --resume, with a larger --time-limit or --memory-limit if that ended it"
+            )
 
     def _take_tuned(self, journal: Journal) -> None:
         """Take the parameters that the tuner chose: cases of the trials have them, so that a replay of a flight has them too."""

@@ -47,7 +47,8 @@ class ArenaWork(FlightWork):
         """Return the result of a task whose process was lost."""
         if (entrant := self._tuned(task)) is None:
             return super().lost(task, reason)
-        row = {"entrant": entrant.name, "evaluation": 0, "parameters": "{}", "cost_m": 0.0, "message": reason}
+        # Without parameters and cost: nothing was tried.
+        row = {"entrant": entrant.name, "evaluation": 0, "message": reason}
         return replace(Result(task=task, tables={TUNING_TABLE: [row]}, items=0), lost=True)
 
     def request(self, task: Task) -> FlightRequest:

@@ -8,8 +8,8 @@ import numpy as np
 
 from common.run_layout import DRAWS, SUMMARY, WORST
 from scenarios.engine.journal import Journal
-from scenarios.engine.task import Row
 from scenarios.search.space import Space
+from scenarios.studies.chosen_flights import clearance
 
 CONFIRMATION = "confirmation"
 """What stands for the method of a flight that repeats one of the worst with fresh noise."""
@@ -43,11 +43,6 @@ class SearchedFlight:
         return {"flight_id": self.flight_id, "method": self.method, "clearance_m": self.clearance}
 
 
-def clearance(row: Row) -> float:
-    """Return how far from the keep-out area a flight stayed at its closest [m]."""
-    return float(row["min_distance_m"] - row["keepout_radius_m"]) if "min_distance_m" in row else UNFLOWN
-
-
 def searched_flights(journal: Journal) -> list[SearchedFlight]:
     """Return the flights that are done, by their numbers."""
     return [
@@ -56,7 +51,7 @@ def searched_flights(journal: Journal) -> list[SearchedFlight]:
             flight_id=row["flight_id"],
             method=(drawn := next(journal.rows(DRAWS, first=number, below=number + 1), {})).get("search_method", ""),
             confirms=drawn.get("confirms", ""),
-            clearance=clearance(row),
+            clearance=clearance(row, unmeasured=UNFLOWN),
             violates=bool(row.get("keepout_violations", 0)),
         )
         for number, row in journal.numbered(SUMMARY)

@@ -19,12 +19,11 @@ from scenarios.schema.scenario import Scenario
 from scenarios.search.method import SearchSettings
 from scenarios.search.space import Array
 from scenarios.search.turns import methods_named, search_in_turns
-from scenarios.studies.chosen_flights import ChosenFlightsStudy
+from scenarios.studies.chosen_flights import ChosenFlightsStudy, clearance
 from scenarios.studies.falsification.results import (
     CONFIRMATION,
     UNFLOWN,
     SearchedFlight,
-    clearance,
     search_lines,
     search_manifest,
     searched_flights,
@@ -64,7 +63,7 @@ class FalsificationStudy(ChosenFlightsStudy):
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Search; then keep the worst flights, and fly them again with fresh noise."""
-        search, timer = self._search, _Timer(self._search.time_s, journal)
+        search, timer = self._search, _Timer(self._search.time_s, journal, self._search.flights_max)
         settings = SearchSettings(
             population=search.population,
             mutation=search.mutation,
@@ -83,10 +82,24 @@ class FalsificationStudy(ChosenFlightsStudy):
             turns=None if search.time_s else search.generations + 1,
             within_time=lambda: timer.left and self._has_room,
         )
+        if not self._tasks:
+            raise self._without_flights()
         self.flights = {self._trial: len(self._tasks)}
         worst = worst_flights(searched_flights(journal), self._space, journal, search.kept)
         self._keep(worst, fly, run, journal)
         self._confirm(worst, fly, journal)
+
+    def _without_flights(self) -> InputError:
+        """Return the error to raise for a search that has nothing to fly."""
+        if self._proposed:
+            return InputError(
+                f"none of the {self._proposed} points that the search proposed is within speed_ratio and"
+                " following.vessel_acceleration_mps2, and none was flown: widen these, or change the draws"
+            )
+        return InputError(
+            f"search.methods {list(self._search.methods)} proposed no flight (continuous draws: {len(self._space.continuous)} of"
+            f" {self._space.dimension}, search.population: {self._search.population}): add 'corners', which searches any draws"
+        )
 
     @property
     def _has_room(self) -> bool:
@@ -107,11 +120,11 @@ class FalsificationStudy(ChosenFlightsStudy):
         if self._search.time_s is not None:
             self._plan(len(self._tasks))
         batch = self._tasks[first:]
-        timer.before(batch)
+        timer.before(first, batch)
         fly(batch)
         for task in batch:
             self._check_point(task, journal)
-        flown = (clearance(row) for row in journal.rows(SUMMARY, first=first, below=len(self._tasks)))
+        flown = (clearance(row, unmeasured=UNFLOWN) for row in journal.rows(SUMMARY, first=first, below=len(self._tasks)))
         return np.array([UNFLOWN * (1.0 + excess) if excess else next(flown) for excess in excesses])
 
     @staticmethod
@@ -167,21 +180,23 @@ class FalsificationStudy(ChosenFlightsStudy):
 
 
 class _Timer:
-    """The time that a search may take: it runs from the first flight that is not in the journal yet.
+    """The time that a search may take: it runs from the first batch that is not wholly in the journal yet.
 
     Parameters
     ----------
     limit : how long it may take; None for any time [s]
     journal : with the flights that a run before this one has flown
+    flights_max : numbers of the search's flights are below it
     """
 
-    def __init__(self, limit: float | None, journal: Journal) -> None:
+    def __init__(self, limit: float | None, journal: Journal, flights_max: int) -> None:
         self._limit, self._done = limit, journal.done()
+        self._last = max((number for number in self._done if number < flights_max), default=-1)
         self._began: float | None = None
 
-    def before(self, tasks: Sequence[Task]) -> None:
-        """Take the tasks that are about to be flown."""
-        if self._began is None and any(task.number not in self._done for task in tasks):
+    def before(self, first: int, tasks: Sequence[Task]) -> None:
+        """Take the tasks that are about to be flown, from number ``first`` on; none where no point can be flown."""
+        if self._began is None and (first > self._last or any(task.number not in self._done for task in tasks)):
             self._began = time.monotonic()
 
     @property

@@ -10,7 +10,7 @@ from common.run_layout import SUMMARY
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
-from scenarios.engine.task import Row, Task
+from scenarios.engine.task import Task
 from scenarios.experiment.declared import beyond_declared
 from scenarios.experiment.draws import value_at
 from scenarios.schema.scenario import Scenario
@@ -19,7 +19,8 @@ from scenarios.statistics.subset_estimates import RareProbability, input_shifts,
 from scenarios.statistics.subset_levels import Array, Simulation
 from scenarios.statistics.subset_simulation import Point, Simulating, SubsetSimulation
 from scenarios.statistics.subset_statistics import subset_statistics
-from scenarios.studies.chosen_flights import ChosenFlightsStudy
+from scenarios.studies.chosen_flights import ChosenFlightsStudy, clearance
+from scenarios.studies.rows import frame
 
 
 class SubsetStudy(ChosenFlightsStudy):
@@ -78,16 +79,17 @@ class SubsetStudy(ChosenFlightsStudy):
             fly(self._tasks[first:])
         values = np.full(len(points), np.inf)
         for number, row in journal.numbered(SUMMARY, first=first, below=len(self._tasks)):
-            values[number - first] = _clearance(row)
+            values[number - first] = clearance(row, unmeasured=np.inf)
         return values
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
         """Write ``statistics.json``."""
+        super().postprocess(run, journal, progress)
         progress("estimating", self.planned, self.planned)
         first = np.concatenate([simulation.levels[0].points for simulation in self._simulations])
         near = np.concatenate([simulation.levels[-1].points[chosen] for simulation, chosen in near_event(self._simulations)])
         shifts = input_shifts(self._values(first), self._values(near), (first, near))
-        rows = pd.DataFrame([[row.get(name) for name in COLUMNS] for row in journal.rows(SUMMARY)], columns=list(COLUMNS))
+        rows = frame(journal.rows(SUMMARY), COLUMNS)
         run.write_json(run.statistics, subset_statistics(rows, self._simulations, shifts, confidence=self._statistics.confidence))
 
     def _values(self, points: Array) -> pd.DataFrame:
@@ -114,7 +116,3 @@ class SubsetStudy(ChosenFlightsStudy):
             f"probability of a keep-out violation in a flight: {found.estimate:.2g}, {found.low:.2g} to {found.high:.2g} and at"
             f" most {found.upper:.2g} with {sure}, by {repeats} subset simulations{some}"
         )
-
-
-def _clearance(row: Row) -> float:
-    return float(row["min_distance_m"] - row["keepout_radius_m"]) if "min_distance_m" in row else float("inf")

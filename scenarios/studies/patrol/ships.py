@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from common.wind import wind_velocity
 from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight
 from scenarios.schema.scenario import Scenario
@@ -111,8 +112,7 @@ def _velocity(scenario: Scenario) -> complex:
 
 def _wind(scenario: Scenario) -> complex:
     """Return where the wind blows to [m/s]."""
-    towards = math.radians(scenario.wind.from_deg) + math.pi
-    return scenario.wind.speed_mps * complex(math.cos(towards), math.sin(towards))
+    return complex(*wind_velocity(scenario.wind.speed_mps, scenario.wind.from_deg))
 
 
 def _placed(velocities: Sequence[complex], scenario: Scenario, generator: np.random.Generator) -> list[Mover]:

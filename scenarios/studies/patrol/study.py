@@ -5,6 +5,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Self
 
 from common.run_layout import PHASES, SHIPS, SUMMARY
+from common.units import SECONDS_PER_HOUR
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
@@ -127,7 +128,7 @@ class PatrolCounts:
             open=total("open"),
             oracle=total("oracle_verdicts"),
             violations=total("keepout_violations"),
-            hours=sum(row.get("duration_s", 0.0) for row in rows) / 3600.0,
+            hours=sum(row.get("duration_s", 0.0) for row in rows) / SECONDS_PER_HOUR,
             failed=[row for row in rows if row["message"]],
         )
 
@@ -144,7 +145,7 @@ class PatrolCounts:
 
 def _check(scenario: Scenario) -> None:
     """Refuse what is no patrol."""
-    if scenario.sweep.root or scenario.cases or scenario.comparison.variants or scenario.fidelity == "both":
+    if scenario.several_points:
         raise InputError(
             "study is 'patrol' beside a sweep, cases, a comparison or two vehicles; give each value a run of its own: remove them"
         )

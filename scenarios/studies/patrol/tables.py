@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from common.units import SECONDS_PER_HOUR
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
 from scenarios.studies.patrol.legs import Leg
@@ -122,4 +123,4 @@ def patrol_figures(ships: Sequence[Row], stretches: Sequence[Row], *, endurance:
     near = [row["min_distance_m"] for row in served if "min_distance_m" in row]
     figures |= {"min_distance_m": min(near)} if near else {}
     figures |= {"others_distance_min_m": others} if math.isfinite(others) else {}
-    return figures | ({"served_per_hour": 3600.0 * len(served) / duration} if duration else {})
+    return figures | ({"served_per_hour": SECONDS_PER_HOUR * len(served) / duration} if duration else {})

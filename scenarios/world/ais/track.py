@@ -9,12 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from common.geodesy import LocalFrame
+from common.times import utc_text
 from gnc.estimation.vessel_filter import VesselReport
 from scenarios.errors import InputError
 from scenarios.schema.sections.world import VesselConfig
 from scenarios.world.ais.reports import AisReports, read_ais
 from scenarios.world.ais.smoothing import smooth_motion
-from scenarios.world.place import Place, utc_text
+from scenarios.world.place import Place
 from scenarios.world.vessel import TRACK_STEP, TabledVessel, track_times
 
 Array = npt.NDArray[np.float64]

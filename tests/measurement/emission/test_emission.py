@@ -114,9 +114,7 @@ def test_sulphur_changes_sulphur_alone():
         (lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=-1.0), "speed of container is -1 m/s"),
         (lambda: emission_of(CONTAINER, fuel_preset("mgo"), power=0.0), "power of container is 0 W"),
         (lambda: emission_of(CONTAINER, fuel_preset("mgo"), power=13e6), "power of container is 1.3e"),
-        (lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=12.0, no2_share=1.2), "share of NO2 in NOx is 1.2"),
         (lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=12.0, air_temperature=15.0), "air temperature is 15 K"),
-        (lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=12.0, air_pressure=1013.25), "air pressure is 1013.25 Pa"),
         (lambda: fsc_factor(87.0), "carbon fraction is 87"),
     ],
 )

@@ -34,6 +34,12 @@ def test_smoke_widens_with_distance_and_in_weaker_wind_past_the_funnel():
     assert np.all(wide.half_width[1:] > narrow.half_width[1:])
 
 
+def test_smoke_is_lower_in_warmer_air():
+    cold, warm = (shape_of(SMOKE | {"wind": {"temperature_c": celsius, "stability_per_s": 0.0}}) for celsius in (-10.0, 40.0))
+    # Near the funnel momentum carries it, and that is less of colder air: further on it is buoyancy.
+    assert cold.height[-1] > warm.height[-1] + 1.0
+
+
 def test_far_away_the_mean_plume_is_as_wide_as_the_turbulence_makes_it():
     # Of ambient turbulence sigma_y is at most sigma_v t, with sigma_v = 1.9 u* and u* about 0.035 of the wind over sea: 0.47 m/s
     # (the sources of MarineAir); buoyancy and source add some. Age 80 s at 800 m.

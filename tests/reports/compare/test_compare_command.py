@@ -87,8 +87,8 @@ def test_a_summary_of_another_version_is_refused(copies):
     assert_refused(compared(*copies), "another version", "'seed'")
 
 
-@pytest.mark.parametrize("study", ["design", "measurement", "convergence"])
-def test_studies_without_flights_are_refused(copies, study):
+@pytest.mark.parametrize("study", ["design", "measurement", "convergence", "patrol"])
+def test_studies_whose_rows_are_no_flights_are_refused(copies, study):
     change_manifest(copies[1], study=study)
     assert_refused(compared(*copies), f"of the study '{study}'")
 

@@ -17,6 +17,7 @@ def run_path(request, tmp_path):
     path = tmp_path / "run"
     (path / "flights").mkdir(parents=True)
     manifest = {"study": "flights", "name": "made", "title": "Made, <&> here", "config": {}, "flights_planned": 1}
+    manifest |= {"begun_utc": "2026-06-02T08:00:00Z", "command": "plume-flight run made.toml"}
     (path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
     row = {
         "flight_id": "a, <b>", "trial": "made", "place_latitude_deg": latitude, "place_longitude_deg": longitude,

@@ -12,6 +12,9 @@ from common.registry import PluginError
 from reports.build import export_run
 from reports.errors import ReportError
 from reports.export import EXPORTERS
+from reports.export.tracks_csv import COLUMNS
+from reports.output import write_flight
+from reports.run.run_data import read_run
 
 OWN = """
 from pathlib import Path
@@ -53,6 +56,26 @@ def test_tracks_are_exported_with_the_vessel_that_was_flown_about(run_path):
     # Nothing is known of velocities here, and they stay empty.
     assert list(tracks["vessel_east_m"]) == [0.0, 10.0, 20.0]
     assert tracks["velocity_north_mps"].isna().all()
+
+
+def test_a_history_that_cannot_be_read_leaves_the_head_whole(run_path):
+    pd.DataFrame({"time_s": [0.0]}).to_parquet(run_path / "flights" / "nu_1.00.parquet")
+    (run_path / "flights" / "nu_0.50.parquet").write_bytes(b"PAR1")
+    (path,) = export_run(run_path, "tracks_csv")
+    tracks = pd.read_csv(path)
+    assert list(tracks.columns) == ["flight_id", *COLUMNS]
+    assert list(tracks["flight_id"]) == ["nu_1.00"]
+
+
+def test_a_flight_is_written_where_the_packages_of_another_format_are_missing(run_path, monkeypatch, tmp_path):
+    for package in ("mcap", "xarray", "h5netcdf"):
+        monkeypatch.setitem(sys.modules, package, None)
+    run = read_run(run_path)
+    for suffix in (".csv", ".parquet", ".tracks.csv"):
+        write_flight(run, "nu_0.50", tmp_path / f"flight{suffix}")
+        assert (tmp_path / f"flight{suffix}").stat().st_size > 0
+    with pytest.raises(ReportError, match="mcap needs the package mcap; install the extra"):
+        write_flight(run, "nu_0.50", tmp_path / "flight.mcap")
 
 
 def test_a_user_adds_an_exporter_in_a_file_of_one_class(run_path, tmp_path):

@@ -108,6 +108,7 @@ def test_netcdf_keeps_to_the_conventions_and_has_the_places(run_path, truth, tmp
         assert off(np.column_stack([data["vessel_lat"][:], data["vessel_lon"][:]]), truth[1]) < TOLERANCE
         assert data["row_size"][:].tolist() == [601]
         assert data["time"][0] == START
+        assert data.attrs["history"] == "2026-06-02T08:00:00Z: plume-flight run made.toml"
     # In a process of its own: the checker's own packages warn as they are imported.
     checker = Path(sys.executable).with_name("compliance-checker")
     checked = subprocess.run(

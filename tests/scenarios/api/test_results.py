@@ -11,9 +11,9 @@ import pyarrow.feather
 import pytest
 from matplotlib.figure import Figure
 
+from common.intervals import clopper_pearson, upper_bound
 from scenarios import InputError, fly, load, run
 from scenarios.api.statistics import statistics_of
-from scenarios.statistics import clopper_pearson, upper_bound
 
 SHORT = {
     "title": "Short <b>flights</b>",

@@ -190,6 +190,42 @@ def test_any_other_trouble_with_files_is_not_taken_for_a_full_disk(marks, out, m
     assert "\n" not in str(refused.value)
 
 
+def test_a_journal_that_cannot_be_opened_is_refused_in_a_line_and_the_run_continues_once_it_can(marks, out, whole):
+    study = SquareStudy(Squares(marks=marks))
+    fly(study, out, progress=interrupt_at(3))
+    # A directory in the place of SQLite's log refuses every user, root too, as a file system without write access does.
+    log = out / "journal.sqlite-wal"
+    log.mkdir()
+    words = r"journal\.sqlite' cannot be used: unable to open database file; make .* writable, then continue with --resume"
+    with pytest.raises(InputError, match=words) as refused:
+        fly(study, out, resume=True)
+    assert "\n" not in str(refused.value)
+    log.rmdir()
+    assert fly(study, out, resume=True).all_met
+    assert (out / TABLE).read_bytes() == whole
+
+
+def test_a_journal_that_cannot_be_opened_to_be_read_is_refused_in_a_line_too(marks, out):
+    fly(SquareStudy(Squares(marks=marks)), out)
+    (out / "journal.sqlite-wal").mkdir()
+    with pytest.raises(InputError, match=r"cannot be used: unable to open .* writable, then try again$") as refused:
+        Journal(out / "journal.sqlite", reading=True)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_journal_that_cannot_be_written_any_more_is_refused_in_a_line(marks, out, monkeypatch):
+    class ReadOnly(Journal):
+        def __init__(self, path):
+            super().__init__(path)
+            self._database.execute("PRAGMA query_only = ON")
+
+    monkeypatch.setattr("scenarios.engine.runner.Journal", ReadOnly)
+    words = r"journal\.sqlite' cannot be used: attempt to write a readonly database; .* continue with --resume"
+    with pytest.raises(InputError, match=words) as refused:
+        fly(SquareStudy(Squares(marks=marks)), out)
+    assert "\n" not in str(refused.value)
+
+
 def test_a_run_that_other_code_began_is_not_gone_on_with(marks, out):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out, progress=interrupt_at(3))

@@ -7,6 +7,7 @@ import pytest
 from flight_cases import plan, scenario
 
 from scenarios.experiment.requests import Experiment
+from scenarios.planning.bounded_steering import farthest_start
 from scenarios.schema.load import load_study
 from scenarios.schema.scenario import Scenario
 
@@ -69,6 +70,18 @@ def test_nothing_else_of_a_flight_changes_with_a_start_that_is_given(key, value,
         one, other = (flight.sensing.errors.read(step, (0.0,) * 5, 0.0, 0.0, satellites=True) for flight in (sampled, given))
         assert other == one
         assert one[0][0] != 0.0
+
+
+@pytest.mark.parametrize(
+    ("start", "farthest"),
+    [
+        ({"distance_m": (400.0, 900.0)}, 900.0),
+        ({"distance_m": (400.0, 900.0), "range_m": 3000.0}, 3000.0),
+        ({"place_m": (-600.0, 800.0)}, 1000.0),
+    ],
+)
+def test_the_farthest_start_is_the_one_that_is_given_or_else_the_largest_distance(start, farthest):
+    assert farthest_start(tracking(start=start)) == pytest.approx(farthest, rel=1e-12)
 
 
 @MISSIONS

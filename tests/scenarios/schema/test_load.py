@@ -3,6 +3,7 @@ import pytest
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import load_study, with_values
+from scenarios.studies.trials import TrialStudy
 
 
 def test_the_sweep_is_the_one_that_was_asked_for():
@@ -120,3 +121,16 @@ def test_an_override_has_its_way_in_every_case():
     requests = [experiment.request(number) for number in range(experiment.flights)]
     assert [r.scenario.vessel.speed_ratio for r in requests if r.flight_id.startswith("sim3")] == [0.3]
     assert {request.scenario.start.course_deg for request in requests} == {45.0}
+
+
+def test_a_trial_in_a_file_is_relative_to_the_list_and_in_an_override_to_the_current_directory(tmp_path, monkeypatch):
+    for folder in ("lists", "elsewhere"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "own.toml").write_text(f'title = "{folder}"\n', encoding="utf-8")
+    path = tmp_path / "lists" / "list.toml"
+    path.write_text('study = "trials"\ntitle = "list"\ntrials = ["own.toml", "sea_wind"]\n', encoding="utf-8")
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    listed, overridden = load_study(str(path)), load_study(str(path), ['trials=["own.toml"]'])
+    assert listed.trials == (str(tmp_path / "lists" / "own.toml"), "sea_wind")
+    assert TrialStudy(listed, "list").trials["own"].title == "lists"
+    assert TrialStudy(overridden, "list").trials["own"].title == "elsewhere"

@@ -1,9 +1,12 @@
 """Documents: what they extend, which keys they set, and what is said of keys that are not known."""
 
+import re
+
 import pytest
 from pydantic import BaseModel, RootModel
 
 from scenarios.errors import InputError
+from scenarios.experiment.points import points_of
 from scenarios.schema.keys import known_keys
 from scenarios.schema.load import load_document, load_study
 from scenarios.schema.overrides import given_keys, merged, set_value
@@ -36,6 +39,8 @@ def refusal(name, *overrides):
         ("guidance.law=lyapunow", "guidance.law: unknown steering law 'lyapunow'; did you mean 'lyapunov'? known are ardupilot_l1"),
         ("study=monte_karlo", "study is 'monte_karlo'; did you mean 'monte_carlo'? it must be one of"),
         ("extends=sim3", "extends stands in a scenario file"),
+        # A digit to Unicode that is no decimal.
+        ("vessel.manoeuvres.².turn_deg=5", "vessel.manoeuvres: value is {'²': {'turn_deg': 5}}; give a list"),
     ],
 )
 def test_an_unknown_word_gets_the_nearest_known_one(override, words):
@@ -103,6 +108,45 @@ def test_overrides_come_after_what_a_file_extends(tmp_path):
     assert len(load_study(path).draws) == 1
     own = load_study(path, ["wind.speed_mps=2"])
     assert (own.wind.speed_mps, own.draws) == (2.0, ())
+
+
+SWEPT = """
+title = "swept"
+fidelity = "kinematic"
+[sweep]
+nu = [0.3, 0.5]
+"wind.speed_mps" = [2, 5]
+wind.from_deg = [0, 90]
+"""
+
+
+@pytest.mark.parametrize(
+    ("override", "left"),
+    [
+        ("wind.speed_mps=9", {"nu", "wind.from_deg"}),
+        ("wind.from_deg=45", {"nu", "wind.speed_mps"}),
+        ("vessel.speed_ratio=0.4", {"wind.speed_mps", "wind.from_deg"}),
+        ("keepout.radius_m=150", {"nu", "wind.speed_mps", "wind.from_deg"}),
+    ],
+)
+def test_an_override_of_a_swept_key_ends_its_sweep(tmp_path, override, left):
+    path = write(tmp_path, "swept.toml", SWEPT)
+    points = points_of(load_study(path, [override]))
+    section, key, value = re.fullmatch(r"(\w+)\.(\w+)=(.+)", override).groups()
+    assert {getattr(getattr(point.scenario, section), key) for point in points} == {float(value)}
+    # Two values of each key that is still swept.
+    assert len(points) == 2 ** len(left)
+    assert {*load_study(path, [override]).sweep.root} == left
+
+
+def test_a_sweep_on_the_command_line_is_kept_beside_an_earlier_override(tmp_path):
+    path = write(tmp_path, "swept.toml", SWEPT)
+    assert load_study(path, ["wind.speed_mps=9", "sweep.wind.speed_mps=[1, 3]"]).sweep.root["wind.speed_mps"] == (1, 3)
+
+
+def test_an_override_of_the_speed_ratio_has_its_way_in_cases_that_name_it_as_a_sweep_does():
+    points = points_of(load_study("paper", ["vessel.speed_ratio=0.3", "fidelity=kinematic"]))
+    assert {point.scenario.vessel.speed_ratio for point in points} == {0.3}
 
 
 def test_lists_are_replaced_and_tables_are_merged():

@@ -1,13 +1,15 @@
 """Which time histories a run keeps."""
 
+import io
 import json
 
 import numpy as np
 import pandas as pd
+import pyarrow.parquet as pq
 import pytest
 
 from scenarios.engine.task import Result, Task
-from scenarios.simulation.time_history import history_files, keeps_history
+from scenarios.simulation.time_history import as_parquet, history_files, keeps_history
 from tests.run_tables import history_in
 
 MET, UNMET = {"outcome": "completed", "criteria_met": True}, {"outcome": "failed", "criteria_met": False}
@@ -56,3 +58,14 @@ def test_a_history_comes_back_from_its_file_exactly():
     assert list(result.files) == ["flights/a.parquet", "flights/a.json"]
     assert json.loads(result.files["flights/a.json"]) == {"fsc": 0.1}
     pd.testing.assert_frame_equal(history_in(result), history, check_exact=True)
+
+
+def test_columns_of_the_instruments_are_written_with_their_meanings():
+    columns = ["time_s", "so2_ppb", "co2_reading_ppm", "axis_height_estimated_m"]
+    schema = pq.read_schema(io.BytesIO(as_parquet(pd.DataFrame({name: [0.0] for name in columns}))))
+    assert [schema.field(name).metadata[b"meaning"].decode() for name in columns] == [
+        "time since the start",
+        "true concentration along the path",
+        "reading, which stands until the next",
+        "height of the plume's axis as believed",
+    ]

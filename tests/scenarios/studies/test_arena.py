@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 
 from gnc.laws.steering_law import STEERING_LAWS
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.studies.arena.entrants import conditions_of, entrants_of
@@ -146,6 +147,29 @@ def test_without_evaluations_laws_fly_their_defaults(tmp_path):
     run_study(arena(*keys, "arena.standoff=[]"), "arena", tmp_path / "run")
     (entrant,) = json.loads((tmp_path / "run" / "arena.json").read_text(encoding="utf-8"))["entrants"]
     assert (entrant["tuned"], entrant["evaluations"]) == (entrant["defaults"], 0)
+
+
+class LosingTuner(InProcessExecutor):
+    """Loses the task that tunes the first law, as if its process had been killed."""
+
+    def fly(self, tasks):
+        flights = self._work._ends[-1]
+        return (self._work.lost(task, "was killed") if task.number == flights else self._work.fly(task) for task in tasks)
+
+
+def test_a_law_whose_tuning_was_lost_is_not_compared_with_its_defaults_and_is_tuned_when_the_run_continues(tmp_path):
+    keys = ('arena.conditions=[{name="calm",title="Calm"}]', "flights=1", "arena.standoff=[]", "flight.duration_max_s=40")
+    words = r"the tuning of 'npfg' was lost \(was killed\), and .*: continue with --resume, with a larger --time-limit"
+    with pytest.raises(InputError, match=words) as refused:
+        run_study(arena(*keys), "arena", tmp_path / "lost", executor_factory=LosingTuner)
+    assert "\n" not in str(refused.value)
+    for name, resume in (("lost", True), ("whole", False)):
+        run_study(arena(*keys), "arena", tmp_path / name, executor_factory=InProcessExecutor, resume=resume)
+    lost, whole = tmp_path / "lost", tmp_path / "whole"
+    assert (lost / "arena.json").read_bytes() == (whole / "arena.json").read_bytes()
+    assert (lost / "draws.csv").read_bytes() == (whole / "draws.csv").read_bytes()
+    tuned = json.loads((lost / "manifest.json").read_text(encoding="utf-8"))["tuned"]["npfg"]
+    assert pd.read_csv(lost / "draws.csv")["guidance.npfg_period_s"][0] == tuned["npfg_period_s"]
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import load_study
+from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from scenarios.world.noise import Noise
@@ -122,6 +123,12 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
     assert "probability of a keep-out violation in a flight" in result.summary.lines[-1]
 
 
+def test_no_bound_is_claimed_from_flights_of_which_each_follows_from_others(whole):
+    result, out = whole
+    assert not any("of flights sampled as these were" in line for line in result.summary.lines)
+    assert json.loads((out / "manifest.json").read_text(encoding="utf-8"))["sampled_at_random"] == {"short": False}
+
+
 def test_no_point_outside_the_declared_speed_ratios_is_flown(whole):
     # Vessels of 4 to 10 m/s beside a UAV at about 20 m/s have 0.2 to 0.5 and a little more; without wind nu is their ratio.
     nu = pd.read_csv(whole[1] / "summary.csv")["nu"]
@@ -175,6 +182,17 @@ def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, 
     run(rare, out, resume=True, progress=lambda *p: flown.append(p))
     done = len(pd.read_csv(out / "summary.csv"))
     assert [p[1] for p in flown if p[0] == "flying"] == [done - 1]
+    assert statistics_of(out) == statistics_of(whole[1])
+
+
+def test_it_writes_what_every_study_of_flights_writes(rare, whole, tmp_path, monkeypatch):
+    written = []
+    monkeypatch.setattr(FlightStudy, "postprocess", lambda _self, run, *_: written.append(run.path))
+    out = shutil.copytree(whole[1], tmp_path / "copy")
+    # A file that is missing has the run finished anew, from the flights that it has.
+    (out / "statistics.json").unlink()
+    run(rare, out, resume=True)
+    assert written == [out]
     assert statistics_of(out) == statistics_of(whole[1])
 
 

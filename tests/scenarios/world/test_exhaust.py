@@ -118,6 +118,18 @@ def test_wind_that_turns_bends_the_plume():
     assert found.dilution[0] > 0.0
 
 
+def test_exhaust_rises_less_in_warmer_air():
+    cold, usual, warm = (
+        emission(load_study("sulphur", [f"wind.temperature_c={celsius}"]), speed=10.0) for celsius in (-10.0, 15.0, 40.0)
+    )
+    # F = g w d^2/4 (1 - Ta/Ts), with the same exhaust in each.
+    assert cold.buoyancy_flux > usual.buoyancy_flux > warm.buoyancy_flux
+    of = usual.exhaust_temperature
+    assert warm.buoyancy_flux / cold.buoyancy_flux == pytest.approx((of - 313.15) / (of - 263.15), rel=1e-12)
+    # 15 degC is the standard atmosphere's, which is taken where no air is given.
+    assert emission(load_study("sulphur"), speed=10.0) == usual
+
+
 def test_air_that_hardly_moves_past_the_ship_has_no_plume():
     with pytest.raises(MeasurementError, match=r"apparent wind"):
         smoke(constant_wind(11.5, 0.0), SteadyVessel(12.0, 0.0))

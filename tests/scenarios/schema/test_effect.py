@@ -1,0 +1,67 @@
+"""Keys that are swept or sampled without effect: refused by name, unless some flight uses them."""
+
+import pytest
+
+from scenarios.errors import InputError
+from scenarios.schema.load import load_study
+
+LAG = 'sweep."kinematic.heading_rate_lag_s" = [0.1, 0.2]\n'
+DIRECTION = '[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 90.0]\n'
+GAIN = '"guidance.lyapunov_gain_per_m2" = [0.001, 0.002]\n'
+
+
+def loaded(folder, text, *overrides):
+    path = folder / "own.toml"
+    path.write_text(f'title = "own"\n{text}', encoding="utf-8")
+    return load_study(str(path), overrides)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (LAG, "key 'kinematic.heading_rate_lag_s' in sweep has no effect here: it is used by the kinematic vehicle"),
+        (DIRECTION, "key 'wind.from_deg' in draws has no effect here: it is used by wind: set wind.speed_mps"),
+        (f"[sweep]\n{GAIN}", "it is used by the steering law lyapunov: set guidance.law"),
+        ("[sweep]\nnu = [0.3]\nvessel.speed_mps = [2, 3]\n", "'vessel.speed_mps' in sweep has no effect here"),
+        ("[sweep]\nvessel.speed_ratio = [0.3]\nvessel.speed_mps = [2, 3]\n", "'vessel.speed_mps' in sweep has no effect here"),
+        (
+            'sweep.fidelity = ["kinematic"]\n',
+            "key 'fidelity' has no effect in sweep; leave it out there, and set fidelity to 'both'",
+        ),
+    ],
+)
+def test_a_swept_or_sampled_key_that_no_flight_uses_is_refused(tmp_path, text, words):
+    with pytest.raises(InputError) as refused:
+        loaded(tmp_path, text)
+    assert words in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f'fidelity = "both"\n{LAG}',
+        f'{LAG}[[comparison.variants]]\nname = "point"\nset = {{ fidelity = "kinematic" }}\n',
+        f'[sweep]\n"guidance.law" = ["lyapunov", "cascade"]\n{GAIN}',
+        f"sweep.wind.speed_mps = [0, 5]\n{DIRECTION}",
+        f'{DIRECTION}[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n',
+        f'{DIRECTION}[[comparison.variants]]\nname = "windy"\nset = {{ "wind.speed_mps" = 4.0 }}\n',
+        'guidance.tuning = "bounded"\n[sweep]\nguidance.tuning = ["bounded", "given"]\nguidance.epsilon_per_m = [0.005, 0.006]\n',
+        f'study = "arena"\n{DIRECTION}[[arena.conditions]]\nname = "windy"\ntitle = "Windy"\nset = {{ "wind.speed_mps" = 4.0 }}\n',
+    ],
+)
+def test_a_swept_or_sampled_key_that_some_flights_use_is_accepted(tmp_path, text):
+    assert loaded(tmp_path, text).title == "own"
+
+
+def test_a_key_of_the_file_may_lose_its_effect_by_an_override_but_one_of_the_override_must_have_one(tmp_path):
+    speed = '[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n'
+    follows = 'guidance.mission = "follow"\n'
+    assert [draw.key for draw in loaded(tmp_path, follows + DIRECTION + speed, "wind.speed_mps=0").draws] == ["wind.from_deg"]
+    for override in (
+        'sweep."wind.from_deg"=[0, 90]',
+        "sweep.wind.from_deg=[0, 90]",
+        'draws=[{key="wind.from_deg",uniform=[0, 9]}]',
+    ):
+        with pytest.raises(InputError, match=r"key 'wind\.from_deg' in (sweep|draws) has no effect here"):
+            loaded(tmp_path, follows, override)

@@ -1,0 +1,43 @@
+"""What a scenario says of its experiment: whether flights are a random sample, and whether there are several points."""
+
+import pytest
+
+from scenarios.schema.scenario import Scenario
+
+WIND = {"key": "wind.speed_mps", "uniform": [0.0, 5.0]}
+START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("keys", "at_random"),
+    [
+        ({}, True),
+        ({"start": START}, False),
+        ({"start": START, "draws": [WIND]}, True),
+        # One seed for all: a hundred times the same flight.
+        ({"flight_seed": 3, "flights": 100}, False),
+        ({"flight_seed": 3, "draws": [WIND]}, True),
+        ({"study": "monte_carlo", "draws": [WIND]}, True),
+        # Each level starts from the nearest flights of the one before.
+        ({"study": "monte_carlo", "method": "subset", "draws": [WIND]}, False),
+        ({"study": "falsify", "draws": [WIND]}, False),
+        ({"cases": [{"name": "one"}]}, False),
+    ],
+)
+def test_flights_are_a_random_sample_where_nothing_but_chance_tells_them_apart(keys, at_random):
+    assert Scenario(title="own", **keys).sampled_at_random is at_random
+
+
+@pytest.mark.parametrize(
+    ("keys", "several"),
+    [
+        ({}, False),
+        ({"flights": 5, "draws": [WIND]}, False),
+        ({"sweep": {"nu": [0.3]}}, True),
+        ({"cases": [{"name": "one"}]}, True),
+        ({"comparison": {"variants": [{"name": "one", "set": {}}]}}, True),
+        ({"fidelity": "both"}, True),
+    ],
+)
+def test_an_experiment_has_several_points_by_what_varies_otherwise_than_at_random(keys, several):
+    assert Scenario(title="own", **keys).several_points is several

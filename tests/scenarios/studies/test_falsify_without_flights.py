@@ -1,0 +1,75 @@
+"""A search that finds nothing to fly ends, and says so in one line."""
+
+import itertools
+from types import SimpleNamespace
+
+import pytest
+
+from scenarios.errors import InputError
+from scenarios.schema.load import load_study
+from scenarios.studies.falsification import study as falsification
+from scenarios.studies.registry import run_study
+
+SEARCH = """
+study = "falsify"
+title = "short"
+fidelity = "kinematic"
+[search]
+population = 16
+[[draws]]
+key = "start.range_m"
+uniform = [400.0, 1200.0]
+[flight]
+crossings = 0
+duration_max_s = 4.0
+[criteria]
+required = "keep_out"
+settles = false
+"""
+
+BEYOND = """
+class Centre:
+    exhausted = False
+    batches = 0
+
+    def __init__(self, space, settings, generator):
+        self.space = space
+
+    def ask(self, found, room):
+        self.batches += 1
+        if self.batches > 50:
+            raise RuntimeError("the search does not end")
+        return [[0.5] * self.space.dimension]
+
+    def tell(self, clearances):
+        pass
+"""
+
+
+def refused(directory, *overrides):
+    """Run the search; return the one line that it is refused in."""
+    path = directory / "short.toml"
+    path.write_text(SEARCH, encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        run_study(load_study(str(path), overrides), "short", directory / "run", overrides=overrides)
+    line = str(error.value)
+    assert "\n" not in line
+    return line
+
+
+def test_a_search_by_time_ends_where_no_point_is_within_the_declared_ranges(tmp_path, monkeypatch):
+    # The search's time advances by a second whenever it is looked at.
+    ticks = itertools.count()
+    monkeypatch.setattr(falsification, "time", SimpleNamespace(monotonic=lambda: float(next(ticks))))
+    (tmp_path / "beyond.py").write_text(BEYOND, encoding="utf-8")
+    # A turn of 5 deg/s at 8 m/s is 0.7 m/s2, whatever is drawn.
+    turns = ("vessel.manoeuvres=[{at_s=1.0,turn_deg=60.0,turn_rate_deg_s=5.0}]", "following.vessel_acceleration_mps2=0.05")
+    line = refused(tmp_path, "search.time_s=6", f'search.methods=["{tmp_path / "beyond.py"}:Centre"]', *turns)
+    assert line.startswith("none of the ")
+    assert "within speed_ratio and following.vessel_acceleration_mps2, and none was flown: widen these" in line
+
+
+def test_a_search_by_a_method_that_cannot_search_the_draws_is_refused(tmp_path):
+    # CMA-ES needs a covariance: two coordinates at the least.
+    line = refused(tmp_path, "search.methods=['cma']")
+    assert line.startswith("search.methods ['cma'] proposed no flight (continuous draws: 1 of 1, search.population: 16): add")
