@@ -14,7 +14,6 @@ from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import load_study
-from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from scenarios.world.noise import Noise
@@ -182,17 +181,6 @@ def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, 
     run(rare, out, resume=True, progress=lambda *p: flown.append(p))
     done = len(pd.read_csv(out / "summary.csv"))
     assert [p[1] for p in flown if p[0] == "flying"] == [done - 1]
-    assert statistics_of(out) == statistics_of(whole[1])
-
-
-def test_it_writes_what_every_study_of_flights_writes(rare, whole, tmp_path, monkeypatch):
-    written = []
-    monkeypatch.setattr(FlightStudy, "postprocess", lambda _self, run, *_: written.append(run.path))
-    out = shutil.copytree(whole[1], tmp_path / "copy")
-    # A file that is missing has the run finished anew, from the flights that it has.
-    (out / "statistics.json").unlink()
-    run(rare, out, resume=True)
-    assert written == [out]
     assert statistics_of(out) == statistics_of(whole[1])
 
 
