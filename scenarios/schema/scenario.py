@@ -229,7 +229,8 @@ class Scenario(Section):
             nearest, where = math.hypot(*start.place_m), "start.place_m lies at"
         elif start.range_m is not None:
             nearest, where = start.range_m, "start.range_m is"
-        elif to_be_scaled:
+        elif to_be_scaled or any(draw.key == "start.range_m" for draw in self.draws):
+            # Each flight's own distance is checked once it is sampled.
             return self
         else:
             nearest, where = start.distance_m[0], "start.distance_m begins at"
