@@ -32,6 +32,11 @@ CARBON_PER_CO2 = _CARBON / MOLAR_MASS["co2"]
 """Carbon by mass in CO2 [-]."""
 
 
+def limit_words(limit_percent: float) -> str:
+    """Return a limit on the sulphur content [% m/m] as it is printed: with two decimals, or with as many as it has."""
+    return f"{limit_percent:.2f} %" if round(limit_percent, 2) == limit_percent else f"{limit_percent:g} %"
+
+
 def fsc_factor(carbon_fraction: float = CARBON_FRACTION) -> float:
     """Return the fuel sulphur content [% m/m] per SO2 over CO2 [ppb/ppm]: 0.2322 at 87 % carbon.
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from measurement.emission.presets import preset, preset_names
+from measurement.emission.presets import preset
 from measurement.errors import MeasurementError
 from measurement.gases import CARBON_FRACTION, CARBON_PER_CO2, SULPHUR_MASS
 
@@ -60,11 +60,6 @@ class Fuel:
     def so2_per_fuel(self) -> float:
         """SO2 per fuel [mol/kg]: 19.55 g/kg per per cent of sulphur."""
         return SULPHUR_AS_SO2 * self.sulphur_percent / 100.0 / SULPHUR_MASS
-
-
-def fuel_names() -> tuple[str, ...]:
-    """Return the names of the fuels that are known."""
-    return preset_names(_FILE)
 
 
 def fuel_preset(name: str, sulphur_percent: float | None = None) -> Fuel:

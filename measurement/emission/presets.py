@@ -21,11 +21,6 @@ def preset(file: str, kind: str, name: str) -> dict[str, Any]:
     return {"name": name, **tables[name]}
 
 
-def preset_names(file: str) -> tuple[str, ...]:
-    """Return the names of the presets in ``file``."""
-    return tuple(_tables(file))
-
-
 @functools.cache
 def _tables(file: str) -> dict[str, dict[str, Any]]:
     return tomllib.loads(files("measurement.emission").joinpath(file).read_text(encoding="utf-8"))

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from measurement.emission.presets import preset, preset_names
+from measurement.emission.presets import preset
 from measurement.errors import MeasurementError
 
 _FILE = "ships.toml"
@@ -59,11 +59,6 @@ class Ship:
             raise MeasurementError(f"exhaust_temperature_c of {self.name} is {self.exhaust_temperature_c:g}; give 100 to 600")
         if not 0.0 <= self.wake_spread <= 20.0:
             raise MeasurementError(f"wake_spread of {self.name} is {self.wake_spread:g} m; give 0 to 20, usually 0 to 8")
-
-
-def ship_names() -> tuple[str, ...]:
-    """Return the names of the ships that are known."""
-    return preset_names(_FILE)
 
 
 def ship_preset(name: str) -> Ship:

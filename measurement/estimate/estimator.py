@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from measurement.errors import MeasurementError
-from measurement.estimate.areas import area_ratio
+from measurement.estimate.areas import Areas, area_ratio
 from measurement.estimate.budget import CARBON_SD, SULPHATE_SHARE, common_errors, unmeasured
 from measurement.estimate.fit.alignment import Alignment, align, stated
 from measurement.estimate.fit.groups import grouped
@@ -141,12 +141,23 @@ def _areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _
     common = common_errors(instrument, used_gases(record), anew).parts
     problems: tuple[str, ...] = ()
     if found.share < OVERLAP_LEAST:
-        problems = (
-            f"passes every {found.interval_s:.1f} s overlap in an SO2 channel with a t90 of {instrument.known('so2').t90_s:g} s:"
-            f" about {100.0 * found.share:.0f} % of an area of SO2 remains; use the regression",
-        )
+        problems = (_unread(found, instrument.known("so2").t90_s),)
     common["overlap"] = abs(found.separate - found.ratio)
     return _Ratio(ratio=found.ratio, noise=found.noise, misfit=1.0, common=common, alignment=alignment, problems=problems)
+
+
+def _unread(found: Areas, t90_s: float) -> str:
+    """Return why the areas hold too little of the SO2: passes overlap; a single one is cut off where the record or a part ends."""
+    share = f"{100.0 * found.share:.0f} %"
+    if math.isnan(found.interval_s):
+        return (
+            f"the record ends before an SO2 channel with a t90 of {t90_s:g} s has read the pass: about {share} of its area"
+            " of SO2 is there; use the regression"
+        )
+    return (
+        f"passes every {found.interval_s:.1f} s overlap in an SO2 channel with a t90 of {t90_s:g} s: about {share} of an area of"
+        " SO2 remains; use the regression"
+    )
 
 
 def _told(

@@ -27,6 +27,9 @@ _SHORTEST = 8
 _SATURATED_MAX, _MISSING_MAX = 0.0, 0.1
 """Shares of saturated and of missing samples from which on there is no verdict."""
 
+_SAME = 1e-9
+"""Readings that differ by less, relative to the largest, are the same."""
+
 _NEGATIVE_SIGMA = 8.0
 """A reading lower than zero by so many standard deviations of noise and zero is no reading."""
 
@@ -40,12 +43,14 @@ class Record:
     step : between samples [s]
     times : of each segment, shape (n,) [s]
     values : of each segment, by gas, shape (n,) each
+    resolution : of the readings as they were logged, by gas: the smallest change from one to the next, 0 where none changes
     problems : why there can be no verdict, a sentence each
     """
 
     step: float
     times: tuple[Array, ...]
     values: tuple[dict[str, Array], ...]
+    resolution: dict[str, float]
     problems: tuple[str, ...]
 
     @property
@@ -84,7 +89,7 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
     if (late := np.flatnonzero(np.diff(time) <= 0.0)).size:
         at = int(late[0])
         raise MeasurementError(
-            f"times do not increase: {time[at]:g} s is followed by {time[at + 1]:g} s; sort the record and drop repeats"
+            f"times do not increase: {time[at]:.15g} s is followed by {time[at + 1]:.15g} s; sort the record and drop repeats"
         )
     gases = _used(values, instrument)
     for gas in gases:
@@ -105,7 +110,8 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
         parts.append({gas: np.interp(grid, time[segment], values[segment, GASES.index(gas)]) for gas in gases})
     if not times:
         raise MeasurementError(f"no {_SHORTEST} samples in a row have both SO2 and CO2; give a record with fewer gaps")
-    return Record(step=step, times=tuple(times), values=tuple(parts), problems=problems)
+    resolution = {gas: _resolution(values[:, GASES.index(gas)]) for gas in gases}
+    return Record(step=step, times=tuple(times), values=tuple(parts), resolution=resolution, problems=problems)
 
 
 def _used(values: Array, instrument: SnifferSpec) -> list[str]:
@@ -126,7 +132,19 @@ def _check_units(gas: str, values: Array) -> None:
             f"CO2 has a median of {middle:g} ppm; air has {CO2_LEAST:g} to {CO2_MOST:g} ppm: check the unit; keep the background"
         )
     if gas != "co2" and max(most, -least) > _OTHER_MOST:
-        raise MeasurementError(f"{gas.upper()} reaches {most:g} ppb; at most {_OTHER_MOST:g} ppb can be: check its unit")
+        far = most if most > -least else least
+        raise MeasurementError(
+            f"{gas.upper()} reaches {far:g} ppb; at most {_OTHER_MOST:g} ppb of either sign can be: check its unit and its marks"
+            " for missing readings"
+        )
+
+
+def _resolution(values: Array) -> float:
+    """Return the smallest change from one known reading to the next; what is rounding of floating-point numbers is no change."""
+    known = values[np.isfinite(values)]
+    changes = np.abs(np.diff(known))
+    changes = changes[changes > _SAME * float(np.abs(known).max())]
+    return float(changes.min()) if len(changes) else 0.0
 
 
 def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferSpec) -> tuple[str, ...]:

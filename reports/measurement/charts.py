@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from measurement.gases import CARBON_FRACTION, fsc_factor, limit_words
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.map_marks import on_map
@@ -44,7 +45,7 @@ def over_time_chart(record: Record) -> Chart | None:
         Line(x=time, y=found, label="estimate", colour=Meaning.FLOWN),
     ]
     top = 1.25 * max(float(np.max(found)), float(high[-1]), *(limit for limit in limits if limit < 2.0 * float(high[-1])))
-    lines += [level(time, limit, f"limit {limit:.2f} %") for limit in limits if limit < top]
+    lines += [level(time, limit, f"limit {limit_words(limit)}") for limit in limits if limit < top]
     if record.get("true_percent") is not None:
         lines.append(level(time, value(record, "true_percent"), "a perfect instrument", "black"))
     panel = Panel(x_label="Time since the start [s]", y_label=_FSC, lines=lines, y_range=(0.0, top), x_range=(0.0, float(time[-1])))
@@ -129,9 +130,10 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
         ],
     )
     panels = [scatter, *_groups(record)]
+    factor = fsc_factor(float(record.get("carbon") or CARBON_FRACTION))
     caption = (
-        "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content is 0.232 times the slope."
-        " Right: of groups of neighbouring passes."
+        "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content is"
+        f" {factor:.4f} times the slope. Right: of groups of neighbouring passes."
     )
     return Chart(name="regression", caption=caption, panels=panels, columns=len(panels), panel_height=0.21)
 

@@ -76,6 +76,11 @@ WORDS = {
 """Parts of the uncertainty."""
 
 
+def share_read(found: Array, expected: Array) -> Array:
+    """Return what was found over what a perfect instrument reads [-]; not a number for a fuel without sulphur."""
+    return found / np.where(expected > 0.0, expected, np.nan)
+
+
 def thinned(samples: pd.DataFrame, most: int) -> pd.DataFrame:
     """Return evenly so many rows at most."""
     return samples.iloc[:: max(1, -(-len(samples) // most))]

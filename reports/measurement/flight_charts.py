@@ -7,7 +7,7 @@ from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
 from reports.document.panels import level
 from reports.document.ship_map import ship_panel, ship_words
-from reports.measurement.data import Record
+from reports.measurement.data import Record, share_read
 from reports.run.columns import column
 from reports.run.run_data import RunData
 from reports.run.surroundings import Surroundings
@@ -20,6 +20,9 @@ _POINTS_MAX = 4000
 """Points of a track at most."""
 
 _AXES = {"crossing_interval_mean_s": "Crossing interval [s]", "crossing_distance_mean_m": "Crossing distance [m]"}
+
+_WIDE = 10.0
+"""Largest sulphur content over the smallest from which on axes are logarithmic; of a fuel without any they are not."""
 
 _FUELS_MIN, _OF_EACH_MIN = 3, 4
 """Fuels of an operating curve at least, and flights of each in the median: intervals of fewer fill the panel."""
@@ -38,7 +41,7 @@ def error_chart(rows: pd.DataFrame) -> Chart:
             lines.append(Line(x=shown, y=found, label=str(sensor), colour=series_colour(number), style="points", error=error))
         ends = np.array([0.8, 1.25]) * [float(rows["fsc_expected_percent"].min()), float(rows["fsc_expected_percent"].max())]
         lines.append(Line(x=ends, y=ends, label="perfect", colour="black", style="dash"))
-        wide = ends[1] / ends[0] > 10.0
+        wide = bool(ends[1] > _WIDE * ends[0] > 0.0)
         panels.append(
             Panel(
                 x_label="A perfect instrument [% m/m]", y_label="Measured [% m/m]", title=title, lines=lines,
@@ -74,7 +77,11 @@ def operating_curve(statistics: Record) -> Chart | None:
     lines.append(Line(x=np.array([limit, limit]), y=np.array([0.0, 1.0]), label="limit", colour=Meaning.LIMIT, style="dash"))
     lines.append(level(np.array([fuels.min(), fuels.max()]), 0.05, "5 %", "grey"))
     panel = Panel(
-        x_label="Sulphur in the fuel [% m/m]", y_label="Called above the limit [-]", lines=lines, log_x=True, y_range=(0.0, 1.0)
+        x_label="Sulphur in the fuel [% m/m]",
+        y_label="Called above the limit [-]",
+        lines=lines,
+        log_x=bool(fuels.min() > 0.0),
+        y_range=(0.0, 1.0),
     )
     caption = "Operating curve: the share of ships that are called above the limit, with its intervals."
     return Chart(name="operating-curve", caption=caption, panels=[panel], panel_height=0.4)
@@ -116,7 +123,7 @@ def _shares(rows: pd.DataFrame, x: str) -> Panel:
     lines = [
         Line(
             x=column(group, x),
-            y=column(group, f"{of}_percent") / column(group, "fsc_expected_percent"),
+            y=share_read(column(group, f"{of}_percent"), column(group, "fsc_expected_percent")),
             label=f"{sensor}, {method}",
             colour=series_colour(number),
             style=styles[of],

@@ -5,7 +5,7 @@ import pandas as pd
 from common.intervals import percent
 from reports.document.blocks import Table
 from reports.document.tables import number
-from reports.measurement.data import Record
+from reports.measurement.data import Record, share_read
 
 _FSC = "% m/m"
 
@@ -129,8 +129,8 @@ def best_table(rows: pd.DataFrame) -> Table:
                 number(row["crossing_interval_mean_s"], "{:.1f}"),
                 number(row["crossing_distance_mean_m"], "{:.0f}"),
                 number(row["minute"], "{:.4f}"),
-                number(row["fsc_percent"] / row["fsc_expected_percent"], "{:.2f}"),
-                number(row["areas_fsc_percent"] / row["fsc_expected_percent"], "{:.2f}"),
+                number(share_read(row["fsc_percent"], row["fsc_expected_percent"]), "{:.2f}"),
+                number(share_read(row["areas_fsc_percent"], row["fsc_expected_percent"]), "{:.2f}"),
             ]
             for _, row in best.iterrows()
         ],

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from common.intervals import percent
+from measurement.gases import limit_words
 from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.document.chart import Chart
 from reports.document.tables import number
@@ -14,6 +15,7 @@ from reports.measurement.data import Record
 from reports.measurement.flight_charts import error_chart, operating_curve, sulphur_track_chart, trajectory_chart
 from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table
 from reports.measurement.tables import over_time_table, result_table
+from reports.measurement.verdict import probability
 from reports.run.columns import column
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
@@ -45,8 +47,8 @@ def sulphur_cards(run: RunData) -> list[Card]:
         return [
             Card("Sulphur in the fuel, with its 95 % interval", result),
             Card(
-                f"Verdict on {row['sulphur_limit_percent']:g} %, and probability of more",
-                f"{row['sulphur_verdict']}, {percent(row['probability_above'])}",
+                f"Verdict on {limit_words(float(row['sulphur_limit_percent']))}, and probability of more",
+                f"{row['sulphur_verdict']}, {probability(float(row['probability_above']))}",
             ),
         ]
     expected, found = (column(measured, name) for name in ("fsc_expected_percent", "fsc_percent"))
@@ -119,15 +121,15 @@ def _track(run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> Chart 
 
 def _told(row: "pd.Series[Any]") -> str:
     """Return the verdict in words, with probability and limit."""
-    limit, probability = float(row["sulphur_limit_percent"]), float(row["probability_above"])
+    limit, chance = limit_words(float(row["sulphur_limit_percent"])), probability(float(row["probability_above"]))
     called = {
-        "above": f"The fuel is above the limit of {limit:g} %",
-        "below": f"The fuel is below the limit of {limit:g} %",
-        "open": f"Whether the fuel is above the limit of {limit:g} % stays open",
+        "above": f"The fuel is above the limit of {limit}",
+        "below": f"The fuel is below the limit of {limit}",
+        "open": f"Whether the fuel is above the limit of {limit} stays open",
     }[str(row["sulphur_verdict"])]
     return (
-        f"{called}: it holds {row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} % sulphur (95 %), and with a"
-        f" probability of {percent(probability)} more than the limit. Quality {row['sulphur_quality']}"
+        f"{called}: it holds {row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} % sulphur (95 %), and the"
+        f" probability that this is more than the limit is {chance}. Quality {row['sulphur_quality']}"
         + (f": {row['sulphur_reason']}." if row["sulphur_reason"] and pd.notna(row["sulphur_reason"]) else ".")
         + f" The fuel's own content is {row['fsc_fuel_percent']:.3f} %, of which a perfect instrument reads"
         f" {row['fsc_expected_percent']:.3f} %."

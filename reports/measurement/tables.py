@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from measurement.gases import limit_words
 from reports.document.blocks import Table
 from reports.document.tables import number
 from reports.measurement.data import Record
@@ -49,7 +50,14 @@ def over_time_table(record: Record) -> Table | None:
         ]
         for row in table.to_dict("records")
     ]
-    head = ["After", "Passes", "Sulphur content", "Standard uncertainty", "Quality", *(f"Limit {float(v):.2f} %" for v in limits)]
+    head = [
+        "After",
+        "Passes",
+        "Sulphur content",
+        "Standard uncertainty",
+        "Quality",
+        *(f"Limit {limit_words(float(v))}" for v in limits),
+    ]
     return Table(
         caption="What was known after so much time.", head=head, rows=rows, widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)]
     )

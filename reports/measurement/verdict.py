@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from measurement.gases import limit_words
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import number
 from reports.measurement.data import Record, value
@@ -29,7 +30,7 @@ def measurement_verdict(record: Record) -> Verdict:
 
 def sentence(verdict: dict[str, Any], *, known: bool) -> str:
     """Return a verdict in words."""
-    limit = f"{float(verdict['limit_percent']):.2f} %"
+    limit = limit_words(float(verdict["limit_percent"]))
     if not known:
         return f"Nothing can be said of the limit of {limit}: there is no result"
     chance = probability(value(verdict, "probability_above"))
@@ -64,7 +65,7 @@ def _figures(record: Record) -> list[Card]:
     found = record["estimate"]
     chances = [
         Card(
-            f"Probability above {float(verdict['limit_percent']):.2f} %",
+            f"Probability above {limit_words(float(verdict['limit_percent']))}",
             _short(value(verdict, "probability_above")),
             "" if verdict["verdict"] == "open" else "below the limit",
             {"above": False, "below": True}.get(verdict["verdict"]),
@@ -72,7 +73,7 @@ def _figures(record: Record) -> list[Card]:
         for verdict in found["verdicts"]
     ]
     times = [
-        Card(f"Time to a verdict on {float(limit):.2f} %", "open" if seconds is None else f"{float(seconds):.0f} s")
+        Card(f"Time to a verdict on {limit_words(float(limit))}", "open" if seconds is None else f"{float(seconds):.0f} s")
         for limit, seconds in record["time_to_verdict_s"].items()
     ]
     true = record.get("true_percent")

@@ -13,6 +13,7 @@ from common.run_layout import REPORT_HTML
 from scenarios.api.html import picture, table
 from scenarios.api.statistics import Statistics, statistics_of
 from scenarios.errors import InputError
+from scenarios.simulation.outcome import Outcome
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 
 _SHOWN = 12
 """Flights that a notebook shows at most."""
+
+_UNMEASURED = [outcome.value for outcome in (Outcome.INFEASIBLE, Outcome.TRIM_FAILED, Outcome.FAILED)]
+"""How flights end of which nothing is measured."""
 
 
 class Run:
@@ -184,7 +188,9 @@ class Flight:
     @property
     def reasons(self) -> tuple[str, ...]:
         """Return why it is not met, a sentence each; none if it is."""
-        return tuple(filter(None, str(self.row["message"]).split("; ")))
+        message = str(self.row["message"])
+        # That of a flight that ended before anything was measured is one sentence, with its remedy.
+        return tuple(filter(None, [message] if self.row["outcome"] in _UNMEASURED else message.split("; ")))
 
     def plot(self) -> "Figure":
         """Return its track and its time histories as a figure of matplotlib.

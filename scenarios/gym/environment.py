@@ -13,7 +13,9 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
+from gnc.errors import InfeasibleError
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from measurement.errors import MeasurementError
 from scenarios.api.flying import flights_of
 from scenarios.api.scenario import Given, load
 from scenarios.engine.run_directory import RunDirectory
@@ -30,6 +32,9 @@ from scenarios.simulation.record import FlightRecord
 from scenarios.simulation.release import failable, release
 
 _SEEDS = 2**32
+
+_TRIES = 100
+"""Flights that are sampled at random for an episode, at most, until one has a solution."""
 
 
 @dataclass(slots=True)
@@ -101,7 +106,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
             raise InputError(self._work.refusal)
         self._numbers = {self._name(number): number for number in range(study.planned)}
         self._aircraft: dict[bool, AutopilotedAircraft] = {}
-        self._episode = self._begin(self._work.request(Task(number=0)))
+        self._episode = self._begun(self._work.request(Task(number=0)))
         self._actions = self._action_box()
         self.action_space = self._actions
         self.observation_space = observation_space()
@@ -131,18 +136,20 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         seed : of which flight it is, of its start, its air and its errors; further episodes follow from it
         options : ``{"flight_id": ...}`` begins that flight of the scenario with the seed that a run of it has, in a simulation of
             its own, so that it is the run's to the last bit; other episodes use one simulation again, which is true to 1e-9 m
+
+        Raises
+        ------
+        InputError : the scenario has no flight of this name, or it cannot be flown; or none of many at random can be; one line
         """
         super().reset(seed=seed)
         name = (options or {}).get("flight_id")
         if name is None:
-            number = int(self.np_random.integers(len(self._numbers)))
-            task = Task(number=number, seed=int(self.np_random.integers(_SEEDS)))
+            self._episode = self._begun_at_random()
         elif name in self._numbers:
-            task = Task(number=self._numbers[name])
             self._aircraft.clear()
+            self._episode = self._begun(self._work.request(Task(number=self._numbers[name])))
         else:
             raise InputError(f"the scenario has no flight '{name}'; its flights are {', '.join(self._numbers)}")
-        self._episode = self._begin(self._work.request(task))
         return self._episode.observer.observe(0.0), self._info()
 
     def step(self, action: Array) -> tuple[Array, SupportsFloat, bool, bool, dict[str, Any]]:
@@ -180,6 +187,24 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
     def _name(self, number: int) -> str:
         experiment, own = self._work.located(number)
         return experiment.named(own)[0]
+
+    def _begun(self, request: FlightRequest) -> "_Episode":
+        """Begin a flight that was asked for, and refuse one that has no solution in one line."""
+        try:
+            return self._begin(request)
+        except (InfeasibleError, MeasurementError) as error:
+            raise InputError(str(error)) from None
+
+    def _begun_at_random(self) -> "_Episode":
+        """Begin a flight at random, and another one where that has no solution."""
+        for _ in range(_TRIES):
+            number = int(self.np_random.integers(len(self._numbers)))
+            request = self._work.request(Task(number=number, seed=int(self.np_random.integers(_SEEDS))))
+            try:
+                return self._begin(request)
+            except (InfeasibleError, MeasurementError) as error:
+                reason = str(error)
+        raise InputError(f"{_TRIES} flights at random had no solution; the last one: {reason}")
 
     def _begin(self, request: FlightRequest) -> "_Episode":
         """Place the vehicle at the start of a flight, and have the guidance compute its first commands."""

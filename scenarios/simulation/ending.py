@@ -121,6 +121,6 @@ class Ending:
             return f"ended {mode.value} after {settling.crossings} crossings: the plume was no longer crossed"
         ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""
         return (
-            f"{flown} within {plan.duration_max:g} s{ended}; allow more time (flight.duration_max_s),"
+            f"{flown} within {plan.duration_max:g} s{ended}: allow more time (flight.duration_max_s),"
             " start closer, or see whether the guard holds it off (guidance.keepout_guard)"
         )

@@ -8,6 +8,8 @@ from crossings import changed, crossings, flight, plain_sniffer, read, sniffer_o
 
 from measurement.errors import MeasurementError
 from measurement.estimate import estimate, over_time
+from measurement.estimate.passes import readings_noise
+from measurement.estimate.record import checked_record
 from measurement.sniffer import Channel, Readings, sensor_preset
 
 SPEC = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
@@ -43,6 +45,11 @@ def put(array, index, value):
         ),
         (lambda r: put(r.values, (slice(None), 1), r.values[:, 1] * 1000.0), "check the unit"),
         (lambda r: put(r.values, 5, 1e9), r"SO2 reaches 1e\+09 ppb"),
+        (lambda r: put(r.values, (5, 0), -9999999.0), r"SO2 reaches -1e\+07 ppb; at most 1e\+06 ppb of either sign can be"),
+        (
+            lambda r: Readings(1714560000.5 + np.repeat(r.time[::2], 2)[:100], r.values[:100]),
+            "1714560000.5 s is followed by 1714560000.5 s",
+        ),
         (lambda r: put(r.time, 7, r.time[6]), "times do not increase: 6 s is followed by 6 s; sort the record"),
         (lambda r: put(r.time, slice(None), r.time[::-1].copy()), "times do not increase"),
         (lambda r: put(r.time, 7, np.nan), "time of sample 7 is not a number"),
@@ -72,6 +79,38 @@ def test_a_flight_that_met_no_plume_has_no_result():
         assert math.isnan(found.fsc_percent)
         assert math.isnan(found.total_percent)
         assert all(math.isnan(verdict.probability_above) for verdict in found.verdicts)
+
+
+@pytest.mark.parametrize("sigma", [0.0, 0.1, 0.3, 0.5, 0.7, 1.0, 3.0])
+def test_clean_air_in_whole_numbers_has_no_verdict(sigma):
+    # Nothing is known of the noise, and rounding hides it: more than a tenth of the second differences are 0.
+    verdicts, time = 0, np.arange(300.0)
+    for seed in range(20):
+        generator, values = np.random.default_rng(seed), np.full((300, 4), np.nan)
+        for column, level in ((0, 2.0), (1, 420.0)):
+            values[:, column] = np.round(level + sigma * generator.normal(size=300))
+        verdicts += estimate(Readings(time, values), sensor_preset("unspecified")).quality != "C"
+    # Noise that is not rounded is taken for a pass in 1.5 % of such records: of 20 records one at most, 0.3 are expected.
+    assert verdicts <= 1
+
+
+def test_the_noise_of_whole_numbers_is_that_before_rounding_and_of_rounding():
+    generator, time = np.random.default_rng(1), np.arange(20_000.0)
+    for sigma in (0.7, 1.0, 2.0):
+        readings = Readings(time, np.round(np.array([50.0, 420.0, 0.0, 0.0]) + sigma * generator.normal(size=(len(time), 4))))
+        spec = sensor_preset("unspecified")
+        # Rounding to 1 adds a variance of 1/12. What is rounded is less normal the coarser it is: 7 % at 0.7.
+        expected = math.hypot(sigma, 1.0 / math.sqrt(12.0))
+        assert readings_noise(checked_record(readings, spec), spec)["co2"] == pytest.approx(expected, rel=0.1)
+
+
+def test_a_single_pass_that_the_record_cuts_off_is_told_as_that():
+    spec = plain_sniffer(so2_noise=1.0, co2_noise=1.0)
+    readings = read(spec, crossings(0.25, duration=100.0, interval=200.0, first=80.0, meander=0.0))
+    found = estimate(readings, spec, method="areas")
+    assert found.figures.passes == 1
+    assert "the record ends before an SO2 channel with a t90 of 20 s has read the pass" in " ".join(found.quality_reasons)
+    assert "nan" not in " ".join(found.quality_reasons)
 
 
 def test_a_plume_below_the_detection_limit_is_none():

@@ -8,7 +8,11 @@ import pytest
 from crossings import flight
 
 from measurement.estimate.__main__ import main
-from measurement.estimate.flight_log.csv_file import EARTH_RADIUS_M
+from measurement.estimate.flight_log.config import LogConfig
+from measurement.estimate.flight_log.csv_file import EARTH_RADIUS_M, read_flight
+from measurement.estimate.flight_log.words import sentence
+from measurement.estimate.verdict import Verdict
+from measurement.gases import limit_words
 
 
 @pytest.fixture
@@ -103,6 +107,33 @@ def test_an_instrument_of_ones_own_and_one_of_which_nothing_is_known(logged, cap
     assert "nothing is known" in capsys.readouterr().out
 
 
+def test_rows_may_end_in_a_comma(logged):
+    config = LogConfig()
+    expected = read_flight(logged, config)
+    lines = logged.read_text(encoding="utf-8").splitlines()
+    logged.write_text("\n".join([lines[0], *(f"{line}," for line in lines[1:])]) + "\n", encoding="utf-8")
+    found = read_flight(logged, config)
+    np.testing.assert_array_equal(found.readings.time, expected.readings.time)
+    np.testing.assert_array_equal(found.readings.values, expected.readings.values)
+
+
+def test_seconds_since_1970_are_written_in_full(logged):
+    table = pd.read_csv(logged)
+    table["time_s"] += 1714560000.25
+    table.to_csv(logged, index=False)
+    assert run(logged) == 0
+    written = pd.read_csv(logged.parent / "out" / "samples.csv")
+    np.testing.assert_array_equal(written["time_s"], table["time_s"])
+
+
+@pytest.mark.parametrize(
+    ("limit", "words"), [(0.1, "0.10 %"), (0.5, "0.50 %"), (1.0, "1.00 %"), (0.001, "0.001 %"), (0.125, "0.125 %")]
+)
+def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
+    assert limit_words(limit) == words
+    assert f"the limit of {words}:" in sentence(Verdict(limit_percent=limit, verdict="above", probability_above=0.99))
+
+
 @pytest.mark.parametrize(
     ("config", "message"),
     [
@@ -141,6 +172,7 @@ def test_configurations_with_mistakes_are_refused_in_one_line(logged, capsys, co
         ("time_s,so2_ppb,co2_ppm\nsoon,2,420\n", "time 'soon' in column 'time_s' cannot be read"),
         ("time_s,so2_ppb,co2_ppm\n1,2,420\n", "the record has 1 samples; it needs at least 8"),
         ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,4\n" for t in range(99)), "CO2 has a median of 4 ppm"),
+        ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,420,7\n" for t in range(9)), "more values than its head line has names"),
         ("\x00\x01\x02", "error: "),
     ],
 )

@@ -1,6 +1,7 @@
 """A logged flight in a CSV file."""
 
 import math
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,14 +38,19 @@ class LoggedFlight:
 def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     """Return the flight in a CSV file with a row per reading.
 
-    Times are seconds, or dates and times that pandas reads.
+    Times are seconds, or dates and times that pandas reads. Rows may end in a comma.
 
     Raises
     ------
-    MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, or has words in it
+    MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has words in it, or has rows with
+        more values than its head line has names
     """
     try:
-        table = pd.read_csv(path, skipinitialspace=True, low_memory=False)
+        # Without ``index_col`` rows that end in a comma would move every column by one; what would be lost by it is refused.
+        with warnings.catch_warnings(action="error", category=pd.errors.ParserWarning):
+            table = pd.read_csv(path, skipinitialspace=True, low_memory=False, index_col=False)
+    except pd.errors.ParserWarning:
+        raise MeasurementError(f"'{path}' has rows with more values than its head line has names; name every column") from None
     except OSError as error:
         raise MeasurementError(f"'{path}' cannot be read: {error.strerror}; give a CSV file") from None
     except (UnicodeDecodeError, pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:

@@ -52,6 +52,9 @@ SAMPLE_MEANINGS = {
 _HASH_LETTERS = 16
 """Letters of the hash of flight and configuration that are kept."""
 
+_TIME_DIGITS = 15
+"""Digits of a time, all that a floating-point number has; the other columns have six."""
+
 _PACKAGES = ("numpy", "scipy", "pandas")
 
 
@@ -66,6 +69,8 @@ def write_run(directory: Path, flight: LoggedFlight, analysis: Analysis, source:
         directory.mkdir(parents=True, exist_ok=True)
         _write_json(directory / ESTIMATE, analysis.record())
         table = samples(analysis.estimate.signals, flight.place)
+        # A log's time may be seconds since 1970 or 1980, of which six digits are weeks.
+        table["time_s"] = [f"{time:.{_TIME_DIGITS}g}" for time in table["time_s"]]
         _whole(directory / SAMPLES, lambda part: table.to_csv(part, index=False, float_format="%.6g"))
         _write_json(directory / MANIFEST, _manifest(analysis, source, config))
     except OSError as error:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from measurement.estimate.flight_log.analysis import Analysis
 from measurement.estimate.result import FscEstimate
 from measurement.estimate.verdict import ABOVE, BELOW, Verdict
+from measurement.gases import limit_words
 
 ERRORS = {
     "calibration": "calibration of SO2 and CO2",
@@ -46,7 +47,7 @@ def result(found: FscEstimate) -> str:
 
 def sentence(verdict: Verdict) -> str:
     """Return a verdict in words, with its probability and its limit."""
-    limit, told = f"{verdict.limit_percent:.2f} %", probability(verdict.probability_above)
+    limit, told = limit_words(verdict.limit_percent), probability(verdict.probability_above)
     if verdict.verdict == ABOVE:
         return f"above the limit of {limit}: the probability that the fuel is above it is {told}"
     if verdict.verdict == BELOW:

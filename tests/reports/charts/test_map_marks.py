@@ -1,11 +1,13 @@
 """Hull, arrows, scale bar and plume of a map."""
 
 import math
+import tomllib
+from importlib.resources import files
 
 import numpy as np
 import pytest
 
-from measurement.emission.ship import ship_names, ship_preset
+from measurement.emission.ship import ship_preset
 from reports.document.chart import Line, Panel
 from reports.document.map_marks import arrow, hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
@@ -82,11 +84,12 @@ def test_a_course_that_is_up_is_up():
 
 
 def test_every_ship_that_is_known_has_a_hull_that_is_a_ships():
-    assert set(HULLS) == set(ship_names())
+    ships = set(tomllib.loads(files("measurement.emission").joinpath("ships.toml").read_text(encoding="utf-8")))
+    assert set(HULLS) == ships
     for hull in (ANY, *HULLS.values()):
         # Merchant ships are five to eight and a half times as long as they are wide; an assumption of this table.
         assert 5.0 < hull.length / hull.beam < 8.5
     # The most powerful is the longest.
-    assert max(HULLS, key=lambda name: HULLS[name].length) == max(ship_names(), key=lambda name: ship_preset(name).power_max)
+    assert max(HULLS, key=lambda name: HULLS[name].length) == max(ships, key=lambda name: ship_preset(name).power_max)
     assert hull_of({"emission": {"ship": "coaster"}}).length == HULLS["coaster"].length
     assert hull_of({"emission": {"ship": None}}) == hull_of({}) == ANY

@@ -14,7 +14,9 @@ from measurement.estimate.__main__ import main
 from reports.document.blocks import Table
 from reports.document.chart import Chart, Line, Panel
 from reports.errors import ReportError
+from reports.measurement.charts import over_time_chart, regression_chart
 from reports.measurement.data import errors
+from reports.measurement.tables import over_time_table
 from reports.measurement.verdict import measurement_verdict, probability
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
@@ -83,6 +85,25 @@ def test_a_verdict_says_probability_and_limit(record, verdict, chance, holds, co
     record["estimate"]["verdicts"][0] |= {"verdict": verdict, "probability_above": chance}
     told = measurement_verdict(record)
     assert (told.holds, told.complete, told.headline) == (holds, complete, words)
+
+
+def test_limits_are_told_with_all_their_decimals(record):
+    record["estimate"]["verdicts"][0]["limit_percent"] = 0.125
+    record["time_to_verdict_s"] = {"0.125": 40.0}
+    told = measurement_verdict(record)
+    assert "the limit of 0.125 %" in told.headline
+    assert {"Probability above 0.125 %", "Time to a verdict on 0.125 %"} <= {card[0] for card in told.figures}
+    for row in record["over_time"]:
+        row["verdict_0.125"] = "above"
+    assert "Limit 0.125 %" in over_time_table(record).head
+    assert "limit 0.125 %" in {line.label for line in over_time_chart(record).panels[0].lines}
+
+
+def test_the_caption_has_the_factor_of_the_fuels_carbon(run_directory, record):
+    samples = pd.read_csv(run_directory / "samples.csv")
+    assert "the sulphur content is 0.2322 times the slope" in regression_chart(samples, record).caption
+    # In proportion to carbon: 0.2322 x 0.85/0.87.
+    assert "the sulphur content is 0.2269 times the slope" in regression_chart(samples, record | {"carbon": 0.85}).caption
 
 
 def test_a_flight_without_a_result_says_why(run_directory, tmp_path, record):

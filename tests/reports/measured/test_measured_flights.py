@@ -1,12 +1,17 @@
 """The report of flights with a sniffer: one as a client reads it, several as a method is judged."""
 
 import re
+from types import SimpleNamespace
 
+import numpy as np
+import pandas as pd
 import pytest
 from report_parts import assert_axes_read_quantity_and_unit, blocks_of, named_charts
 
 from reports.document.blocks import Table, Text
+from reports.measurement import flight_charts, flights
 from reports.registry import content
+from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
@@ -40,7 +45,7 @@ def test_one_flight_is_told_with_result_probability_and_limit(one):
     assert {"sulphur-track", "fsc-over-time", "budget", "channels", "regression"} <= set(named_charts(one))
     assert_axes_read_quantity_and_unit(named_charts(one).values())
     told = next(block.text for block in section.blocks if isinstance(block, Text))
-    assert re.search(r"the limit of 0\.1 %.*: it holds 0\.\d{3} ± 0\.\d{3} % sulphur \(95 %\), and with a probability of", told)
+    assert re.search(r"the limit of 0\.10 %.*: it holds 0\.\d{3} ± 0\.\d{3} % sulphur \(95 %\), and the probability that", told)
     assert "The fuel's own content is 0.100 %, of which a perfect instrument reads 0.097 %." in told
     name, value, *_ = one.verdict.figures[0]
     assert name.startswith("Sulphur in the fuel")
@@ -65,6 +70,37 @@ def test_several_flights_are_judged_as_a_method(several):
     assert ("laser", "0.5", "100\N{NO-BREAK SPACE}%") in fuels
     assert any(row[0].startswith("Passes that hit the plume") for row in hits.rows)
     assert any("Bias of the sulphur content" in name for name, *_ in several.verdict.figures)
+
+
+def test_a_probability_is_never_told_as_certain():
+    row = {
+        "fsc_percent": 0.5, "fsc_uncertainty_percent": 0.02, "sulphur_limit_percent": 0.1, "sulphur_verdict": "above",
+        "probability_above": 1.0, "sulphur_quality": "A", "sulphur_reason": "",
+        "fsc_fuel_percent": 0.5, "fsc_expected_percent": 0.49,
+    }  # fmt: skip
+    told = flights._told(pd.Series(row))
+    assert "The fuel is above the limit of 0.10 %" in told
+    assert "and the probability that this is more than the limit is more than 99.9 %. Quality A." in told
+    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([row])))[1]
+    assert card[:2] == ("Verdict on 0.10 %, and probability of more", "above, more than 99.9 %")
+
+
+def test_a_fuel_without_sulphur_beside_others_is_drawn():
+    fuels = np.repeat([0.0, 0.1, 0.5, 2.0], 4)
+    columns = ("fsc_percent", "areas_fsc_percent", "fsc_expected_percent", "crossing_interval_mean_s")
+    rows = pd.DataFrame(dict.fromkeys(columns, fuels)).assign(sensor="fast")
+    rows = rows.assign(fsc_uncertainty_percent=0.01, areas_fsc_uncertainty_percent=0.01)
+    chart = flight_charts.error_chart(rows)
+    assert {(panel.log_x, panel.log_y) for panel in chart.panels} == {(False, False)}
+    entry = {"sensor": "fast", "flights": 4, "limit_percent": 0.1, "above": 0.0, "above_2min": 0.0, "above_interval": [0.0, 0.6]}
+    curve = flight_charts.operating_curve({"operating_curve": [entry | {"fsc_fuel_percent": fuel} for fuel in np.unique(fuels)]})
+    assert not curve.panels[0].log_x
+    for drawn in (chart, curve):
+        matplotlib_charts.draw(drawn)
+        plotly_charts.draw(drawn)
+    shares = flight_charts._shares(rows, "crossing_interval_mean_s").lines[0].y
+    assert np.isnan(shares[:4]).all()
+    assert shares[4:].tolist() == [1.0] * 12
 
 
 def test_flights_without_a_sniffer_have_none_of_it(tmp_path):
