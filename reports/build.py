@@ -44,7 +44,7 @@ def build_reports(
     from reports.registry import content
     from reports.render.html import write_html
     from reports.render.pdf import write_pdf
-    from reports.run.files import damage_named, written
+    from reports.run.files import damage_named, failure_named, written
     from reports.run.letterhead import parse_settings
     from reports.run.run_data import read_run
 
@@ -55,8 +55,9 @@ def build_reports(
         report = content(run, given)
     for name in run.missing():
         tell_missing(name)
-    html = written(directory / REPORT_HTML, partial(write_html, report))
-    return [html, written(directory / REPORT_PDF, partial(write_pdf, report, all_flights=all_flights))]
+    with failure_named(f"the report of '{directory}' could not be drawn"):
+        html = written(directory / REPORT_HTML, partial(write_html, report))
+        return [html, written(directory / REPORT_PDF, partial(write_pdf, report, all_flights=all_flights))]
 
 
 def export_run(directory: Path, name: str, flight_id: str | None = None) -> list[Path]:
@@ -87,8 +88,11 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
     parts = {f"{run_name}.{flight_id}" if flight_id else str(run_name): run}
     if getattr(exporter, "one_flight", False) and (recorded := run.recorded()):
         parts = {f"{run_name}.{flight}": run.of_flight(flight) for flight in recorded}
-    with damage_named(directory):
+    try:
         folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise ReportError(f"'{folder}' cannot be written: {error.strerror}; check permissions and space") from None
+    with damage_named(directory):
         return [written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from common.run_layout import time_history_path
 from common.spelling import did_you_mean
 from reports.errors import ReportError
-from reports.run.files import written
+from reports.run.files import damage_named, failure_named, written
 from reports.run.run_data import RunData
 
 if TYPE_CHECKING:
@@ -31,11 +31,14 @@ def flight_figure(run: RunData, flight_id: str, *, tracks_alone: bool = False) -
 
     Raises
     ------
-    ReportError : it has no time history
+    ReportError : it has no time history, its run is damaged, or it cannot be drawn
     """
     from reports.render.matplotlib_charts import draw
 
-    return draw(*(chart for chart in _charts(run, flight_id) if chart.name == TRACKS or not tracks_alone))
+    with damage_named(run.path):
+        charts = _charts(run, flight_id)
+    with failure_named(f"flight '{flight_id}' could not be drawn"):
+        return draw(*(chart for chart in charts if chart.name == TRACKS or not tracks_alone))
 
 
 def _charts(run: RunData, flight_id: str) -> "list[Chart]":
@@ -63,7 +66,7 @@ def write_report(run: RunData, path: Path, *, all_flights: bool = False) -> None
 
     Raises
     ------
-    ReportError : another suffix, or a run that has no report
+    ReportError : another suffix, or a run that has no report, is damaged, or cannot be drawn
     """
     from functools import partial
 
@@ -74,7 +77,10 @@ def write_report(run: RunData, path: Path, *, all_flights: bool = False) -> None
     writers: dict[str, Callable[..., None]] = {".html": write_html, ".pdf": partial(write_pdf, all_flights=all_flights)}
     if path.suffix not in writers:
         raise ReportError(f"'{path.name}' ends in {path.suffix!r}; a report is written as {' or '.join(writers)}")
-    written(path, partial(writers[path.suffix], content(run)))
+    with damage_named(run.path):
+        report = content(run)
+    with failure_named(f"the report of '{run.path}' could not be drawn"):
+        written(path, partial(writers[path.suffix], report))
 
 
 def write_flight(run: RunData, flight_id: str, path: Path) -> None:
@@ -87,7 +93,7 @@ def write_flight(run: RunData, flight_id: str, path: Path) -> None:
 
     Raises
     ------
-    ReportError : no format has this suffix, or its packages are missing, or the flight has no time history
+    ReportError : no format has this suffix, or its packages are missing, or the flight has no time history or cannot be written
     PluginError : an exporter does not load
     """
     if not run.has_history(flight_id):
@@ -95,7 +101,8 @@ def write_flight(run: RunData, flight_id: str, path: Path) -> None:
     exporters = _exporters()
     if (suffix := next((suffix for suffix in exporters if path.name.endswith(suffix)), None)) is not None:
         write = exporters[suffix]().write
-        written(path, lambda part: write(run.of_flight(flight_id), part))
+        with failure_named(f"flight '{flight_id}' could not be written as '{path.name}'"):
+            written(path, lambda part: write(run.of_flight(flight_id), part))
         return
     writers = {".parquet": _as_parquet, ".arrow": _as_arrow, ".csv": _as_csv}
     if path.suffix not in writers:
@@ -103,7 +110,8 @@ def write_flight(run: RunData, flight_id: str, path: Path) -> None:
         guess = did_you_mean(path.suffix, known) or ";"
         raise ReportError(f"'{path.name}' ends in {path.suffix!r}{guess} formats of a flight are {', '.join(known)}")
     source = run.path / time_history_path(flight_id)
-    written(path, lambda part: writers[path.suffix](source, part))
+    with failure_named(f"flight '{flight_id}' could not be written as '{path.name}'"):
+        written(path, lambda part: writers[path.suffix](source, part))
 
 
 def _exporters() -> "dict[str, type[Exporter]]":

@@ -100,10 +100,14 @@ def outcome(row: "pd.Series[Any]") -> str:
     return f"{ended}: {message}" if message else ended
 
 
+_ADVICE = ": allow more time"
+"""How the advice begins that follows why a flight was not completed."""
+
+
 def ending(row: "pd.Series[Any]") -> str:
     """Return how a flight ended: every criterion that it failed, or why it was not completed, without the advice that follows."""
     words = outcome(row)
-    return words if row["outcome"] == "completed" else words.split(";", maxsplit=1)[0]
+    return words if row["outcome"] == "completed" else re.split(f";|{_ADVICE}", words, maxsplit=1)[0]
 
 
 def parameter_value(value: Any, key: str = "") -> str:

@@ -15,8 +15,8 @@ _GEOMETRIC, _SURFACE_VEHICLE, _ADSB_VALID = 1, 18, 1 | 2 | 4 | 8
 """Of an ADSB_VEHICLE: altitude by satellites, MAV's emitter type of a service vehicle on the surface, and which fields are valid:
 place, altitude, heading, velocity."""
 
-_CARGO, _AIS_VALID = 70, 1 | 4 | 16
-"""Of an AIS_VESSEL: its type, and which fields are valid: place, course, velocity."""
+_CARGO, _AIS_VALID = 70, 1 | 2 | 4 | 4096
+"""Of an AIS_VESSEL: its type, and its AIS_FLAGS: POSITION_ACCURACY, VALID_COG, VALID_VELOCITY, VALID_NAME. Turns are unknown."""
 
 _MMSI = 999_999_999
 """Of a vessel whose MMSI is not recorded."""

@@ -70,6 +70,9 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
     looks[AS_IN_THE_STUDY] = (Meaning.FLOWN, "solid")
     panels: list[Panel] = []
     for _, flights in pairs.groupby("base", sort=False):
+        # Named as the study's flight, also where that is not in the summary.
+        first = flights.iloc[0].copy()
+        first["flight_id"] = first["base"]
         # The study's own flight lies over the others.
         ordered = flights.sort_values("variant", key=lambda names: names == AS_IN_THE_STUDY, kind="stable")
         lines = [line for _, row in ordered.iterrows() for line in _error_line(trial.run, row, looks[row["variant"]], shown)]
@@ -79,7 +82,7 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
                     x_label="Time since settling [s]",
                     y_label="Tracking error [m]",
                     lines=lines,
-                    title=flight_name(trial, flights.iloc[0].replace({"flight_id": flights["base"].iloc[0]})),
+                    title=flight_name(trial, first),
                     x_range=(0.0, shown),
                     y_range=(0.0, band),
                 )

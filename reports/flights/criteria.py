@@ -1,14 +1,14 @@
 """The criteria of a trial beside the keep-out area, and the worst that was measured."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from reports.document.tables import limit, parameter_value
+from reports.document.tables import limit, parameter_value, span
 from reports.run.columns import Array, column, completed, count, interval_error
 from reports.run.trials import Trial
 
@@ -74,6 +74,21 @@ _MEASURES = {
 
 MEASURED = tuple(_MEASURES)
 
+_AFTER_SETTLING = ("tracking_error_rms_m", "airspeed_error_rms_mps", "altitude_error_max_m")
+"""Criteria on what is measured after settling: they are judged where ``criteria.settles`` is true, and nowhere else."""
+
+_BETWEEN = {
+    "crossing_interval_s": _Measure(what="Mean crossing interval", values=_column("crossing_interval_mean_s"), unit="s"),
+    "crossing_distance_m": _Measure(what="Mean crossing distance", values=_column("crossing_distance_mean_m"), unit="m"),
+}
+"""Criteria that a figure lies between two limits."""
+
+_DEMAND = {"law_within_heading_rate_max": "≤ ω_max", "law_beyond_heading_rate_max": "> ω_max"}
+"""Criteria on the largest heading rate that the law demands, before commands are cut."""
+
+_ROUNDING = 1e-12
+"""By what a demand may exceed ω_max where it has to lie within: rounding alone [-]."""
+
 _OUTSIDE = _Measure(what="Time outside the altitudes of the scenario", values=_column("altitude_outside_s"), unit="s")
 """Of the criterion that altitudes are kept: it has no limit of its own."""
 
@@ -81,25 +96,59 @@ _OUTSIDE = _Measure(what="Time outside the altitudes of the scenario", values=_c
 def criteria_of(trial: Trial) -> list[Criterion]:
     """Return the criteria of a trial beside the keep-out area: to complete its mission, and those of its configuration."""
     listed = {key: value for key, value in trial.criteria.items() if value not in (None, False, [])}
-    return [
-        _mission(trial),
-        *(_criterion(trial, key, value) for key, value in listed.items() if key not in ("required", "settles")),
-    ]
+    others = {"required", "settles", *(() if trial.criteria.get("settles", True) else _AFTER_SETTLING)}
+    return [_mission(trial), *(_criterion(trial, key, value) for key, value in listed.items() if key not in others)]
 
 
 def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
     if key in _MEASURES:
-        return _figure(trial, key, float(value), _MEASURES[key])
+        return _figure(_judged(trial.rows, key), key, float(value), _MEASURES[key])
+    if key in _BETWEEN:
+        return _between(trial, key, value, _BETWEEN[key])
+    if key in _DEMAND:
+        return _demand(trial, key)
     if key == "modes_at_end":
         return _modes(trial, [str(mode) for mode in value])
     if key == "within_altitudes":
-        return _figure(trial, key, 0.0, _OUTSIDE)
+        return _figure(trial.rows, key, 0.0, _OUTSIDE)
     words = key.replace("_", " ").capitalize()
     return Criterion(key=key, what=words, limit=parameter_value(value), worst="see the flights that failed it", failed=0)
 
 
-def _figure(trial: Trial, key: str, value: float, measure: _Measure) -> Criterion:
+def _judged(rows: pd.DataFrame, key: str) -> pd.DataFrame:
+    """Return the flights that a criterion is about: a vessel that ends no manoeuvre gives nothing to resume after."""
+    return rows[rows["manoeuvre_end_s"].notna()] if key == "resumes_within_periods" and "manoeuvre_end_s" in rows else rows
+
+
+def _between(trial: Trial, key: str, limits: Sequence[float], measure: _Measure) -> Criterion:
+    low, high = (float(bound) for bound in limits)
     measured = measure.values(trial.rows)
+    return Criterion(
+        key=key,
+        what=measure.what,
+        limit=f"{low:g} to {high:g} {measure.unit}",
+        worst=f"{span(measured, '{:.4g}')} {measure.unit}" if np.isfinite(measured).any() else "none measured",
+        failed=count(~((low <= measured) & (measured <= high))),
+    )
+
+
+def _demand(trial: Trial, key: str) -> Criterion:
+    demand, most = (column(trial.rows, f"heading_rate_{name}_rad_s") for name in ("demand_max", "limit"))
+    within = key == "law_within_heading_rate_max"
+    met = demand <= most * (1.0 + _ROUNDING) if within else demand > most
+    known = (demand / most)[np.isfinite(demand / most)]
+    worst = (float(known.max()) if within else float(known.min())) if len(known) else math.nan
+    return Criterion(
+        key=key,
+        what="Heading rate that the law demands, largest of a flight",
+        limit=_DEMAND[key],
+        worst=f"{worst:.3f} ω_max" if len(known) else "none measured",
+        failed=count(~met),
+    )
+
+
+def _figure(rows: pd.DataFrame, key: str, value: float, measure: _Measure) -> Criterion:
+    measured = measure.values(rows)
     known = measured[np.isfinite(measured)]
     worst = float(known.max()) if len(known) else float("nan")
     missing = len(measured) - len(known)

@@ -1,5 +1,6 @@
 """What flights, swept keys, faults and manoeuvres are called."""
 
+import json
 import re
 from typing import Any
 
@@ -51,6 +52,21 @@ def fault_name(kind: object) -> str:
 def manoeuvre_name(manoeuvres: list[dict[str, Any]]) -> str:
     """Return what a vessel does, in a few words."""
     return ", then ".join(_one_manoeuvre(manoeuvre) for manoeuvre in manoeuvres) or "none"
+
+
+def manoeuvres_flown(trial: Trial) -> list[str] | None:
+    """Return what the vessel did in each flight that was flown, in a few words; None where no table says all of it.
+
+    Where a part of a manoeuvre alone is swept or sampled, every flight has one of its own: a name for each groups nothing.
+    """
+    key = "vessel.manoeuvres"
+    if not trial.varies(key):
+        return [manoeuvre_name(trial.setting(key, []))] * len(trial.flown)
+    varied = [*trial.swept, *(draw["key"] for draw in trial.sampled)]
+    if key not in trial.run.draws or any(name.startswith(f"{key}.") for name in varied):
+        return None
+    cells = trial.input(key).reindex(trial.flown["flight_id"])
+    return [manoeuvre_name(json.loads(cell) if isinstance(cell, str) else []) for cell in cells]
 
 
 def _one_manoeuvre(manoeuvre: dict[str, Any]) -> str:

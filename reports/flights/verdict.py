@@ -8,7 +8,7 @@ import pandas as pd
 
 from common.intervals import CONFIDENCE, percent, upper_bound
 from reports.document.blocks import Card, Verdict
-from reports.document.tables import limit, number
+from reports.document.tables import number
 from reports.flights.criteria import MEASURED, Criterion, criteria_of
 from reports.flights.first_page import hours
 from reports.measurement.flights import sulphur_cards
@@ -127,7 +127,8 @@ def _closest(trials: list[Trial], flown: pd.DataFrame) -> str:
     closest = flown.iloc[int(np.argmin(clearance(flown)))]
     (trial,) = [trial for trial in trials if trial.key == closest["trial"]]
     words = (
-        f"Closest approach of any flight, from its first second: {float(closest['min_distance_m']):.1f} m"
+        "Closest approach of any flight, from its first second:"
+        f" {_distance(float(closest['min_distance_m']), float(closest['keepout_radius_m']))}"
         f" {trial.measured_from}, in {closest['flight_id']}"
     )
     beside = closest.get("horizontal_distance_min_m", math.nan)
@@ -223,7 +224,14 @@ def _closest_figure(trials: list[Trial], nearest: "pd.Series[Any] | None") -> Ca
     if nearest is None:
         return Card(name, "none")
     distance, radius = float(nearest["min_distance_m"]), float(nearest["keepout_radius_m"])
-    return Card(name, f"{distance:.1f} m", f"≥ {limit(radius)} m", distance >= radius)
+    return Card(name, _distance(distance, radius), f"≥ {radius:g} m", distance >= radius)
+
+
+def _distance(distance: float, radius: float) -> str:
+    """Return a closest approach to 0.1 m; where that contradicts its judgement, rounded down, with as many digits as it takes."""
+    down = (f"{math.floor(distance * 10.0**places) / 10.0**places:.{places}f}" for places in (1, 2, 3))
+    shown = (text for text in (f"{distance:.1f}", *down) if (float(text) >= float(f"{radius:g}")) == (distance >= radius))
+    return f"{next(shown, f'{distance:.6f}')} m"
 
 
 def _tracking(flown: pd.DataFrame) -> list[Card]:

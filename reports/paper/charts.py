@@ -11,7 +11,7 @@ from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.ship_map import ship_lines
 from reports.paper.flown import VEHICLES, Flown, find_flight, vehicle_name
-from reports.run.columns import Array
+from reports.run.columns import Array, column
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
 from reports.run.time_history import keepout_distance
@@ -72,6 +72,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
     if flights["nu"].isna().any():
         return []
     source_height = float(run.manifest["config"]["plume"]["source_height_m"])
+    shape = str(run.manifest["config"].get("keepout", {}).get("shape", "sphere"))
 
     def figure_8(flights: dict[str, Flown]) -> list[Line]:
         flown = flights["sim3"]
@@ -91,10 +92,13 @@ def sim_3_charts(run: RunData) -> list[Chart]:
     def figure_9(flights: dict[str, Flown]) -> list[Line]:
         flown = flights["sim3"]
         crossings = run.crossings_of(str(flown.row["flight_id"]))
+        times, distance = crossings["time_s"].to_numpy(dtype=np.float64), keepout_distance(flown.history, source_height, shape)
+        # The table has those from the funnel's mouth, which are a sphere's.
+        crossed = column(crossings, "distance_m") if shape == "sphere" else np.interp(times, flown.time, distance)
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
-            Line(x=flown.time, y=keepout_distance(flown.history, source_height, "sphere"), label="UAV", colour=Meaning.FLOWN),
-            _crossings(crossings["time_s"].to_numpy(dtype=np.float64), crossings["distance_m"].to_numpy(dtype=np.float64)),
+            Line(x=flown.time, y=distance, label="UAV", colour=Meaning.FLOWN),
+            _crossings(times, crossed),
         ]
 
     return [

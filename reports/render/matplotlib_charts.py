@@ -47,6 +47,8 @@ _STYLE: dict[Any, Any] = {
     "legend.frameon": False,
     "svg.fonttype": "path",
     "svg.hashsalt": "report",
+    # A dollar sign in a title is one.
+    "text.parse_math": False,
 }
 
 _HALO = [withStroke(linewidth=1.6, foreground="white", alpha=0.8)]

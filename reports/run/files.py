@@ -49,6 +49,23 @@ def damage_named(*directories: Path) -> Iterator[None]:
         raise ReportError(f"{names} is damaged ({what}); run it again in another --out") from None
 
 
+@contextmanager
+def failure_named(what: str) -> Iterator[None]:
+    """Refuse in one line what cannot be drawn or written of a run that was read; ``what`` names it.
+
+    Raises
+    ------
+    ReportError : ``what``, and the reason
+    """
+    try:
+        yield
+    except ReportError:
+        raise
+    except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, RuntimeError) as error:
+        reason = next(iter(str(error).splitlines()), "") or "no reason given"
+        raise ReportError(f"{what}: {type(error).__name__}: {reason}") from error
+
+
 def written(path: Path, write: Callable[[Path], object]) -> Path:
     """Write a file, whole or not at all, and return its path.
 

@@ -149,13 +149,6 @@ class Trial:
         }
         return next((kind for kind, holds in kinds.items() if holds), Kind.GENERAL)
 
-    def cycled(self, key: str) -> list[Any]:
-        """Return the value of a key for each row, where choices are cycled by the flight's number."""
-        choices = next((draw["choice"] for draw in self.sampled if draw["key"] == key and draw["choice"]), None)
-        if choices is None:
-            return [self.setting(key)] * len(self.rows)
-        return [choices[int(flight_id.rsplit("_", 1)[1]) % len(choices)] for flight_id in self.rows["flight_id"]]
-
 
 def leaves(tree: Mapping[str, Any], before: str = "") -> dict[str, Any]:
     """Return the values of nested mappings by their dotted keys."""

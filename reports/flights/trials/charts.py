@@ -11,7 +11,7 @@ from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.map_marks import hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
 from reports.document.panels import COUNTED_MIN, Group, capped, classes, histogram, points, quartiles, strips
-from reports.flights.names import fault_name, manoeuvre_name
+from reports.flights.names import fault_name, manoeuvres_flown
 from reports.flights.trials.panels_over import CLEARANCE, PanelsOver, by_violation
 from reports.monte_carlo.names import input_name
 from reports.run.columns import NOTICEABLE, Array, clearance, column, total
@@ -237,8 +237,9 @@ def _places(trial: Trial, right: Array, along: Array, groups: list[Any]) -> Pane
 
 
 def _manoeuvres(trial: Trial) -> list[Chart]:
-    flown = trial.rows["min_distance_m"].notna()
-    kinds = [manoeuvre_name(value or []) for value, shown in zip(trial.cycled("vessel.manoeuvres"), flown, strict=True) if shown]
+    kinds = manoeuvres_flown(trial)
+    if kinds is None:
+        return []
     limit = trial.criteria.get("resumes_within_periods")
     criterion = [] if limit is None else [(float(limit), "criterion")]
     resumed = (column(trial.flown, "resume_periods"), "Next crossing after the manoeuvre [periods]", criterion)

@@ -1,9 +1,11 @@
 """Marks of logarithmic axes, and what a caption says of curves that leave their panels."""
 
+import io
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 from reports.document.axes import cut_words, in_kilometres, log_axis, mark_text, wrapped
 from reports.document.chart import Chart, Line, Note, Panel
@@ -111,3 +113,17 @@ def test_both_renderers_write_a_long_label_on_two_lines():
     chart = Chart(name="c", caption="", panels=[panel] * 5, columns=5, panel_height=0.2)
     assert matplotlib_charts.draw(chart).axes[0].get_xlabel() == "A quantity with\na long name [m]"
     assert plotly_charts.draw(chart)["layout"]["xaxis"]["title"]["text"] == "A quantity with<br>a long name [m]"
+
+
+@pytest.mark.parametrize("words", [r"a $\foo$", "100 $ and 200 $"])
+def test_a_dollar_sign_is_one(words):
+    line = Line(x=np.arange(2.0), y=np.arange(2.0), label=words, colour="black")
+    named = Panel(
+        x_label=words, y_label="y [m]", title=words, lines=[line], y_names=[(0.0, words)], notes=[Note(x=0.5, y=0.5, text=words)]
+    )
+    figure = matplotlib_charts.draw(Chart(name="a", caption="", panels=[named]))
+    texts = [text for text in figure.findobj(Text) if text.get_text() == words]
+    # Label of the axis, title, name on the ordinate, note, legend.
+    assert len(texts) == 5
+    assert not any(text.get_parse_math() for text in texts)
+    figure.savefig(io.BytesIO(), format="svg")

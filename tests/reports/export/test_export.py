@@ -105,3 +105,16 @@ def test_the_command_exports_and_names_what_it_knows(run_path):
     assert refused.returncode == 2
     assert refused.stderr.startswith("error: unknown exporter 'track_csv'; did you mean 'tracks_csv'?")
     assert "tracks_csv" in EXPORTERS.names()
+
+
+def test_an_export_that_cannot_be_written_is_one_line(run_path, tmp_path, monkeypatch):
+    def fails(*_):
+        raise ValueError("a time runs backwards")
+
+    monkeypatch.setattr("reports.export.tracks_csv.TracksCsv.write", fails)
+    with pytest.raises(ReportError, match=r"^flight 'nu_0.50' could not be written as 'a.tracks.csv': ValueError: a time runs b"):
+        write_flight(read_run(run_path), "nu_0.50", tmp_path / "a.tracks.csv")
+    # A folder that cannot be made, whoever runs the test: there is a file of its name.
+    (run_path / "export").write_text("", encoding="utf-8")
+    with pytest.raises(ReportError, match=r"export' cannot be written: File exists; check permissions and space"):
+        export_run(run_path, "tracks_csv")

@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import replace
 
+import pytest
 from report_parts import blocks_of
 from trial_runs import rows_of, with_values
 
@@ -23,6 +24,25 @@ def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
     assert "deepest keep-out violation" in next(flight.title for flight in picker.flights if flight.flight_id == "turns_00001")
     # Keep-out violations and the closest approach, from r_min too, are in the trial's row.
     assert rows_of(judged, "Turns")[0][7:10] == ["2", "198.5", "−1.5"]
+
+
+@pytest.mark.parametrize(
+    ("distance", "radius", "shown", "required", "met"),
+    [
+        (202.3, 202.5, "202.3 m", "≥ 202.5 m", False),
+        (199.97, 200.0, "199.9 m", "≥ 200 m", False),
+        (202.56, 202.55, "202.6 m", "≥ 202.55 m", True),
+        (202.53, 202.52, "202.53 m", "≥ 202.52 m", True),
+        (200.06, 200.0, "200.1 m", "≥ 200 m", True),
+    ],
+)
+def test_the_closest_approach_as_shown_agrees_with_its_judgement(run, distance, radius, shown, required, met):
+    closest = run
+    for i in range(4):
+        closest = with_values(closest, i, min_distance_m=distance, keepout_radius_m=radius)
+    report = content(closest)
+    assert ("Closest approach, from the keep-out sphere's centre", shown, required, met) in report.verdict.figures
+    assert f"from its first second: {shown} from" in report.verdict.detail
 
 
 LOST = {"outcome": "aircraft_lost", "mode_at_end": "ditched", "criteria_met": False, "message": "it came down on the sea"}

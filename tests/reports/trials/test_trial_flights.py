@@ -80,6 +80,22 @@ def test_manoeuvres_are_named_as_the_vessel_was_seen_to_turn(run):
     assert list(marks.y) == [1.0, 0.0]
 
 
+def test_manoeuvres_are_those_that_were_sampled_in_whatever_order(run):
+    # As where the manoeuvre is the second choice, weighted, or of a search: a flight's number does not tell it.
+    manoeuvres = run.draws["vessel.manoeuvres"]
+    swapped = replace(run, draws=run.draws.assign(**{"vessel.manoeuvres": manoeuvres.to_numpy()[[0, 1, 3, 2]]}))
+    (chart,) = trial_charts(read_trials(swapped)[1])
+    assert [name for _, name in chart.panels[0].y_names] == ["10° to port at 0.5°/s", "20° to starboard at 0.5°/s"]
+
+
+def test_a_part_of_a_manoeuvre_that_varies_is_no_kind_of_manoeuvre(run):
+    manifest = json.loads(json.dumps(run.manifest))
+    manifest["trials"]["turns"]["draws"] = [{"key": "vessel.manoeuvres.0.turn_deg", "uniform": [10.0, 90.0]}]
+    trial = read_trials(replace(run, manifest=manifest))[1]
+    assert trial.kind is Kind.MANOEUVRES
+    assert trial_charts(trial) == []
+
+
 @pytest.mark.parametrize("kind", [kind for kind in Kind if kind is not Kind.SWEEP])
 def test_every_kind_of_trial_has_figures_of_any_run(run, kind, monkeypatch):
     monkeypatch.setattr(Trial, "kind", kind)

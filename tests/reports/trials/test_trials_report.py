@@ -15,9 +15,12 @@ from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
 from reports.document.blocks import Table, Text
-from reports.document.tables import parameter_value
+from reports.document.chart import Chart
+from reports.document.tables import ending, parameter_value
+from reports.errors import ReportError
 from reports.flights.trials.panels_over import PanelsOver, by_violation
 from reports.flights.trials.tables import FAILED_MAX
+from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import Kind, Trial, read_trials
@@ -95,6 +98,58 @@ def test_a_criterion_that_the_report_does_not_know_is_shown_all_the_same(run):
     assert ["Loops per hour", "7", "see the flights that failed it", "0"] in rows
 
 
+@pytest.mark.parametrize("settles", [True, False])
+def test_what_is_measured_after_settling_is_judged_where_flights_have_to_settle(run, settles):
+    judged = with_criterion(with_criterion(run, "turns", "settles", settles), "turns", "tracking_error_rms_m", 1e-9)
+    assert any(row[0].startswith("Tracking error, rms") for row in rows_of(content(judged), "Turns")) is settles
+
+
+def test_resuming_is_judged_of_flights_whose_vessel_ends_a_manoeuvre(run):
+    ended = with_values(run, 2, manoeuvre_end_s=190.0, resume_periods=0.7)
+    with_end = with_values(ended, 3, manoeuvre_end_s=math.nan, resume_periods=math.nan)
+    rows = rows_of(content(with_criterion(with_end, "turns", "resumes_within_periods", 1.0)), "Turns")
+    assert ["Next crossing after the last manoeuvre", "≤ 1 periods", "0.7 periods", "0"] in rows
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "values", "shown"),
+    [
+        ("crossing_interval_s", [8.0, 9.0], {"crossing_interval_mean_s": [8.5, 9.25]}, ["8 to 9 s", "8.5 to 9.25 s", "1"]),
+        ("crossing_distance_m", [200.0, 230.0], {"crossing_distance_mean_m": [214.0, math.nan]}, ["200 to 230 m", "214 m", "1"]),
+        ("law_within_heading_rate_max", True, {"heading_rate_demand_max_rad_s": [0.5, 0.6]}, ["≤ ω_max", "1.200 ω_max", "1"]),
+        ("law_beyond_heading_rate_max", True, {"heading_rate_demand_max_rad_s": [0.5, 0.6]}, ["> ω_max", "1.000 ω_max", "1"]),
+    ],
+)
+def test_flights_that_failed_a_criterion_are_counted_whatever_its_limits(run, key, value, values, shown):
+    # Of two flights of the trial, the second or, where the law must exceed omega_max = 0.5 rad/s, the first.
+    changed = {"heading_rate_limit_rad_s": [0.5, 0.5]} | values
+    for i in range(2):
+        run = with_values(run, 2 + i, **{name: of[i] for name, of in changed.items()})
+    rows = rows_of(content(with_criterion(run, "turns", key, value)), "Turns")
+    assert shown in [row[1:] for row in rows]
+
+
+def test_a_report_that_cannot_be_drawn_is_one_line(run_path, run, tmp_path, monkeypatch):
+    def fails(*_, **__):
+        raise ValueError("no such glyph\nat line 3")
+
+    monkeypatch.setattr("reports.registry.content", lambda *_: None)
+    for writer in ("html.write_html", "pdf.write_pdf"):
+        monkeypatch.setattr(f"reports.render.{writer}", fails)
+    words = r"^the report of '.*' could not be drawn: ValueError: no such glyph$"
+    with pytest.raises(ReportError, match=words):
+        build_reports(shutil.copytree(run_path, tmp_path / "copy"))
+    for name in ("report.html", "report.pdf"):
+        with pytest.raises(ReportError, match=words):
+            write_report(run, tmp_path / name)
+    assert not list(tmp_path.glob("report.*"))
+
+
+def test_a_report_in_memory_of_a_damaged_run_is_refused_in_one_line(run, tmp_path):
+    with pytest.raises(ReportError, match="is damaged"):
+        write_report(replace(run, summary=run.summary.drop(columns="outcome")), tmp_path / "report.html")
+
+
 def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run_path, tmp_path):
     path = shutil.copytree(run_path, tmp_path / "copy")
     shutil.rmtree(path / "flights")
@@ -165,6 +220,12 @@ def test_many_comparisons_have_a_row_for_each_variant(run):
     assert [row[:3] for row in table.rows] == [["as in the study", "40", "0"], ["no preview", "40", "0"]]
 
 
+def test_a_comparison_is_named_as_the_flight_of_the_study_also_where_that_is_not_in_the_summary(run):
+    compared = run.summary.iloc[[0]].assign(variant="no_preview", beside="steady_00007")
+    charts = blocks_of(content(replace(run, comparison=compared)), Chart, "comparison")
+    assert [panel.title for chart in charts for panel in chart.panels] == ["Flight 7"]
+
+
 @pytest.mark.parametrize(
     ("value", "words"),
     [
@@ -198,3 +259,23 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
     rows = changed.summary.assign(altitude_outside_s=[0.0 if trial != "turns" else 1.5 for trial in changed.summary["trial"]])
     shown = rows_of(content(replace(changed, summary=rows)), "Turns")
     assert ["Time outside the altitudes of the scenario", "≤ 0 s", "1.5 s", "2"] in shown
+
+
+@pytest.mark.parametrize(
+    ("outcome", "message", "words"),
+    [
+        (
+            "not_settled",
+            "did not settle within 20 s: allow more time (flight.duration_max_s), or",
+            "not settled: did not settle within 20 s",
+        ),
+        ("infeasible", "nu is 1.5; it must be below 1: slow the vessel", "infeasible: nu is 1.5"),
+        (
+            "completed",
+            "rms tracking error 2.00 m above 1.5 m; ended outrun",
+            "completed: rms tracking error 2.00 m above 1.5 m; ended outrun",
+        ),
+    ],
+)
+def test_an_ending_is_without_its_advice(outcome, message, words):
+    assert ending(pd.Series({"criteria_met": False, "outcome": outcome, "message": message})) == words

@@ -66,11 +66,16 @@ def test_a_flight_says_how_it_ended(flight):
     assert strict.kept_out
 
 
+def test_a_reason_is_a_whole_sentence_with_its_remedy():
+    (reason,) = fly(SHORT, nu=0.5, flight={"duration_max_s": 5.0}).reasons
+    assert reason.startswith("did not settle within 5 s: allow more time (flight.duration_max_s)")
+
+
 def test_a_flight_that_cannot_be_flown_is_a_flight_with_its_reason():
     # A vessel that outruns the UAV has no solution.
     infeasible = fly(SHORT, nu=1.5)
     assert infeasible.row["outcome"] == "infeasible"
-    assert infeasible.reasons
+    assert infeasible.reasons == (infeasible.row["message"],)
     for use in (lambda: infeasible.history, infeasible.plot, lambda: infeasible.export("flight.kmz")):
         with pytest.raises(InputError, match="has no time history"):
             use()

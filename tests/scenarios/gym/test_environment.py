@@ -193,6 +193,22 @@ def test_an_unknown_flight_is_refused_with_the_names_of_those_there_are(kinemati
         kinematic.reset(options={"flight_id": "nu_0.5"})
 
 
+def test_flights_without_a_solution_are_passed_over_at_random_and_refused_by_name(monkeypatch):
+    # Against a wind of 5 m/s a vessel at nu = 0.9 of 19.42 m/s has an apparent wind that is faster than the UAV.
+    env = make(**KINEMATIC | {"sweep.nu": [0.3, 0.9], "wind.speed_mps": 5.0, "flight.crossings": 1})
+    assert {env.reset(seed=seed)[1]["flight_id"] for seed in range(8)} == {"nu_0.30"}
+    with pytest.raises(InputError, match="nu") as caught:
+        env.reset(options={"flight_id": "nu_0.90"})
+    assert "\n" not in str(caught.value)
+    with pytest.raises(InputError, match="nu"):
+        make(**KINEMATIC | {"sweep.nu": [0.9], "wind.speed_mps": 5.0})
+    # Of this seed the first flight is the one that has none.
+    assert np.random.default_rng(0).integers(2) == 1
+    monkeypatch.setattr("scenarios.gym.environment._TRIES", 1)
+    with pytest.raises(InputError, match=r"^1 flights at random had no solution; the last one: "):
+        env.reset(seed=0)
+
+
 @pytest.mark.usefixtures("x8_design")
 def test_the_example_of_the_page_runs_as_it_stands_and_is_short(capsys):
     page = (PROJECT / "docs" / "howto" / "gym.md").read_text(encoding="utf-8")
