@@ -160,7 +160,7 @@ def write_script(schedule: Schedule, root: Path, *, commands: Sequence[Command] 
     script = root / "scripts" / f"{name}.xml"
     script.parent.mkdir(exist_ok=True)
     text = _SCRIPT.format(
-        title=escape(spec.title),
+        title=escape(spec.title, {'"': "&quot;"}),
         name=name,
         model=spec.model,
         start=-held * TIME_STEP,

@@ -4,6 +4,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from aircraft.atmosphere.turbulence import scale_lengths
+from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
 from aircraft.simulation.faults import fault_names
 from aircraft.spec import Envelope
@@ -45,7 +47,8 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
     Raises
     ------
     InputError : flights that differ in what the autopilot is designed for, an airspeed or a bank that the aircraft cannot fly, a
-        fault that it cannot have, manoeuvres that overlap, a part that does not exist, a key that cannot be sampled
+        fault that it cannot have, turbulence at an altitude for which it is not known, manoeuvres that overlap, a part that does
+        not exist, a key that cannot be sampled
     """
     experiments = list(experiments)
     for experiment in experiments:
@@ -61,6 +64,7 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
         if envelope is not None and scenario.fidelity == "six_dof":
             check_flyable(scenario.guidance, find_spec(scenario.aircraft).title, envelope)
         _check_fault(scenario)
+        _check_turbulence(scenario)
         _check_vessel(scenario)
     for experiment in experiments:
         if experiment.scenario.draws:
@@ -90,6 +94,17 @@ def _check_names(experiment: Experiment) -> None:
                 f"a flight would be called {name[:_SHOWN]!r}, with {len(name)} letters; names have up to {NAME_BYTES_MAX} bytes,"
                 " all printable, without / and \\: call the scenario file otherwise, or sweep fewer keys at once"
             )
+
+
+def _check_turbulence(scenario: Scenario) -> None:
+    level = scenario.turbulence.level
+    if level != "none" and scenario.fidelity == "six_dof":
+        try:
+            scale_lengths(scenario.altitude)
+        except AircraftError as error:
+            raise InputError(
+                f"turbulence.level is '{level}': {error}; fly lower (flight.altitude_m, else plume.source_height_m) or without"
+            ) from None
 
 
 def _check_fault(scenario: Scenario) -> None:

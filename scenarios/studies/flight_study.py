@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from aircraft.errors import AircraftError
 from common.intervals import CONFIDENCE
 from common.run_layout import (
     COMPARISON,
@@ -24,6 +25,7 @@ from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
 from scenarios.engine.task import Task
+from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
 from scenarios.instruments.instrument import evaluated_instruments
@@ -160,18 +162,25 @@ class FlightStudy:
         return {"trials": trials, "trial_flights": self.flights, "flights_planned": self.planned}
 
     def work(self, run: RunDirectory) -> FlightWork:
-        """Return the work on its flights, after writing the logo and the aircraft's autopilot into the run directory."""
+        """Return the work on its flights, after writing the logo and the aircraft's autopilot into the run directory.
+
+        Raises
+        ------
+        InputError : the aircraft cannot fly as asked, or the margin cannot be predicted
+        """
         write_logo(self._report, run)
         # Of a trial that has been scaled to the aircraft: its airspeed is where flights start.
         first = next(iter(self.trials.values()))
         flown = self._design if first.fidelity != "kinematic" else None
         settings = [setting for experiment in self.experiments.values() for setting in experiment.settings()]
         steepest = max(bank_for_heading_rate(omega_max(s.guidance), s.guidance.airspeed_mps) for s in [first, *settings])
-        setup = aircraft_setup(flown, first, run, bank=steepest) if flown else None
-        lag = (setup or kinematic_setup(first)).lag
-        self._manifest["guidance_lag_s"] = lag + 0.5 / first.guidance.rate_hz
-        with plugins_explained("the keep-out margin cannot be predicted", settings):
-            spreads = predicted_spreads(settings, flown, setup)
+        try:
+            setup = aircraft_setup(flown, first, run, bank=steepest) if flown else None
+            with plugins_explained("the keep-out margin cannot be predicted", settings):
+                spreads = predicted_spreads(settings, flown, setup)
+        except AircraftError as error:
+            raise InputError(f"{first.aircraft}: {error}") from None
+        self._manifest["guidance_lag_s"] = (setup or kinematic_setup(first)).lag + 0.5 / first.guidance.rate_hz
         return FlightWork(
             experiments=tuple(self.experiments.values()),
             histories=self.histories,

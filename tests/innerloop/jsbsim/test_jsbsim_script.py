@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -181,6 +182,12 @@ def test_run_without_options_the_script_writes_its_result_where_it_is_run(x8_sch
     assert (command[0.549:] == x8_schedule.altitude + 1.0).all()
     assert command.index[-1] == pytest.approx(10.5)
     assert np.diff(alone["Time"]) == pytest.approx(0.05)
+
+
+def test_a_title_may_hold_what_xml_means_something_by(x8_schedule, tmp_path):
+    titled = replace(x8_schedule, spec=replace(x8_schedule.spec, title='The <"Bird"> & Co'))
+    script = ET.parse(write_script(titled, write_root(titled, tmp_path)))
+    assert script.getroot().get("name") == 'The <"Bird"> & Co under its autopilot'
 
 
 def test_sizes_of_the_demonstration_are_taken(x8_schedule):

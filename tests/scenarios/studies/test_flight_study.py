@@ -5,6 +5,7 @@ import json
 import pandas as pd
 import pytest
 
+from aircraft.errors import AircraftError
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
@@ -168,6 +169,10 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
         ),
         ('trials = ["sea_wind"]\nset = ["fault.at_s=[300, 100]"]', r"at_s is \[300.0, 100.0\]; its first value must not exceed"),
         ('trials = ["sea_wind"]\nset = ["speed_ratio=[0.9, 0.1]"]', r"speed_ratio is \[0.9, 0.1\]; its first value"),
+        (
+            'trials = ["sea_turbulence_light"]\nset = ["flight.altitude_m=400"]',
+            "turbulence.level is 'light': .*altitude is 400 m; it holds up to 304.8 m; fly lower",
+        ),
         ('trials = ["sea_wind"]\nset = ["aircraft=zeppelin"]', "unknown aircraft 'zeppelin'"),
         ('trials = ["sea_wind"', "not valid TOML"),
     ],
@@ -179,6 +184,15 @@ def test_bad_trials_are_refused_in_one_line_before_anything_is_written(line, wor
         run(path, tmp_path / "run", "start.spread_deg=10")
     assert "\n" not in str(refused.value)
     assert not (tmp_path / "run").exists()
+
+
+def test_what_the_aircraft_cannot_do_is_told_in_one_line(listed, tmp_path, monkeypatch):
+    def refused(*_args, **_keys):
+        raise AircraftError("does not turn right: lower the bank")
+
+    monkeypatch.setattr("scenarios.studies.flight_study.predicted_spreads", refused)
+    with pytest.raises(InputError, match="x8: does not turn right: lower the bank"):
+        run(listed, tmp_path / "run")
 
 
 def test_trials_that_need_different_autopilots_are_refused(tmp_path):
