@@ -1,6 +1,6 @@
 """How soon a plume is found, how well its height is known then, and what that costs, over cases that are drawn at random.
 
-``python -m benchmarks.plume_estimator`` flies a point that oscillates across simulated plumes, at the heights that a search
+``python -m benchmarks.plume.estimator`` flies a point that oscillates across simulated plumes, at the heights that a search
 demands, and prints the table of docs/finding_the_plume.md.
 """
 
@@ -12,8 +12,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from benchmarks.plume_flight import CLIMB_RATE, HIGHEST, LOWEST, Flight, draw_case, fly
-from benchmarks.plume_particles import ParticleEstimator
+from benchmarks.plume.flight import CLIMB_RATE, HIGHEST, LOWEST, Flight, draw_case, fly
+from benchmarks.plume.particles import ParticleEstimator
 from gnc.estimation.plume.estimator import PlumeEstimator
 from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
 from measurement.sniffer import SnifferSpec, sensor_preset

@@ -1,0 +1,1 @@
+"""How soon an estimate of the plume finds it, in flights of a point across simulated plumes."""
