@@ -5,11 +5,13 @@ import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
 
+from aircraft.model_files import ModelFiles
+
 _DEFLECTION = re.compile(r"^-?fcs/.*pos")
 """Properties of surfaces' deflections, as JSBSim's own and those of models are called."""
 
 _MASSES, _MOMENTS = ("emptywt", "pointmass/weight"), ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-_TANKS = ("propulsion/tank/contents", "propulsion/tank/capacity")
+_TANKS = ("tank/contents", "tank/capacity")
 """A tank that holds more than it can is no model."""
 
 
@@ -41,24 +43,44 @@ PERTURBATIONS = {
 
 
 def perturb(model_file: Path, by: Perturbation) -> None:
-    """Change a JSBSim model's file. A model without perturbation is left as it is, to the last byte."""
+    """Change a JSBSim model's file, and the files beside it in which it keeps sections of its own.
+
+    A model without perturbation is left as it is, to the last byte.
+    """
     if by == Perturbation():
         return
     document = ET.parse(model_file)
-    model = document.getroot()
-    balance = model.find("mass_balance")
-    if balance is not None:
-        for element in (found for path in _MASSES for found in balance.findall(path)):
-            _scale(element, by.mass)
-        for element in (found for path in _MOMENTS for found in balance.findall(path)):
-            _scale(element, by.inertia)
-    for path in _TANKS:
-        for element in model.findall(path):
-            _scale(element, by.mass)
-    aerodynamics = model.find("aerodynamics")
-    if aerodynamics is not None and by.effectiveness != 1.0:
-        _scale_deflections(aerodynamics, by.effectiveness)
+    files = ModelFiles(model=model_file.stem, folder=model_file.parent, roots=())
+    for tag, change in _CHANGES.items():
+        section = document.getroot().find(tag)
+        if section is None:
+            continue
+        change(section, by)
+        if (own := files.find(section)) is not None:
+            part = ET.parse(own)
+            change(part.getroot(), by)
+            part.write(own, encoding="utf-8", xml_declaration=True)
     document.write(model_file, encoding="utf-8", xml_declaration=True)
+
+
+def _change_balance(balance: ET.Element, by: Perturbation) -> None:
+    for paths, factor in ((_MASSES, by.mass), (_MOMENTS, by.inertia)):
+        for element in (found for path in paths for found in balance.findall(path)):
+            _scale(element, factor)
+
+
+def _change_fuel(propulsion: ET.Element, by: Perturbation) -> None:
+    for element in (found for path in _TANKS for found in propulsion.findall(path)):
+        _scale(element, by.mass)
+
+
+def _change_aerodynamics(aerodynamics: ET.Element, by: Perturbation) -> None:
+    if by.effectiveness != 1.0:
+        _scale_deflections(aerodynamics, by.effectiveness)
+
+
+_CHANGES = {"mass_balance": _change_balance, "propulsion": _change_fuel, "aerodynamics": _change_aerodynamics}
+"""What is changed in each section of a model; JSBSim reads the first of each."""
 
 
 def _scale(element: ET.Element, factor: float) -> None:
