@@ -1,8 +1,10 @@
-"""Where the files of a JSBSim model are found: its own folder, and the folders that models share."""
+"""The files of a JSBSim model: where they are found, its own folder and the folders that models share, and their XML."""
 
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
+
+from aircraft.errors import AircraftError
 
 SHARED = {"engine": "engine", "thruster": "engine", "system": "systems", "autopilot": "systems"}
 """Folder of a JSBSim root where files of an element stand."""
@@ -40,3 +42,18 @@ class ModelFiles:
         if element.tag in SHARED:
             folders += [root / SHARED[element.tag] for root in self.roots]
         return next((folder / name for folder in folders if (folder / name).is_file()), None)
+
+
+def read_xml(path: Path) -> "ET.ElementTree[ET.Element]":
+    """Return the XML of a file.
+
+    Raises
+    ------
+    AircraftError : it cannot be read, or is not XML, or not in the encoding that it declares
+    """
+    try:
+        return ET.parse(path)
+    except OSError as error:
+        raise AircraftError(f"{path}: cannot be read: {error.strerror}; check the file") from None
+    except (ET.ParseError, LookupError, ValueError) as error:  # the last two by encodings that the parser does not know
+        raise AircraftError(f"{path}: not valid XML: {error}; correct it") from None

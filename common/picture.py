@@ -75,7 +75,7 @@ def _media_type(content: bytes) -> str | None:
         pass
     try:
         return "image/svg+xml" if ET.fromstring(content).tag == _SVG and _is_printed(content) else None
-    except (ET.ParseError, ValueError):
+    except (ET.ParseError, LookupError, ValueError):  # the last two by encodings that the parser does not know
         return None
 
 

@@ -1,14 +1,13 @@
 """Aircraft of the user: a folder with a JSBSim model, ``DIR/NAME``, and perhaps a file of settings beside the model."""
 
 import re
-import xml.etree.ElementTree as ET
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from aircraft.errors import AircraftError
 from aircraft.fleet.model_spec import spec_of_model
 from aircraft.fleet.settings import ModelSettings, read_settings
 from aircraft.fleet.stock import stock_root
-from aircraft.model_files import SHARED, ModelFiles
+from aircraft.model_files import SHARED, ModelFiles, read_xml
 from aircraft.spec import AircraftSpec
 from common.files import is_path
 from common.spelling import did_you_mean
@@ -92,8 +91,8 @@ def _models(folder: Path) -> list[str]:
 
 def _is_model(path: Path) -> bool:
     try:
-        return ET.parse(path).getroot().tag == _MODEL
-    except (ET.ParseError, OSError):
+        return read_xml(path).getroot().tag == _MODEL
+    except AircraftError:
         return False
 
 
@@ -116,12 +115,7 @@ def _check(files: ModelFiles) -> None:
         if path in checked:
             continue
         checked.add(path)
-        try:
-            config = ET.parse(path).getroot()
-        except ET.ParseError as error:
-            raise AircraftError(f"{path}: not valid XML: {error}; correct it") from None
-        except (OSError, UnicodeError, ValueError) as error:
-            raise AircraftError(f"{path}: cannot be read: {error}; check the file") from None
+        config = read_xml(path).getroot()
         if path == files.file and config.tag != _MODEL:
             raise AircraftError(f"{path}: its root element is <{config.tag}>; that of a JSBSim model is <{_MODEL}>")
         for element in config.iter():

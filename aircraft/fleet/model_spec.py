@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ET
 
 from aircraft.errors import AircraftError
 from aircraft.fleet.settings import ModelSettings
-from aircraft.model_files import ModelFiles
+from aircraft.model_files import ModelFiles, read_xml
 from aircraft.spec import AircraftSpec, ControlInput, Envelope, numbered, surface, throttle
 
 _SURFACES = ("elevator", "aileron", "rudder")
@@ -37,11 +37,11 @@ def spec_of_model(files: ModelFiles, *, name: str, source: str, settings: ModelS
     """
     said = settings or ModelSettings()
     try:
-        config = ET.parse(files.file).getroot()
+        config = read_xml(files.file).getroot()
         engines = [_kind(engine, files) for engine in config.iterfind("propulsion/engine")]
         thrusters = [_kind(thruster, files) for thruster in config.iterfind("propulsion/engine/thruster")]
-    except ET.ParseError as error:
-        raise AircraftError(f"aircraft '{name}' cannot be flown: its model file is not valid XML: {error}") from None
+    except AircraftError as error:
+        raise AircraftError(f"aircraft '{name}' cannot be flown: {error}") from None
     inputs = _inputs(len(engines), said)
     if reason := _no_aeroplane(config, engines, thrusters) or _deaf(inputs, config, files):
         raise AircraftError(f"aircraft '{name}' cannot be flown: {reason}")
@@ -83,7 +83,7 @@ def _in_a_line(text: str) -> str:
 def _kind(element: ET.Element, files: ModelFiles) -> str:
     """Return the tag of the file that an engine or a thruster names."""
     found = files.find(element)
-    return ET.parse(found).getroot().tag if found else f"missing ({element.get('file')})"
+    return read_xml(found).getroot().tag if found else f"missing ({element.get('file')})"
 
 
 def _inputs(engines: int, said: ModelSettings) -> tuple[ControlInput, ...]:

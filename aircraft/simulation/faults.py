@@ -12,6 +12,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from aircraft.errors import AircraftError
+from aircraft.model_files import read_xml
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import Actuator, AircraftSpec
 
@@ -43,7 +44,7 @@ def failable_root(spec: AircraftSpec, root: Path, directory: Path) -> Path:
     """
     shutil.copytree(root, directory, dirs_exist_ok=True)
     model_file = directory / "aircraft" / spec.model / f"{spec.model}.xml"
-    document = ET.parse(model_file)
+    document = read_xml(model_file)
     config = document.getroot()
     channel = ET.Element("channel", name="Faults")
     by_inputs = {command for control_input in spec.inputs for command in control_input.commands}

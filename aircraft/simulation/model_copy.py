@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from aircraft.errors import AircraftError
-from aircraft.model_files import SHARED, ModelFiles
+from aircraft.model_files import SHARED, ModelFiles, read_xml
 
 _OWN_AUTOPILOT = re.compile(r"(^|[^a-z])(ap|autopilot|autothrottle)([^a-z]|$)")
 _PLAY = ("hysteresis_width", "deadband_width")
@@ -29,17 +29,14 @@ def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path
 
     Raises
     ------
-    AircraftError : the model's file is missing or not XML
+    AircraftError : a file of the model is missing or not XML
     """
     if not files.file.is_file():
         raise AircraftError(f"no model file {files.file}; check the JSBSim root directory")
     target = directory / "aircraft" / files.model
     shutil.copytree(files.folder, target, dirs_exist_ok=True, ignore=_not_read)
     model_file = target / f"{files.model}.xml"
-    try:
-        document = ET.parse(model_file)
-    except ET.ParseError as error:
-        raise AircraftError(f"model file {files.file} is not valid XML: {error}; correct it") from None
+    document = read_xml(files.file)
     config = document.getroot()
     at_rest = [*_take_out(config, files), *_of_another_program(config, files)]
     if at_rest:
@@ -60,7 +57,7 @@ def model_hash(files: ModelFiles) -> str:
 
     Raises
     ------
-    AircraftError : the model's file is missing or not XML
+    AircraftError : a file of the model is missing or not XML
     """
     digest = hashlib.sha256()
     with tempfile.TemporaryDirectory() as folder:
@@ -106,7 +103,7 @@ def _is_autopilot(element: ET.Element) -> bool:
 def _content(element: ET.Element, files: ModelFiles) -> ET.Element:
     """Return the element itself, or the root of the file that it names."""
     found = files.find(element)
-    return ET.parse(found).getroot() if found else element
+    return read_xml(found).getroot() if found else element
 
 
 def _properties(autopilot: ET.Element) -> list[str]:
@@ -141,8 +138,8 @@ def _copy_referenced(config: ET.Element, files: ModelFiles, directory: Path) -> 
 
 def _take_out_play(path: Path) -> None:
     try:
-        document = ET.parse(path)
-    except ET.ParseError:
+        document = read_xml(path)
+    except AircraftError:
         return  # a file beside the model that JSBSim does not read
     if _remove_play(document.getroot()):
         document.write(path, encoding="utf-8", xml_declaration=True)

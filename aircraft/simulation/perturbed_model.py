@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
 
-from aircraft.model_files import ModelFiles
+from aircraft.model_files import ModelFiles, read_xml
 
 _DEFLECTION = re.compile(r"^-?fcs/.*pos")
 """Properties of surfaces' deflections, as JSBSim's own and those of models are called."""
@@ -49,7 +49,7 @@ def perturb(model_file: Path, by: Perturbation) -> None:
     """
     if by == Perturbation():
         return
-    document = ET.parse(model_file)
+    document = read_xml(model_file)
     files = ModelFiles(model=model_file.stem, folder=model_file.parent, roots=())
     for tag, change in _CHANGES.items():
         section = document.getroot().find(tag)
@@ -57,7 +57,7 @@ def perturb(model_file: Path, by: Perturbation) -> None:
             continue
         change(section, by)
         if (own := files.find(section)) is not None:
-            part = ET.parse(own)
+            part = read_xml(own)
             change(part.getroot(), by)
             part.write(own, encoding="utf-8", xml_declaration=True)
     document.write(model_file, encoding="utf-8", xml_declaration=True)

@@ -3,6 +3,7 @@
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+from aircraft.model_files import read_xml
 from aircraft.simulation.model_copy import copy_model
 from innerloop.jsbsim.properties import system_name
 from innerloop.jsbsim.system import system_xml
@@ -18,7 +19,7 @@ def write_root(schedule: Schedule, directory: Path) -> Path:
     """
     spec = schedule.spec
     model_file = copy_model(spec.files, directory)
-    model = ET.parse(model_file)
+    model = read_xml(model_file)
     root = model.getroot()
     systems = directory / "systems"
     systems.mkdir(exist_ok=True)

@@ -37,6 +37,7 @@ def test_the_content_says_what_kind_of_picture_a_file_is_and_its_name_does_not(c
         (drawn("GIF"), "is no picture"),
         (b"<html/>", "is no picture"),
         (b"<svg/>", "is no picture"),
+        (b'<?xml version="1.0" encoding="none-such"?>' + SVG, "is no picture"),
         (SVG.replace(b'width="4" height="2"><', b'width="0" height="0"><'), "is no picture"),
         (SVG.replace(b"<rect", b'<image href="https://example.org/a.png"/><rect'), "is no picture"),
         (SVG + b" " * BYTES_MAX, "has 1.0 MB; at most 1 MB: give a smaller picture"),

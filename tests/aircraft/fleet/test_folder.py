@@ -164,6 +164,19 @@ def test_a_model_that_cannot_be_flown_is_refused_in_a_line(heavy, old, new, why)
     assert re.search(why, refused(heavy))
 
 
+@pytest.mark.parametrize("encoding", ["none-such", "utf-7", "punycode"])
+def test_a_file_in_an_encoding_that_no_parser_knows_is_refused_or_passed_over_beside_the_model(heavy, encoding):
+    declared = f'<?xml version="1.0" encoding="{encoding}"?>'
+    (heavy / "notes.xml").write_text(f"{declared}<notes/>", encoding="utf-8")
+    (heavy / "heavy.xml").rename(heavy / "c172.xml")
+    assert find_spec(str(heavy)).model == "c172"
+    (heavy / "eng_io320.xml").write_text(f"{declared}<piston_engine/>", encoding="utf-8")
+    assert re.search(r"eng_io320\.xml: not valid XML: .*; correct it$", refused(heavy))
+    (heavy / "c172.xml").rename(heavy / "heavy.xml")
+    edited(heavy, '<?xml version="1.0"?>', declared)
+    assert re.search(r"heavy\.xml: not valid XML: .*; correct it$", refused(heavy))
+
+
 def test_a_folder_without_a_model_or_with_two_is_refused(heavy, tmp_path):
     assert "there is no such directory" in refused(tmp_path / "fleet" / "light")
     (tmp_path / "fleet" / "light").mkdir()

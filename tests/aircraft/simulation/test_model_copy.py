@@ -37,6 +37,14 @@ FLIGHT = """<fdm_config name="probe" version="2.0">
   </flight_control>
 </fdm_config>"""
 
+UNREADABLE = [
+    b"<system>",
+    b'<?xml version="1.0" encoding="none-such"?><system/>',
+    b'<?xml version="1.0" encoding="utf-7"?><system/>',
+    b'<?xml version="1.0" encoding="punycode"?><system/>',
+]
+"""Not closed, and in encodings that Python does not know, that it knows and its parser of XML does not, and that fits no file."""
+
 
 @pytest.fixture
 def probe(tmp_path):
@@ -116,6 +124,21 @@ def test_play_is_taken_out_of_the_systems_files_too(probe, tmp_path):
     assert file.read_text(encoding="utf-8") == text
 
 
+@pytest.mark.parametrize("content", UNREADABLE)
+def test_a_file_beside_the_model_that_no_parser_reads_is_left_as_it_is(probe, tmp_path, content):
+    # Nothing names it, so that JSBSim does not read it either.
+    (probe / "aircraft" / "probe" / "notes.xml").write_bytes(content)
+    copy_model(files(probe, "probe"), tmp_path / "copy", play=False)
+    assert (tmp_path / "copy" / "aircraft" / "probe" / "notes.xml").read_bytes() == content
+
+
+@pytest.mark.parametrize("content", UNREADABLE)
+def test_a_file_that_the_model_names_and_no_parser_reads_is_refused_in_a_line(probe, tmp_path, content):
+    (probe / "aircraft" / "probe" / "Systems" / "Autopilot.xml").write_bytes(content)
+    with pytest.raises(AircraftError, match=r"^\S*Systems/Autopilot\.xml: not valid XML: .*; correct it$"):
+        copy_model(files(probe, "probe"), tmp_path / "copy")
+
+
 def test_engines_propellers_and_systems_of_the_common_folders_come_along(tmp_path):
     copy_model(files(ROOT, "c310"), tmp_path)
     model = ET.parse(tmp_path / "aircraft" / "c310" / "c310.xml").getroot()
@@ -178,5 +201,5 @@ def test_a_model_that_is_missing_or_no_xml_is_refused_in_a_line(tmp_path):
         Fdm(spec)
     (tmp_path / "aircraft" / "T37").mkdir(parents=True)
     (tmp_path / "aircraft" / "T37" / "T37.xml").write_text("<fdm_config>", encoding="utf-8")
-    with pytest.raises(AircraftError, match=r"T37\.xml is not valid XML: .*; correct it"):
+    with pytest.raises(AircraftError, match=r"T37\.xml: not valid XML: .*; correct it"):
         Fdm(spec)
