@@ -18,6 +18,9 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
 _MODEL = "fdm_config"
 """Root element of a JSBSim model."""
 
+_LEFT_OUT = ("input", "output")
+"""Sections of a model that no copy of it has."""
+
 
 def folder_names(directory: Path) -> list[str]:
     """Return the name of every folder in ``directory`` that holds a model.
@@ -118,13 +121,15 @@ def _check(files: ModelFiles) -> None:
         config = read_xml(path).getroot()
         if path == files.file and config.tag != _MODEL:
             raise AircraftError(f"{path}: its root element is <{config.tag}>; that of a JSBSim model is <{_MODEL}>")
+        sections = [element for element in config if path == files.file and element.tag not in _LEFT_OUT]
         for element in config.iter():
             if file := element.get("file"):
                 _refuse_outside(path, element.tag, file)
                 found = files.find(element)
-                if found is None and element.tag in SHARED:
-                    places = ", ".join(f"'{root / SHARED[element.tag]}'" for root in files.roots)
-                    raise AircraftError(f"{path}: {element.tag} file '{file}' is not in '{files.folder}', {places}; put it there")
+                if found is None and (element.tag in SHARED or element in sections):
+                    shared = [root / SHARED[element.tag] for root in files.roots if element.tag in SHARED]
+                    places = ", ".join(f"'{place}'" for place in (files.folder, *shared))
+                    raise AircraftError(f"{path}: {element.tag} file '{file}' is not in {places}; put it there")
                 waiting += [found] if found else []
 
 

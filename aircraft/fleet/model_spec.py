@@ -136,5 +136,5 @@ def _deaf(inputs: tuple[ControlInput, ...], config: ET.Element, files: ModelFile
 def _text(config: ET.Element, files: ModelFiles) -> str:
     """Return the text of the model and of the files beside it, and of the systems that it shares."""
     shared = [found for system in config.iterfind("system[@file]") if (found := files.find(system))]
-    paths = dict.fromkeys([*sorted(files.folder.rglob("*.xml")), *shared])
-    return "".join(path.read_text(encoding="utf-8", errors="replace") for path in paths)
+    beside = sorted(path for path in files.folder.rglob("*.xml") if path.is_file())  # a link may lead nowhere
+    return "".join(path.read_text(encoding="utf-8", errors="replace") for path in dict.fromkeys([*beside, *shared]))

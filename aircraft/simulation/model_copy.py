@@ -29,12 +29,16 @@ def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path
 
     Raises
     ------
-    AircraftError : a file of the model is missing or not XML
+    AircraftError : a file of the model is missing, cannot be copied, or is not XML
     """
     if not files.file.is_file():
         raise AircraftError(f"no model file {files.file}; check the JSBSim root directory")
     target = directory / "aircraft" / files.model
-    shutil.copytree(files.folder, target, dirs_exist_ok=True, ignore=_not_read)
+    try:
+        shutil.copytree(files.folder, target, dirs_exist_ok=True, ignore=_not_read)
+    except shutil.Error as error:
+        _, _, why = error.args[0][0]  # the first of them
+        raise AircraftError(f"model files of {files.folder} cannot be copied: {why}; check that file") from None
     model_file = target / f"{files.model}.xml"
     document = read_xml(files.file)
     config = document.getroot()
@@ -69,8 +73,12 @@ def model_hash(files: ModelFiles) -> str:
 
 
 def _not_read(folder: str, names: list[str]) -> list[str]:
-    """Return the files that JSBSim does not read: pictures and sounds beside a model can be large."""
-    return [name for name in names if not (name.endswith((".xml", ".toml")) or Path(folder, name).is_dir())]
+    """Return the files that JSBSim does not read: pictures and sounds beside a model can be large, and links lead nowhere."""
+    return [name for name in names if not _is_read(Path(folder, name))]
+
+
+def _is_read(path: Path) -> bool:
+    return path.is_dir() or (path.name.endswith((".xml", ".toml")) and path.is_file())
 
 
 def _take_out(config: ET.Element, files: ModelFiles) -> list[str]:

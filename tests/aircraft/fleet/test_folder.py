@@ -80,6 +80,23 @@ def test_engines_are_found_in_the_folder_in_its_engines_and_beside_the_directory
     assert model_hash(spec.files) != before
 
 
+def test_a_link_beside_the_model_that_leads_nowhere_is_no_file_of_it(heavy):
+    before = model_hash(find_spec(str(heavy)).files)
+    (heavy / "notes.xml").symlink_to(heavy / "gone.xml")
+    (heavy / "heavy.toml").symlink_to(heavy / "gone.toml")
+    (heavy / "folder.xml").mkdir()
+    spec = find_spec(str(heavy))
+    check_user_aircraft(spec)
+    assert model_hash(spec.files) == before
+
+
+@pytest.mark.parametrize(("name", "tag"), [("aero.xml", "aerodynamics"), ("mass", "mass_balance")])
+def test_a_section_whose_file_is_a_link_that_leads_nowhere_is_refused(heavy, name, tag):
+    edited(heavy, f"<{tag}>", f'<{tag} file="{name}">')
+    (heavy / f"{name.removesuffix('.xml')}.xml").symlink_to(heavy / "gone.xml")
+    assert f"heavy.xml: {tag} file '{name}' is not in '{heavy}'; put it there" in refused(heavy)
+
+
 def test_the_only_model_of_a_folder_may_have_another_name(heavy):
     (heavy / "heavy.xml").rename(heavy / "c172.xml")
     (heavy / "reset00.xml").write_text('<initialize name="reset00"/>', encoding="utf-8")

@@ -139,6 +139,15 @@ def test_a_file_that_the_model_names_and_no_parser_reads_is_refused_in_a_line(pr
         copy_model(files(probe, "probe"), tmp_path / "copy")
 
 
+def test_a_file_that_cannot_be_copied_is_named_in_a_line(probe, tmp_path):
+    taken = tmp_path / "copy" / "aircraft" / "probe" / "Systems"
+    taken.parent.mkdir(parents=True)
+    taken.write_text("no folder", encoding="utf-8")
+    with pytest.raises(AircraftError, match=r"probe cannot be copied: \[Errno \d+\] .*Systems'; check that file$") as caught:
+        copy_model(files(probe, "probe"), tmp_path / "copy")
+    assert "\n" not in str(caught.value)
+
+
 def test_engines_propellers_and_systems_of_the_common_folders_come_along(tmp_path):
     copy_model(files(ROOT, "c310"), tmp_path)
     model = ET.parse(tmp_path / "aircraft" / "c310" / "c310.xml").getroot()
