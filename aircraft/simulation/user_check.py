@@ -1,5 +1,6 @@
 """A first look at an aircraft of the user, in a process of its own: JSBSim ends the whole process with some faulty models."""
 
+import itertools
 import os
 import pickle
 import subprocess
@@ -18,6 +19,9 @@ _TIME_MAX = 120.0
 
 _REFUSED = 3
 """Exit status of the process with an error of ours, in a line."""
+
+_TRACEBACK = "Traceback (most recent call last):"
+"""First line of a traceback; those of its frames are indented, the error itself is not."""
 
 
 def check_user_aircraft(spec: AircraftSpec) -> None:
@@ -44,13 +48,25 @@ def check_user_aircraft(spec: AircraftSpec) -> None:
         raise AircraftError(f"aircraft '{spec.name}': JSBSim did not run its model within {_TIME_MAX:g} s; correct it") from None
     if done.returncode == 0:
         return
-    told = " ".join(done.stderr.decode(errors="replace").split())
+    lines = done.stderr.decode(errors="replace").splitlines()
+    told = " ".join(" ".join(lines).split())
     if done.returncode == _REFUSED:
         raise AircraftError(told)
+    if raised := _raised(lines):
+        raise AircraftError(f"aircraft '{spec.name}': its model does not run: {raised}; correct {spec.files.file}")
     reason = told.rpartition("what():")[2].strip() or f"exit status {done.returncode}"
     raise AircraftError(
         f"aircraft '{spec.name}': JSBSim ends the whole process with its model: {reason}; correct {spec.files.file}"
     )
+
+
+def _raised(lines: list[str]) -> str:
+    """Return the error that a traceback ends with, in a line; empty if there is no traceback."""
+    begun = [i for i, line in enumerate(lines) if line.endswith(_TRACEBACK)]
+    if not begun:
+        return ""
+    error = itertools.dropwhile(lambda line: not line or line[0].isspace(), lines[begun[-1] + 1 :])
+    return " ".join(" ".join(error).split()).rstrip(".;")
 
 
 def _look(spec: AircraftSpec) -> None:

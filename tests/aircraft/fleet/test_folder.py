@@ -235,3 +235,15 @@ def test_a_model_that_ends_jsbsims_process_and_a_property_that_does_not_exist_ar
     with pytest.raises(AircraftError, match=r"JSBSim ends the whole process with its model: .*no/such") as caught:
         check_user_aircraft(find_spec(str(heavy)))
     assert "\n" not in str(caught.value)
+
+
+def test_an_error_while_the_model_runs_is_one_line_without_a_traceback_that_names_the_model_file(heavy):
+    # In its first time step JSBSim raises an error of its own for an input that nothing sets.
+    gain = '<pure_gain name="x/y"><input>no/such</input><gain>1</gain></pure_gain>'
+    edited(heavy, "<flight_control", f'<system name="x"><channel name="x">{gain}</channel></system><flight_control')
+    with pytest.raises(AircraftError) as caught:
+        check_user_aircraft(find_spec(str(heavy)))
+    told = str(caught.value)
+    assert re.fullmatch(rf"aircraft 'heavy': its model does not run: \S*Error: .*no/such.*; correct {heavy / 'heavy.xml'}", told)
+    assert "Traceback" not in told
+    assert "File " not in told
