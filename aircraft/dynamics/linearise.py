@@ -50,6 +50,9 @@ _LAG_SETTLED = 0.002
 _SECOND_ORDER = 0.05
 """Product of two time constants over the square of their sum below which the lag counts as of first order [-]."""
 
+_AT_ONCE = 1e-6
+"""A driven state that has no more than this of its way left one step after its input follows at once [-]; rounding leaves less."""
+
 _NO_LAG = 0.6
 """A time constant below this many steps is the half step of holding an input, not a lag [-]."""
 
@@ -71,7 +74,7 @@ def linearise(fdm: Fdm, trim: Trim) -> LinearModel:
 
     Raises
     ------
-    AircraftError : a driven state does not follow its input
+    AircraftError : a driven state does not follow its input, or follows it at once
     """
     with fdm.frozen():
         return _Differences(fdm, trim).model()
@@ -110,8 +113,10 @@ class _Differences:
                     f"aircraft '{self._spec.name}': '{state.position}' does not follow input '{state.input}'; check its spec"
                 )
             # Settled: driven * moved + direct. After one step: driven * moved by then + direct.
-            settled, first = by_input[:, j], at_once[:, j]
-            by_driven[:, i] = (settled - first)[:n_read] / (settled - first)[n_read + i]
+            left = by_input[:, j] - at_once[:, j]
+            if abs(left[n_read + i]) <= _AT_ONCE * abs(driven_by_input[i, j]):
+                raise self._follows_at_once(i)
+            by_driven[:, i] = left[:n_read] / left[n_read + i]
             direct[:, j] -= by_driven[:, i] * driven_by_input[i, j]
             poles[i] = self._pole(i, j)
         read_by_body = by_body[:n_read] - by_driven @ driven_by_body
@@ -239,7 +244,17 @@ class _Differences:
         first = self._driven()[i] - rest
         self._fdm.step()
         second = self._driven()[i] - rest
+        if not 0.0 < second * first < first * first:
+            raise self._follows_at_once(i)
         return math.log(second / first) / self._fdm.time_step
+
+    def _follows_at_once(self, i: int) -> AircraftError:
+        """Return the error of a driven state whose way to its input is over, or beyond it, within a time step or two."""
+        state = self._spec.driven_states[i]
+        return AircraftError(
+            f"aircraft '{self._spec.name}': '{state.position}' follows input '{state.input}' within a time step of"
+            f" {self._fdm.time_step:.4g} s, so that it is no state; leave '{state.name}' out of the driven states of its spec"
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

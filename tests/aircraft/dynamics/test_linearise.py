@@ -1,6 +1,8 @@
 """The linear model against derivatives of the published equations, and against what JSBSim flies."""
 
 import math
+import re
+import shutil
 from dataclasses import replace
 
 import control
@@ -13,7 +15,7 @@ from aircraft.dynamics.trim import trim
 from aircraft.errors import AircraftError
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import DrivenState
+from aircraft.spec import MODELS, DrivenState, propeller_speed
 
 DRIVEN = ("elevator_position", "aileron_position", "propeller_speed")
 BANKS = {"level": 0.0, "right turn": 0.6, "left turn": -0.6}
@@ -252,6 +254,22 @@ def test_at_120_hertz_a_small_doublet_is_flown_as_predicted_but_for_the_step(tri
     assert coarse < 0.18
     # And of first order it is: four times less with a quarter of the step, down to thrust's change of slope (airspeed, 2 %).
     assert fine < max(0.3 * coarse, 0.03)
+
+
+# The X8's elevons without their lag of 40 rad/s, and with lags of whose way JSBSim's filter goes too far in a step: 400 rad/s
+# is more than two of 1/120 s.
+@pytest.mark.parametrize("lag", ["", "<lag>400</lag>", "<lag>1e9</lag>"])
+def test_a_servo_that_follows_at_once_is_no_state(trims, tmp_path, lag):
+    root = shutil.copytree(MODELS, tmp_path / "models")
+    file = root / "aircraft" / "x8" / "x8.xml"
+    text, count = re.subn("<lag>.*?</lag>", lag, file.read_text(encoding="utf-8"))
+    assert count == 2
+    file.write_text(text, encoding="utf-8")
+    why = "'fcs/elevator-pos-rad' follows input 'elevator' within a time step of 0.008333 s.*; leave 'elevator_position' out of"
+    with pytest.raises(AircraftError, match=why) as caught:
+        linearise(Fdm(replace(X8, root=root)), trims["level"])
+    assert "\n" not in str(caught.value)
+    assert np.isfinite(linearise(Fdm(replace(X8, root=root, driven_states=(propeller_speed(),))), trims["level"]).A).all()
 
 
 def test_an_input_that_drives_nothing_is_named(trims):
