@@ -130,6 +130,10 @@ class Envelope:
         return tuple(self.airspeed_min + i * step for i in range(DESIGN_AIRSPEEDS))
 
 
+_INPUTS, _MORE_INPUTS = ("elevator", "aileron", "throttle"), ("rudder",)
+"""Control inputs that the autopilot needs, and those that it uses if there are any."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AircraftSpec:
     """An aircraft: what a file in ``aircraft/fleet``, an entry point or a Python file of the user has to provide.
@@ -142,9 +146,9 @@ class AircraftSpec:
     model : JSBSim model name
     folder : of the model file, if it is not ``root/aircraft/model``
     other_roots : further JSBSim roots whose engines and systems the model may name
-    inputs : control inputs; ``elevator``, ``aileron`` and ``throttle`` at least
+    inputs : control inputs: ``elevator``, ``aileron`` and ``throttle``, perhaps ``rudder``, and no others
     own_actuators : only if they are not one for each control input, such as a flying wing's elevons
-    driven_states : servo and propeller states that have a property of their own; other lags are measured
+    driven_states : servo and propeller states that have a property of their own, one of an input; other lags are measured
     envelope : as published by its maker or its model's author; None if it is to be found by trimming
     configuration : JSBSim properties and their values in every flight, such as a retracted gear
     engine_flags : JSBSim properties that are 1 while an engine runs
@@ -188,6 +192,27 @@ class AircraftSpec:
             if control_input.name == name:
                 return control_input
         raise AircraftError(f"aircraft '{self.name}' has no input '{name}'; it has {', '.join(i.name for i in self.inputs)}")
+
+    def check_inputs(self) -> None:
+        """See that the inputs are those that the autopilot flies with, and that driven states follow one each.
+
+        Raises
+        ------
+        AircraftError : an input is missing, unknown, or there twice; a driven state follows no input, or one that has a state
+        """
+        names = [i.name for i in self.inputs]
+        if not set(_INPUTS) <= set(names) <= {*_INPUTS, *_MORE_INPUTS} or len(names) > len(set(names)):
+            raise AircraftError(
+                f"aircraft '{self.name}' has the inputs {', '.join(names) or '(none)'}; it needs {', '.join(_INPUTS)}, may have"
+                f" {', '.join(_MORE_INPUTS)}, and no others: correct its spec"
+            )
+        driven = [state.input for state in self.driven_states]
+        for i, state in enumerate(self.driven_states):
+            if state.input not in names or state.input in driven[:i]:
+                why = "as another one does" if state.input in names else f"which is none of {', '.join(names)}"
+                raise AircraftError(
+                    f"aircraft '{self.name}': driven state '{state.name}' follows input '{state.input}', {why}; correct its spec"
+                )
 
 
 def surface(name: str) -> ControlInput:

@@ -73,6 +73,7 @@ def search_trim(
     Raises
     ------
     TrimError : an impossible condition, such as a negative airspeed
+    AircraftError : the aircraft has other inputs than the autopilot flies with
     """
     if not (math.isfinite(airspeed) and airspeed > 0.0):
         raise TrimError(f"trim of '{fdm.spec.name}': airspeed is {airspeed} m/s; it must be finite and above 0")
@@ -81,6 +82,7 @@ def search_trim(
             raise TrimError(f"trim of '{fdm.spec.name}': {name} is {value} {unit}; it must be finite")
     if not abs(bank) < 0.5 * math.pi:
         raise TrimError(f"trim of '{fdm.spec.name}': bank is {math.degrees(bank):g} deg; it must lie within -90 and 90 deg")
+    fdm.spec.check_inputs()
     problem = TrimProblem(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle)
     tried: list[Trim] = []
     with fdm.frozen():

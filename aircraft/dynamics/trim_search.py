@@ -83,7 +83,7 @@ class TrimProblem:
         self._bank = bank
         self._climb_angle = climb_angle
         self._straight = bank == 0.0
-        self._rudder = len(fdm.spec.inputs) > 3
+        self._rudder = any(i.name == "rudder" for i in fdm.spec.inputs)
         self._turn = 0.0 if self._straight else _GUESSED_GRAVITY * math.tan(bank) / airspeed
         inputs = fdm.spec.inputs
         turn_max = _BANK_MAX if self._straight else _TURN_RATE_RATIO_MAX * abs(self._turn)

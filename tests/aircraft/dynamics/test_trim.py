@@ -1,6 +1,7 @@
 """Equilibria of the X8 against Newton's and Euler's equations written down from the published numbers."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,10 +11,11 @@ from hypothesis import strategies as st
 
 from aircraft.dynamics.trim import trim
 from aircraft.dynamics.trim_search import pitch_for_climb
-from aircraft.errors import TrimError
+from aircraft.errors import AircraftError, TrimError
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import body_velocity, level
+from aircraft.spec import surface
 
 CONDITIONS = {
     "slow": {"airspeed": 14.0, "altitude": 100.0},
@@ -204,3 +206,9 @@ def test_a_refused_trim_leaves_an_aircraft_that_can_be_trimmed_and_flown(x8_fdm,
 def test_a_turn_on_its_side_or_back_is_refused(x8_fdm, bank_deg):
     with pytest.raises(TrimError, match="must lie within -90 and 90 deg"):
         trim(x8_fdm, airspeed=20.0, altitude=100.0, bank=math.radians(bank_deg))
+
+
+def test_a_fourth_input_that_is_no_rudder_is_refused_by_name():
+    flapped = Fdm(replace(X8, inputs=(*X8.inputs, surface("flap"))))
+    with pytest.raises(AircraftError, match="has the inputs elevator, aileron, throttle, flap; it needs"):
+        trim(flapped, airspeed=20.0, altitude=100.0)

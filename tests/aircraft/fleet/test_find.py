@@ -1,6 +1,7 @@
 """Finding aircraft by name: those of this project, those of JSBSim, and why some of those cannot be flown."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import jsbsim
@@ -11,6 +12,7 @@ from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import aircraft_names, find_spec
 from aircraft.fleet.stock import stock_names
 from aircraft.fleet.x8 import X8
+from aircraft.spec import DrivenState, servo_position, surface, throttle
 
 STOCK = Path(jsbsim.get_default_root_dir()) / "aircraft"
 
@@ -103,3 +105,31 @@ def test_what_is_no_name_is_unknown(name):
 @pytest.mark.parametrize("name", ["../aircraft/c172x", "c172x/", "none/c172x"])
 def test_a_path_is_that_of_a_folder_and_no_name_of_jsbsims_own(name):
     assert f"aircraft '{name}': there is no such directory" in reason(name)
+
+
+THREE = (surface("elevator"), surface("aileron"), throttle(1))
+MAY = "; it needs elevator, aileron, throttle, may have rudder, and no others: correct its spec"
+
+
+@pytest.mark.parametrize(
+    ("parts", "why"),
+    [
+        ({"inputs": (*THREE, surface("flap"))}, f"has the inputs elevator, aileron, throttle, flap{MAY}"),
+        ({"inputs": (*THREE, surface("rudder"), surface("flap"))}, f"aileron, throttle, rudder, flap{MAY}"),
+        ({"inputs": (THREE[0], THREE[2], surface("rudder"))}, f"has the inputs elevator, throttle, rudder{MAY}"),
+        ({"inputs": (*THREE, THREE[0])}, f"has the inputs elevator, aileron, throttle, elevator{MAY}"),
+        ({"inputs": ()}, f"has the inputs (none){MAY}"),
+        (
+            {"driven_states": (servo_position("rudder"),)},
+            "driven state 'rudder_position' follows input 'rudder', which is none of elevator, aileron, throttle; correct its spec",
+        ),
+        (
+            {"driven_states": (*X8.driven_states, DrivenState(name="rpm", position="a/b", input="throttle"))},
+            ": driven state 'rpm' follows input 'throttle', as another one does; correct its spec",
+        ),
+    ],
+)
+def test_an_aircraft_of_a_file_with_inputs_that_the_autopilot_does_not_fly_with_is_refused(tmp_path, monkeypatch, parts, why):
+    own = replace(X8, name="own", **parts)
+    monkeypatch.setattr("common.registry.part_in_file", lambda _: own)
+    assert why in reason(f"{tmp_path / 'own.py'}:OWN")
