@@ -250,8 +250,8 @@ def _event(note: str, step: int, values: Sequence[tuple[str, float]]) -> str:
 
 
 _INITIALISATION = """<?xml version="1.0"?>
-<!-- Written by innerloop.jsbsim.script. JSBSim asks for this file; scripts/{name}.xml itself sets the state, in the order that
-     makes the flight the same to the last digit as one from Python. -->
+<!-- Written by innerloop.jsbsim.script. JSBSim asks for this file; the script itself sets the state, in the order that makes the
+     flight the same to the last digit as one from Python. -->
 <initialize name="{name}_init">
 </initialize>
 """

@@ -190,6 +190,17 @@ def test_a_title_may_hold_what_xml_means_something_by(x8_schedule, tmp_path):
     assert script.getroot().get("name") == 'The <"Bird"> & Co under its autopilot'
 
 
+def test_a_models_name_may_hold_what_a_comment_in_xml_may_not(x8_schedule, tmp_path):
+    own = replace(x8_schedule.spec, model="own--x8", folder=tmp_path / "own--x8")
+    shutil.copytree(x8_schedule.spec.files.folder, own.folder)
+    (own.folder / "x8.xml").rename(own.files.file)
+    schedule = replace(x8_schedule, spec=own)
+    script = write_script(schedule, write_root(schedule, tmp_path / "root"), commands=[])
+    assert ET.parse(script.parents[1] / "aircraft" / "own--x8" / "own--x8_autopilot_init.xml").getroot().tag == "initialize"
+    run_jsbsim(f"--script=scripts/{script.name}", directory=tmp_path / "root")
+    assert read_result(tmp_path / "root" / "own--x8_autopilot.csv")["Time"].iloc[-1] == pytest.approx(10.0)
+
+
 def test_sizes_of_the_demonstration_are_taken(x8_schedule):
     start = x8_schedule.level(MIDDLE)
     found = demonstration(x8_schedule.envelope, start, heading_rate=0.1, altitude_step=-7.0, airspeed_step=1.5)
