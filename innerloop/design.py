@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import sys
 import time
 from pathlib import Path
@@ -106,9 +107,11 @@ def _design(
     out.mkdir(parents=True, exist_ok=True)
     found = designed(spec, altitude)
     record = found.record
-    # Of an older design; the manifest comes last, when all that it stands for is there.
+    # Of an older design, perhaps of another aircraft; the manifest comes last, when all that it stands for is there.
     remove_reports(out)
-    (out / MANIFEST).unlink(missing_ok=True)
+    if (out / MANIFEST).exists():
+        shutil.rmtree(out / MODEL, ignore_errors=True)
+        (out / MANIFEST).unlink()
     root = write_root(found.design.schedule, out / MODEL)
     write_script(found.design.schedule, root)
     if reversals:
@@ -117,7 +120,7 @@ def _design(
     command = command_line("innerloop.design", sys.argv)
     write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started, command=command))
     print_design(record)
-    print(f"\ndesign: {out}\nJSBSim root with the autopilot: {out / 'model'}")
+    print(f"\ndesign: {out}\nJSBSim root with the autopilot: {root}")
     for path in () if no_report else build_reports(out, settings=overrides):
         print(f"report: {path}")
 

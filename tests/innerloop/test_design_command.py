@@ -69,6 +69,17 @@ def test_a_design_made_anew_leaves_no_report_of_the_older_one(tmp_path, designs)
     assert {path.name for path in out.iterdir()} == {"manifest.json", "innerloop.json", "model", "notes.txt"}
 
 
+def test_a_design_made_anew_leaves_no_model_of_the_older_one(tmp_path, designs):
+    designs("x8")
+    designs("aerosonde")
+    out = tmp_path / "out"
+    for aircraft in ("aerosonde", "x8"):
+        assert run_command("innerloop.design", aircraft, *HEIGHT, "--out", out, "--no-report").status == 0
+    files = {path.name for path in (out / "model").rglob("*")}
+    assert {"x8.xml", "x8_autopilot.xml"} <= files
+    assert not [name for name in files if "aerosonde" in name]
+
+
 def test_a_logo_that_is_no_picture_is_refused_before_anything_is_designed(tmp_path):
     ended = run_command("innerloop.design", "x8", "--out", tmp_path / "x8", "--set", "report.logo=gone.png")
     assert ended.status == 2
