@@ -2,6 +2,7 @@
 
 import bisect
 import math
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,6 +12,10 @@ from common.units import RAD_S_PER_RPM
 
 MODELS = Path(__file__).parent / "models"
 """The JSBSim root of the project's own aircraft."""
+
+
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
+"""What an aircraft and its model may be called: the name becomes part of file names and of XML."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -193,13 +198,16 @@ class AircraftSpec:
                 return control_input
         raise AircraftError(f"aircraft '{self.name}' has no input '{name}'; it has {', '.join(i.name for i in self.inputs)}")
 
-    def check_inputs(self) -> None:
-        """See that the inputs are those that the autopilot flies with, and that driven states follow one each.
+    def check(self) -> None:
+        """See that the name is one, that inputs are those that the autopilot flies with, and that driven states follow one each.
 
         Raises
         ------
-        AircraftError : an input is missing, unknown, or there twice; a driven state follows no input, or one that has a state
+        AircraftError : the name has other letters than ``NAME``; an input is missing, unknown, or there twice; a driven state
+            follows no input, or one that has a state
         """
+        if not NAME.fullmatch(self.name):
+            raise AircraftError(f"'{self.name}' is no name of an aircraft; use letters, digits, '_', '-' and '.': correct its spec")
         names = [i.name for i in self.inputs]
         if not set(_INPUTS) <= set(names) <= {*_INPUTS, *_MORE_INPUTS} or len(names) > len(set(names)):
             raise AircraftError(

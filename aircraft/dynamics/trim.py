@@ -82,7 +82,7 @@ def search_trim(
             raise TrimError(f"trim of '{fdm.spec.name}': {name} is {value} {unit}; it must be finite")
     if not abs(bank) < 0.5 * math.pi:
         raise TrimError(f"trim of '{fdm.spec.name}': bank is {math.degrees(bank):g} deg; it must lie within -90 and 90 deg")
-    fdm.spec.check_inputs()
+    fdm.spec.check()
     problem = TrimProblem(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle)
     tried: list[Trim] = []
     with fdm.frozen():

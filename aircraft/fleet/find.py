@@ -41,5 +41,5 @@ def _registered(name: str) -> AircraftSpec:
         raise AircraftError(str(error)) from error
     if not isinstance(spec, AircraftSpec):
         raise AircraftError(f"aircraft '{name}' is of type {type(spec).__name__}; it must be an AircraftSpec of aircraft/spec.py")
-    spec.check_inputs()
+    spec.check()
     return spec

@@ -1,6 +1,5 @@
 """Aircraft of the user: a folder with a JSBSim model, ``DIR/NAME``, and perhaps a file of settings beside the model."""
 
-import re
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from aircraft.errors import AircraftError
@@ -8,12 +7,9 @@ from aircraft.fleet.model_spec import spec_of_model
 from aircraft.fleet.settings import ModelSettings, read_settings
 from aircraft.fleet.stock import stock_root
 from aircraft.model_files import SHARED, ModelFiles, read_xml
-from aircraft.spec import AircraftSpec
+from aircraft.spec import NAME, AircraftSpec
 from common.files import is_path
 from common.spelling import did_you_mean
-
-_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
-"""What a folder and a model may be called: the name becomes part of file names and of XML."""
 
 _MODEL = "fdm_config"
 """Root element of a JSBSim model."""
@@ -72,7 +68,7 @@ def folder_spec(path: str) -> AircraftSpec:
         raise AircraftError(f"aircraft '{path}': there is no such directory; check the path")
     model = _model(folder)
     for name in (folder.name, model):
-        if not _NAME.fullmatch(name):
+        if not NAME.fullmatch(name):
             raise AircraftError(f"aircraft '{path}': '{name}' is no name of an aircraft; use letters, digits, '_', '-' and '.'")
     files = ModelFiles(model=model, folder=folder, roots=(folder.parent.parent, stock_root()))
     _check(files)

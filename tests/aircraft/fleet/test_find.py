@@ -127,9 +127,10 @@ MAY = "; it needs elevator, aileron, throttle, may have rudder, and no others: c
             {"driven_states": (*X8.driven_states, DrivenState(name="rpm", position="a/b", input="throttle"))},
             ": driven state 'rpm' follows input 'throttle', as another one does; correct its spec",
         ),
+        ({"name": "A&B/C"}, "'A&B/C' is no name of an aircraft; use letters, digits, '_', '-' and '.': correct its spec"),
     ],
 )
-def test_an_aircraft_of_a_file_with_inputs_that_the_autopilot_does_not_fly_with_is_refused(tmp_path, monkeypatch, parts, why):
-    own = replace(X8, name="own", **parts)
+def test_an_aircraft_of_a_file_that_the_autopilot_cannot_fly_with_is_refused(tmp_path, monkeypatch, parts, why):
+    own = replace(X8, **{"name": "own", **parts})
     monkeypatch.setattr("common.registry.part_in_file", lambda _: own)
     assert why in reason(f"{tmp_path / 'own.py'}:OWN")
