@@ -10,7 +10,7 @@ import numpy.typing as npt
 from gnc.estimation.plume.grid import STRENGTH_STEP, PlumeGrid, normalised, over_nothing, wandered
 from gnc.estimation.plume.pass_reader import Evidence, PassReader
 from gnc.estimation.plume.passes import PassCollector, Path
-from gnc.estimation.plume.prior import GasSensor, PlumePrior
+from gnc.estimation.plume.prior import SPEED_MIN, GasSensor, PlumePrior
 from gnc.estimation.plume.sensor_watch import SensorState, SensorWatch
 
 __all__ = ["GasSensor", "PlumeEstimator", "PlumePrior", "PlumeState", "SensorState"]
@@ -141,7 +141,7 @@ class PlumeEstimator:
         along, across : of the vehicle, behind the funnel and to the right of the predicted axis, seen along it [m]
         altitude : above the sea [m]
         reading : of CO2 [ppm], newly sampled; not a number where there is none. A constant background may be in it
-        apparent_wind : past the ship now [m/s]; that of the prior unless given
+        apparent_wind : past the ship now [m/s], taken for 1 m/s at least; that of the prior unless given
         """
         if not math.isnan(reading):
             self._watch.read(reading)
@@ -149,7 +149,7 @@ class PlumeEstimator:
         path = self._collector.add(self._time, along, across, altitude, reading)
         if path is None:
             return False
-        self._wind = apparent_wind or self.prior.apparent_wind
+        self._wind = max(self.prior.apparent_wind if apparent_wind is None else apparent_wind, SPEED_MIN)
         if self._time >= self._diffused_at + _DIFFUSED:
             self._diffuse(self._time - self._diffused_at)
             self._diffused_at = self._time

@@ -13,8 +13,8 @@ Array = npt.NDArray[np.float64]
 _ENTRAINMENT = 0.6
 """Briggs' entrainment coefficient of a plume that bends over in the wind [-]."""
 
-_SPEED_MIN = 1.0
-"""Apparent wind that the rise is computed for at least [m/s]: below it a plume has no direction, and rises straight up."""
+SPEED_MIN = 1.0
+"""Apparent wind that rise, spreads and strength are computed for at least [m/s]: below it a plume has no direction."""
 
 _BUOYANT = 0.4 / math.sqrt(2.0)
 """Spread that the rise makes, over the rise [-]: AERMOD's buoyancy-induced dispersion."""
@@ -69,7 +69,7 @@ def rise(momentum_flux: float, buoyancy_flux: float, distance: float, apparent_w
     distance : behind the funnel, at least 0 [m]
     apparent_wind : past the ship [m/s]
     """
-    u = max(apparent_wind, _SPEED_MIN)
+    u = max(apparent_wind, SPEED_MIN)
     momentum, buoyancy = 3.0 * momentum_flux * distance / u**2, 1.5 * buoyancy_flux * distance**2 / u**3
     return math.cbrt((momentum + buoyancy) / _ENTRAINMENT**2)
 
@@ -82,7 +82,7 @@ def downwash(stack_diameter: float, exhaust_speed: float, apparent_wind: float) 
     stack_diameter, exhaust_speed : of the funnel's mouth [m], and w of the exhaust in it [m/s]
     apparent_wind : U past the ship [m/s]
     """
-    return 2.0 * stack_diameter * max(0.0, 1.5 - exhaust_speed / max(apparent_wind, _SPEED_MIN))
+    return 2.0 * stack_diameter * max(0.0, 1.5 - exhaust_speed / max(apparent_wind, SPEED_MIN))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -192,7 +192,7 @@ class PlumePrior:
         turbulent = max(0.0, self.sigma_y**2 - _SOURCE_SPREAD**2) + self.meander_y**2
         source = min(self.sigma_y, _SOURCE_SPREAD) ** 2
         grown = (
-            (max(distance, _NEAR * self.distance) / self.distance) ** _GROWTH * self.apparent_wind / max(apparent_wind, _SPEED_MIN)
+            (max(distance, _NEAR * self.distance) / self.distance) ** _GROWTH * self.apparent_wind / max(apparent_wind, SPEED_MIN)
         )
         return math.sqrt((source + turbulent * grown**2) / (source + turbulent))
 
@@ -246,7 +246,7 @@ def expected_plume(
     sensor : for CO2
     lowest, highest : altitudes that may be flown [m]
     """
-    wind = max(apparent_wind, _SPEED_MIN)
+    wind = max(apparent_wind, SPEED_MIN)
     climbed = rise(momentum_flux, buoyancy_flux, distance, wind)
     wind_share, age = wind_deviation / wind, distance / wind
     # The rise goes with the cube root of the flux, and with 1/U.

@@ -89,6 +89,26 @@ def test_absence_moves_the_estimate_away_from_the_flown_height() -> None:
     assert abs(best - 60.0) > 8.0
 
 
+def test_absence_in_next_to_no_apparent_wind_says_what_it_says_in_one_of_a_metre_a_second() -> None:
+    def missed(wind: float) -> PlumeEstimator:
+        estimator = PlumeEstimator(PRIOR)
+        for i in range(600):
+            estimator.predict(0.05)
+            reading = 420.0 + SENSOR.noise * math.sin(1.7 * i) if i % 4 == 0 else math.nan
+            estimator.update(230.0, 60.0 * math.cos(math.pi * i / 180.0), 65.0, reading, apparent_wind=wind)
+        assert estimator.passes == 3
+        return estimator
+
+    # The floor of rise and spreads, below which a plume has no direction: nor is it any stronger.
+    slow = missed(1.0)
+    for wind in (0.3, 0.0):
+        estimator = missed(wind)
+        assert np.array_equal(estimator.cells, slow.cells)
+        assert estimator.detection(65.0) == slow.detection(65.0)
+    # A wind that is measured counts, and not the one that was expected.
+    assert not np.array_equal(missed(PRIOR.apparent_wind).cells, slow.cells)
+
+
 def test_a_plume_that_does_not_meander_is_placed_within_metres() -> None:
     estimator = estimated(MadePlume(height=74.0, offset=-15.0, meander=0.0), AROUND)
     assert estimator.state is PlumeState.FOUND
