@@ -129,7 +129,16 @@ def over_the_sea(wind: Array, times: Sequence[float], *, roughness: float, heigh
     times : [s]
     roughness : length z_0: 2e-4 m over open sea (J. Wieringa, Boundary-Layer Meteorology 63:323, 1993), below the height [m]
     height : h that the wind is given for [m]
+
+    Raises
+    ------
+    AircraftError : the roughness is not below the height, or so small that the profile would be cut off above it
     """
+    if not _LOWEST <= roughness < height:
+        raise AircraftError(
+            f"weather: a roughness length of {roughness:g} m, and a wind at {height:g} m; give {_LOWEST:g} m or more, and less than"
+            " that height"
+        )
     top = math.log(_PROFILE_TOP / roughness) / math.log(height / roughness)
     return WindField(np.stack([np.zeros_like(wind), top * wind], axis=1), times, (roughness, _PROFILE_TOP))
 

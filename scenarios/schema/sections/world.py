@@ -156,7 +156,7 @@ class WindConfig(Section):
     """Brunt-Vaisala frequency of the air that exhaust rises in; 0 for neutral air [1/s]."""
     table: str | None = None
     """A file with the wind over time, height or both: a table (.csv), or netCDF as of ERA5 (.nc)."""
-    roughness_m: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    roughness_m: Annotated[float, Field(ge=1e-8, le=1.0)] | None = None
     """Roughness length of a logarithmic profile over height, some 0.0002 over the sea; without one if not given [m]."""
     height_m: Annotated[float, Field(ge=2.0, le=500.0)] = 10.0
     """Height above the sea at which the wind is as given, where it has a logarithmic profile [m]."""

@@ -77,6 +77,13 @@ def test_over_the_sea_it_follows_the_logarithm_of_height():
     assert wind.now(0.0, 1e-4) == pytest.approx((0.0, 0.0), abs=1e-12)
 
 
+@pytest.mark.parametrize("roughness", [1e-10, 10.0, math.nan])
+def test_a_roughness_that_has_no_profile_is_refused(roughness):
+    # Below 1e-9 m heights are not told apart: at 10 m the wind of 1e-10 m was 0.98 of the one that is given there.
+    with pytest.raises(AircraftError, match="a roughness length of"):
+        over_the_sea(np.array([[5.0, 0.0]]), [0.0], roughness=roughness, height=10.0)
+
+
 @pytest.mark.parametrize(
     ("values", "message"),
     [

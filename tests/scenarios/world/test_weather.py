@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 from flight_cases import scenario
+from pydantic import ValidationError
 
 from scenarios.schema.sections.world import WindConfig
 from scenarios.world.place import given_place
@@ -18,6 +19,20 @@ def sampled(given, seed=9):
 )
 def test_the_wind_blows_to_where_it_does_not_come_from(from_deg, blows_to):
     assert wind_ned(WindConfig(speed_mps=10.0, from_deg=from_deg)) == pytest.approx(blows_to, abs=1e-12)
+
+
+@pytest.mark.parametrize("roughness", [1e-8, 2e-4, 1.0])
+def test_a_wind_with_a_profile_is_the_one_given_at_its_height_whatever_the_roughness(roughness):
+    given = scenario(wind={"speed_mps": 10.0, "from_deg": 180.0, "roughness_m": roughness, "height_m": 20.0})
+    field = wind_of(given, given_place(given.place, 60.0))
+    # Rounding of logarithms; and V(z) = V(h) ln(z/z0)/ln(h/z0).
+    assert field.now(0.0, 20.0) == pytest.approx((10.0, 0.0), abs=1e-12)
+    assert field.now(0.0, 60.0)[0] == pytest.approx(10.0 * math.log(60.0 / roughness) / math.log(20.0 / roughness), rel=1e-12)
+
+
+def test_a_roughness_too_small_for_a_profile_is_refused():
+    with pytest.raises(ValidationError, match="greater than or equal to"):
+        WindConfig(speed_mps=10.0, roughness_m=1e-12)
 
 
 def test_gusts_come_one_after_the_other_and_are_no_stronger_than_they_may():
