@@ -116,14 +116,17 @@ class PassReader:
             return None
         templates = self._templates(path, places, spreads)
         since = path.read_at - path.time[0]
-        level = middle if math.isnan(self._level) else self._level
-        if path.time[0] - self._ended > path.duration:
+        level, unread = self._level, max(0.0, float(path.time[0]) - self._ended)
+        if math.isnan(level):
+            level, unread = middle, 0.0
+        elif unread > path.duration:
             self._tail = 0.0
         fading = np.exp(-since / sensor.time_constant)
         y = y - level - self._tail * fading
         drift = sensor.background_drift
         background = np.empty((3, len(y)))
-        background[0] = self._level_deviation
+        # Passes without readings, or that are not believed, leave the level time to drift.
+        background[0] = math.hypot(self._level_deviation, drift * unread)
         background[1] = drift * (since - 0.5 * since[-1])
         background[2] = (_TAIL_ERROR * abs(self._tail) + sensor.noise) * fading
         noise = sensor.noise**2

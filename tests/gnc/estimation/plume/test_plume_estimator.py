@@ -192,6 +192,22 @@ def test_a_sensor_that_comes_back_is_believed_again() -> None:
     assert estimator.state is PlumeState.FOUND
 
 
+@pytest.mark.parametrize("unread", ["silent", "ahead of the ship"])
+def test_a_background_that_drifts_while_nothing_is_read_is_no_plume(unread: str) -> None:
+    """Clean air, whose reading rises at the rate that the data sheet allows: 0.1 ppm/s, 12 times the noise in a minute."""
+    for seed in range(5):
+        estimator, generator = PlumeEstimator(PRIOR), np.random.default_rng(seed)
+        for i in range(round(160.0 / 0.05)):
+            time = 0.05 * i
+            away = 40.0 < time < 100.0
+            along = -230.0 if away and unread == "ahead of the ship" else 230.0
+            reads = i % 4 == 0 and not (away and unread == "silent")
+            reading = 420.0 + SENSOR.background_drift * time + SENSOR.noise * generator.standard_normal() if reads else math.nan
+            estimator.predict(0.05)
+            estimator.update(along, 60.0 * math.cos(math.pi * time / 9.0), 65.0, reading)
+        assert estimator.state is PlumeState.SEARCHING
+
+
 def test_a_plume_above_the_limits_cannot_be_measured() -> None:
     assert PlumeEstimator(PRIOR).measurable > 0.9
     above = replace(PRIOR, height=190.0, height_deviation=8.0, source_deviation=5.0, highest=120.0)
