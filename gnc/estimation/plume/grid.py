@@ -76,6 +76,9 @@ class PlumeGrid:
         self._expected = prior
         low = max(_LOWEST, prior.height - _REACH * prior.height_deviation)
         self.height: Array = np.linspace(low, prior.height + _REACH * prior.height_deviation, _HEIGHTS)
+        # The last one has no other.
+        self._pairs = np.arange(0, _HEIGHTS, _COARSE)
+        self._paired = np.diff(self._pairs, append=_HEIGHTS)
         self.bearing: Array = np.linspace(-_REACH, _REACH, _BEARINGS) * prior.bearing_deviation
         rises = prior.rise_of(self.height)
         squares = prior.buoyant_spread**2 * (rises**2 - prior.rise_of(prior.height) ** 2)
@@ -181,13 +184,13 @@ class PlumeGrid:
         return result
 
     def coarse(self, cells: Array) -> Array:
-        """Return the probability of every second height and each strength, shape (h', c), of cells (w, h, c)."""
-        result: Array = np.add.reduceat(cells.sum(axis=0), np.arange(0, len(self.height), _COARSE), axis=0)
+        """Return the probability of each two heights together and each strength, shape (h', c), of cells (w, h, c)."""
+        result: Array = np.add.reduceat(cells.sum(axis=0), self._pairs, axis=0)
         return result
 
     def coarse_heights(self, heights: Array) -> Array:
-        """Return the heights of ``coarse``, of those of the cells, shape (h',)."""
-        result: Array = heights[::_COARSE]
+        """Return the heights of ``coarse``, the mean of each two of the cells, shape (h',); or another quantity of them."""
+        result: Array = np.add.reduceat(heights, self._pairs) / self._paired
         return result
 
     def _within(self, reach: Array, off: Array, looks: float) -> Array:
@@ -249,12 +252,15 @@ def _between(within: Array) -> Array:
 
 def wandered(cells: Array, axis: int, steps: float) -> Array:
     """Return probabilities after a random walk along an axis, of a variance of so many steps squared."""
-    share = min(0.25, 0.5 * steps)
     result = cells.copy()
     moved = result.swapaxes(0, axis)
-    flow = share * (moved[1:] - moved[:-1])
-    moved[:-1] += flow
-    moved[1:] -= flow
+    # A round in which more than a quarter moved either way would turn a peak into a trough.
+    rounds = max(1, math.ceil(steps / 0.5))
+    share = 0.5 * steps / rounds
+    for _ in range(rounds):
+        flow = share * (moved[1:] - moved[:-1])
+        moved[:-1] += flow
+        moved[1:] -= flow
     return result
 
 
@@ -271,7 +277,7 @@ def over_nothing(slope: Array, bend: Array, strength: Array, drawn_out: float) -
 
     Parameters
     ----------
-    slope, bend : of ``gnc.estimation.plume.passes.Evidence``, shape (v, j) [1/ppm, 1/ppm^2]
+    slope, bend : of ``gnc.estimation.plume.pass_reader.Evidence``, shape (v, j) [1/ppm, 1/ppm^2]
     strength : shape (p,) [ppm]
     drawn_out : way of the pass along the plume over that across [-]
     """

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from exhaust_cases import PRIOR
 
-from gnc.estimation.plume.grid import STRENGTH_STEP, PlumeGrid
+from gnc.estimation.plume.grid import STRENGTH_STEP, PlumeGrid, wandered
 
 GRID = PlumeGrid(PRIOR)
 
@@ -60,6 +60,30 @@ def test_chances_rise_with_strength_and_fall_with_the_distance() -> None:
     assert np.all(np.diff(chances, axis=1) >= -1e-12)
     above = int(np.argmax(off[0] >= 0.0))
     assert np.all(np.diff(chances[above:], axis=0) <= 1e-12)
+
+
+def test_heights_taken_together_have_the_mean_of_the_cells() -> None:
+    """What the next height is chosen by is where the estimate is, not half a cell below."""
+    weights, heights = GRID.coarse(GRID.prior).sum(axis=1), GRID.coarse_heights(GRID.height)
+    assert weights.sum() == pytest.approx(1.0)
+    of_heights = GRID.prior.sum(axis=(0, 2))
+    # Two cells count by the mean of their heights: within a pair of 2 m they differ by a few per cent.
+    assert weights @ heights == pytest.approx(of_heights @ GRID.height, abs=0.02)
+    one = np.zeros_like(GRID.prior)
+    one[MIDDLE, -1, 0] = 1.0
+    assert GRID.coarse(one).sum(axis=1) @ heights == GRID.height[-1]
+
+
+@pytest.mark.parametrize("steps", [0.0, 0.1, 0.5, 0.7, 10.0])
+def test_a_random_walk_has_the_variance_that_it_should_and_loses_nothing(steps: float) -> None:
+    cells = np.zeros((3, 201))
+    cells[:, 100] = [0.2, 0.3, 0.5]
+    found = wandered(cells, 1, steps)
+    assert found.sum(axis=1) == pytest.approx(cells.sum(axis=1), rel=1e-12)
+    assert found.min() >= 0.0
+    off = np.arange(201) - 100
+    # Exact: each round moves a share by one step either way. At ten deviations from the ends, rounding is left.
+    assert found[2] @ off**2 / found[2].sum() == pytest.approx(steps, abs=1e-12)
 
 
 def test_a_pass_is_never_expected_to_widen_the_height() -> None:
