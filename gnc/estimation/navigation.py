@@ -48,6 +48,7 @@ class Navigation:
         "_parameters",
         "_step_east",
         "_step_north",
+        "_unmeasured",
         "_until_measured",
         "drift_east",
         "drift_north",
@@ -69,7 +70,7 @@ class Navigation:
         )
         self.north = self.east = self.velocity_north = self.velocity_east = 0.0
         self.drift_north = self.drift_east = self.lost = 0.0
-        self._step_north = self._step_east = 0.0
+        self._step_north = self._step_east = self._unmeasured = 0.0
         self._until_measured = 0
 
     def update(self, position: tuple[float, float, float, float] | None, airspeed: float, heading: float, roll: float) -> None:
@@ -95,7 +96,9 @@ class Navigation:
     def _measure(self, airspeed: float, air_course: float) -> None:
         p, wind = self._parameters, self.wind
         self._until_measured = p.wind_interval - 1
-        wind.update(airspeed, air_course, self.velocity_north, self.velocity_east, p.wind_interval * p.time_step)
+        since = p.wind_interval * p.time_step + self._unmeasured
+        wind.update(airspeed, air_course, self.velocity_north, self.velocity_east, since)
+        self._unmeasured = 0.0
         self._step_north, self._step_east = p.time_step * wind.north, p.time_step * wind.east
 
     def _reckon(self, airspeed: float, air_course: float) -> None:
@@ -105,6 +108,8 @@ class Navigation:
         self.north += time_step * self.velocity_north
         self.east += time_step * self.velocity_east
         self.lost += time_step
+        # The wind wanders on meanwhile.
+        self._unmeasured += time_step
 
     def _crab(self, roll: float) -> float:
         banks, offsets = self._parameters.crab_banks, self._parameters.crab_offsets

@@ -121,3 +121,16 @@ def test_the_wind_is_kept_as_it_was_while_satellites_are_lost():
     for _ in range(50):
         navigation.update(None, SPEED + 5.0, 2.0, 0.3)
     assert (navigation.wind.north, navigation.wind.east) == kept
+
+
+def test_after_a_loss_of_satellites_the_wind_is_known_as_little_as_it_has_wandered():
+    navigation = make()
+    where = fly(navigation, steps=2000)
+    before = navigation.wind.sigma
+    for _ in range(1200):
+        navigation.update(None, SPEED, 0.3, 0.0)
+    navigation.wind._speed_variance = navigation.wind._course_variance = 1e12  # what is measured then says nothing
+    for _ in range(5):
+        navigation.update((*where, *velocity_at(0.0)), SPEED, course_at(0.0), 0.0)
+    # 60 s at 0.02 m/s a root of a second, and at most one interval of 0.25 s more.
+    assert navigation.wind.sigma == pytest.approx(math.hypot(before, 0.02 * math.sqrt(60.0)), rel=5e-3)
