@@ -62,19 +62,20 @@ def operating_curve(statistics: Record) -> Chart | None:
     entries = pd.DataFrame(statistics["operating_curve"])
     if not len(entries) or entries["fsc_fuel_percent"].nunique() < _FUELS_MIN or entries["flights"].median() < _OF_EACH_MIN:
         return None
-    lines = []
-    for number, (sensor, group) in enumerate(entries.groupby("sensor")):
+    lines, limits = [], sorted(set(column(entries, "limit_percent").tolist()))
+    for number, ((sensor, limit), group) in enumerate(entries.groupby(["sensor", "limit_percent"])):
+        called = f"{sensor}, {limit:g} %" if len(limits) > 1 else str(sensor)
         fuel = column(group, "fsc_fuel_percent")
         bounds = np.array(group["above_interval"].tolist(), dtype=np.float64)
         around = np.concatenate([bounds[:, 0], bounds[::-1, 1]])
         lines += [
             Line(x=np.concatenate([fuel, fuel[::-1]]), y=around, label="", colour=series_colour(number), fill=True),
-            Line(x=fuel, y=column(group, "above"), label=f"{sensor}, at the end", colour=series_colour(number)),
-            Line(x=fuel, y=column(group, "above_2min"), label=f"{sensor}, after 2 min", colour=series_colour(number), style="dot"),
+            Line(x=fuel, y=column(group, "above"), label=f"{called}, at the end", colour=series_colour(number)),
+            Line(x=fuel, y=column(group, "above_2min"), label=f"{called}, after 2 min", colour=series_colour(number), style="dot"),
         ]
-    limit = float(entries["limit_percent"].iloc[0])
     fuels = column(entries, "fsc_fuel_percent")
-    lines.append(Line(x=np.array([limit, limit]), y=np.array([0.0, 1.0]), label="limit", colour=Meaning.LIMIT, style="dash"))
+    for limit in limits:
+        lines.append(Line(x=np.array([limit, limit]), y=np.array([0.0, 1.0]), label="limit", colour=Meaning.LIMIT, style="dash"))
     lines.append(level(np.array([fuels.min(), fuels.max()]), 0.05, "5 %", "grey"))
     panel = Panel(
         x_label="Sulphur in the fuel [% m/m]",

@@ -22,6 +22,9 @@ COLUMNS = (
 )  # fmt: skip
 """Columns of the summary that these statistics use."""
 
+_CALLED_BY = ["sensor", "sulphur_limit_percent", "fsc_fuel_percent"]
+"""Flights that are alike in these are a point of the operating curve."""
+
 Array = npt.NDArray[np.float64]
 Json = dict[str, Any]
 
@@ -39,7 +42,7 @@ def sulphur_statistics(rows: pd.DataFrame, *, confidence: float) -> Json:
         "accuracy": [_accuracy(group, confidence) | named for named, group in _accuracy_groups(rows)],
         "operating_curve": [
             _calls(group, confidence) | {"sensor": str(group["sensor"].iloc[0])}
-            for _, group in rows.dropna(subset="fsc_fuel_percent").groupby(["sensor", "fsc_fuel_percent"])
+            for _, group in rows.dropna(subset="fsc_fuel_percent").groupby(_CALLED_BY)
         ],
     }
 
@@ -69,20 +72,25 @@ def _accuracy(flights: pd.DataFrame, confidence: float) -> Json:
     return {
         "flights": n,
         "bias_percent": float(np.mean(error)),
-        "bias_relative": float(np.mean(error) / np.mean(expected)) if np.mean(expected) > 0.0 else None,
+        "bias_relative": _share(error, expected),
         "bias_standard_error_percent": float(np.std(error, ddof=1) / np.sqrt(n)) if n > 1 else None,
         "spread_percent": float(np.std(error, ddof=1)) if n > 1 else None,
         "stated_percent": float(np.sqrt(np.mean(flights["uncertainty_percent"].to_numpy(dtype=np.float64) ** 2))),
         "stated_noise_percent": float(np.sqrt(np.mean(flights["noise_percent"].to_numpy(dtype=np.float64) ** 2))),
         "coverage": covered / n,
         "coverage_interval": [interval.low, interval.high],
-        "share_read": float(np.mean(found) / np.mean(expected)) if np.mean(expected) > 0.0 else None,
-        "share_predicted": float(np.mean(found) / np.mean(flights["separate_percent"])) if "separate_percent" in flights else 1.0,
+        "share_read": _share(found, expected),
+        "share_predicted": _share(found, flights["separate_percent"].to_numpy()) if "separate_percent" in flights else 1.0,
     }
 
 
+def _share(part: Array, whole: Array) -> float | None:
+    """Return the mean of one over that of the other; none of nothing, as of a fuel without sulphur."""
+    return float(np.mean(part) / np.mean(whole)) if np.mean(whole) > 0.0 else None
+
+
 def _calls(flights: pd.DataFrame, confidence: float) -> Json:
-    """Return how often ships of one fuel were called above the limit: at the end, and after two minutes."""
+    """Return how often ships of one fuel were called above one limit: at the end, and after two minutes."""
     called: Json = {}
     for name, column in (("above", "sulphur_verdict"), ("above_2min", "verdict_2min")):
         above = int((flights[column] == "above").sum())

@@ -9,7 +9,7 @@ import pytest
 from report_parts import assert_axes_read_quantity_and_unit, blocks_of, named_charts
 
 from reports.document.blocks import Table, Text
-from reports.measurement import flight_charts, flights
+from reports.measurement import flight_charts, flight_tables, flights
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
@@ -101,6 +101,31 @@ def test_a_fuel_without_sulphur_beside_others_is_drawn():
     shares = flight_charts._shares(rows, "crossing_interval_mean_s").lines[0].y
     assert np.isnan(shares[:4]).all()
     assert shares[4:].tolist() == [1.0] * 12
+
+
+def test_an_operating_curve_of_two_limits_has_a_line_for_each():
+    curve = [
+        {
+            "sensor": "fast", "flights": 4, "limit_percent": limit, "above": float(fuel > limit), "above_2min": 0.0,
+            "above_interval": [0.0, 1.0], "fsc_fuel_percent": fuel,
+        }
+        for limit in (0.1, 0.5)
+        for fuel in (0.05, 0.3, 2.0)
+    ]  # fmt: skip
+    lines = flight_charts.operating_curve({"operating_curve": curve}).panels[0].lines
+    ends = {line.label: line.y.tolist() for line in lines if line.label.endswith("at the end")}
+    assert ends == {"fast, 0.1 %, at the end": [0.0, 1.0, 1.0], "fast, 0.5 %, at the end": [0.0, 0.0, 1.0]}
+    assert [line.x[0] for line in lines if line.label == "limit"] == [0.1, 0.5]
+
+
+def test_a_share_of_nothing_is_a_dash():
+    entry = {
+        "sensor": "fast", "method": "areas", "fsc_fuel_percent": None, "flights": 4, "bias_percent": 0.0, "share_read": None,
+        "share_predicted": None, "spread_percent": 0.01, "stated_percent": 0.01, "stated_noise_percent": 0.01, "coverage": 1.0,
+        "coverage_interval": [0.4, 1.0],
+    }  # fmt: skip
+    (row,) = flight_tables.accuracy_table({"accuracy": [entry], "confidence": 0.95}).rows
+    assert row[4:6] == ["–", "–"]
 
 
 def test_flights_without_a_sniffer_have_none_of_it(tmp_path):
