@@ -11,7 +11,6 @@ from typing import Any, SupportsFloat
 
 import gymnasium
 import numpy as np
-from gymnasium import spaces
 
 from gnc.errors import InfeasibleError
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -23,6 +22,7 @@ from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import FlightRequest
 from scenarios.flight import FlightWork, payload_of, reader_of
+from scenarios.gym.actions import action_box, limits_of
 from scenarios.gym.observation import Array, Observer, observation_space
 from scenarios.gym.reward import LOST, VIOLATION, CrossingReward
 from scenarios.instruments.instrument import Instrument
@@ -46,6 +46,7 @@ class _Episode:
     loop, steps : the flight, and its steps
     commands : of the guidance, at the last step
     observer, reward : of the agent
+    low, high : least and largest heading rate [rad/s] and airspeed [m/s] that it may be commanded
     step : number of the last step
     over : whether the episode has ended
     record : of the flight, where that has ended
@@ -56,6 +57,8 @@ class _Episode:
     commands: Commands
     observer: Observer
     reward: CrossingReward
+    low: Array
+    high: Array
     step: int = 0
     over: bool = False
     record: FlightRecord | None = None
@@ -64,6 +67,11 @@ class _Episode:
     def time(self) -> float:
         """Return the time since the start [s]."""
         return self.step * self.loop.plan.time_step
+
+    @property
+    def time_is_up(self) -> bool:
+        """Return whether the last step was the last that the flight may have."""
+        return self.step > round(self.loop.plan.duration_max / self.loop.plan.time_step)
 
     @property
     def inside(self) -> bool:
@@ -107,8 +115,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         self._numbers = {self._name(number): number for number in range(study.planned)}
         self._aircraft: dict[bool, AutopilotedAircraft] = {}
         self._episode = self._begun(self._work.request(Task(number=0)))
-        self._actions = self._action_box()
-        self.action_space = self._actions
+        self.action_space = action_box(self._work)
         self.observation_space = observation_space()
 
     @property
@@ -153,13 +160,13 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         return self._episode.observer.observe(0.0), self._info()
 
     def step(self, action: Array) -> tuple[Array, SupportsFloat, bool, bool, dict[str, Any]]:
-        """Fly one step of the guidance with an action; one outside the action space is cut at its bounds."""
+        """Fly one step of the guidance with an action; one outside of what this flight may be commanded is cut."""
         episode = self._episode
         if episode.over:
             raise InputError("the episode is over; reset the environment")
-        if np.shape(action) != self._actions.shape or not np.isfinite(action).all():
+        if np.shape(action) != episode.low.shape or not np.isfinite(action).all():
             raise InputError(f"the action is {action}; give heading rate [rad/s] and airspeed [m/s], both finite")
-        heading_rate, airspeed = np.clip(action, self._actions.low, self._actions.high).tolist()
+        heading_rate, airspeed = np.clip(action, episode.low, episode.high).tolist()
         if (heading_rate, airspeed) != episode.commands:
             episode.loop.guidance.overruled(heading_rate, airspeed)
         episode.step += 1
@@ -169,7 +176,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         except StopIteration as ended:
             record: FlightRecord = ended.value
             lost = record.outcome in (Outcome.DIVERGED, Outcome.AIRCRAFT_LOST)
-            truncated = record.outcome in (Outcome.NOT_SETTLED, Outcome.INCOMPLETE)
+            # A flight without a number of crossings completes when its time is up.
+            truncated = not lost and (episode.time_is_up or record.outcome in (Outcome.NOT_SETTLED, Outcome.INCOMPLETE))
             episode.record, episode.over = record, True
         observed = episode.observer.observe(episode.time)
         entered = episode.inside
@@ -224,15 +232,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         loop = ClosedLoop(plan, vehicle, read, reader=reader_of(plan, instruments))
         steps = loop.steps()
         commands = next(steps)
-        return _Episode(loop, steps, commands, Observer(loop), CrossingReward(plan.keepout_radius))
-
-    def _action_box(self) -> "spaces.Box[np.float64]":
-        """Return what every flight of the scenario may be commanded."""
-        setup = self._work.setup_of(self._work.request(Task(number=0)))
-        turn = self._episode.loop.plan.guidance.tracking.heading_rate_max
-        if not math.isfinite(turn):
-            raise InputError("guidance.command_limit is false; an environment needs a limit of the heading rate")
-        return spaces.Box(np.array([-turn, setup.airspeed_min]), np.array([turn, setup.airspeed_max]), dtype=np.float64)
+        low, high = limits_of(plan, setup)
+        return _Episode(loop, steps, commands, Observer(loop), CrossingReward(plan.keepout_radius), low, high)
 
     def _info(self) -> dict[str, Any]:
         episode = self._episode

@@ -175,6 +175,38 @@ def test_actions_outside_the_space_are_cut_and_the_guidance_knows_what_was_flown
     assert loop.vehicle.motion()[4] == 0.5 * high[0]
 
 
+def test_flights_with_other_limits_are_flown_within_their_own():
+    # The first flight turns at most at half the rate of the second one: its limit is none of the others'.
+    keys = {"fidelity": "kinematic", "sweep": {"guidance.bank_deg": [25.0, 45.0]}, "vessel.speed_ratio": 0.4, "flight.crossings": 2}
+    env = make(**keys)
+    own = [9.81 * math.tan(math.radians(bank)) / 19.42 for bank in (25.0, 45.0)]
+    assert env.action_space.high[0] == -env.action_space.low[0] == pytest.approx(own[1], rel=1e-3)
+    for flight_id, limit in zip(env.unwrapped.flight_ids, own, strict=True):
+        _, info, terminated = followed(env, flight_id)
+        assert terminated
+        assert info["crossings"] >= 2
+        assert np.array_equal(column(env, "east_m"), fly("sweep_nu", flight_id=flight_id, **keys).history["east_m"].to_numpy())
+        env.reset(options={"flight_id": flight_id})
+        env.step(env.action_space.high)
+        assert env.unwrapped._episode.loop.vehicle.motion()[4] == pytest.approx(limit, rel=1e-3)
+
+
+def test_the_space_holds_the_limits_that_flights_at_random_may_have():
+    draws = [{"key": "guidance.bank_deg", "uniform": [20.0, 40.0]}, {"key": "vessel.speed_mps", "uniform": [5.0, 8.0]}]
+    keys = {"fidelity": "kinematic", "flights": 3, "draws": draws, "comparison.variants": []}
+    env = gymnasium.make(ENVIRONMENT, scenario="plume_search", keys=keys)
+    assert env.action_space.high[0] == pytest.approx(9.81 * math.tan(math.radians(40.0)) / 19.42, rel=1e-3)
+
+
+def test_a_flight_whose_time_is_up_is_truncated_and_not_terminated_even_where_it_completes():
+    # Without a number of crossings a flight that has crossed completes when its time is up.
+    env = make(**{"fidelity": "kinematic", "sweep.nu": [0.3], "flight.crossings": 0, "flight.duration_max_s": 90.0})
+    _, info, terminated = followed(env, "nu_0.30")
+    assert env.unwrapped.record.outcome.name == "COMPLETED"
+    assert info["crossings"] > 0
+    assert not terminated
+
+
 @pytest.mark.parametrize(
     ("keys", "words"),
     [

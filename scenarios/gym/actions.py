@@ -1,0 +1,56 @@
+"""What the agent may command: one space for every flight of a scenario, and the limits of each."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from gymnasium import spaces
+
+from scenarios.engine.task import Task
+from scenarios.errors import InputError
+from scenarios.experiment.draws import value_at
+from scenarios.flight import FlightWork
+from scenarios.gym.observation import Array
+from scenarios.planning.flight_plan import FlightPlan
+from scenarios.planning.limits import omega_max
+from scenarios.schema.load import with_values
+from scenarios.schema.scenario import Scenario
+from scenarios.vehicles.vehicle_setup import VehicleSetup
+
+
+def action_box(work: FlightWork) -> "spaces.Box[np.float64]":
+    """Return heading rates [rad/s] and airspeeds [m/s] that flights of a scenario may be commanded, of all of them together.
+
+    Raises
+    ------
+    InputError : commands of a flight have no limit
+    """
+    guidances = [setting.guidance for setting in _settings(work)]
+    if not all(guidance.command_limit for guidance in guidances):
+        raise InputError("guidance.command_limit is false; an environment needs a limit of the heading rate")
+    turn = max(map(omega_max, guidances))
+    setups = [work.setup_of(work.request(Task(number=number))) for number in _first_of_each_point(work)]
+    slowest, fastest = min(setup.airspeed_min for setup in setups), max(setup.airspeed_max for setup in setups)
+    return spaces.Box(np.array([-turn, slowest]), np.array([turn, fastest]), dtype=np.float64)
+
+
+def limits_of(plan: FlightPlan, setup: VehicleSetup) -> tuple[Array, Array]:
+    """Return the least and the largest heading rate [rad/s] and airspeed [m/s] of one flight, shape (2,) each."""
+    turn = plan.guidance.tracking.heading_rate_max
+    return np.array([-turn, setup.airspeed_min]), np.array([turn, setup.airspeed_max])
+
+
+def _settings(work: FlightWork) -> Iterator[Scenario]:
+    """Yield scenarios among which every flight's guidance is, or has its largest and least heading rates."""
+    for experiment in work.experiments:
+        for setting in experiment.settings():
+            ranges = [draw for draw in setting.draws if draw.choice is None and draw.key.startswith("guidance.")]
+            for end in (0.0, 1.0):
+                yield with_values(setting, {draw.key: value_at(draw, end) for draw in ranges}) if ranges else setting
+
+
+def _first_of_each_point(work: FlightWork) -> Iterator[int]:
+    number = 0
+    for experiment in work.experiments:
+        for point in experiment.points:
+            yield number
+            number += point.flights
