@@ -267,6 +267,8 @@ RULES = (
          " times search.generations"),
     Rule(keys=("laws", "arena."), acts=lambda s: s.study == "arena", user="laws side by side: set study to 'arena'"),
     Rule(keys=("patrol.",), acts=lambda s: s.study == "patrol", user="several ships one after the other: set study to 'patrol'"),
+    Rule(keys=("flight.duration_max_s",), acts=lambda s: s.study != "patrol",
+         user="other studies; flights of a patrol are as long as patrol.patience_s allows: set that"),
     Rule(keys=("speed_ratio",), acts=lambda s: bool(s.draws), user="random variables: give draws"),
     Rule(keys=("comparison.nu",), acts=lambda s: not s.comparison.nu or (bool(s.comparison.variants) and "nu" in s.sweep.root),
          user="variants that are flown at swept speed ratios: give comparison.variants and sweep.nu, or use comparison.flights"),

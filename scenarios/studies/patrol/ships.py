@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from common.wind import wind_velocity
 from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight
 from scenarios.schema.scenario import Scenario
 from scenarios.studies.patrol.legs import Air, Mover, least_distance
 from scenarios.world.exhaust import fuel_of
+from scenarios.world.place import given_place
 from scenarios.world.vessel import check_manoeuvres
+from scenarios.world.weather import wind_of
 
 _TRIES = 2000
 """Places that are tried for a ship."""
@@ -54,7 +55,7 @@ class Patrol:
     ----------
     name : of the patrol, part of the names of its flights
     seed : of its places
-    air : wind and airspeed
+    air : wind at the altitude that ways between ships are flown at, and airspeed
     ships : in no order
     """
 
@@ -111,8 +112,9 @@ def _velocity(scenario: Scenario) -> complex:
 
 
 def _wind(scenario: Scenario) -> complex:
-    """Return where the wind blows to [m/s]."""
-    return complex(*wind_velocity(scenario.wind.speed_mps, scenario.wind.from_deg))
+    """Return where the wind blows to at the altitude of the flights [m/s]."""
+    altitude = scenario.altitude
+    return complex(*wind_of(scenario, given_place(scenario.place, altitude)).now(0.0, altitude))
 
 
 def _placed(velocities: Sequence[complex], scenario: Scenario, generator: np.random.Generator) -> list[Mover]:

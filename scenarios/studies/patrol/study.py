@@ -18,6 +18,9 @@ from scenarios.studies.patrol.tables import PATROL_COLUMNS, PHASE_COLUMNS, SHIP_
 from scenarios.studies.patrol.work import SNIFFER, PatrolWork
 from scenarios.studies.study import study
 
+_PLACES = ("start.aspect_deg", "start.place_m", "start.range_m")
+"""Keys of a place to begin at."""
+
 
 @study("patrol")
 class PatrolStudy(FlightStudy):
@@ -31,8 +34,8 @@ class PatrolStudy(FlightStudy):
 
     Raises
     ------
-    InputError : as of ``FlightStudy``; flights that give no verdict, ships that are not steady, an endurance too short for any
-        ship, or ships that find no room
+    InputError : as of ``FlightStudy``; flights that give no verdict, ships that are not steady, a place to begin at, ships that are
+        kept clear of by more than the way to them, an endurance too short for any ship, or ships that find no room
     """
 
     what = "patrols"
@@ -143,6 +146,11 @@ class PatrolCounts:
         return self.served / self.hours if self.hours else 0.0
 
 
+def _given(scenario: Scenario, key: str) -> bool:
+    """Return whether a key of the section ``start`` has a value."""
+    return getattr(scenario.start, key.removeprefix("start.")) is not None
+
+
 def _check(scenario: Scenario) -> None:
     """Refuse what is no patrol."""
     if scenario.several_points:
@@ -159,7 +167,18 @@ def _check(scenario: Scenario) -> None:
             f"flight.until is '{scenario.flight.until}' and payload.instruments {list(scenario.payload.instruments)}; a patrol goes"
             " on after a verdict: set flight.until to 'verdict', and put 'sniffer' into payload.instruments"
         )
-    config = scenario.patrol
+    placed = sorted({draw.key for draw in scenario.draws} & set(_PLACES) | {key for key in _PLACES if _given(scenario, key)})
+    if placed:
+        raise InputError(
+            f"study is 'patrol' beside {' and '.join(placed)}; a flight beside a ship begins where the way to her ends,"
+            " start.distance_m away: remove them"
+        )
+    config, reach = scenario.patrol, scenario.start.distance_m[1]
+    if scenario.keepout.radius_m + config.clearance_m > reach:
+        raise InputError(
+            f"keepout.radius_m and patrol.clearance_m are {scenario.keepout.radius_m + config.clearance_m:g} m together, more than"
+            f" start.distance_m, whose end is {reach:g} m and where the way to a ship ends: no ship can be served; give less"
+        )
     if config.endurance_s < config.service_s:
         raise InputError(
             f"patrol.endurance_s is {config.endurance_s:g} s, too short for any ship, which takes patrol.service_s ="

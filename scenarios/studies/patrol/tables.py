@@ -6,6 +6,7 @@ from typing import Any
 
 from common.units import SECONDS_PER_HOUR
 from scenarios.engine.task import Row
+from scenarios.experiment.draws import speed_ratios
 from scenarios.simulation.outcome import Outcome
 from scenarios.studies.patrol.legs import Leg
 from scenarios.studies.patrol.ships import Patrol
@@ -54,7 +55,7 @@ def ship_row(patrol: Patrol, number: int, limit: float) -> Row:
         "vessel_course_deg": scenario.vessel.course_deg,
         "plume_source_height_m": scenario.plume.source_height_m,
         "emission_load": scenario.emission.load,
-        "nu": abs(ship.mover.velocity - patrol.air.wind) / patrol.air.speed,
+        "nu": speed_ratios(scenario)[0],
         "truth": "above" if ship.sulphur_percent > limit else "below",
         "fsc_fuel_percent": ship.sulphur_percent,
     }
@@ -72,10 +73,9 @@ def verdict_of(row: Row) -> str:
 
 
 def wind_row(patrol: Patrol) -> Row:
-    """Return the wind of a patrol."""
-    wind = patrol.air.wind
-    from_deg = math.degrees(math.atan2(-wind.imag, -wind.real)) % 360.0 if wind else 0.0
-    return {"wind_speed_mps": abs(wind), "wind_from_deg": from_deg}
+    """Return the wind of a patrol, as it is given: one for all of its ships."""
+    wind = patrol.ships[0].scenario.wind
+    return {"wind_speed_mps": wind.speed_mps, "wind_from_deg": wind.from_deg % 360.0 if wind.speed_mps else 0.0}
 
 
 def phase_row(named: Row, phase: str, leg: Leg) -> Row:

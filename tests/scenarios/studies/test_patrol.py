@@ -12,8 +12,10 @@ from scenarios.experiment.requests import Experiment
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.schema.load import load_study, with_values
 from scenarios.studies.patrol.ships import sampled_patrol
+from scenarios.studies.patrol.tables import ship_row, wind_row
 from scenarios.studies.patrol.work import PatrolWork
 from scenarios.studies.registry import run_study
+from scenarios.world.world import mean_wind, vessel_of
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import rows_of
 
@@ -105,6 +107,21 @@ def test_ships_stay_apart_in_one_wind_and_every_patrol_has_others():
                 assert abs(ship.at(time) - other.at(time)) >= 3000.0
 
 
+def test_ways_are_flown_in_the_wind_at_their_height_and_ships_have_the_speed_ratio_of_their_flights():
+    scenario = patrol("wind.roughness_m=0.0002")
+    found = sampled_patrol("patrol", scenario, 0)
+    given = found.ships[0].scenario.wind
+    # V(z) = V(10 m) ln(z/z0)/ln(10 m/z0), at the 60 m of the catalog's flights.
+    expected = given.speed_mps * math.log(60.0 / 2e-4) / math.log(10.0 / 2e-4)
+    assert abs(found.air.wind) == pytest.approx(expected, rel=1e-12)
+    assert wind_row(found) == {"wind_speed_mps": given.speed_mps, "wind_from_deg": given.from_deg}
+    for i, ship in enumerate(found.ships):
+        # By the wind at the funnel's mouth, as of any flight.
+        flown = mean_wind(ship.scenario, vessel_of(ship.scenario)).now(0.0, ship.scenario.plume.source_height_m)
+        nu = abs(ship.mover.velocity - complex(*flown)) / found.air.speed
+        assert ship_row(found, i, 0.15)["nu"] == pytest.approx(nu, rel=1e-12)
+
+
 def test_a_patrol_that_fails_is_a_row_with_its_reason():
     # Two ships that are to stay farther apart than the square is wide, found when the patrol is flown.
     scenario = with_values(patrol(), {"patrol.separation_m": 20_000.0})
@@ -123,6 +140,11 @@ def test_a_patrol_that_fails_is_a_row_with_its_reason():
         ("flight.until=flown", ("flight.until is 'flown'", "'verdict'")),
         ("sweep.keepout.radius_m=[200,210]", ("beside a sweep",)),
         ("vessel.manoeuvres=[{at_s=20.0,turn_deg=30.0}]", ("vessel.manoeuvres",)),
+        ("start.range_m=500", ("beside start.range_m; a flight beside a ship begins where the way to her ends",)),
+        ("start.place_m=[-500,10]", ("beside start.place_m",)),
+        ('draws=[{key="start.aspect_deg",uniform=[0.0,30.0]}]', ("beside start.aspect_deg",)),
+        ("patrol.clearance_m=700", ("are 900 m together, more than start.distance_m, whose end is 800 m",)),
+        ("flight.duration_max_s=900", ("'flight.duration_max_s' has no effect here", "patrol.patience_s")),
     ],
 )
 def test_what_is_no_patrol_is_refused_in_one_line(override, words, tmp_path):
