@@ -1,5 +1,7 @@
 """A design's summary on the console: equilibria, poles, margins, step responses and the verdict."""
 
+from rich.markup import escape
+
 from reports.design.data import Record, at_middle, complete, excess_overshoot, reversal_sentences
 from reports.design.tables import extreme_trims, pole_table, robustness_table, step_table, trim_table, worst_margin_table
 from reports.design.verdict import design_verdict
@@ -19,10 +21,12 @@ def print_summary(record: Record) -> None:
         ("Step responses", step_table(design)),
     ]
     console = wide_console()
-    console.print(f"[bold]{record['title']}[/bold], designed at {record['altitude_m']:g} m. {record['source']}")
-    for title, table in tables:
+    # A title may have brackets of its own, which are no markup.
+    title, source = (escape(str(record[name])) for name in ("title", "source"))
+    console.print(f"[bold]{title}[/bold], designed at {record['altitude_m']:g} m. {source}")
+    for heading, table in tables:
         console.print()
-        console.print(console_table(title, table))
+        console.print(console_table(heading, table))
     console.print(f"\nThe autopilot computes {design['autopilot_rate_hz']:.3g} times a second.")
     console.print(f"The heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated flight.")
     reversals = reversal_sentences(design)

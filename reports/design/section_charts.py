@@ -49,7 +49,7 @@ def _margins(design: Record) -> list[Chart]:
     required = design["required"]
     level = [m for m in design["margins"] if not (bank_deg(m) or m["between"])]
 
-    def panel(name: str, label: str, limit: float, top: float) -> Panel:
+    def panel(name: str, label: str, limit: float | None, top: float) -> Panel:
         lines = []
         for loop in loops_of(level):
             rows = [m for m in level if m["loop"] == loop and m[name] is not None]
@@ -57,8 +57,9 @@ def _margins(design: Record) -> list[Chart]:
                 x, y = np.array([m["airspeed_mps"] for m in rows]), np.array([m[name] for m in rows])
                 colour, style = LOOP_STYLES.get(loop, OTHER_LOOP)
                 lines.append(Line(x=x, y=y, label=loop_name(rows[0]), colour=colour, style=style))
-        x = np.array(design["airspeeds_mps"])
-        lines.append(Line(x=x, y=constant(x, limit), label="required", colour=Meaning.LIMIT, style="dash"))
+        if limit is not None:
+            x = np.array(design["airspeeds_mps"])
+            lines.append(Line(x=x, y=constant(x, limit), label="required", colour=Meaning.LIMIT, style="dash"))
         return Panel(x_label="Design airspeed [m/s]", y_label=label, lines=lines, y_range=(0.0, top))
 
     kinds = (
@@ -73,8 +74,10 @@ def _margins(design: Record) -> list[Chart]:
     )  # fmt: skip
     charts = []
     for name, prefix, caption, gain, phase in kinds:
+        # Nothing is required of disk margins.
         panels = [
-            panel(f"{prefix}{key}", label, required[key], top) for key, (label, top) in (("gain_db", gain), ("phase_deg", phase))
+            panel(f"{prefix}{key}", label, None if prefix else required[key], top)
+            for key, (label, top) in (("gain_db", gain), ("phase_deg", phase))
         ]
         charts.append(Chart(name=f"level{name}", caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.3))
     return charts

@@ -1,6 +1,5 @@
 """Whether a design is as asked, at a glance."""
 
-import math
 from collections.abc import Sequence
 
 from reports.design.data import (
@@ -34,7 +33,8 @@ def design_verdict(design: Record) -> Verdict:
     elif nominal:
         headline = f"Stable everywhere, but short of {asked} in {_loops(nominal)}"
     elif perturbed:
-        headline = f"Every loop has {asked} everywhere, but a perturbed aircraft does not"
+        less = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
+        headline = f"Every loop has {asked} everywhere, but a perturbed aircraft is short of {less}"
     else:
         headline = f"Every loop has at least {asked} of margin at every point of the grid"
     return Verdict(
@@ -138,10 +138,10 @@ def _figures(design: Record) -> list[Card]:
     if excess is not None:
         figures.append(Card("Heading-rate overshoot beyond the model's", f"{100.0 * excess:.1f} %"))
     figures.append(Card("Flown heading rate lags by", f"{design['heading_rate_lag_s']:.2f} s"))
-    if design["verification"]:
-        # An input that moves nothing has no error to speak of; the table shows it.
-        error = max((float(row["error"]) for row in design["verification"] if row["error"] is not None), default=math.nan)
-        figures.append(Card("Linear model against small motions, worst", f"{100.0 * error:.1f} %"))
+    # An input that moves nothing has no error to speak of; the table shows it.
+    errors = [float(row["error"]) for row in design["verification"] if row["error"] is not None]
+    if errors:
+        figures.append(Card("Linear model against small motions, worst", f"{100.0 * max(errors):.1f} %"))
     return figures
 
 

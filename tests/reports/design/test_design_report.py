@@ -216,6 +216,18 @@ def test_a_sweeps_report_takes_from_a_design_only_what_belongs_to_level_flight(d
     assert len(loop_charts(complete(design))[2].panels[1].lines) == len(LOOPS)
 
 
+def test_a_limit_is_drawn_only_for_margins_of_which_something_is_required():
+    classical, disk = loop_charts(complete(record()))[:2]
+    assert [panel.lines[-1].label for panel in classical.panels] == ["required"] * 2
+    # The verdict asks nothing of disk margins: nor does a line.
+    assert "required" not in {line.label for panel in disk.panels for line in panel.lines}
+
+
+def test_brackets_in_a_title_are_printed_as_they_are(capsys):
+    print_summary(record() | {"title": "Wing [mk 2] [/x]", "source": "see [1] and [b]"})
+    assert capsys.readouterr().out.startswith("Wing [mk 2] [/x], designed at 1000 m. see [1] and [b]\n")
+
+
 @pytest.mark.parametrize(
     ("damage", "words"),
     [

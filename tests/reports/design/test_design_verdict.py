@@ -36,6 +36,8 @@ def test_a_perturbed_aircraft_that_falls_short_is_named():
     verdict = design_verdict(changed(robustness={"phase_deg": 29.0}))
     assert verdict.holds
     assert not verdict.complete
+    # Less is required of it than of the aircraft as modelled.
+    assert verdict.headline == "Every loop has 6 dB and 45° everywhere, but a perturbed aircraft is short of 4 dB and 30°"
     assert verdict.failures == ["mass +20 %: phase margin 29.0 deg of heading rate at 45 m/s, −33°, required 30 deg"]
 
 
@@ -68,3 +70,10 @@ def test_a_pole_at_the_origin_but_for_rounding_is_not_unstable():
 @pytest.mark.parametrize(("value", "text"), [(5.99, "5.9"), (5.7, "5.7"), (6.0, "6.0"), (-0.3, "−0.3"), (None, "∞")])
 def test_margins_are_rounded_down(value, text):
     assert down(value) == text
+
+
+@pytest.mark.parametrize(("errors", "shown"), [((0.012, None), ["1.2 %"]), ((None, None), [])])
+def test_the_worst_error_of_the_linear_model_is_that_of_inputs_that_move_something(errors, shown):
+    rows = [{"input": "elevator", "output": f"output {i}", "error": error} for i, error in enumerate(errors)]
+    figures = design_verdict(complete(record() | {"verification": rows})).figures
+    assert [figure.value for figure in figures if figure.name.startswith("Linear model")] == shown
