@@ -38,6 +38,9 @@ REFERENCES = {"circle": ("circling", "blue"), "oscillation": ("oscillating", "or
 CONVERGED = "converged"
 """What a trajectory that did is called."""
 
+_LOST = "lost"
+"""What one is called whose process was lost: it was not flown, and says nothing of the theory; ``--resume`` flies it again."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConvergenceData:
@@ -46,7 +49,8 @@ class ConvergenceData:
     Attributes
     ----------
     run : as read from disk
-    rows : a row per trajectory and law
+    rows : a row per trajectory and law that was flown
+    lost : number of those whose process was lost
     laws : those flown
     references : kinds of reference about which they were
     kept : law and number of every trajectory whose time history was kept
@@ -54,6 +58,7 @@ class ConvergenceData:
 
     run: RunData
     rows: pd.DataFrame
+    lost: int
     laws: list[Law]
     references: list[str]
     kept: set[tuple[str, int]]
@@ -87,10 +92,13 @@ def read_convergence(run: RunData) -> ConvergenceData:
         unknown = set(rows[column]) - set(known)
         if unknown:
             raise ValueError(f"{column} is {', '.join(map(str, unknown))}; known are {', '.join(known)}")
+    lost = rows["outcome"] == _LOST
+    rows = rows[~lost]
     names = (re.fullmatch(r"(\w+)_(\d+)", path.stem) for path in (run.path / TRAJECTORIES).glob(f"*{HISTORY_SUFFIX}"))
     return ConvergenceData(
         run=run,
         rows=rows,
+        lost=int(lost.sum()),
         laws=[law for law in LAWS if law.key in set(rows["law"])],
         references=[reference for reference in REFERENCES if reference in set(rows["reference"])],
         kept={(name[1], int(name[2])) for name in names if name},

@@ -23,7 +23,7 @@ def convergence_verdict(data: ConvergenceData) -> Verdict:
     complete = state == "complete" and len(rows) == data.planned
     if not proven:
         missed = len(failed(data.rows))
-        complete = state == "complete" and not missed
+        complete = state == "complete" and not (missed or data.lost)
         headline = f"{len(data.rows) - missed:,} of {len(data.rows):,} trajectories converged, under laws that no theory covers"
     elif not len(rows):
         headline = "Nothing was flown yet"
@@ -40,6 +40,8 @@ def convergence_verdict(data: ConvergenceData) -> Verdict:
     if len(counter_examples) > FAILURES_NAMED:
         named.append(f"and {len(counter_examples) - FAILURES_NAMED:,} more, in {COUNTEREXAMPLES}")
     detail = _detail(data)
+    if data.lost:
+        detail += f" {data.lost:,} trajectories were lost with their processes, and count as not flown; --resume flies them again."
     if state != "complete":
         detail += f" The run is {state}; continue it with --resume."
     return Verdict(

@@ -76,6 +76,28 @@ def test_an_unfinished_study_is_not_called_complete(tmp_path):
     assert "continue it with --resume" in report.verdict.detail
 
 
+def test_trajectories_that_were_lost_with_their_process_are_no_counter_examples(tmp_path):
+    path = write_convergence_run(tmp_path / "run", 30)
+    rows = pd.read_csv(path / "summary.csv")
+    # What the study writes of them: nothing that was flown.
+    lost = (rows["law"] == "cascade") & (rows["trajectory"] < 10)
+    known = ["trajectory", "law", "reference"]
+    rows.loc[lost, [name for name in rows if name not in known]] = np.nan
+    rows["outcome"] = rows["outcome"].astype(object)
+    rows.loc[lost, "outcome"], rows.loc[lost, "message"] = "lost", "2 processes that flew it were lost"
+    rows.to_csv(path / "summary.csv", index=False)
+    report = content(read_run(path))
+    assert report.verdict.holds
+    assert not report.verdict.complete
+    assert report.verdict.headline == "All 50 trajectories so far converged; 60 are planned"
+    assert "10 trajectories were lost with their processes, and count as not flown; --resume" in report.verdict.detail
+    assert report.verdict.figures[1][1:] == ("100 %", "100 %", True)
+    assert "counterexamples" not in [section.anchor for section in report.sections]
+    (table,) = blocks_of(report, Table, "settling")
+    assert [row[2:4] for row in table.rows if row[:2] == ["Law (30)", "all"]] == [["20", "20"]]
+    assert len(build_reports(path)) == 2
+
+
 def test_a_study_of_which_rows_are_missing_is_not_called_complete(tmp_path):
     assert not small(tmp_path, planned=31).verdict.complete
 
