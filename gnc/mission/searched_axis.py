@@ -32,7 +32,7 @@ _PASS_TIME, _PASS_MEMORY = 8.0, 0.3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Expectation:
-    """What is known beforehand of the ship's class and of the sensor, as arguments of ``plume_prior.expected_plume``."""
+    """What is known beforehand of the ship's class and of the sensor, as arguments of ``prior.expected_plume``."""
 
     source_height: float
     source_deviation: float

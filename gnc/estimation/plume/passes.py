@@ -46,7 +46,7 @@ class Path:
 
     @property
     def duration(self) -> float:
-        """Time from turn to turn [s]."""
+        """Time from turn to turn, and for which the sensor still has what it read before the second one [s]."""
         return float(self.time[-1] - self.time[0])
 
     def at(self, across: float) -> tuple[float, float]:

@@ -30,9 +30,14 @@ def test_the_process_has_the_covariance_that_it_should():
     assert np.mean(values**4) == pytest.approx(3.0, abs=0.2)
 
 
-def test_the_integral_of_the_covariance_is_the_integral_scale():
-    distance = np.linspace(0.0, 30.0 * SCALE, 20001)
-    assert np.trapezoid(covariance(distance), distance) == pytest.approx(SCALE, rel=1e-4)
+def test_means_over_long_ways_vary_as_the_integral_scale_says():
+    block, step = 40.0 * SCALE, 15.0
+    length = 2000 * block
+    values = Meander(0.0, length, SCALE, np.random.default_rng(6)).at(np.arange(0.0, length, step))
+    means = values.reshape(2000, -1).mean(axis=1)
+    # 2 SCALE/B (1 - 3 SCALE/4 B): the integral over the covariance, less what its tail loses at the ends. 2,000 variances are known
+    # to sqrt(2/2000) = 3.2 %; three times that.
+    assert np.var(means) == pytest.approx(2.0 * SCALE / block * (1.0 - 0.75 * SCALE / block), rel=0.1)
 
 
 def test_the_process_is_smooth_between_its_steps():
