@@ -183,7 +183,8 @@ class SearchedAxis:
         if estimator.update(along, across, altitude, reading, apparent_wind=wind):
             self._pass_time += _PASS_MEMORY * (at - self._last_pass - self._pass_time)
             self._last_pass = at
-            self._bearing = math.atan2(estimator.offset, situation.centre.distance)
+            # As seen from the funnel: the pass may have been nearer than the orbit's centre, or farther away.
+            self._bearing = estimator.bearing
             self._take_note(estimator)
             if estimator.state is not PlumeState.FOUND or at >= self._decide_at:
                 self._decide(estimator, altitude)

@@ -41,8 +41,11 @@ def reading(across, altitude, height):
     return CLEAN + PEAK * math.exp(-0.5 * (across**2 + (altitude - height) ** 2) / WIDTH**2)
 
 
-def flown(axis, *, height, duration, sensor=lambda _, ppm: ppm):
-    """Fly back and forth across a plume at a height, with a vehicle that follows its altitude; return the modes in their order."""
+def flown(axis, *, height, duration, sensor=lambda _, ppm: ppm, distance=220.0, offset=0.0):
+    """Fly back and forth across a plume at a height, with a vehicle that follows its altitude; return the modes in their order.
+
+    At a distance astern of the vessel; the plume is offset to the right there.
+    """
     around, modes = situation(), []
     own, altitude, swings = around.own, SEARCHED.altitude, []
     for i in range(round(duration / STEP)):
@@ -50,10 +53,10 @@ def flown(axis, *, height, duration, sensor=lambda _, ppm: ppm):
         across = HALF_WIDTH * math.sin(math.pi * time / INTERVAL)
         around.target.update(time, False)
         # Astern of a vessel that sails north, right of the plume is west.
-        own.ground_north, own.ground_east = around.target.north - 220.0, -across
+        own.ground_north, own.ground_east = around.target.north - distance, -across
         altitude += max(-0.15, min(0.15, axis.demanded - altitude))
         axis.flown = altitude
-        swings.append(reading(across, altitude, height))
+        swings.append(reading(across - offset, altitude, height))
         late = swings[max(0, len(swings) - 1 - round(FAST.delay / STEP))]
         axis.heed(time, [(time, sensor(time, late))] if i % 2 == 0 else [])
         if i % round(PLAN_TIME / STEP) == 0:
@@ -74,6 +77,14 @@ def test_on_the_way_it_flies_at_the_height_that_is_predicted_and_believes_nothin
     assert axis.demanded == RISING.at(around.centre.distance, 8.0)
     assert math.isnan(axis.estimate.height)
     assert math.isnan(axis.measurable())
+
+
+@pytest.mark.parametrize("distance", [130.0, 220.0, 300.0])
+def test_the_bearing_is_that_from_the_funnel_wherever_the_plume_is_crossed(distance):
+    axis = SEARCHED.begin()
+    flown(axis, height=60.0, duration=150.0, sensor=noisy, distance=distance, offset=0.08 * distance)
+    # The prior of 0.06 rad about 0 draws the estimate inwards by a tenth; the centre of the orbit is 213 m astern in each case.
+    assert 0.055 < axis.bearing < 0.09
 
 
 @pytest.mark.parametrize("ladder", [False, True])
