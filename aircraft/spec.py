@@ -8,7 +8,7 @@ from pathlib import Path
 
 from aircraft.errors import AircraftError
 from aircraft.model_files import ModelFiles
-from common.units import RAD_S_PER_RPM
+from common.physics.units import RAD_S_PER_RPM
 
 MODELS = Path(__file__).parent / "models"
 """The JSBSim root of the project's own aircraft."""

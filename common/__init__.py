@@ -1,1 +1,1 @@
-"""Shared by all rooms: registries, files, the layout of run directories, command lines, provenance."""
+"""Shared by all rooms: registries, files, the layout of run directories, command lines, provenance; units and places."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 
 _LOCAL_FRAME = 3
 """JSBSim's number for a gust given in north, east and down."""

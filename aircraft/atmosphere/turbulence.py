@@ -17,7 +17,7 @@ import math
 from dataclasses import dataclass
 
 from aircraft.errors import AircraftError
-from common.units import METRES_PER_FOOT, METRES_PER_SECOND_PER_KNOT
+from common.physics.units import METRES_PER_FOOT, METRES_PER_SECOND_PER_KNOT
 
 JSBSIM_TYPE = 4
 """JSBSim's number for the Dryden spectra of MIL-F-8785C in Tustin's discretisation."""

@@ -7,7 +7,7 @@ from aircraft.atmosphere.turbulence import JSBSIM_TYPE, Turbulence
 from aircraft.atmosphere.wind import CALM, WindField
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 
 _SEED_MAX = 2**31 - 1
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 
 Array = npt.NDArray[np.float64]
 

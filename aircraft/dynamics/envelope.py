@@ -8,7 +8,7 @@ from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import RigidBodyState, body_velocity
 from aircraft.spec import BANK_RESERVE, AircraftSpec, Envelope
-from common.units import KG_PER_SLUG, METRES_PER_FOOT, NEWTONS_PER_POUND
+from common.physics.units import KG_PER_SLUG, METRES_PER_FOOT, NEWTONS_PER_POUND
 
 BANK_LIMITS = ((150.0, 45.0), (5_670.0, 30.0), (math.inf, 25.0))
 """Largest mass [kg] of a class and the bank it turns with [deg]: aircraft too small to carry people, light aeroplanes

@@ -30,7 +30,7 @@ from aircraft.simulation.properties import (
 from aircraft.simulation.silence import silenced
 from aircraft.simulation.state import RigidBodyState, with_wind
 from aircraft.spec import AircraftSpec
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 
 TIME_STEP = 1.0 / 120.0
 """Integration step of JSBSim and of the autopilot inside it [s]."""

@@ -1,10 +1,10 @@
 """The one mapping between JSBSim's globe and local north and east metres: about latitude and longitude 0, where all flights fly.
 
-Where on earth a flight is meant to be (``common.geodesy.LocalFrame``) changes nothing of how it is flown: at the equator local
-north stays true north, and JSBSim's axes have no pole.
+Where on earth a flight is meant to be (``common.physics.geodesy.LocalFrame``) changes nothing of how it is flown: at the equator
+local north stays true north, and JSBSim's axes have no pole.
 """
 
-from common.geodesy import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
+from common.physics.geodesy import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
 
 _MERIDIAN_RADIUS = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED)
 """Radius of curvature of a meridian at the equator [m]."""
@@ -19,8 +19,8 @@ class EquatorFrame:
     """North and east metres about latitude and longitude 0, at a fixed altitude: azimuthal equidistant, to third order.
 
     With s = M phi (1 + e^2 phi^2/2) the length of the meridian and u = a lambda that of the equator, and K = 1/(a M) the curvature
-    there, north is s (1 + K u^2/6) and east u (1 - K s^2/3). That is ``common.geodesy.LocalFrame`` at the origin, to 0.1 mm within
-    20 km.
+    there, north is s (1 + K u^2/6) and east u (1 - K s^2/3). That is ``common.physics.geodesy.LocalFrame`` at the origin, to
+    0.1 mm within 20 km.
 
     Parameters
     ----------

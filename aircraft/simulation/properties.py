@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from aircraft.simulation.state import RigidBodyState
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 
 CLOCK = "simulation/sim-time-sec"
 """Time since the aircraft was placed last [s]."""

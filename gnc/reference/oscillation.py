@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import jv
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.reference.bessel import eta_for_speed_ratio
 from gnc.reference.orbit import half_widths, offset

@@ -6,7 +6,7 @@ docs/keepout_guard.md, "Course that earlier commands still bring", says how that
 import math
 from collections import deque
 
-from common.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
+from common.physics.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
 
 _WHOLE = 1e-6
 """Of a step, by which a delay may exceed a whole number of them without counting as one more [-]."""

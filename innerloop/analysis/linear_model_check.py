@@ -9,7 +9,7 @@ import numpy.typing as npt
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.linear_model import LinearModel
 from aircraft.simulation.fdm import Fdm
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 
 OUTPUTS: dict[str, tuple[str, float]] = {
     "airspeed": ("velocities/vt-fps", METRES_PER_FOOT),

@@ -11,7 +11,7 @@ from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.linear_model import LinearModel
 from aircraft.dynamics.linearise import BODY_STATES
 from aircraft.simulation.perturbed_model import PERTURBATIONS, Perturbation
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from innerloop.analysis.checks import NOMINAL
 
 Change = Callable[[LinearModel, Trim], LinearModel]

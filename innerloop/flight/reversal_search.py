@@ -20,8 +20,8 @@ from scipy.signal import lfilter
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.fdm import TIME_STEP
-from common.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
-from common.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from common.physics.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
+from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.properties import HEADING_RATE

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from common.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from innerloop.analysis.closed_loop import closed_loop
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import TIME_STEP
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE
 

@@ -19,7 +19,7 @@ from aircraft.simulation.properties import (
     initial_conditions,
 )
 from aircraft.spec import Envelope
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from innerloop.jsbsim.properties import (
     AIRSPEED_COMMAND,
     ALTITUDE_COMMAND,

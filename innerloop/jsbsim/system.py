@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Callable
 
 from aircraft.spec import ControlInput
-from common.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from innerloop.jsbsim.properties import (
     AIRSPEED_COMMAND,
     ALTITUDE_COMMAND,

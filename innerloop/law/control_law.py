@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import RegularGridInterpolator
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import LATERAL, LONGITUDINAL, Gains
 from innerloop.synthesis.schedule import Schedule
 

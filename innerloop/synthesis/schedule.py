@@ -11,7 +11,7 @@ from aircraft.dynamics.envelope import TABLE_REACH
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.linear_model import LinearModel
 from aircraft.spec import AircraftSpec, Envelope
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import Gains
 from innerloop.synthesis.rate import loop_delay
 from innerloop.synthesis.weights import DesignWeights

@@ -17,7 +17,7 @@ import numpy as np
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.linear_model import LinearModel, Matrix
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import LONGITUDINAL, Gains
 from innerloop.synthesis.quasi_static import quasi_static
 from innerloop.synthesis.weights import ControlWeights, DesignWeights

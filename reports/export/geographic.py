@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 import numpy as np
 import pandas as pd
 
-from common.geodesy import LocalFrame
+from common.physics.geodesy import LocalFrame
 from common.times import utc_text
 from reports.errors import ReportError
 from reports.run.columns import Array, column

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from common.units import SECONDS_PER_HOUR
+from common.physics.units import SECONDS_PER_HOUR
 from reports.document.chart import Chart
 from reports.document.tables import vehicle_flown
 from reports.flights.names import flight_name

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from common.wind import wind_velocity
+from common.physics.wind import wind_velocity
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning

@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from common.files import is_file
+from common.physics.units import SECONDS_PER_HOUR
+from common.physics.wind import wind_towards
 from common.run_layout import PHASES, SHIPS
-from common.units import SECONDS_PER_HOUR
-from common.wind import wind_towards
 from reports.run.columns import Array, column
 from reports.run.run_data import RunData
 

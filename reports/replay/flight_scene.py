@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.wind import wind_velocity
+from common.physics.wind import wind_velocity
 from reports.document.scene import Scene
 from reports.run.columns import Array, column
 from reports.run.plume_shape import PlumeShape, plume_shape

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.wind import wind_towards
+from common.physics.wind import wind_towards
 from reports.run.columns import column
 from reports.run.plume_shape import PlumeShape, plume_shape
 from reports.run.ship import Hull, hull_of

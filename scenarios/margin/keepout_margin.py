@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from common.units import SECONDS_PER_HOUR
+from common.physics.units import SECONDS_PER_HOUR
 from gnc.estimation.reachable_set import Tube, VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.parameters import FilterParameters

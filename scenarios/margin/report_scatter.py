@@ -8,7 +8,7 @@ import functools
 
 import numpy as np
 
-from common.units import SECONDS_PER_HOUR
+from common.physics.units import SECONDS_PER_HOUR
 from gnc.compose import vessel_filter
 from gnc.estimation.reachable_set import KEPT, VesselLimits, radius_after
 from gnc.estimation.vessel_filter import VesselReport

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from common.units import SECONDS_PER_HOUR
+from common.physics.units import SECONDS_PER_HOUR
 from gnc.airspeed.pace_hold import SpeedHold
 from gnc.reference.reference import Orbit
 from gnc.tracker import TrackingParameters

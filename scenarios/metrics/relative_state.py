@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from common.geodesy import LocalFrame
+from common.physics.geodesy import LocalFrame
 from gnc.laws.delta import LookAhead
 from gnc.numeric import wrapped
 from scenarios.planning.flight_plan import FlightPlan

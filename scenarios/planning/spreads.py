@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 from innerloop.analysis.gust_statistics import low_altitude_turbulence
 from innerloop.designs.designed import Designed
 from scenarios.errors import InputError

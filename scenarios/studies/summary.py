@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, Self
 
 from common.intervals import CONFIDENCE, percent, upper_bound
+from common.physics.units import SECONDS_PER_HOUR
 from common.run_layout import SUMMARY
-from common.units import SECONDS_PER_HOUR
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
 

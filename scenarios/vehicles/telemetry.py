@@ -4,7 +4,7 @@ import math
 
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.local_frame import EquatorFrame
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 from innerloop.jsbsim.properties import CONTROL_COMMAND, HEADING_RATE
 
 _SAMPLED = (

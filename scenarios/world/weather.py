@@ -8,7 +8,7 @@ from aircraft.atmosphere.gusts import Gust
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
 from aircraft.atmosphere.wind import CALM, WindField, constant_wind, over_the_sea
-from common.wind import wind_velocity
+from common.physics.wind import wind_velocity
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.world import WindConfig
 from scenarios.world.place import Place

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.atmosphere.wind import WindField, over_the_sea
+from common.physics.wind import wind_velocity
 from common.times import utc_text
-from common.wind import wind_velocity
 from scenarios.errors import InputError
 from scenarios.schema.sections.world import WindConfig
 from scenarios.world.ais.rows import number_of, seconds_of

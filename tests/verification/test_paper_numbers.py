@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from gnc.laws.delta import RelativeState, look_ahead, relative_state
 from gnc.laws.lyapunov import lyapunov_law
 from gnc.reference.bessel import eta_for_speed_ratio, mean_speed_ratio

@@ -7,8 +7,8 @@ import pytest
 
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP
-from common.turn_tube import LEAST_CHANGE
-from common.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from common.physics.turn_tube import LEAST_CHANGE
+from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.safety.given_commands import GivenCommands

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from gnc.laws.path.adapter import PathLaw, PathMotion, path_motion, turn_rate
 from gnc.laws.steering_law import NO_CIRCLE, ON_CIRCLE, Surroundings, steering_law
 from gnc.numeric import wrap

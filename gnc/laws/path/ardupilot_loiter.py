@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
 from gnc.laws.path.ardupilot_l1 import ONE_OVER_PI, decided
 from gnc.laws.steering_law import CIRCLES_ALONE, ON_OSCILLATION, steering_law

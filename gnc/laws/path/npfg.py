@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
 from gnc.laws.steering_law import steering_law
 from gnc.vectors import Vector, clip, course_of, cross, dot, minus, norm, plus, right_of, scaled

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from gnc.reference.orbit_tables import ETA_STEP, SPEED_RATIO_MIN, OrbitTables
 from gnc.reference.reference import ETA_FREQUENCY
 from gnc.reference.shapes.course_path import fourier_coefficients

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import j0, jv
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from gnc.reference.orbit_tables import ETA_STEP, OrbitTables
 from gnc.reference.oscillating import OscillatingShape
 from gnc.reference.oscillation import Oscillation, design_oscillation

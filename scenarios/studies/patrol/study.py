@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
+from common.physics.units import SECONDS_PER_HOUR
 from common.run_layout import PHASES, SHIPS, SUMMARY
-from common.units import SECONDS_PER_HOUR
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary

@@ -15,7 +15,7 @@ from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import RigidBodyState, body_velocity
 from aircraft.spec import BANK_RESERVE
-from common.units import NEWTONS_PER_POUND
+from common.physics.units import NEWTONS_PER_POUND
 
 ALTITUDE = 100.0
 STEEPEST = 1.1  # the autopilot's tables reach a tenth past its largest bank

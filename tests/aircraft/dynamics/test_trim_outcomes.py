@@ -11,7 +11,7 @@ from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import body_velocity, level
-from common.units import METRES_PER_FOOT, NEWTONS_PER_POUND
+from common.physics.units import METRES_PER_FOOT, NEWTONS_PER_POUND
 
 JET = {"airspeed": 80.0, "altitude": 1000.0}
 CONDITIONS = {

@@ -13,7 +13,7 @@ from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.simulation.state import RigidBodyState, body_velocity
 from aircraft.spec import MODELS
-from common.geodesy import LocalFrame
+from common.physics.geodesy import LocalFrame
 
 SOMEWHERE = RigidBodyState(
     latitude=0.2,

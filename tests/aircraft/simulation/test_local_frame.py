@@ -11,7 +11,7 @@ from aircraft.dynamics.trim import trim
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.simulation.local_frame import EquatorFrame
-from common.geodesy import LocalFrame
+from common.physics.geodesy import LocalFrame
 
 METRES_PER_FOOT = 0.3048
 

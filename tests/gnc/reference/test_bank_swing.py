@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from gnc.reference.shapes.bank_swing import BankSwing
 from gnc.reference.shapes.course_path import CoursePath, fourier_coefficients
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.reference.placement import PlumeAxis, distance_exact
 from gnc.reference.shapes.loiter import LoiterShape

@@ -5,7 +5,7 @@ from gnc_cases import HEADING_RATE_MAX, SPEED, examples, paper_oscillation
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.reference.bessel import eta_for_speed_ratio
 from gnc.reference.oscillation import bank_for_heading_rate, design_oscillation, heading_rate_for_bank

@@ -7,7 +7,7 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX
 from guard_cases import TIME_STEP, moved
 
-from common.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
+from common.physics.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
 from gnc.safety.given_commands import GivenCommands, commands_under_way
 
 

@@ -6,7 +6,7 @@ import control
 import numpy as np
 import pytest
 
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 from innerloop.analysis.dryden import dryden_filters
 from innerloop.analysis.gust_response import GUSTS
 from innerloop.analysis.gust_statistics import low_altitude_turbulence

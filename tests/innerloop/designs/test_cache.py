@@ -141,7 +141,7 @@ def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(
 
 
 @pytest.mark.parametrize(
-    ("package", "file"), [("aircraft", "dynamics/trim.py"), ("common", "units.py"), ("innerloop", "synthesis/weights.py")]
+    ("package", "file"), [("aircraft", "dynamics/trim.py"), ("common", "physics/units.py"), ("innerloop", "synthesis/weights.py")]
 )
 def test_any_changed_source_file_is_another_key(monkeypatch, tmp_path, package, file):
     before = design_key(X8, 100.0)

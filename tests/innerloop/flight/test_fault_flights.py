@@ -8,7 +8,7 @@ import x8_published as x8
 
 from aircraft.errors import AircraftError
 from aircraft.fleet.x8 import X8
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 TIME_STEP = 1.0 / 120.0

@@ -12,7 +12,7 @@ from aircraft.errors import AircraftError
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import MODELS
-from common.geodesy import LocalFrame
+from common.physics.geodesy import LocalFrame
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 MIDDLE = 2

@@ -10,7 +10,7 @@ import pytest
 
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 from gnc.unicycle import lagged_move
 from innerloop.designs.long_search import PART, repeat_search
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft

@@ -12,7 +12,7 @@ from aircraft.atmosphere.wind import constant_wind
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.local_frame import EquatorFrame
 from aircraft.simulation.properties import EARTH_RATE
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 TIME_STEP = 1.0 / 120.0

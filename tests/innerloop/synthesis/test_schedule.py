@@ -11,7 +11,7 @@ from aircraft.dynamics.trim import trim
 from aircraft.errors import TrimError
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from innerloop.designs.designer import Grid, linear_grid, schedule_at
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import flown_step

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from aircraft.dynamics.linear_model import LinearModel
-from common.units import STANDARD_GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from innerloop.synthesis import weights
 from innerloop.synthesis.schedule import LEVEL_GAINS
 from innerloop.synthesis.servo_lqr import design_gains

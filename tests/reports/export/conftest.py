@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from common.geodesy import LocalFrame
+from common.physics.geodesy import LocalFrame
 from tests.reports.export.placed_flight import PLACES, track
 
 

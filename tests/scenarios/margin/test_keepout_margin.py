@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from aircraft.fleet.x8 import X8
-from common.units import METRES_PER_FOOT
+from common.physics.units import METRES_PER_FOOT
 from gnc.airspeed.pace_hold import SpeedHold, air_turn, airspeed_to_hold, design_speed_hold
 from gnc.reference.oscillation import Oscillation
 from gnc.tracker import Tracker

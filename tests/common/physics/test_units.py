@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from common import units
+from common.physics import units
 
 
 def test_a_nautical_mile_of_6076_feet_is_1852_metres():

@@ -8,7 +8,7 @@ from geographiclib.geodesic import Geodesic
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.geodesy import EQUATORIAL_RADIUS, FLATTENING, LocalFrame
+from common.physics.geodesy import EQUATORIAL_RADIUS, FLATTENING, LocalFrame
 
 PLACES = [(0.0, 0.0), (57.5, 11.3), (-33.0, 179.99), (78.2, -180.0), (89.95, 12.0), (90.0, 0.0), (-90.0, 45.0), (1e-7, 180.0)]
 """Latitude and longitude [deg]: the equator, the Kattegat, the date line from both sides, near and on the poles."""

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from common.wind import wind_towards, wind_velocity
+from common.physics.wind import wind_towards, wind_velocity
 
 
 @pytest.mark.parametrize(("from_deg", "velocity"), [(0.0, (-5.0, 0.0)), (90.0, (0.0, -5.0)), (225.0, (5.0 / math.sqrt(2.0),) * 2)])
