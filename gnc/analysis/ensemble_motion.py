@@ -50,11 +50,10 @@ class Vehicle:
 
 
 class _View(NamedTuple):
-    """The geometry of one instant: unit vector along chi_r, squared distance, delta, z and the length of z."""
+    """The geometry of one instant: unit vector along chi_r, delta, z and the length of z."""
 
     cos_r: Array
     sin_r: Array
-    distance_squared: Array
     delta: Array
     z_north: Array
     z_east: Array
@@ -105,10 +104,9 @@ class Motion(ABC):
         chi_r = self._references.course_at(time)
         cos_r, sin_r = np.cos(chi_r), np.sin(chi_r)
         epsilon, radius = self._vehicle.look_ahead
-        distance_squared = north * north + east * east
-        delta = epsilon * distance_squared + radius
+        delta = epsilon * (north * north + east * east) + radius
         z_north, z_east = north + delta * cos_r, east + delta * sin_r
-        return _View(cos_r, sin_r, distance_squared, delta, z_north, z_east, np.sqrt(z_north * z_north + z_east * z_east))
+        return _View(cos_r, sin_r, delta, z_north, z_east, np.sqrt(z_north * z_north + z_east * z_east))
 
     def _position_rates(self, view: _View, cos_phi: Array, sin_phi: Array, out: Array) -> None:
         """Write the rates of d: velocity of the reference less V along z turned by phi."""
