@@ -170,6 +170,35 @@ def test_a_plume_that_goes_is_lost_again() -> None:
     assert estimator.state is PlumeState.FOUND
 
 
+def test_a_single_miss_does_not_lose_a_plume() -> None:
+    estimator = estimated(MadePlume(height=65.0), AROUND)
+    # Beside its edge a miss is no wonder, and one in its middle may be meander.
+    MadePlume(height=65.0, peak=0.0).fly(estimator, [85.0])
+    assert estimator.state is PlumeState.FOUND
+
+
+def test_the_interval_leaves_a_fortieth_on_either_side() -> None:
+    estimator = estimated(MadePlume(height=68.0), [65.0])
+    step = estimator._heights[1] - estimator._heights[0]
+    low, high = estimator.height_interval
+    # Each cell is as likely anywhere between its edges.
+    below = estimator._of_heights @ np.clip(0.5 + (low - estimator._heights) / step, 0.0, 1.0)
+    above = estimator._of_heights @ np.clip(0.5 - (high - estimator._heights) / step, 0.0, 1.0)
+    assert (below, above) == pytest.approx((0.025, 0.025), abs=1e-9)
+
+
+@pytest.mark.parametrize("altitude", [45.0, 65.0, 90.0])
+def test_the_chance_of_a_detection_is_that_of_centres_drawn_at_random(altitude: float) -> None:
+    estimator, generator, count = estimated(MadePlume(height=68.0, peak=20.0), [65.0]), np.random.default_rng(3), 200_000
+    grid, shape = estimator.grid, estimator.cells.shape
+    spread, height, strength = np.unravel_index(generator.choice(estimator.cells.size, count, p=estimator.cells.ravel()), shape)
+    off = estimator._heights[height] + PRIOR.meander_z * generator.standard_normal(count) - altitude
+    read = grid.strength[strength] * np.exp(-0.5 * (off / grid.sigma_z[spread, height]) ** 2)
+    # One look, at the cells' own distance. Steps of 0.5 in the logarithm of strength blur the least that is detected.
+    assert estimator.detection(altitude) == pytest.approx(np.mean(read > estimator._least), abs=0.01)
+    assert 0.1 < estimator.detection(altitude) < 0.999
+
+
 @pytest.mark.parametrize(
     ("broken", "state"), [(431.5, SensorState.STUCK), (5000.0, SensorState.SATURATED), (math.nan, SensorState.SILENT)]
 )
