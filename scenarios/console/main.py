@@ -1,4 +1,4 @@
-"""Console command: ``plume-flight run|design|report|export|compare|describe|new``. Each hands on to what does the work."""
+"""Console command: ``plume-flight run|design|estimate|report|export|compare|describe|new``. Each hands on to what does the work."""
 
 import importlib
 import importlib.metadata
@@ -32,6 +32,25 @@ def export(
     if not (to or stream):
         raise typer.Exit(refuse("nothing to export; give --to NAME,..., as in --to kmz, or --stream udp://HOST:PORT"))
     command(directory, export=to, flight=flight, stream=stream)
+
+
+def estimate(
+    flight: Annotated[Path, typer.Argument(metavar="FLIGHT.csv", help="time_s, so2_ppb, co2_ppm, and what else is known.")],
+    config: Annotated[
+        Path | None, typer.Option(metavar="FILE.toml", help="Instrument, columns, limits; without it nothing is known of them.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where files and report go.", show_default="runs/measurement_FLIGHT")
+    ] = None,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
+) -> None:
+    """Estimate the sulphur content of a ship's fuel from the log of a flight through her plume, and judge it."""
+    from measurement.estimate.__main__ import main as estimate_logged
+
+    options = [("--config", config), ("--out", out)]
+    given = [word for name, value in options if value is not None for word in (name, str(value))]
+    # A name that begins with a dash is no option.
+    raise typer.Exit(estimate_logged([*given, *(["--no-report"] if no_report else []), "--", str(flight)]))
 
 
 def describe(
@@ -73,7 +92,7 @@ def commands() -> dict[str, Callable[..., None]]:
     from reports.build import command as report
     from scenarios.run import command as run
 
-    found: dict[str, Callable[..., None]] = {"run": run, "design": design, "report": report, "export": export}
+    found: dict[str, Callable[..., None]] = {"run": run, "design": design, "estimate": estimate, "report": report, "export": export}
     if importlib.util.find_spec("reports.compare"):
         found["compare"] = importlib.import_module("reports.compare.__main__").command
     return {**found, "describe": describe, "new": new}

@@ -2,9 +2,11 @@
 
 import importlib.metadata
 import json
+from pathlib import Path
 
 import pytest
 
+from measurement.estimate.__main__ import main as estimate_logged
 from scenarios import fly
 from scenarios.console.describe import described
 from scenarios.console.main import commands
@@ -15,6 +17,8 @@ from scenarios.schema.load import catalog, load_study
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.experiment import TrialList
 from tests.in_process import assert_refused, run_command
+
+ROOT = Path(__file__).parents[3]
 
 SHORT = """
 title = "Two short flights"
@@ -48,7 +52,8 @@ def file(tmp_path):
 
 
 def test_the_commands_are_these():
-    assert [word for word in commands() if word != "compare"] == ["run", "design", "report", "export", "describe", "new"]
+    words = ["run", "design", "estimate", "report", "export", "describe", "new"]
+    assert [word for word in commands() if word != "compare"] == words
     assert importlib.metadata.version("plume-flight-study") in console("--version").out
     for word in commands():
         assert word in console("--help").out
@@ -65,6 +70,14 @@ def test_a_run_is_flown_reported_and_exported(file, tmp_path):
     ended = console("export", out, "--to", "geojson,tracks_csv", "--flight", "nu_0.50")
     assert ended.out.count("export: ") == 2
     assert json.loads((out / "export" / "short.nu_0.50.geojson").read_text(encoding="utf-8"))["type"] == "FeatureCollection"
+
+
+def test_a_log_is_estimated_as_by_the_program_that_stands_alone(tmp_path, capsys):
+    log, config = ROOT / "docs" / "examples" / "example_flight.csv", ROOT / "docs" / "examples" / "example_instrument.toml"
+    ended = console("estimate", log, "--config", config, "--out", tmp_path / "one", "--no-report")
+    assert ended.status == estimate_logged([str(log), "--config", str(config), "--out", str(tmp_path / "two"), "--no-report"]) == 0
+    assert ended.out.replace("one", "two") == capsys.readouterr().out
+    assert_refused(console("estimate", tmp_path / "none.csv"), "none.csv")
 
 
 @pytest.mark.parametrize(
