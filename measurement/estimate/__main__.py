@@ -8,7 +8,7 @@ from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.analysis import analyse
 from measurement.estimate.flight_log.config import LogConfig, read_config
 from measurement.estimate.flight_log.csv_file import read_flight
-from measurement.estimate.flight_log.run_files import build_report, write_run
+from measurement.estimate.flight_log.run_files import build_report, refuse_another_run, write_run
 from measurement.estimate.flight_log.words import summary
 
 BAD_INPUT = 2
@@ -37,13 +37,14 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, metavar="DIR", help="where files and report go; runs/measurement_FLIGHT unless given")
     parser.add_argument("--no-report", action="store_true", help="write no report")
     given = parser.parse_args(arguments)
+    directory = given.out or Path("runs") / f"measurement_{given.flight.stem}"
     try:
+        refuse_another_run(directory)
         config = read_config(given.config) if given.config else LogConfig()
         flight = read_flight(given.flight, config)
         analysis = analyse(
             flight.readings, config.instrument, method=config.method, carbon=config.carbon, limits_percent=config.limits_percent
         )
-        directory = given.out or Path("runs") / f"measurement_{given.flight.stem}"
         write_run(directory, flight, analysis, given.flight, given.config)
     except MeasurementError as error:
         line = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in str(error))

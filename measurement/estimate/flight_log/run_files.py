@@ -7,6 +7,7 @@ import json
 import os
 import platform
 import shlex
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -24,6 +25,9 @@ from measurement.estimate.result import plain
 
 MANIFEST, ESTIMATE, SAMPLES = "manifest.json", "estimate.json", "samples.csv"
 """What the directory holds."""
+
+REPORTS, EXPORT = ("report.html", "report.pdf"), "export"
+"""What others make of it: files and a directory."""
 
 FORMAT = 1
 """Version of the directory, as the project's other runs count it."""
@@ -58,15 +62,34 @@ _TIME_DIGITS = 15
 _PACKAGES = ("numpy", "scipy", "pandas")
 
 
-def write_run(directory: Path, flight: LoggedFlight, analysis: Analysis, source: Path, config: Path | None) -> None:
-    """Write manifest, estimate and samples of an analysis.
+def refuse_another_run(directory: Path) -> None:
+    """Refuse a directory that holds a run of another kind: its manifest would be lost. An older estimate may be replaced.
 
     Raises
     ------
-    MeasurementError : the directory cannot be written
+    MeasurementError : it does, or its manifest cannot be read
     """
     try:
+        study = json.loads((directory / MANIFEST).read_text(encoding="utf-8")).get("study")
+    except (FileNotFoundError, NotADirectoryError):
+        return
+    except (OSError, ValueError, AttributeError, RecursionError):
+        study = None
+    if study != STUDY:
+        raise MeasurementError(f"output directory '{directory}' holds another run; choose another --out")
+
+
+def write_run(directory: Path, flight: LoggedFlight, analysis: Analysis, source: Path, config: Path | None) -> None:
+    """Write manifest, estimate and samples of an analysis; reports and exports of an older one are removed.
+
+    Raises
+    ------
+    MeasurementError : the directory cannot be written, or holds another run
+    """
+    refuse_another_run(directory)
+    try:
         directory.mkdir(parents=True, exist_ok=True)
+        _remove_older(directory)
         _write_json(directory / ESTIMATE, analysis.record())
         table = samples(analysis.estimate.signals, flight.place)
         # A log's time may be seconds since 1970 or 1980, of which six digits are weeks.
@@ -75,6 +98,15 @@ def write_run(directory: Path, flight: LoggedFlight, analysis: Analysis, source:
         _write_json(directory / MANIFEST, _manifest(analysis, source, config))
     except OSError as error:
         raise MeasurementError(f"'{directory}' cannot be written: {error.strerror}; give another --out") from None
+
+
+def _remove_older(directory: Path) -> None:
+    """Remove what tells of an older estimate; its manifest last, and the new one is written when all is there."""
+    if (directory / MANIFEST).exists():
+        for name in REPORTS:
+            (directory / name).unlink(missing_ok=True)
+        shutil.rmtree(directory / EXPORT, ignore_errors=True)
+        (directory / MANIFEST).unlink()
 
 
 def samples(signals: pd.DataFrame, place: pd.DataFrame) -> pd.DataFrame:
