@@ -18,6 +18,10 @@ CO2_LEAST, CO2_MOST = 250.0, 50_000.0
 _OTHER_MOST = 1e6
 """Largest reading of the other gases [ppb]."""
 
+_STEP_LEAST, _STEP_MOST = 1e-3, 30.0
+"""Median interval between samples [s]: no sniffer reads faster, and the slowest cell of the presets has answered by the longest, in
+which an aircraft has crossed a plume and left it."""
+
 _BRIDGED = 2.5
 """Gaps of up to so many sample periods are bridged by a straight line; longer ones part the record."""
 
@@ -73,7 +77,7 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
 
     Raises
     ------
-    MeasurementError : no CO2 or SO2, too short, times that do not increase, or units that cannot be
+    MeasurementError : no CO2 or SO2, too short, times that do not increase or are too far apart, or units that cannot be
     """
     time, values = np.asarray(readings.time, dtype=np.float64), np.asarray(readings.values, dtype=np.float64)
     if time.ndim != 1 or values.shape != (len(time), len(GASES)):
@@ -91,13 +95,18 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
         raise MeasurementError(
             f"times do not increase: {time[at]:.15g} s is followed by {time[at + 1]:.15g} s; sort the record and drop repeats"
         )
+    step = float(np.median(np.diff(time)))
+    if not _STEP_LEAST <= step <= _STEP_MOST:
+        raise MeasurementError(
+            f"samples are {step:g} s apart (median); they must be {_STEP_LEAST:g} to {_STEP_MOST:g} s apart: check that time is in"
+            " seconds, not milliseconds or hours"
+        )
     gases = _used(values, instrument)
     for gas in gases:
         _check_units(gas, values[:, GASES.index(gas)])
     columns = [GASES.index(gas) for gas in gases]
     problems = _problems(time, values, gases, instrument)
     known = np.isfinite(values[:, columns]).all(axis=1)
-    step = float(np.median(np.diff(time)))
     times, parts = [], []
     rows = np.flatnonzero(known)
     for segment in np.split(rows, np.flatnonzero(np.diff(time[rows]) > _BRIDGED * step) + 1):

@@ -53,6 +53,11 @@ def put(array, index, value):
         (lambda r: put(r.time, 7, r.time[6]), "times do not increase: 6 s is followed by 6 s; sort the record"),
         (lambda r: put(r.time, slice(None), r.time[::-1].copy()), "times do not increase"),
         (lambda r: put(r.time, 7, np.nan), "time of sample 7 is not a number"),
+        (
+            lambda r: put(r.time, slice(None), 1000.0 * r.time),
+            r"samples are 1000 s apart \(median\); they must be 0.001 to 30 s apart: check that time is in seconds",
+        ),
+        (lambda r: put(r.time, slice(None), r.time / 3600.0), r"samples are 0.000277778 s apart \(median\)"),
         (lambda r: Readings(r.time[:5], r.values[:5]), "the record has 5 samples; it needs at least 8"),
         (lambda r: Readings(r.time[:0], r.values[:0]), "the record has 0 samples"),
         (lambda r: Readings(r.time, r.values[:, :2]), r"readings have shapes \(121,\) and \(121, 2\)"),
@@ -142,6 +147,13 @@ def test_a_record_that_is_mostly_gap_has_no_verdict():
     readings, spec = flight("electrochemical", 0.5, 1)
     rows = (readings.time < 60.0) | (readings.time > 200.0)
     assert_no_verdict(estimate(Readings(readings.time[rows], readings.values[rows]), spec), "gaps make up 47 % of the record")
+
+
+def test_a_gap_longer_than_the_pieces_of_the_background_leaves_no_verdict():
+    # A knot of the background every 120 s: within a gap of 600 s some have no sample.
+    readings, spec = flight("electrochemical", 0.5, 1)
+    time = readings.time + np.where(readings.time < 150.0, 0.0, 600.0)
+    assert_no_verdict(estimate(Readings(time, readings.values), spec), "gaps make up 67 % of the record")
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,8 @@ def background_basis(record: Record, common: Poles) -> Array:
             column[start : start + len(segment)] = transient
             columns.append(column)
         start += len(segment)
-    unit = np.stack([column / np.linalg.norm(column) for column in columns], axis=1)
+    # In a gap a knot may have no samples.
+    unit = np.stack([column / np.linalg.norm(column) for column in columns if column.any()], axis=1)
     basis, sizes, _ = np.linalg.svd(unit, full_matrices=False)
     return np.asarray(basis[:, sizes > _INDEPENDENT * sizes[0]])
 
