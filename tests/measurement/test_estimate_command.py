@@ -117,6 +117,14 @@ def test_rows_may_end_in_a_comma(logged):
     np.testing.assert_array_equal(found.readings.values, expected.readings.values)
 
 
+def test_a_compressed_log_is_read(logged):
+    compressed = logged.with_name("flight.csv.gz")
+    pd.read_csv(logged).to_csv(compressed, index=False)
+    np.testing.assert_array_equal(
+        read_flight(compressed, LogConfig()).readings.values, read_flight(logged, LogConfig()).readings.values
+    )
+
+
 def test_seconds_since_1970_are_written_in_full(logged):
     table = pd.read_csv(logged)
     table["time_s"] += 1714560000.25
@@ -173,6 +181,10 @@ def test_configurations_with_mistakes_are_refused_in_one_line(logged, capsys, co
         ("time_s,so2_ppb,co2_ppm\n1,2,420\n", "the record has 1 samples; it needs at least 8"),
         ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,4\n" for t in range(99)), "CO2 has a median of 4 ppm"),
         ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,420,7\n" for t in range(9)), "more values than its head line has names"),
+        ("time_s;so2_ppb;co2_ppm\n1.0;2.0;420.0\n", "is separated by semicolons; separate its columns by commas, and write"),
+        ("time_s;so2_ppb;co2_ppm\n1,0;2,0;420,0\n", "is separated by semicolons; separate its columns by commas, and write"),
+        ("time_s\tso2_ppb\tco2_ppm\n1\t2\t420\n", "is separated by tabs; separate its columns by commas"),
+        ('time_s,so2_ppb,co2_ppm\n1,"2,5",420\n', "column 'so2_ppb' has '2,5' in row 2; it must hold numbers"),
         ("\x00\x01\x02", "error: "),
     ],
 )

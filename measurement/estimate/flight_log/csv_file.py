@@ -17,6 +17,9 @@ from measurement.sniffer.sniffer import Readings
 EARTH_RADIUS_M = 6_371_000.0
 """Mean radius [m]: a track of a few kilometres is laid on a plane."""
 
+_OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
+"""Of tables that are not separated by commas, and what they are called."""
+
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
 """Columns of the true concentrations, which a simulated flight may have; they are shown, and take no part in the estimate."""
 
@@ -42,10 +45,11 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
 
     Raises
     ------
-    MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has words in it, or has rows with
-        more values than its head line has names
+    MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has words in it, is separated by
+        something else than commas, or has rows with more values than its head line has names
     """
     try:
+        _check_separator(path)
         # Without ``index_col`` rows that end in a comma would move every column by one; what would be lost by it is refused.
         with warnings.catch_warnings(action="error", category=pd.errors.ParserWarning):
             table = pd.read_csv(path, skipinitialspace=True, low_memory=False, index_col=False)
@@ -73,6 +77,19 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     place = {"time_s": time, **_place(table, config, path)}
     place |= {name: _numbers(table, name, path) for name in TRUE_COLUMNS if name in table}
     return LoggedFlight(Readings(time, values), pd.DataFrame(place))
+
+
+def _check_separator(path: Path) -> None:
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        head = file.readline().strip()
+    if not head.replace("\t", "").isprintable():
+        # It may be compressed, which pandas reads.
+        return
+    for separator, name in _OTHER_SEPARATORS.items():
+        if head.count(separator) > head.count(","):
+            raise MeasurementError(
+                f"'{path}' is separated by {name}; separate its columns by commas, and write decimals with a point, as in 108.2"
+            )
 
 
 def _missing(path: Path, what: str, key: str, name: str, table: pd.DataFrame) -> str:
