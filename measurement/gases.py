@@ -32,6 +32,14 @@ CARBON_PER_CO2 = _CARBON / MOLAR_MASS["co2"]
 """Carbon by mass in CO2 [-]."""
 
 
+EXPECTED_PPB_PER_PPM = {"no": (18.0, 7.5), "no2": (2.0, 1.2)}
+"""Of a ship's NO and NO2 over its CO2 and its standard deviation, where they are not measured [ppb/ppm].
+
+Assumption: NOx tiers 0 to 3 of two- and four-stroke engines emit 4 to 27 ppb/ppm (measurement.md, section 2); 5 to 15 % of it is
+NO2, and ozone adds some.
+"""
+
+
 def limit_words(limit_percent: float) -> str:
     """Return a limit on the sulphur content [% m/m] as it is printed: with two decimals, or with as many as it has."""
     return f"{limit_percent:.2f} %" if round(limit_percent, 2) == limit_percent else f"{limit_percent:g} %"

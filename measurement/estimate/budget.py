@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from measurement.gases import fsc_factor
+from measurement.gases import EXPECTED_PPB_PER_PPM, fsc_factor
 from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
@@ -15,13 +15,6 @@ CARBON_SD = 0.015
 
 SULPHATE_SHARE = 0.0225
 """Of the sulphur leaves as sulphate, not as SO2 [-] (IMO GHG4, eq. 15); 0.01 to 0.19 are reported. Stated, not corrected."""
-
-EXPECTED_PPB_PER_PPM = {"no": (18.0, 7.5), "no2": (2.0, 1.2)}
-"""Of a ship's NO and NO2 over its CO2 and its standard deviation, where they are not measured [ppb/ppm].
-
-Assumption: NOx tiers 0 to 3 of two- and four-stroke engines emit 4 to 27 ppb/ppm (measurement.md, section 2); 5 to 15 % of it is
-NO2, and ozone adds some.
-"""
 
 _CORRECTING = ("no", "no2")
 

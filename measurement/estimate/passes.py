@@ -23,13 +23,6 @@ _QUANTILE, _QUANTILE_SIGMA = 0.05, 1.645
 """Share of the samples, less than those outside the plume, above which the background lies, and by how many standard deviations of
 the noise: the normal distribution's quantile."""
 
-_CALM, _CALM_SIGMA = 0.1, 0.1257
-"""Share of the second differences that are noise alone, and the largest of them over their standard deviation: the quantile of the
-size of normal noise."""
-
-_EVEN = 0.5 * (math.sqrt(5.0) - 1.0)
-"""Multiples of the golden section, less their whole numbers, lie evenly within 0 to 1 however many there are."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Pass:
@@ -53,20 +46,12 @@ class Pass:
 
 
 def readings_noise(record: Record, instrument: SnifferSpec) -> dict[str, float]:
-    """Return the standard deviation of each gas's readings: what is stated, or what its second differences show.
-
-    It is half the step of the readings at least: so much has a reading that moves between two neighbouring marks.
-    """
+    """Return the standard deviation of each gas's readings: what is stated, or what they show."""
     noise = {}
     for gas in (gas for gas in GASES if gas in record.values[0]):
         stated = instrument.known(gas).noise
         if math.isnan(stated):
-            second, step = np.concatenate([np.diff(segment[gas], 2) for segment in record.values]), record.resolution[gas]
-            # Whole numbers hide their noise: most of these differences are 0. Spread evenly over a step, they show it again.
-            spread = step * ((_EVEN * np.arange(len(second))) % 1.0 - 0.5)
-            # The variance of a second difference is 6 times that of a sample.
-            shown = float(np.quantile(np.abs(second + spread), _CALM)) / _CALM_SIGMA / math.sqrt(6.0)
-            stated = max(shown, 0.5 * step)
+            stated = record.scatter(gas)
         noise[gas] = stated
     return noise
 

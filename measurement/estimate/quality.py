@@ -17,6 +17,9 @@ PASSES_GOOD = 3
 AGREEMENT_LEAST = 0.01
 """Least probability that passes of one fuel differ as much, for class A."""
 
+FUEL_MOST = 5.0
+"""More sulphur than marine fuels have [% m/m]: their limit was 4.5 % until 2012 (MARPOL Annex VI, regulation 14)."""
+
 STRANGE_SIGMA = 4.0
 """By so many of its standard deviations each property of the instrument may differ, and the residuals by so many of theirs, until
 the instrument is not the one that is stated."""
@@ -52,6 +55,13 @@ def judged_quality(
         rejected.append(
             f"the result is {fsc:.3f} %, negative by more than {NEGATIVE_SIGMA:g} standard uncertainties: check the corrections"
         )
+    if deviation > FUEL_MOST:
+        rejected.append(
+            f"the standard uncertainty is {deviation:.0f} %, and no fuel has above {FUEL_MOST:g} %: SO2 does not follow CO2; check"
+            " its sign and its sensor"
+        )
+    elif math.isfinite(fsc) and fsc - NEGATIVE_SIGMA * deviation > FUEL_MOST:
+        rejected.append(f"the result is {fsc:.1f} %, and no fuel has above {FUEL_MOST:g} %: check the units of SO2 and CO2")
     if rejected:
         return "C", tuple(rejected)
     reasons = []

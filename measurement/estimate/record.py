@@ -1,13 +1,13 @@
 """Readings, checked and laid on an even grid, in segments between gaps."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from measurement.errors import MeasurementError
-from measurement.gases import GASES, UNITS
+from measurement.gases import EXPECTED_PPB_PER_PPM, GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
@@ -34,8 +34,18 @@ _SATURATED_MAX, _MISSING_MAX = 0.0, 0.1
 _SAME = 1e-9
 """Readings that differ by less, relative to the largest, are the same."""
 
+_CALM, _CALM_SIGMA = 0.1, 0.1257
+"""Share of the second differences that are noise alone, and the largest of them over their standard deviation: the quantile of the
+size of normal noise."""
+
+_EVEN = 0.5 * (math.sqrt(5.0) - 1.0)
+"""Multiples of the golden section, less their whole numbers, lie evenly within 0 to 1 however many there are."""
+
 _NEGATIVE_SIGMA = 8.0
 """A reading lower than zero by so many standard deviations of noise and zero is no reading."""
+
+_NOX_SIGMA = 3.0
+"""A ship that is not measured for NO or NO2 may emit the expected by so many standard deviations more."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +75,10 @@ class Record:
     def of(self, gas: str) -> Array:
         """Return all samples of a gas."""
         return np.concatenate([segment[gas] for segment in self.values])
+
+    def scatter(self, gas: str) -> float:
+        """Return the standard deviation of a gas's readings that they show themselves."""
+        return _scatter([segment[gas] for segment in self.values], self.resolution[gas])
 
     @property
     def duration(self) -> float:
@@ -156,6 +170,40 @@ def _resolution(values: Array) -> float:
     return float(changes.min()) if len(changes) else 0.0
 
 
+def _scatter(segments: Sequence[Array], step: float) -> float:
+    """Return the standard deviation of readings in these steps that their second differences show.
+
+    It is half the step at least: so much has a reading that moves between two neighbouring marks.
+    """
+    second = np.concatenate([np.diff(segment, 2) for segment in segments])
+    if not len(second):
+        return 0.5 * step
+    # Whole numbers hide their noise: most of these differences are 0. Spread evenly over a step, they show it again.
+    spread = step * ((_EVEN * np.arange(len(second))) % 1.0 - 0.5)
+    # The variance of a second difference is 6 times that of a sample.
+    shown = float(np.quantile(np.abs(second + spread), _CALM)) / _CALM_SIGMA / math.sqrt(6.0)
+    return max(shown, 0.5 * step)
+
+
+def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
+    """Return how low a gas may read for its noise, its zero and what the cell makes of other gases: 0 for CO2.
+
+    Parameters
+    ----------
+    gas : of which there are readings, and that the instrument has
+    values : readings of all gases, shape (m, 4)
+    instrument : as the analyst knows it; noise that it does not state is what the readings show
+    """
+    if gas == "co2":
+        return 0.0
+    channel, column = instrument.known(gas), values[:, GASES.index(gas)]
+    noise = channel.noise
+    if math.isnan(noise):
+        noise = _scatter([column[np.isfinite(column)]], _resolution(column))
+    explained = _NEGATIVE_SIGMA * math.hypot(noise, channel.zero_sd, 1.0) - min(channel.zero, 0.0)
+    return -explained - _cross_floor(channel.cross, values)
+
+
 def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferSpec) -> tuple[str, ...]:
     problems = []
     for gas in gases:
@@ -169,9 +217,7 @@ def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferS
         full = float(np.mean(column >= channel.range_high - 0.5 * channel.resolution)) if math.isfinite(channel.range_high) else 0.0
         if full > _SATURATED_MAX:
             problems.append(f"{name} is saturated at {channel.range_high:g} {unit} in {100.0 * full:.1f} % of the readings")
-        noise = 0.0 if math.isnan(channel.noise) else channel.noise
-        floor = -(_NEGATIVE_SIGMA * math.hypot(noise, channel.zero_sd, 1.0) - min(channel.zero, 0.0))
-        floor = 0.0 if gas == "co2" else floor - _cross_floor(channel.cross, values)
+        floor = lowest_reading(gas, values, instrument)
         if (least := float(np.nanmin(column))) < floor:
             problems.append(f"{name} reads {least:g} {unit}, which its noise and zero do not explain (from {floor:.0f} {unit})")
     gaps = np.diff(time)
@@ -182,10 +228,13 @@ def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferS
 
 
 def _cross_floor(cross: Mapping[str, float], values: Array) -> float:
-    """Return how far below zero a cell may truly read, for what it makes of the other gases."""
-    lowest = 0.0
+    """Return how far below zero a cell may truly read, for what it makes of the other gases, measured or as ships emit them."""
+    lowest, co2 = 0.0, values[:, GASES.index("co2")]
     for gas, share in cross.items():
         column = values[:, GASES.index(gas)]
         if share < 0.0 and np.isfinite(column).any():
-            lowest += -share * float(np.nanmax(column))
+            lowest += -share * max(0.0, float(np.nanmax(column)))
+        elif share < 0.0 and gas in EXPECTED_PPB_PER_PPM:
+            ratio, deviation = EXPECTED_PPB_PER_PPM[gas]
+            lowest += -share * (ratio + _NOX_SIGMA * deviation) * float(np.nanmax(co2) - max(0.0, np.nanmin(co2)))
     return lowest

@@ -157,6 +157,7 @@ def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
         ("[columns]\ntime = 'when'", "has no time column 'when'"),
         ("[scale]\nso2 = 0", "scale of so2 is 0; it must be positive"),
         ("[scale]\nco2 = 0.01", "CO2 has a median of 4"),
+        ("missing = -9999", "missing is -9999; give a list of numbers, as in [-9999]"),
         ("[", "is not TOML"),
     ],
 )
@@ -194,6 +195,60 @@ def test_files_with_mistakes_are_refused_in_one_line(logged, capsys, content, me
     told = capsys.readouterr().err
     assert told.count("\n") == 1
     assert message in told
+
+
+def with_value(logged, column, row, value):
+    table = pd.read_csv(logged)
+    table.loc[row, column] = value
+    table.to_csv(logged, index=False)
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "told"),
+    [
+        ("so2_ppb", -9999.0, "SO2 is -9999 ppb in row 102; noise, zero and other gases explain -"),
+        ("co2_ppm", -999.0, "CO2 is -999 ppm in row 102; noise, zero and other gases explain 0 ppm at least"),
+        ("no_ppb", -9999.0, "NO is -9999 ppb in row 102"),
+    ],
+)
+@pytest.mark.parametrize("config", [True, False])
+def test_a_code_for_a_missing_reading_is_refused_until_it_is_named(logged, capsys, column, value, told, config):
+    with_value(logged, column, 100, value)
+    assert run(logged, config=config) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert "leave it empty or name it in the configuration (missing = [-9999])" in error
+    assert error.count("\n") == 1
+    (logged.parent / "instrument.toml").write_text(f'instrument = "electrochemical"\nmissing = [{value}]\n', encoding="utf-8")
+    assert run(logged) == 0
+    named = json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8"))
+    with_value(logged, column, 100, np.nan)
+    assert run(logged) == 0
+    assert json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8")) == named
+    assert named["estimate"]["quality"] != "C"
+
+
+def test_readings_of_the_wrong_sign_are_refused(logged, capsys):
+    table = pd.read_csv(logged)
+    table["so2_ppb"] *= -1.0
+    table.to_csv(logged, index=False)
+    # No reading of it is too low for a cell of which nothing is known.
+    assert run(logged, config=False) == 0
+    assert "and no fuel has above 5 %: SO2 does not follow CO2; check its sign" in capsys.readouterr().out
+    table["so2_ppb"] *= 3.0
+    table.to_csv(logged, index=False)
+    assert run(logged, config=False) == 2
+    assert "more are as low; noise, zero and other gases explain" in capsys.readouterr().err
+
+
+def test_an_unfiltered_cell_may_read_below_zero_for_no2_that_is_not_measured(logged):
+    # 1.6 of NO2: far below the noise, and what such a cell truly reads in a plume.
+    readings, _ = flight("alphasense_b4", 0.1, 4)
+    table = pd.DataFrame({"time_s": readings.time, "so2_ppb": readings.values[:, 0], "co2_ppm": readings.values[:, 1]})
+    table.to_csv(logged, index=False)
+    (logged.parent / "instrument.toml").write_text('instrument = "alphasense_b4"\n', encoding="utf-8")
+    assert table["so2_ppb"].min() < -50.0
+    assert run(logged) == 0
 
 
 def test_files_that_are_not_there_are_refused(tmp_path, capsys):

@@ -145,7 +145,7 @@ def test_gases_that_are_not_measured_widen_the_interval():
     readings, _ = flight("electrochemical", 0.5, 5)
     blind = Readings(readings.time, np.where(np.arange(4) < 2, readings.values, np.nan))
     seen, unseen = estimate(readings, spec), estimate(blind, spec)
-    # 0.015 of 18 +- 7.5 ppb/ppm, and 0.16 of 2 +- 1.2 with +-0.032: budget.EXPECTED_PPB_PER_PPM.
+    # 0.015 of 18 +- 7.5 ppb/ppm, and 0.16 of 2 +- 1.2 with +-0.032: gases.EXPECTED_PPB_PER_PPM.
     assert unseen.common_percent["no"] == pytest.approx(fsc_factor() * math.hypot(0.015 * 7.5, 0.0015 * 19.5), rel=0.01)
     assert unseen.common_percent["no2"] > seen.common_percent["no2"]
     assert unseen.low_percent < 0.5 < unseen.high_percent

@@ -60,6 +60,8 @@ GOOD = {
         ({}, "A", ""),
         ({"snr": 12.0}, "B", "CO2 signal to noise is 12.0; class A needs 20"),
         ({"deviation": 0.03}, "B", "standard uncertainty is 0.030 %; class A needs 0.020 %"),
+        ({"deviation": 36.0}, "C", "the standard uncertainty is 36 %, and no fuel has above 5 %: SO2 does not follow CO2"),
+        ({"fsc": 250.0, "deviation": 0.02}, "C", "the result is 250.0 %, and no fuel has above 5 %: check the units of SO2"),
         ({"passes": 2}, "B", "2 passes through the plume; class A needs 3"),
         ({"agreement": 1e-4}, "B", "passes differ more than their noise explains"),
         ({"problems": ("SO2 is saturated",)}, "C", "SO2 is saturated"),

@@ -28,7 +28,7 @@ COLUMNS = {
 DEFAULT_INSTRUMENT = "unspecified"
 """The instrument of a flight without a configuration."""
 
-_KEYS = {"instrument", "carbon", "limits_percent", "method", "columns", "scale"}
+_KEYS = {"instrument", "carbon", "limits_percent", "method", "missing", "columns", "scale"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +41,7 @@ class LogConfig:
     carbon : mass share of the fuel [-]
     limits_percent : on which there are to be verdicts [% m/m]
     method : "regression" or "areas"
+    missing : numbers that the file has for readings that there are not, as -9999
     columns : name in the file of each of ``COLUMNS``
     scale : by which a gas's column is multiplied to be in ppb, or CO2 in ppm
     """
@@ -49,6 +50,7 @@ class LogConfig:
     carbon: float = CARBON_FRACTION
     limits_percent: tuple[float, ...] = LIMITS_PERCENT
     method: Method = "regression"
+    missing: tuple[float, ...] = ()
     columns: Mapping[str, str] = field(default_factory=lambda: dict(COLUMNS))
     scale: Mapping[str, float] = field(default_factory=dict)
 
@@ -78,6 +80,9 @@ def read_config(path: Path) -> LogConfig:
     limits = table.get("limits_percent", list(LIMITS_PERCENT))
     if not isinstance(limits, list) or not limits or not all(_is_number(limit) for limit in limits):
         raise MeasurementError(f"'{path}': limits_percent is {limits!r}; give a list of numbers, as in [0.10, 0.50]")
+    missing = table.get("missing", [])
+    if not isinstance(missing, list) or not all(_is_number(code) for code in missing):
+        raise MeasurementError(f"'{path}': missing is {missing!r}; give a list of numbers, as in [-9999]")
     carbon = table.get("carbon", CARBON_FRACTION)
     if not _is_number(carbon):
         raise MeasurementError(f"'{path}': carbon is {carbon!r}; give the mass share of the fuel, 0.85 to 0.875 for most")
@@ -86,6 +91,7 @@ def read_config(path: Path) -> LogConfig:
         carbon=float(carbon),
         limits_percent=tuple(sorted(float(limit) for limit in limits)),
         method=method,
+        missing=tuple(float(code) for code in missing),
         columns={**COLUMNS, **columns},
         scale={gas: float(factor) for gas, factor in scale.items()},
     )

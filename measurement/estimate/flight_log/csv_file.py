@@ -10,6 +10,7 @@ import pandas as pd
 
 from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.config import LogConfig
+from measurement.estimate.record import lowest_reading
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
@@ -45,8 +46,8 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
 
     Raises
     ------
-    MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has words in it, is separated by
-        something else than commas, or has rows with more values than its head line has names
+    MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has words in it or readings lower
+        than those of no gas, is separated by something else than commas, or has rows with more values than its head line has names
     """
     try:
         _check_separator(path)
@@ -71,9 +72,10 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     for i, gas in enumerate(GASES):
         name = config.columns[gas]
         if name in table:
-            values[:, i] = config.scale.get(gas, 1.0) * _numbers(table, name, path)
+            values[:, i] = config.scale.get(gas, 1.0) * _readings(table, name, path, config)
         elif gas in ("so2", "co2"):
             raise MeasurementError(_missing(path, gas.upper(), gas, name, table))
+    _check_negative(values, config, path)
     place = {"time_s": time, **_place(table, config, path)}
     place |= {name: _numbers(table, name, path) for name in TRUE_COLUMNS if name in table}
     return LoggedFlight(Readings(time, values), pd.DataFrame(place))
@@ -106,6 +108,28 @@ def _numbers(table: pd.DataFrame, name: str, path: Path) -> Array:
             f"'{path}': column '{name}' has {str(table[name].iloc[row])!r} in row {row + 2}; it must hold numbers, or be empty"
         )
     return numbers.to_numpy(dtype=np.float64)
+
+
+def _readings(table: pd.DataFrame, name: str, path: Path, config: LogConfig) -> Array:
+    numbers = _numbers(table, name, path)
+    return np.where(np.isin(numbers, config.missing), np.nan, numbers)
+
+
+def _check_negative(values: Array, config: LogConfig, path: Path) -> None:
+    """Refuse readings that are lower than those of no gas: they are marks for missing ones, or have the wrong sign."""
+    for gas in config.instrument.gases:
+        column, unit = values[:, GASES.index(gas)], UNITS[gas]
+        if not np.isfinite(column).any():
+            continue
+        lowest = lowest_reading(gas, values, config.instrument)
+        low = np.flatnonzero(column < lowest)
+        if low.size:
+            least, more = float(column[low[0]]), f", and {low.size - 1} more are as low" if low.size > 1 else ""
+            raise MeasurementError(
+                f"'{path}': {gas.upper()} is {least:g} {unit} in row {low[0] + 2}{more}; noise, zero and other gases explain"
+                f" {lowest:.0f} {unit} at least: where it stands for a missing reading, leave it empty or name it in the"
+                f" configuration (missing = [-9999]); otherwise check the sign, and state the channel's noise, zero and cross"
+            )
 
 
 def _time(table: pd.DataFrame, name: str, path: Path) -> Array:
