@@ -102,6 +102,8 @@ def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]
 def _too_little(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], noise: float) -> list[str]:
     """Return why the record is too short or has no plume in it."""
     if not passes:
+        if noise == 0.0:
+            return ["no pass through a plume: CO2 reads the same throughout; check its sensor"]
         least = f"{SNR_LEAST * noise:.1f} ppm, {SNR_LEAST:g} times its noise"
         return [f"no pass through a plume: CO2 is nowhere {least}, over its background"]
     width = max(found.end_s - found.start_s for found in passes)

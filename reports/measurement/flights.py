@@ -48,7 +48,9 @@ def sulphur_cards(run: RunData) -> list[Card]:
             Card("Sulphur in the fuel, with its 95 % interval", result),
             Card(
                 f"Verdict on {limit_words(float(row['sulphur_limit_percent']))}, and probability of more",
-                f"{row['sulphur_verdict']}, {probability(float(row['probability_above']))}",
+                "no verdict: quality C"
+                if row["sulphur_quality"] == "C"
+                else f"{row['sulphur_verdict']}, {probability(float(row['probability_above']))}",
             ),
         ]
     expected, found = (column(measured, name) for name in ("fsc_expected_percent", "fsc_percent"))
@@ -127,9 +129,12 @@ def _told(row: "pd.Series[Any]") -> str:
         "below": f"The fuel is below the limit of {limit}",
         "open": f"Whether the fuel is above the limit of {limit} stays open",
     }[str(row["sulphur_verdict"])]
+    result = f"{row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} % sulphur (95 %)"
+    verdict = f"{called}: it holds {result}, and the probability that this is more than the limit is {chance}."
+    if row["sulphur_quality"] == "C":
+        verdict = f"There is no verdict on the limit of {limit}, as quality C gives none; the estimate is {result}."
     return (
-        f"{called}: it holds {row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} % sulphur (95 %), and the"
-        f" probability that this is more than the limit is {chance}. Quality {row['sulphur_quality']}"
+        f"{verdict} Quality {row['sulphur_quality']}"
         + (f": {row['sulphur_reason']}." if row["sulphur_reason"] and pd.notna(row["sulphur_reason"]) else ".")
         + f" The fuel's own content is {row['fsc_fuel_percent']:.3f} %, of which a perfect instrument reads"
         f" {row['fsc_expected_percent']:.3f} %."

@@ -17,22 +17,24 @@ def measurement_verdict(record: Record) -> Verdict:
     first = verdicts[0]
     reasons = [str(reason) for reason in found["quality_reasons"]]
     known = found["fsc_percent"] is not None
-    others = [f"{sentence(other, known=True)}." for other in verdicts[1:]] if known else []
+    others = [f"{sentence(other, found['quality'], known=True)}." for other in verdicts[1:]] if known else []
     return Verdict(
         holds=first["verdict"] != "above",
         complete=first["verdict"] == "below",
-        headline=sentence(first, known=known),
+        headline=sentence(first, found["quality"], known=known),
         detail=" ".join([_result(record), *others]),
         failures=[f"quality {found['quality']}: {reason}" for reason in reasons],
         figures=_figures(record),
     )
 
 
-def sentence(verdict: dict[str, Any], *, known: bool) -> str:
-    """Return a verdict in words."""
+def sentence(verdict: dict[str, Any], quality: str, *, known: bool) -> str:
+    """Return a verdict in words; that there is none of a record of quality C."""
     limit = limit_words(float(verdict["limit_percent"]))
     if not known:
         return f"Nothing can be said of the limit of {limit}: there is no result"
+    if quality == "C":
+        return f"No verdict on the limit of {limit}: quality C gives none"
     chance = probability(value(verdict, "probability_above"))
     side = {"above": "Above", "below": "Below", "open": "Open for"}[verdict["verdict"]]
     return f"{side} the limit of {limit}: the probability that the fuel is above it is {chance}"
@@ -66,7 +68,7 @@ def _figures(record: Record) -> list[Card]:
     chances = [
         Card(
             f"Probability above {limit_words(float(verdict['limit_percent']))}",
-            _short(value(verdict, "probability_above")),
+            "no verdict" if found["quality"] == "C" else _short(value(verdict, "probability_above")),
             "" if verdict["verdict"] == "open" else "below the limit",
             {"above": False, "below": True}.get(verdict["verdict"]),
         )

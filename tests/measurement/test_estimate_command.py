@@ -6,38 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 from crossings import flight
+from logged_flights import run
 
 from measurement.estimate.__main__ import main
 from measurement.estimate.flight_log.config import LogConfig
 from measurement.estimate.flight_log.csv_file import EARTH_RADIUS_M, read_flight
-from measurement.estimate.flight_log.words import sentence
-from measurement.estimate.verdict import Verdict
-from measurement.gases import limit_words
-
-
-@pytest.fixture
-def logged(tmp_path):
-    readings, _ = flight("electrochemical", 0.3, 4)
-    table = pd.DataFrame({
-        "time_s": readings.time,
-        "so2_ppb": readings.values[:, 0],
-        "co2_ppm": readings.values[:, 1],
-        "no_ppb": readings.values[:, 2],
-        "no2_ppb": readings.values[:, 3],
-        "north_m": 6.0 * readings.time,
-        "east_m": 50.0 * np.sin(0.33 * readings.time),
-        "height_m": 60.0,
-        "so2_true_ppb": 1.0,
-    })  # fmt: skip
-    path = tmp_path / "flight.csv"
-    table.to_csv(path, index=False)
-    (tmp_path / "instrument.toml").write_text('instrument = "electrochemical"\n', encoding="utf-8")
-    return path
-
-
-def run(logged, *more, config=True):
-    with_config = ["--config", str(logged.parent / "instrument.toml")] if config else []
-    return main([str(logged), "--out", str(logged.parent / "out"), "--no-report", *with_config, *more])
 
 
 def test_a_flight_is_estimated_printed_and_written(logged, capsys):
@@ -132,14 +105,6 @@ def test_seconds_since_1970_are_written_in_full(logged):
     assert run(logged) == 0
     written = pd.read_csv(logged.parent / "out" / "samples.csv")
     np.testing.assert_array_equal(written["time_s"], table["time_s"])
-
-
-@pytest.mark.parametrize(
-    ("limit", "words"), [(0.1, "0.10 %"), (0.5, "0.50 %"), (1.0, "1.00 %"), (0.001, "0.001 %"), (0.125, "0.125 %")]
-)
-def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
-    assert limit_words(limit) == words
-    assert f"the limit of {words}:" in sentence(Verdict(limit_percent=limit, verdict="above", probability_above=0.99))
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,9 @@ import math
 from collections.abc import Iterator
 
 from measurement.estimate.flight_log.analysis import Analysis
-from measurement.estimate.result import FscEstimate
-from measurement.estimate.verdict import ABOVE, BELOW, Verdict
+from measurement.estimate.quality import FUEL_MOST
+from measurement.estimate.result import FscEstimate, Quality
+from measurement.estimate.verdict import ABOVE, BELOW, CONFIDENCE, Verdict
 from measurement.gases import limit_words
 
 ERRORS = {
@@ -26,18 +27,19 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
     yield f"{name}, with: {analysis.instrument.title}"
     yield f"{figures.duration_s:.0f} s, {figures.passes} passes{every}, CO2 signal to noise {figures.co2_snr:.0f}"
     yield result(found)
-    yield f"standard uncertainty {found.total_percent:.4f} %, of which"
-    yield f"  noise {found.noise_percent:.4f}"
-    for key, size in by_size(found):
-        yield f"  {ERRORS.get(key, key)} {size:.4f}"
+    if math.isfinite(found.total_percent):
+        yield f"standard uncertainty {found.total_percent:.4f} %, of which"
+        yield f"  noise {found.noise_percent:.4f}"
+        for key, size in by_size(found):
+            yield f"  {ERRORS.get(key, key)} {size:.4f}"
     yield f"quality {found.quality}" + (f": {'; '.join(found.quality_reasons)}" if found.quality_reasons else "")
     for verdict in found.verdicts:
-        yield sentence(verdict)
+        yield sentence(verdict, found.quality)
 
 
 def result(found: FscEstimate) -> str:
     """Return the result in words."""
-    if math.isnan(found.fsc_percent):
+    if not found.total_percent <= FUEL_MOST:
         return "fuel sulphur content: none can be given"
     return (
         f"fuel sulphur content {found.fsc_percent:.3f} % m/m +- {found.total_percent:.3f} %;"
@@ -45,14 +47,17 @@ def result(found: FscEstimate) -> str:
     )
 
 
-def sentence(verdict: Verdict) -> str:
-    """Return a verdict in words, with its probability and its limit."""
+def sentence(verdict: Verdict, quality: Quality = "A") -> str:
+    """Return a verdict in words, with its probability and its limit; that there is none of a record of quality C."""
     limit, told = limit_words(verdict.limit_percent), probability(verdict.probability_above)
+    if quality == "C":
+        return f"no verdict on the limit of {limit}: quality C gives none"
     if verdict.verdict == ABOVE:
         return f"above the limit of {limit}: the probability that the fuel is above it is {told}"
     if verdict.verdict == BELOW:
         return f"below the limit of {limit}: the probability that the fuel is above it is {told}"
-    return f"open for the limit of {limit}: the probability that the fuel is above it is {told}; 95 % or 5 % are needed"
+    needed = "the result is within the guard band" if verdict.probability_above > CONFIDENCE else "95 % or 5 % are needed"
+    return f"open for the limit of {limit}: the probability that the fuel is above it is {told}; {needed}"
 
 
 def probability(share: float) -> str:

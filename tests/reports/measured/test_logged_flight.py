@@ -87,6 +87,17 @@ def test_a_verdict_says_probability_and_limit(record, verdict, chance, holds, co
     assert (told.holds, told.complete, told.headline) == (holds, complete, words)
 
 
+def test_quality_c_gives_no_verdict_in_words_either(record):
+    record["estimate"] |= {"quality": "C", "quality_reasons": ["SO2 is saturated"]}
+    for verdict in record["estimate"]["verdicts"]:
+        verdict |= {"verdict": "open", "probability_above": 1.0}
+    told = measurement_verdict(record)
+    assert told.headline == "No verdict on the limit of 0.10 %: quality C gives none"
+    assert "No verdict on the limit of 0.50 %: quality C gives none." in told.detail
+    assert ("Probability above 0.10 %", "no verdict", "", None) in told.figures
+    assert not told.complete
+
+
 def test_limits_are_told_with_all_their_decimals(record):
     record["estimate"]["verdicts"][0]["limit_percent"] = 0.125
     record["time_to_verdict_s"] = {"0.125": 40.0}

@@ -85,6 +85,20 @@ def test_a_probability_is_never_told_as_certain():
     assert card[:2] == ("Verdict on 0.10 %, and probability of more", "above, more than 99.9 %")
 
 
+def test_quality_c_gives_no_verdict_in_words_either():
+    row = {
+        "fsc_percent": 0.5, "fsc_uncertainty_percent": 0.02, "sulphur_limit_percent": 0.1, "sulphur_verdict": "open",
+        "probability_above": 1.0, "sulphur_quality": "C", "sulphur_reason": "SO2 is saturated",
+        "fsc_fuel_percent": 0.5, "fsc_expected_percent": 0.49,
+    }  # fmt: skip
+    told = flights._told(pd.Series(row))
+    assert told.startswith("There is no verdict on the limit of 0.10 %, as quality C gives none; the estimate is 0.500 ± 0.039 %")
+    assert "Quality C: SO2 is saturated." in told
+    assert "stays open" not in told
+    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([row])))[1]
+    assert card[1] == "no verdict: quality C"
+
+
 def test_a_fuel_without_sulphur_beside_others_is_drawn():
     fuels = np.repeat([0.0, 0.1, 0.5, 2.0], 4)
     columns = ("fsc_percent", "areas_fsc_percent", "fsc_expected_percent", "crossing_interval_mean_s")

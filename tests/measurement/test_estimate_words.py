@@ -1,0 +1,44 @@
+"""What the command prints: results, verdicts and their limits in words."""
+
+import re
+
+import pandas as pd
+import pytest
+from logged_flights import run
+
+from measurement.estimate.flight_log.words import sentence
+from measurement.estimate.verdict import Verdict, judged
+from measurement.gases import limit_words
+
+
+@pytest.mark.parametrize(
+    ("limit", "words"), [(0.1, "0.10 %"), (0.5, "0.50 %"), (1.0, "1.00 %"), (0.001, "0.001 %"), (0.125, "0.125 %")]
+)
+def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
+    assert limit_words(limit) == words
+    assert f"the limit of {words}:" in sentence(Verdict(limit_percent=limit, verdict="above", probability_above=0.99))
+
+
+@pytest.mark.parametrize("level", [420.0, None])
+def test_a_record_without_a_verdict_says_so_and_prints_no_nan(logged, capsys, level):
+    table = pd.read_csv(logged)
+    table["so2_ppb"] *= -1.0
+    table["co2_ppm"] = table["co2_ppm"] if level is None else level
+    table.to_csv(logged, index=False)
+    assert run(logged, config=False) == 0
+    printed = capsys.readouterr().out
+    assert "fuel sulphur content: none can be given\n" in printed
+    assert "no verdict on the limit of 0.10 %: quality C gives none" in printed
+    assert "are needed" not in printed
+    assert not re.search(r"\bnan\b", printed)
+    assert ("CO2 reads the same throughout; check its sensor" in printed) == (level is not None)
+
+
+def test_an_open_verdict_beyond_the_probability_names_the_guard_band():
+    # The knowledge that no fuel has less than 0 lifts the probability, and "above" asks for the guard band alone:
+    # the normal distribution's 0.9370 at 1.53, over its 0.9484 at 1.63.
+    verdict = judged(0.01, 0.163, 0.1, admitted=True)
+    assert verdict.verdict == "open"
+    assert verdict.probability_above > 0.95
+    assert "is 98.8 %; the result is within the guard band" in sentence(verdict)
+    assert "95 % or 5 % are needed" in sentence(judged(0.1, 0.12, 0.1, admitted=True))
