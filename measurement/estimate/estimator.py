@@ -15,7 +15,7 @@ from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Signals, make_signals, used_gases
 from measurement.estimate.passes import SNR_LEAST, Pass, co2_background, find_passes, readings_noise
-from measurement.estimate.quality import judged_quality, stranger
+from measurement.estimate.quality import judged_quality, quiet, stranger
 from measurement.estimate.record import Record, checked_record
 from measurement.estimate.result import Figures, FscEstimate, Method
 from measurement.estimate.verdict import LIMITS_PERCENT, interval, judged
@@ -71,12 +71,13 @@ def estimate(
     """
     check_parameters(method, carbon, limits_percent)
     record = checked_record(readings, instrument)
+    unlikely = quiet(record.scatter("so2"), instrument.known("so2"))
     noise = readings_noise(record, instrument)
     instrument = replace(
         instrument, channels=tuple(replace(channel, noise=noise.get(channel.gas, channel.noise)) for channel in instrument.channels)
     )
     passes = find_passes(record, instrument.known("co2"))
-    problems = [*record.problems, *_too_little(record, instrument, passes, noise["co2"])]
+    problems = [*record.problems, *unlikely, *_too_little(record, instrument, passes, noise["co2"])]
     if not passes:
         ratio = _nothing(instrument)
     else:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from measurement.estimate.result import Quality
+from measurement.sniffer.channel import Channel
 
 SNR_GOOD = 20.0
 """Signal to noise of CO2 for class A."""
@@ -19,6 +20,16 @@ AGREEMENT_LEAST = 0.01
 
 FUEL_MOST = 5.0
 """More sulphur than marine fuels have [% m/m]: their limit was 4.5 % until 2012 (MARPOL Annex VI, regulation 14)."""
+
+NOISE_USUAL = 1.0
+"""Noise of an SO2 channel of which none is stated [ppb]: the presets have 0.3 to 7.5 ppb."""
+
+QUIET_SHARE = 0.01
+"""Readings that scatter by less than this share of their noise are in another unit, or their sensor is dead.
+
+In ppm it is a thousandth; a data sheet that states 2 sigma, or smoothing in the instrument, leaves a larger share. With
+``NOISE_USUAL`` it is 10 ppt: laser-induced fluorescence alone has less in a second (2 ppt in 10 s: Rollins et al., AMT 9:4601).
+"""
 
 STRANGE_SIGMA = 4.0
 """By so many of its standard deviations each property of the instrument may differ, and the residuals by so many of theirs, until
@@ -74,6 +85,23 @@ def judged_quality(
     if math.isfinite(agreement) and agreement < AGREEMENT_LEAST:
         reasons.append(f"passes differ more than their noise explains (p = {agreement:.1g}; class A needs {AGREEMENT_LEAST:g})")
     return ("B" if reasons else "A"), tuple(reasons)
+
+
+def quiet(scatter: float, channel: Channel) -> tuple[str, ...]:
+    """Return the problem of SO2 that scatters less than its sensor can, if it does: a clean fuel has no SO2, but as much noise.
+
+    Parameters
+    ----------
+    scatter : standard deviation of the readings that they show themselves [ppb]
+    channel : of SO2, as the analyst knows it; rounding to a step that is larger than its noise may hide that
+    """
+    stated = not math.isnan(channel.noise)
+    noise = channel.noise if stated else NOISE_USUAL
+    if scatter >= QUIET_SHARE * noise or channel.resolution > noise:
+        return ()
+    told = f"scatters by {scatter:.2g} ppb from reading to reading" if scatter > 0.0 else "reads the same throughout"
+    expected = f"its noise is {noise:g} ppb" if stated else f"the noise of such sensors is about {noise:g} ppb"
+    return (f"SO2 {told}, and {expected}: it is in another unit (of ppm, give a [scale] of so2 = 1000.0), or its sensor is dead",)
 
 
 def stranger(misfit: float, residual_energy: float, instrument_energy: float, samples: int) -> tuple[str, ...]:
