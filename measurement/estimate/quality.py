@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from measurement.estimate.result import Quality
+from measurement.gases import FUEL_SULPHUR_MOST
 from measurement.sniffer.channel import Channel
 
 SNR_GOOD = 20.0
@@ -17,9 +18,6 @@ PASSES_GOOD = 3
 
 AGREEMENT_LEAST = 0.01
 """Least probability that passes of one fuel differ as much, for class A."""
-
-FUEL_MOST = 5.0
-"""More sulphur than marine fuels have [% m/m]: their limit was 4.5 % until 2012 (MARPOL Annex VI, regulation 14)."""
 
 NOISE_USUAL = 1.0
 """Noise of an SO2 channel of which none is stated [ppb]: the presets have 0.3 to 7.5 ppb."""
@@ -66,13 +64,13 @@ def judged_quality(
         rejected.append(
             f"the result is {fsc:.3f} %, negative by more than {NEGATIVE_SIGMA:g} standard uncertainties: check the corrections"
         )
-    if deviation > FUEL_MOST:
+    if deviation > FUEL_SULPHUR_MOST:
         rejected.append(
-            f"the standard uncertainty is {deviation:.0f} %, and no fuel has above {FUEL_MOST:g} %: SO2 does not follow CO2; check"
-            " its sign and its sensor"
+            f"the standard uncertainty is {deviation:.0f} %, and no fuel has above {FUEL_SULPHUR_MOST:g} %: SO2 does not follow"
+            " CO2; check its sign and its sensor"
         )
-    elif math.isfinite(fsc) and fsc - NEGATIVE_SIGMA * deviation > FUEL_MOST:
-        rejected.append(f"the result is {fsc:.1f} %, and no fuel has above {FUEL_MOST:g} %: check the units of SO2 and CO2")
+    elif math.isfinite(fsc) and fsc - NEGATIVE_SIGMA * deviation > FUEL_SULPHUR_MOST:
+        rejected.append(f"the result is {fsc:.1f} %, and no fuel has above {FUEL_SULPHUR_MOST:g} %: check the units of SO2 and CO2")
     if rejected:
         return "C", tuple(rejected)
     reasons = []

@@ -77,7 +77,7 @@ def budget_chart(record: Record) -> Chart | None:
         y_names=[(float(len(parts) - 1 - i), name) for i, (name, _) in enumerate(parts)],
     )
     return Chart(
-        name="budget", caption="Parts of the standard uncertainty; they add in squares.", panels=[panel], panel_height=0.26
+        name="budget", caption="Parts of the standard uncertainty, 1σ; they add in squares.", panels=[panel], panel_height=0.26
     )
 
 
@@ -133,7 +133,8 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
     factor = fsc_factor(float(record.get("carbon") or CARBON_FRACTION))
     caption = (
         "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content is"
-        f" {factor:.4f} times the slope. Right: of groups of neighbouring passes."
+        f" {factor:.4f} times the slope. Right: of groups of neighbouring passes, with their"
+        " noise, 1σ."
     )
     return Chart(name="regression", caption=caption, panels=panels, columns=len(panels), panel_height=0.21)
 

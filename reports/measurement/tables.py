@@ -27,7 +27,7 @@ def result_table(record: Record) -> Table:
             f"{number(found['low_percent'], '{:.3f}')} to {number(found['high_percent'], _PERCENT)}",
             found["quality"],
         ])  # fmt: skip
-    head = ["Method", "Sulphur content", "Noise", "Standard uncertainty", "95 % interval", "Quality"]
+    head = ["Method", "Sulphur content", "Noise, 1σ", "Standard uncertainty, 1σ", "95 % interval", "Quality"]
     return Table(caption="The result by each method.", head=head, rows=rows, widths=[2.0, 1.2, 1.0, 1.5, 1.6, 0.8])
 
 
@@ -54,7 +54,7 @@ def over_time_table(record: Record) -> Table | None:
         "After",
         "Passes",
         "Sulphur content",
-        "Standard uncertainty",
+        "Standard uncertainty, 1σ",
         "Quality",
         *(f"Limit {limit_words(float(v))}" for v in limits),
     ]
@@ -66,8 +66,8 @@ def over_time_table(record: Record) -> Table | None:
 def record_table(record: Record) -> Table:
     """Return what the record holds and what was taken of the instrument."""
     found, figures, instrument = record["estimate"], record["estimate"]["figures"], record["instrument"]
-    t90 = f"{number(found['so2_t90_s'], '{:.1f}')} ± {number(found['so2_t90_sd_s'], '{:.1f} s')}"
-    delay = f"{number(found['delay_s'], '{:.2f}')} ± {number(found['delay_sd_s'], '{:.2f} s')}"
+    t90 = f"{number(found['so2_t90_s'], '{:.1f}')} ± {number(found['so2_t90_sd_s'], '{:.1f} s')} (1σ)"
+    delay = f"{number(found['delay_s'], '{:.2f}')} ± {number(found['delay_sd_s'], '{:.2f} s')} (1σ)"
     dose, agreement = number(figures["dose_ppm_s"], "{:.0f} ppm s"), number(found["agreement"], "{:.2f}")
     rows = [
         ["Instrument", str(instrument["title"])],

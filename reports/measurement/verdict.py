@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from measurement.gases import limit_words
+from measurement.gases import FUEL_SULPHUR_MOST, limit_words
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import number
 from reports.measurement.data import Record, value
@@ -16,7 +16,7 @@ def measurement_verdict(record: Record) -> Verdict:
     verdicts = sorted(found["verdicts"], key=lambda verdict: float(verdict["limit_percent"]))
     first = verdicts[0]
     reasons = [str(reason) for reason in found["quality_reasons"]]
-    known = found["fsc_percent"] is not None
+    known = _known(found)
     others = [f"{sentence(other, found['quality'], known=True)}." for other in verdicts[1:]] if known else []
     return Verdict(
         holds=first["verdict"] != "above",
@@ -49,14 +49,22 @@ def probability(share: float) -> str:
 
 def _result(record: Record) -> str:
     found, figures = record["estimate"], record["estimate"]["figures"]
-    if found["fsc_percent"] is None:
+    if not _known(found):
         return "No fuel sulphur content can be given."
     passes = "1 pass" if figures["passes"] == 1 else f"{figures['passes']} passes"
-    interval = f"{value(found, 'low_percent'):.3f} to {value(found, 'high_percent'):.3f} %"
     return (
-        f"Fuel sulphur content {value(found, 'fsc_percent'):.3f} % ± {value(found, 'total_percent'):.3f} % m/m (one standard"
-        f" uncertainty; 95 % interval {interval}), from {passes} in {figures['duration_s']:.0f} s. Quality {found['quality']}."
+        f"Fuel sulphur content {value(found, 'fsc_percent'):.3f} % m/m, 95 % interval {_interval(found)}, from {passes} in"
+        f" {figures['duration_s']:.0f} s. Quality {found['quality']}."
     )
+
+
+def _known(found: Record) -> bool:
+    """Return whether there is a result: one that is less sure than any fuel has sulphur is none."""
+    return found["fsc_percent"] is not None and value(found, "total_percent") <= FUEL_SULPHUR_MOST
+
+
+def _interval(found: Record) -> str:
+    return f"{value(found, 'low_percent'):.3f} to {value(found, 'high_percent'):.3f} %"
 
 
 def _short(share: float) -> str:
@@ -80,8 +88,8 @@ def _figures(record: Record) -> list[Card]:
     ]
     true = record.get("true_percent")
     return [
-        Card("Fuel sulphur content", number(found["fsc_percent"], "{:.3f} %")),
-        Card("Standard uncertainty", number(found["total_percent"], "{:.3f} %")),
+        Card("Fuel sulphur content", number(found["fsc_percent"] if _known(found) else None, "{:.3f} %")),
+        Card("95 % interval of it", _interval(found) if _known(found) else "–"),
         *chances,
         Card("Quality", str(found["quality"])),
         *times,

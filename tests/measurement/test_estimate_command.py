@@ -1,6 +1,7 @@
 """The command from a CSV file to its directory, and what it refuses."""
 
 import json
+import re
 
 import numpy as np
 import pandas as pd
@@ -16,7 +17,9 @@ from measurement.estimate.flight_log.csv_file import EARTH_RADIUS_M, read_flight
 def test_a_flight_is_estimated_printed_and_written(logged, capsys):
     assert run(logged) == 0
     printed = capsys.readouterr().out
-    assert "fuel sulphur content 0." in printed
+    assert re.search(r"fuel sulphur content 0\.\d{3} % m/m, 95 % interval 0\.\d{3} to 0\.\d{3} %\n", printed)
+    assert "standard uncertainty (1 sigma) 0." in printed
+    assert "+-" not in printed
     assert "above the limit of 0.10 %: the probability that the fuel is above it is more than 99.9 %" in printed
     assert "below the limit of 0.50 %" in printed
     out = logged.parent / "out"

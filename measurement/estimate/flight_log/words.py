@@ -4,10 +4,9 @@ import math
 from collections.abc import Iterator
 
 from measurement.estimate.flight_log.analysis import Analysis
-from measurement.estimate.quality import FUEL_MOST
 from measurement.estimate.result import FscEstimate, Quality
 from measurement.estimate.verdict import ABOVE, BELOW, CONFIDENCE, Verdict
-from measurement.gases import limit_words
+from measurement.gases import FUEL_SULPHUR_MOST, limit_words
 
 ERRORS = {
     "calibration": "calibration of SO2 and CO2",
@@ -28,7 +27,7 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
     yield f"{figures.duration_s:.0f} s, {figures.passes} passes{every}, CO2 signal to noise {figures.co2_snr:.0f}"
     yield result(found)
     if math.isfinite(found.total_percent):
-        yield f"standard uncertainty {found.total_percent:.4f} %, of which"
+        yield f"standard uncertainty (1 sigma) {found.total_percent:.4f} %, of which"
         yield f"  noise {found.noise_percent:.4f}"
         for key, size in by_size(found):
             yield f"  {ERRORS.get(key, key)} {size:.4f}"
@@ -38,12 +37,11 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
 
 
 def result(found: FscEstimate) -> str:
-    """Return the result in words."""
-    if not found.total_percent <= FUEL_MOST:
+    """Return the result in words, with its 95 % interval."""
+    if not found.total_percent <= FUEL_SULPHUR_MOST:
         return "fuel sulphur content: none can be given"
     return (
-        f"fuel sulphur content {found.fsc_percent:.3f} % m/m +- {found.total_percent:.3f} %;"
-        f" 95 % interval {found.low_percent:.3f} to {found.high_percent:.3f} %"
+        f"fuel sulphur content {found.fsc_percent:.3f} % m/m, 95 % interval {found.low_percent:.3f} to {found.high_percent:.3f} %"
     )
 
 

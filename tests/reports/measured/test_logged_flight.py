@@ -87,6 +87,27 @@ def test_a_verdict_says_probability_and_limit(record, verdict, chance, holds, co
     assert (told.holds, told.complete, told.headline) == (holds, complete, words)
 
 
+def test_a_result_is_told_with_its_interval_at_95_percent_and_every_spread_says_which_it_is(run_directory, record):
+    told = measurement_verdict(record)
+    found = record["estimate"]
+    interval = f"{found['low_percent']:.3f} to {found['high_percent']:.3f} %"
+    assert f"{found['fsc_percent']:.3f} % m/m, 95 % interval {interval}, from" in told.detail
+    assert ("95 % interval of it", interval, "", None) in told.figures
+    assert "±" not in told.detail
+    report = content(read_run(run_directory))
+    for table in blocks_of(report, Table, "result"):
+        assert all(name.endswith(", 1σ") for name in table.head if "uncertainty" in name or "Noise" in name)
+    spreads = [cell for table in blocks_of(report, Table, "record") for row in table.rows for cell in row if "±" in cell]
+    assert [cell.count("±") == cell.count("(1σ)") for cell in spreads] == [True]
+
+
+def test_a_result_that_is_less_sure_than_fuels_have_sulphur_is_none(record):
+    record["estimate"] |= {"fsc_percent": 81.7, "total_percent": 10936.7, "quality": "C", "quality_reasons": ["SO2 is not of it"]}
+    told = measurement_verdict(record)
+    assert told.headline == "Nothing can be said of the limit of 0.10 %: there is no result"
+    assert not any("81.7" in text for text in (told.detail, *(card[1] for card in told.figures)))
+
+
 def test_quality_c_gives_no_verdict_in_words_either(record):
     record["estimate"] |= {"quality": "C", "quality_reasons": ["SO2 is saturated"]}
     for verdict in record["estimate"]["verdicts"]:
