@@ -28,7 +28,7 @@ def result_table(record: Record) -> Table:
             found["quality"],
         ])  # fmt: skip
     head = ["Method", "Sulphur content", "Noise, 1σ", "Standard uncertainty, 1σ", "95 % interval", "Quality"]
-    return Table(caption="The result by each method.", head=head, rows=rows, widths=[2.0, 1.2, 1.0, 1.5, 1.6, 0.8])
+    return Table(caption="The result by each method.", head=head, rows=rows, widths=[1.8, 1.2, 0.8, 1.9, 1.5, 0.7])
 
 
 def over_time_table(record: Record) -> Table | None:
