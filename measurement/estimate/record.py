@@ -117,7 +117,7 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
         )
     gases = _used(values, instrument)
     for gas in gases:
-        _check_units(gas, values[:, GASES.index(gas)])
+        check_units(gas, values[:, GASES.index(gas)])
     columns = [GASES.index(gas) for gas in gases]
     problems = _problems(time, values, gases, instrument)
     known = np.isfinite(values[:, columns]).all(axis=1)
@@ -147,7 +147,13 @@ def _used(values: Array, instrument: SnifferSpec) -> list[str]:
     return used
 
 
-def _check_units(gas: str, values: Array) -> None:
+def check_units(gas: str, values: Array) -> None:
+    """Refuse readings of a gas that cannot be in its unit, shape (m,).
+
+    Raises
+    ------
+    MeasurementError : they are CO2 without its background, or no gas has them
+    """
     known = values[np.isfinite(values)]
     middle, least, most = float(np.median(known)), float(known.min()), float(known.max())
     if gas == "co2" and not CO2_LEAST <= middle <= CO2_MOST:

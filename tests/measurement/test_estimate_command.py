@@ -163,6 +163,16 @@ def test_files_with_mistakes_are_refused_in_one_line(logged, capsys, content, me
     told = capsys.readouterr().err
     assert told.count("\n") == 1
     assert message in told
+    assert told.count(str(logged)) <= 1
+
+
+def test_co2_without_its_background_is_told_as_that(logged, capsys):
+    table = pd.read_csv(logged)
+    table["co2_ppm"] -= 421.0
+    table.to_csv(logged, index=False)
+    assert table["co2_ppm"].min() < 0.0
+    assert run(logged) == 2
+    assert "air has 250 to 50000 ppm: check the unit; keep the background" in capsys.readouterr().err
 
 
 def with_value(logged, column, row, value):
@@ -185,7 +195,7 @@ def test_a_code_for_a_missing_reading_is_refused_until_it_is_named(logged, capsy
     assert run(logged, config=config) == 2
     error = capsys.readouterr().err
     assert told in error
-    assert "leave it empty or name it in the configuration (missing = [-9999])" in error
+    assert "leave it empty or name it in the configuration, as in missing = [-9999]" in error
     assert error.count("\n") == 1
     (logged.parent / "instrument.toml").write_text(f'instrument = "electrochemical"\nmissing = [{value}]\n', encoding="utf-8")
     assert run(logged) == 0

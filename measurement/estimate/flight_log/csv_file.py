@@ -10,7 +10,7 @@ import pandas as pd
 
 from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.config import LogConfig
-from measurement.estimate.record import lowest_reading
+from measurement.estimate.record import check_units, lowest_reading
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
@@ -54,6 +54,8 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         # Without ``index_col`` rows that end in a comma would move every column by one; what would be lost by it is refused.
         with warnings.catch_warnings(action="error", category=pd.errors.ParserWarning):
             table = pd.read_csv(path, skipinitialspace=True, low_memory=False, index_col=False)
+    except MeasurementError:
+        raise
     except pd.errors.ParserWarning:
         raise MeasurementError(f"'{path}' has rows with more values than its head line has names; name every column") from None
     except OSError as error:
@@ -121,6 +123,9 @@ def _check_negative(values: Array, config: LogConfig, path: Path) -> None:
         column, unit = values[:, GASES.index(gas)], UNITS[gas]
         if not np.isfinite(column).any():
             continue
+        if gas == "co2":
+            # Without its background it has negative readings, too, which are no marks.
+            check_units(gas, column)
         lowest = lowest_reading(gas, values, config.instrument)
         low = np.flatnonzero(column < lowest)
         if low.size:
@@ -128,7 +133,7 @@ def _check_negative(values: Array, config: LogConfig, path: Path) -> None:
             raise MeasurementError(
                 f"'{path}': {gas.upper()} is {least:g} {unit} in row {low[0] + 2}{more}; noise, zero and other gases explain"
                 f" {lowest:.0f} {unit} at least: where it stands for a missing reading, leave it empty or name it in the"
-                f" configuration (missing = [-9999]); otherwise check the sign, and state the channel's noise, zero and cross"
+                f" configuration, as in missing = [-9999]; otherwise check the sign, and state the channel's noise, zero and cross"
             )
 
 
