@@ -62,7 +62,7 @@ MEASURES: Mapping[str, Measure] = {
     "duration_s": _of("duration_s", "Flight time", "s", 1),
     "fsc_percent": _of("fsc_percent", "Sulphur content found", "%", 4),
     "fsc_error_percent": Measure(figure=Figure(name="Error of the sulphur content", unit="%", digits=4), values=_off_fuel),
-    "fsc_uncertainty_percent": _of("fsc_uncertainty_percent", "Uncertainty of the sulphur content", "%", 4),
+    "fsc_uncertainty_percent": _of("fsc_uncertainty_percent", "Uncertainty of the sulphur content, 1σ", "%", 4),
 }
 """By the names of the columns of ``differences.csv``, in the order they are shown."""
 

@@ -49,7 +49,7 @@ _WHOLE = (
     _Whole("Time guarded, all flights", "guard_time_s", np.sum),
     _Whole("Flight time, all flights", "duration_s", np.sum),
     _Whole("Error of the sulphur content, median", "fsc_error_percent", np.median),
-    _Whole("Uncertainty of the sulphur content, median", "fsc_uncertainty_percent", np.median),
+    _Whole("Uncertainty of the sulphur content, 1σ, median", "fsc_uncertainty_percent", np.median),
 )
 
 

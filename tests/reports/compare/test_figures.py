@@ -99,3 +99,8 @@ def test_every_figure_has_a_unit_and_a_name_of_its_own():
     names = [measure.figure.name for measure in MEASURES.values()]
     assert len(set(names)) == len(names)
     assert all(measure.figure.unit for measure in MEASURES.values())
+
+
+def test_the_uncertainty_of_the_sulphur_content_says_that_it_is_one_sigma():
+    # Reports on flights give it at 95 %.
+    assert MEASURES["fsc_uncertainty_percent"].figure.name == "Uncertainty of the sulphur content, 1σ"
