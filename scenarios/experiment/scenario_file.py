@@ -10,6 +10,8 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
     import tomli_w
 
     document = request.scenario.model_dump(mode="json", exclude_none=True)
+    # The margin is planned for every fault that the experiment may bring, also for those that this flight does not have.
+    document["fault"]["declared"] = sorted(request.scenario.declared_faults - {request.scenario.fault.kind})
     alone = request.scenario.model_copy(update={"draws": (), "sweep": SweepConfig()})
     for section, values in document.items():
         if isinstance(values, dict):

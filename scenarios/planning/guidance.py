@@ -72,7 +72,7 @@ def guard_parameters(scenario: Scenario, setup: VehicleSetup, radius: float, *, 
         time_step=1.0 / scenario.guidance.rate_hz,
         # A gust may begin at any moment; and one that blows turns with the vehicle in the prediction, but not in the air.
         speed_error=f.speed_error_mps + air.gust_speed_mps if scenario.follows else 0.0,
-        drift_rate=f.drift_rate_mps if SATELLITES in scenario.declared_faults else 0.0,
+        drift_rate=f.drift_rate_mps if scenario.follows and SATELLITES in scenario.declared_faults else 0.0,
         turbulence=turbulence,
         turn_speed=setup.turning_airspeed(omega_max(scenario.guidance)),
     )

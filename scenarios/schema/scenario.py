@@ -152,9 +152,10 @@ class Scenario(Section):
 
     @property
     def declared_faults(self) -> frozenset[str]:
-        """Return the kinds of faults that its flights may have."""
+        """Return the kinds of faults that its flights may have, and those that they declare beside."""
         drawn = [value for draw in self.draws if draw.key == "fault.kind" for value in draw.choice or ()]
-        return frozenset({self.fault.kind, *map(str, drawn), *map(str, self.sweep.root.get("fault.kind", ()))} - {"none"})
+        varied = [*map(str, drawn), *map(str, self.sweep.root.get("fault.kind", ()))]
+        return frozenset({self.fault.kind, *self.fault.declared, *varied} - {"none"})
 
     @property
     def plume_by_wind(self) -> bool:

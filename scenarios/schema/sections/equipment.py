@@ -66,6 +66,8 @@ class FaultConfig(Section):
     """How long vessel data are lost [s]."""
     satellite_navigation_s: Positive = 10.0
     """How long satellite navigation is lost [s]; any other fault is for good."""
+    declared: tuple[str, ...] = ()
+    """Kinds that the keep-out guard and its margin allow for beside the flight's own, and beside those swept or sampled."""
 
     @field_validator("at_s", mode="before")
     @classmethod
