@@ -6,8 +6,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from gnc.laws.steering_law import STILL_AIR, SteeringLaw, Surroundings, begun
-from gnc.numeric import limited
+from gnc.laws.steering_law import STILL_AIR, SteeringLaw, Surroundings, begun, call_error, within_limit
 from gnc.reference.reference import Reference
 
 
@@ -89,12 +88,13 @@ class Tracker(Generic[AnyReference]):
     """
 
     __slots__ = (
-        "_lag", "_limit", "_steer", "_until_ahead", "ahead", "heading_rate_command", "heading_rate_demand",
+        "_lag", "_law", "_limit", "_steer", "_until_ahead", "ahead", "heading_rate_command", "heading_rate_demand",
         "reference", "saturated",
     )  # fmt: skip
 
     def __init__(self, parameters: TrackingParameters, reference: AnyReference, surroundings: Surroundings = STILL_AIR) -> None:
         law = begun(parameters.law, surroundings, parameters.time_step)
+        self._law = type(parameters.law).__qualname__
         self._steer, self._limit = law.heading_rate, parameters.heading_rate_max
         self.reference = PlacedReference(reference)
         self.ahead = copy.copy(reference)
@@ -116,14 +116,25 @@ class Tracker(Generic[AnyReference]):
         course : chi [rad]
         speed : horizontal speed [m/s]
         heading_rate : measured rate of the course [rad/s]
+
+        Raises
+        ------
+        LawError : the law returned no number
         """
         reference, ahead, lag = self.reference, self.ahead, self._lag
         then_north, then_east, then_course = north, east, course
         if lag > 0.0:
             then_north, then_east, then_course = lag_ahead(north, east, course, speed, heading_rate, self.heading_rate_command, lag)
-        demand = self._steer(ahead, ahead.north - then_north, ahead.east - then_east, then_course, speed)
-        limit = self._limit
-        command = demand if -limit <= demand <= limit else limited(demand, limit)
+        to_north, to_east, limit = ahead.north - then_north, ahead.east - then_east, self._limit
+        try:
+            demand = self._steer(ahead, to_north, to_east, then_course, speed)
+        except TypeError as error:
+            raise call_error(self._law, error) from None
+        try:
+            inside = -limit <= demand <= limit
+        except TypeError:
+            inside = False
+        command = demand if inside else within_limit(demand, limit, self._law, (to_north, to_east, then_course, speed))
         self.heading_rate_demand, self.heading_rate_command = demand, command
         self.saturated = command != demand
         ahead.step()

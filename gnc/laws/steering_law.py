@@ -1,11 +1,13 @@
 """What a steering law is, and which there are."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
 from common.registry import Registry
+from gnc.errors import LawError
+from gnc.numeric import limited
 from gnc.reference.reference import Reference
 
 ON_OSCILLATION = "oscillation"
@@ -96,6 +98,39 @@ def begun(law: SteeringLaw, surroundings: Surroundings, time_step: float) -> Ste
     """
     begin: Callable[[Surroundings, float], SteeringLaw] | None = getattr(law, "begin", None)
     return law if begin is None else begin(surroundings, time_step)
+
+
+_MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a finite number [rad/s]"
+
+
+def within_limit(demand: Any, limit: float, law: str, given: Sequence[float]) -> float:
+    """Return what a law demanded, kept within minus and plus ``limit`` [rad/s].
+
+    Parameters
+    ----------
+    demand : what it returned
+    limit : omega_max [rad/s]
+    law : its name, for the error
+    given : what it was asked with; of what is not finite itself, as after an aircraft has diverged, it can make no number
+
+    Raises
+    ------
+    LawError : it returned what is no number, asked with numbers
+    """
+    try:
+        if -limit <= demand <= limit or not math.isnan(demand) or not all(map(math.isfinite, given)):
+            return limited(demand, limit)
+    except TypeError:
+        pass
+    raise LawError(f"steering law '{law}' returned {demand}: {_MUST}")
+
+
+def call_error(law: str, error: TypeError) -> Exception:
+    """Return what to raise for an error of a call: the same where it comes from inside the law, where it names its place."""
+    raised = error.__traceback__
+    if raised is not None and raised.tb_next is not None:
+        return error
+    return LawError(f"steering law '{law}' cannot be called ({error}): {_MUST}")
 
 
 STEERING_LAWS: Registry[Callable[..., SteeringLaw]] = Registry("steering_law", folder="gnc.laws", methods=("heading_rate",))

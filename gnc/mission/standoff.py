@@ -13,7 +13,7 @@ from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
 from gnc.laws.path.lgvf import heading_for
-from gnc.laws.steering_law import Surroundings, begun
+from gnc.laws.steering_law import Surroundings, begun, call_error, within_limit
 from gnc.mission.approach import COURSE_GAIN
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.direct_tracking import CLOSING_RATE, STANDOFF, SteadyCentre
@@ -21,7 +21,7 @@ from gnc.mission.egress import Egress
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb
 from gnc.mission.plume_following import GLIDE_ALTITUDE
-from gnc.numeric import limited, wrap
+from gnc.numeric import wrap
 from gnc.tracker import TrackingParameters, lag_ahead
 from gnc.vectors import Vector, along, course_of, minus, norm, plus, scaled
 
@@ -100,7 +100,7 @@ class CircleTracker:
     """
 
     __slots__ = (
-        "_lag", "_limit", "_own", "_steer", "_surroundings", "_target", "_time_step", "ahead", "heading_rate_command",
+        "_lag", "_law", "_limit", "_own", "_steer", "_surroundings", "_target", "_time_step", "ahead", "heading_rate_command",
         "heading_rate_demand", "radius", "reference", "saturated",
     )  # fmt: skip
 
@@ -109,13 +109,19 @@ class CircleTracker:
         self.radius = parameters.radius + STANDOFF * parameters.tracked
         self._surroundings = Surroundings(own)
         self._steer = begun(tracking.law, self._surroundings, tracking.time_step).heading_rate
+        self._law = type(tracking.law).__qualname__
         self._limit, self._lag = tracking.heading_rate_max, tracking.lag
         self.reference, self.ahead = CirclePoint(parameters.speed), CirclePoint(parameters.speed)
         self.heading_rate_demand = self.heading_rate_command = 0.0
         self.saturated = False
 
     def step(self, north: float, east: float, course: float, speed: float, heading_rate: float) -> float:
-        """Return the heading rate to command [rad/s]; parameters are those of ``gnc.tracker.Tracker``."""
+        """Return the heading rate to command [rad/s]; parameters are those of ``gnc.tracker.Tracker``.
+
+        Raises
+        ------
+        LawError : the law returned no number
+        """
         own, target, reference, ahead = self._own, self._target, self.reference, self.ahead
         drift = target.velocity_north - own.wind_north, target.velocity_east - own.wind_east
         if norm(drift) >= reference.speed:
@@ -130,10 +136,14 @@ class CircleTracker:
                 return vehicle
 
             then_north, then_east, then_course = placed(ahead, self._lag)
-            demand = self._steer(ahead, ahead.north - then_north, ahead.east - then_east, then_course, speed)
+            try:
+                demand = self._steer(ahead, ahead.north - then_north, ahead.east - then_east, then_course, speed)
+            except TypeError as error:
+                raise call_error(self._law, error) from None
             # The reference is where it will be at the next step, as that of any tracker.
             placed(reference, self._time_step)
-        self.heading_rate_demand, self.heading_rate_command = demand, limited(demand, self._limit)
+        command = within_limit(demand, self._limit, self._law, (ahead.north - north, ahead.east - east, course, speed))
+        self.heading_rate_demand, self.heading_rate_command = demand, command
         self.saturated = self.heading_rate_command != demand
         return self.heading_rate_command
 

@@ -4,7 +4,7 @@ import traceback
 from pathlib import Path
 
 from aircraft.errors import AircraftError
-from gnc.errors import InfeasibleError
+from gnc.errors import InfeasibleError, LawError
 from measurement.errors import MeasurementError
 from scenarios.engine.task import Row
 from scenarios.errors import InputError
@@ -23,7 +23,7 @@ def failure(error: Exception) -> Row:
     if isinstance(error, InfeasibleError | MeasurementError):
         return {"outcome": Outcome.INFEASIBLE.value, "message": str(error), "criteria_met": False}
     message = str(error)
-    if not isinstance(error, AircraftError | InputError):
+    if not isinstance(error, AircraftError | InputError | LawError):
         where = traceback.extract_tb(error.__traceback__)[-1]
         message = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
     return {"outcome": Outcome.FAILED.value, "message": message, "criteria_met": False}

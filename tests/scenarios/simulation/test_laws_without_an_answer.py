@@ -1,0 +1,79 @@
+"""Steering laws that return no heading rate, or cannot be called: the flight is a failed row that names the law."""
+
+from dataclasses import dataclass
+
+import pytest
+from flight_cases import ASTERN, fly
+
+from gnc.laws.steering_law import STEERING_LAWS
+
+
+@dataclass(frozen=True)
+class Answers:
+    answer: object = 0.0
+    after: int = 3
+
+    def begin(self, *_):
+        return _Begun(self.answer, self.after)
+
+
+class _Begun:
+    def __init__(self, answer, after):
+        self._answer, self._until = answer, after
+
+    def heading_rate(self, *_):
+        self._until -= 1
+        return 0.0 if self._until > 0 else self._answer
+
+
+@dataclass(frozen=True)
+class NotANumber(Answers):
+    answer: object = float("nan")
+
+
+@dataclass(frozen=True)
+class Nothing(Answers):
+    answer: object = None
+
+
+@dataclass(frozen=True)
+class Word(Answers):
+    answer: object = "left"
+
+
+@dataclass(frozen=True)
+class TooFew:
+    def heading_rate(self, _):
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Wrong:
+    def heading_rate(self, *_):
+        return 1.0 + "one"
+
+
+MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a finite number [rad/s]"
+
+
+@pytest.mark.parametrize("mission", ["track", "follow", "standoff"])
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        (NotANumber, ("steering law 'NotANumber' returned nan: ", MUST)),
+        (Nothing, ("steering law 'Nothing' returned None: ", MUST)),
+        (Word, ("steering law 'Word' returned left: ", MUST)),
+        (TooFew, ("steering law 'TooFew' cannot be called (", "takes 2 positional arguments but 6 were given", MUST)),
+        # An error inside the law is told where it is.
+        (Wrong, ("TypeError: ", "(test_laws_without_an_answer.py:")),
+    ],
+)
+def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mission, law, words):
+    with STEERING_LAWS.lent("own", law):
+        flown = fly(
+            guidance={"law": "own", "mission": mission, "keepout_guard": False}, start=ASTERN, flight={"duration_max_s": 20.0}
+        )
+    assert (flown.row["outcome"], flown.row["criteria_met"]) == ("failed", False)
+    for word in words:
+        assert word in flown.row["message"]
+    assert "tracker.py" not in flown.row["message"]
