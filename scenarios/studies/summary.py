@@ -121,10 +121,13 @@ class FlightCounts:
         return upper_bound(self.flown - self.kept_out, self.flown)
 
     def exit_line(self) -> str:
-        """Return what the exit status is about, and how many flights did it."""
+        """Return the exit status of a run that is done, and how many flights did what status 0 requires of each."""
         about = {"criteria": "met every criterion", "keep_out": "kept out"}
         kinds = [about[kind] for kind in about if self.required[kind]] or ["met every criterion"]
-        return f"exit status: 0 if every flight {' or '.join(kinds)}, as required of it; {self.passed} of {self.planned} did"
+        did = f"{self.passed} of {self.planned} flights {' or '.join(kinds)}, as required of each"
+        if self.done < self.planned:
+            return f"so far {did} for exit status 0"
+        return f"exit status {int(self.passed != self.planned)}: {did}"
 
     def warnings(self) -> list[str]:
         """Return what of the scenario had no effect on flights."""

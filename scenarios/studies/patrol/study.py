@@ -74,8 +74,9 @@ class PatrolStudy(FlightStudy):
             f" ({100.0 * counts.share:.0f} %, required {100.0 * config.oracle_share_min:g} %)",
             f"keep-out violations: {counts.violations}; patrols that kept out: {counts.kept_out} of {counts.done}",
             *(f"    {row['flight_id']}: {row['message']}" for row in counts.failed),
-            "exit status: 0 if every patrol kept out and brought its aircraft through, and verdicts are as many and as right as"
-            f" patrol.oracle_share_min and patrol.wrong_share_max require; {'they are' if met else 'not so'}",
+            f"{f'exit status {int(not met)}: ' if counts.done == self.planned else 'so far '}{counts.met} of {self.planned} patrols"
+            f" kept out and brought their aircraft through, and verdicts are {'' if enough else 'not '}as many as"
+            f" patrol.oracle_share_min and {'' if right else 'not '}as right as patrol.wrong_share_max requires",
         ]
         manifest: dict[str, Any] = {
             "patrols_met": counts.met, "ships_served": counts.served, "verdicts": counts.verdicts, "verdicts_wrong": counts.wrong,

@@ -208,7 +208,7 @@ def test_what_happened_is_told_in_lines(listed, tmp_path):
         "flights: 2 planned, 0 flown, 0 completed, 0 met every criterion",
         *(f"  {trial}: 1 planned, 0 flown, 0 completed, 0 met every criterion" for trial in ("one", "two")),
     ]
-    assert lines[3] == "exit status: 0 if every flight kept out, as required of it; 0 of 2 did"
+    assert lines[3] == "exit status 1: 0 of 2 flights kept out, as required of each"
     assert lines[4].startswith("    one_00000: infeasible: the vessel moves at up to")
 
 
