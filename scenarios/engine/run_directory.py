@@ -23,6 +23,7 @@ from common.run_layout import (
     REPORT_PDF,
     STATISTICS,
 )
+from scenarios.engine.configuration import changed_keys
 from scenarios.engine.fingerprint import differences, fingerprint
 from scenarios.errors import InputError
 
@@ -63,8 +64,14 @@ class RunDirectory:
         self.model = path / MODEL
         self.gone: list[str] = []
 
-    def open(self, config_hash: str, *, resume: bool) -> dict[str, Any]:
+    def open(self, config_hash: str, *, resume: bool, manifest: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """Open the directory and return the manifest of the run that is resumed, empty for a new one.
+
+        Parameters
+        ----------
+        config_hash : of the configuration that is to be flown
+        resume : continue the run that is there
+        manifest : of what is to be flown, by which an error names the keys that differ
 
         Raises
         ------
@@ -74,7 +81,7 @@ class RunDirectory:
         try:
             # A run that was killed before it had a manifest has nothing to continue, and is begun anew.
             if resume and (self.manifest.exists() or not self._is_begun()):
-                return self._open_existing(config_hash)
+                return self._open_existing(config_hash, manifest or {})
             self.refuse_taken()
             self._create()
         except OSError as error:
@@ -105,7 +112,7 @@ class RunDirectory:
         except OSError as error:
             raise self._unwritable(error) from None
 
-    def _open_existing(self, config_hash: str) -> dict[str, Any]:
+    def _open_existing(self, config_hash: str, ours: Mapping[str, Any]) -> dict[str, Any]:
         if not self.manifest.is_file():
             raise InputError(f"'{self.path}' holds no run to resume; leave out --resume to start one")
         try:
@@ -114,8 +121,10 @@ class RunDirectory:
         except (ValueError, KeyError, TypeError, OSError, RecursionError):
             raise InputError(f"'{self.manifest}' cannot be read; start a new run in another --out") from None
         if found != config_hash:
+            keys = changed_keys(manifest, ours) if ours else ""
             raise InputError(
-                f"'{self.path}' was run with another configuration; resume it with the same scenario, --seed and --set values"
+                f"'{self.path}' was run with another configuration{f': {keys}' if keys else ''}; resume it with the same scenario,"
+                " --seed and --set values"
             )
         if differing := differences(theirs):
             name = differing[0]

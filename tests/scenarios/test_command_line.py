@@ -122,6 +122,19 @@ def test_a_directory_that_holds_another_run_is_left_alone(tmp_path, run_here):
     assert [path.name for path in tmp_path.iterdir()] == ["manifest.json"]
 
 
+def test_a_run_that_is_resumed_with_other_keys_says_which_with_both_values(tmp_path, run_here):
+    def resumed(*changes):
+        sets = [word for change in changes for word in ("--set", change)]
+        return run_here("sweep_nu", "--out", tmp_path / "run", "--no-report", "--resume", *SHORT, *sets)
+
+    run_here("sweep_nu", "--out", tmp_path / "run", "--no-report", *SHORT)
+    assert_refused(resumed("seed=7"), "another configuration: seed was ", ", and is 7 now; resume it with the same scenario")
+    both = resumed("keepout.radius_m=190", "start.aspect_deg=20.0")
+    assert_refused(both, "keepout.radius_m was 200.0, and is 190.0 now", "start.aspect_deg was not set, and is 20.0 now; resume")
+    many = resumed("seed=7", "keepout.radius_m=190", "start.aspect_deg=20.0", "guidance.bank_deg=40", "guidance.reserve=0.1")
+    assert_refused(many, "; and 2 more; resume it")
+
+
 def test_a_report_of_nothing_is_refused(tmp_path):
     in_process.assert_refused(in_process.run_command("reports.build", tmp_path), "holds no run")
 
