@@ -10,7 +10,7 @@ from scenarios.api.html import table
 from scenarios.api.objects import Parts, lent, named
 from scenarios.errors import InputError
 from scenarios.schema.keys import suggestion
-from scenarios.schema.load import AnyStudy, load_document, load_study
+from scenarios.schema.load import AnyStudy, load_document, load_study, sweeps_speed_ratio
 from scenarios.schema.overrides import Document, as_toml
 
 Given = str | os.PathLike[str] | Mapping[str, Any]
@@ -74,12 +74,13 @@ class Scenario:
 
     def _of_nu(self, nu: object) -> dict[str, object]:
         """Return the key that sets the speed ratio: that of the sweep or of the cases, where they have one."""
-        document = load_document(self.source, self.changes)
-        cases = document.get("cases", ())
-        if isinstance(nu, int | float):
-            swept = "nu" in document.get("sweep", {}) or any("sweep.nu" in case.get("set", {}) for case in cases)
-            return {"sweep.nu": [nu]} if swept else {"vessel.speed_ratio": nu}
-        return {"sweep.nu": nu}
+        nu = nu.tolist() if hasattr(nu, "tolist") else nu
+        if isinstance(nu, list | tuple):
+            return {"sweep.nu": nu}
+        if not isinstance(nu, int | float) or isinstance(nu, bool):
+            raise InputError(f"nu is {nu!r}; give a number, as in nu=0.5, or a list of numbers")
+        swept = sweeps_speed_ratio(load_document(self.source, self.changes))
+        return {"sweep.nu": [nu]} if swept else {"vessel.speed_ratio": nu}
 
     def __getitem__(self, key: str) -> Any:
         """Return the value of a dotted key.

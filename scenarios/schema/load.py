@@ -17,7 +17,7 @@ from common.spelling import did_you_mean
 from scenarios.errors import InputError
 from scenarios.schema.effect import refuse_unused
 from scenarios.schema.keys import suggestion
-from scenarios.schema.overrides import Document, apply_override, given_keys, merged, parse_override, set_value
+from scenarios.schema.overrides import Document, apply_override, as_toml, given_keys, merged, parse_override, set_value
 from scenarios.schema.parts import with_absolute_files
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.convergence import ConvergenceScenario
@@ -109,6 +109,9 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
     parsed = [(key, with_absolute_files(value, Path(), key)) for key, value in map(parse_override, overrides)]
     kind = _kind(document | {key: value for key, value in parsed if key == "study"})
     for key, value in parsed:
+        if key == "nu" and kind is Scenario:
+            # Before it is put there: it would take the place of what is swept.
+            raise InputError(_unknown_nu(document, value))
         apply_override(document, key, value, kind)
     return document
 
@@ -223,9 +226,25 @@ def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
+        if key == "nu" and kind is Scenario:
+            raise InputError(_unknown_nu(document, document["nu"])) from None
         more = len({entry["loc"] for entry in error.errors()}) - 1
         others = f" (and {more} more keys)" if more else ""
         raise InputError(f"{_explain(key, first['type'], first['msg'], first.get('input'), kind)}{others}") from None
+
+
+def sweeps_speed_ratio(document: Mapping[str, Any]) -> bool:
+    """Return whether a document sets the speed ratio in its sweep or in its cases."""
+    cases = [case.get("set") for case in document.get("cases", ()) if isinstance(case, dict)]
+    return any(isinstance(of, dict) and ({"nu", "sweep.nu"} & of.keys()) for of in (document.get("sweep"), *cases))
+
+
+def _unknown_nu(document: Mapping[str, Any], nu: object) -> str:
+    """Return what to say of ``nu``, which is no key: the one that sets the speed ratio here."""
+    if isinstance(nu, list):
+        return f"unknown key 'nu'; did you mean 'sweep.nu={as_toml(nu)}'?"
+    key = f"sweep.nu=[{as_toml(nu)}]" if sweeps_speed_ratio(document) else f"vessel.speed_ratio={as_toml(nu)}"
+    return f"unknown key 'nu'; did you mean '{key}'?"
 
 
 def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:

@@ -28,6 +28,22 @@ def refusal(name, *overrides):
 
 
 @pytest.mark.parametrize(
+    ("scenario", "override", "key"),
+    [
+        ("sweep_nu", "nu=0.5", "sweep.nu=[0.5]"),
+        ("sweep_nu", "nu=[0.3, 0.5]", "sweep.nu=[0.3, 0.5]"),
+        ("paper", "nu=0.5", "sweep.nu=[0.5]"),
+        ("sea_approach", "nu=0.5", "vessel.speed_ratio=0.5"),
+        ("sea_approach", "nu=[0.3, 0.5]", "sweep.nu=[0.3, 0.5]"),
+    ],
+)
+def test_the_short_word_for_the_speed_ratio_gets_the_key_that_sets_it(scenario, override, key):
+    assert refusal(scenario, override) == f"unknown key 'nu'; did you mean '{key}'?"
+    # And that is taken.
+    load_study(scenario, [key])
+
+
+@pytest.mark.parametrize(
     ("override", "words"),
     [
         ("wind.form_deg=3", "unknown key 'wind.form_deg'; did you mean 'wind.from_deg'?"),
