@@ -48,6 +48,11 @@ class DocumentedSection:
     keys: tuple[DocumentedKey, ...]
 
 
+_ONE_POINT = ("falsify", "arena", "patrol")
+_REFUSING = {"sweep": (*_ONE_POINT, "paper"), "cases": _ONE_POINT, "comparison": _ONE_POINT}
+"""Studies that refuse a section of several points; ``paper`` has cases, beside which there is no sweep."""
+
+
 @functools.cache
 def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSection, ...]:
     """Return the sections of a kind of scenario file, in their order; first the keys outside of any section."""
@@ -112,7 +117,7 @@ def _free_table(key: str, model: type[BaseModel], studies: tuple[str, ...]) -> D
         range="keys with dots, each with a list of values",
         default={},
         required=False,
-        studies=studies,
+        studies=_studies(key, studies),
     )
 
 
@@ -120,6 +125,8 @@ def _studies(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
     """Return the studies in which a key can have an effect."""
     if studies != FLIGHT_STUDIES:
         return studies
+    if refusing := _REFUSING.get(key.partition(".")[0]):
+        return tuple(study for study in studies if study not in refusing)
     acting = tuple(study for study in studies if any(not unused(scenario, key) for scenario in _plain_scenarios(study)))
     # One that acts in none of these needs something else, which every study may have.
     return acting or studies

@@ -263,8 +263,8 @@ RULES = (
          user="differential evolution: put 'differential_evolution' into search.methods"),
     Rule(keys=("search.restarts",), acts=lambda s: s.search.methods != ("corners",),
          user="methods that may become stuck: put 'local' or 'cma' into search.methods"),
-    Rule(keys=("flights",), acts=lambda s: s.study != "falsify", user="other studies; a search flies search.population"
-         " times search.generations"),
+    Rule(keys=("flights",), acts=lambda s: s.study != "falsify", user="other studies; a search flies search.population times one"
+         " more than search.generations, at most, and then search.confirmations of each of search.kept flights: set these"),
     Rule(keys=("laws", "arena."), acts=lambda s: s.study == "arena", user="laws side by side: set study to 'arena'"),
     Rule(keys=("patrol.",), acts=lambda s: s.study == "patrol", user="several ships one after the other: set study to 'patrol'"),
     Rule(keys=("flight.duration_max_s",), acts=lambda s: s.study != "patrol",

@@ -148,7 +148,8 @@ class SubsetConfig(Section):
     """Subset simulation: levels of flights, each starting from the nearest of the level before."""
 
     flights_per_level: Annotated[int, Field(ge=50, le=1_000_000)] = 500
-    """Flights of a level, those that pass on from the level before among them [-]."""
+    """Flights of a level, those that pass on from the level before among them: 10 or more have to pass on, as do of 100 with the
+    default subset.conditional_probability [-]."""
     conditional_probability: Annotated[float, Field(ge=0.01, le=0.5)] = 0.1
     """Fraction of a level's flights that pass on to the next: the nearest [-]."""
     levels_max: Annotated[int, Field(ge=1, le=50)] = 8

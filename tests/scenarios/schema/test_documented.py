@@ -12,7 +12,7 @@ from scenarios.schema.keys import known_keys
 from scenarios.schema.load import KINDS
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.convergence import ConvergenceScenario
-from scenarios.schema.sections.experiment import TrialList
+from scenarios.schema.sections.experiment import SubsetConfig, TrialList
 
 KEYS = documented_keys()
 BY_KEY = {key.key: key for key in reversed(KEYS)}
@@ -83,7 +83,22 @@ def test_studies_are_those_in_which_a_key_can_act():
     assert BY_KEY["wind.speed_mps"].studies == FLIGHT_STUDIES
     assert "falsify" not in BY_KEY["flights"].studies
     assert BY_KEY["ensemble.samples"].studies == ("convergence",)
+    # Those of one point refuse several; and beside the cases that a paper study needs there is no sweep.
+    assert BY_KEY["sweep"].studies == ("flights", "monte_carlo")
+    assert BY_KEY["comparison.nu"].studies == BY_KEY["cases.0.name"].studies == ("flights", "paper", "monte_carlo")
     assert BY_KEY["share"].studies == ("trials",)
+
+
+def test_a_level_of_subset_simulation_takes_as_many_flights_as_is_said_with_the_default_probability():
+    subset = {"conditional_probability": SubsetConfig().conditional_probability}
+    assert "10 or more have to pass on, as do of 100 with the default subset.conditional_probability." in (
+        BY_KEY["subset.flights_per_level"].meaning
+    )
+    assert SubsetConfig(flights_per_level=100, **subset).passing == 10
+    with pytest.raises(ValueError, match=r"set subset\.flights_per_level to 100 or more"):
+        SubsetConfig(flights_per_level=90, **subset)
+    # And its range is that with any.
+    assert SubsetConfig(flights_per_level=50, conditional_probability=0.2).passing == 10
 
 
 def test_conditions_say_what_uses_a_key():

@@ -73,3 +73,15 @@ def test_a_search_by_a_method_that_cannot_search_the_draws_is_refused(tmp_path):
     # CMA-ES needs a covariance: two coordinates at the least.
     line = refused(tmp_path, "search.methods=['cma']")
     assert line.startswith("search.methods ['cma'] proposed no flight (continuous draws: 1 of 1, search.population: 16): add")
+
+
+def test_a_number_of_flights_is_refused_with_what_a_search_flies():
+    keys = ["search.generations=2", "search.population=16", "search.kept=3", "search.confirmations=2"]
+    with pytest.raises(InputError) as refused:
+        load_study("falsify", ["flights=5"])
+    assert (
+        "a search flies search.population times one more than search.generations, at most, and then search.confirmations of each"
+        " of search.kept flights: set these" in str(refused.value)
+    )
+    scenario = load_study("falsify", keys)
+    assert scenario.search.flights_max == 16 * (2 + 1)
