@@ -168,7 +168,7 @@ def file_hash(name: str) -> str:
             return hashlib.file_digest(file, "sha256").hexdigest()[:16]
     except OSError as error:
         raise PluginError(
-            f"{file_of(name)}: cannot be read: {error.strerror}; check the path, relative to the scenario file"
+            f"{file_of(name)}: cannot be read: {error.strerror}; check the path, in a scenario file relative to that file"
         ) from None
 
 

@@ -28,6 +28,12 @@ def folder_names(directory: Path) -> list[str]:
     if not directory.is_dir():
         raise AircraftError(f"aircraft directory '{directory}': there is no such directory; check the path")
     names = sorted(entry.name for entry in directory.iterdir() if entry.is_dir() and _models(entry))
+    if not names and _models(directory):
+        where = directory.absolute()
+        raise AircraftError(
+            f"aircraft directory '{directory}' is the folder of an aircraft itself, '{where.name}'; give the directory that it is"
+            f" in, '{where.parent}'"
+        )
     if not names:
         raise AircraftError(f"aircraft directory '{directory}' holds no aircraft; each needs a folder and a model, NAME/NAME.xml")
     return names

@@ -147,6 +147,7 @@ Keeping = Callable[[object], None]
 def _directory(out: str | os.PathLike[str] | None) -> Iterator[tuple[Path, Keeping]]:
     """Yield the run directory; one that is temporary is removed with what it is kept for, or if there is nothing."""
     if out is not None:
+        _refuse_taken(Path(out))
         yield Path(out), lambda _: None
         return
     directory = Path(tempfile.mkdtemp(prefix="plume-flight-"))
@@ -160,6 +161,16 @@ def _directory(out: str | os.PathLike[str] | None) -> Iterator[tuple[Path, Keepi
     finally:
         if not removers:
             shutil.rmtree(directory, ignore_errors=True)
+
+
+def _refuse_taken(directory: Path) -> None:
+    """Refuse a directory that is not empty, in the words of a program."""
+    from scenarios.engine.run_directory import RunDirectory
+
+    try:
+        RunDirectory(directory).refuse_taken()
+    except InputError as error:
+        raise InputError(f"out: {str(error).partition(';')[0]}; give the path of a directory that is new or empty") from None
 
 
 @contextmanager

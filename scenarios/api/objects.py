@@ -191,6 +191,11 @@ class _Namer:
             name = part.__name__
         elif key in _COPIED:
             name = type(part).__name__
+        elif key in _LAWS and not is_dataclass(part):
+            raise InputError(
+                f"{key} is an object of class {type(part).__name__}, which is no dataclass; write @dataclass(frozen=True) before"
+                " the class: its fields, each with a default, are keys of [guidance]"
+            )
         else:
             raise InputError(f"{key} is an object of class {type(part).__name__}; give the class itself: each flight makes its own")
         if key != "aircraft" and not name.isidentifier():

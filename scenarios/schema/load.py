@@ -18,7 +18,7 @@ from scenarios.errors import InputError
 from scenarios.schema.effect import refuse_unused
 from scenarios.schema.keys import suggestion
 from scenarios.schema.overrides import Document, apply_override, as_toml, given_keys, merged, parse_override, set_value
-from scenarios.schema.parts import with_absolute_files
+from scenarios.schema.parts import refuse_missing, with_absolute_files
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.convergence import ConvergenceScenario
 from scenarios.schema.sections.experiment import TrialList
@@ -106,7 +106,10 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
         if for_trials and isinstance(given, list):
             document["set"] = [*given, *for_trials]
         overrides = own
-    parsed = [(key, with_absolute_files(value, Path(), key)) for key, value in map(parse_override, overrides)]
+    parsed = []
+    for key, value in map(parse_override, overrides):
+        parsed.append((key, with_absolute_files(value, Path(), key)))
+        refuse_missing(key, value, parsed[-1][1])
     kind = _kind(document | {key: value for key, value in parsed if key == "study"})
     for key, value in parsed:
         if key == "nu" and kind is Scenario:
@@ -126,22 +129,27 @@ def bases() -> dict[str, Path]:
     return {path.stem: path for path in sorted((CATALOG / BASES).glob("*.toml"))}
 
 
-def scenario_path(name: str, folder: Path | None = None) -> Path:
+def scenario_path(name: str, folder: Path | None = None, *, extended: bool = False) -> Path:
     """Return the path of a scenario file.
 
     Parameters
     ----------
     name : name in the catalog, or path of a TOML file
     folder : directory that a path is relative to; the current one if not given
+    extended : whether it may be a base
 
     Raises
     ------
     InputError : no such scenario
     """
-    known = catalog()
+    known = bases() | catalog() if extended else catalog()
     path = known.get(name, (folder or Path()) / name)
     if is_file(path):
         return path
+    if is_file(path / MANIFEST):
+        raise InputError(
+            f"'{name}' is a run, and no scenario; a flight of it is replayed by its name, as {Path(name) / FLIGHTS}/ID"
+        )
     guess = did_you_mean(Path(name).stem if name.endswith(".toml") else name, known)
     what = f"no scenario file '{name}'" if name.endswith(".toml") else f"unknown scenario '{name}'"
     raise InputError(f"{what}{guess or ';'} give the path of a TOML file or one of: {', '.join(known)}")
@@ -168,7 +176,7 @@ def _read(path: Path, extended_by: tuple[Path, ...] = ()) -> Document:
 def _base(base: str, folder: Path, where: object, extended_by: tuple[Path, ...]) -> Document:
     """Return the document that a scenario of ``folder``, called ``where`` in errors, extends."""
     try:
-        path = bases().get(base) or scenario_path(base, folder)
+        path = scenario_path(base, folder, extended=True)
     except InputError as error:
         raise InputError(f"{where}: extends: {error}") from None
     return _read(path, extended_by)

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from common.files import is_data_file, is_path
-from common.registry import is_file_part
+from common.files import is_data_file, is_file, is_path
+from common.registry import file_of, is_file_part
+from scenarios.errors import InputError
 from scenarios.schema.scenario import Scenario
 
 _WORDS = ("title", "description", "author", "organisation")
@@ -74,6 +75,24 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
     if named_by_file and "=" not in value:
         return os.path.normpath(folder.absolute() / value)
     return value
+
+
+def refuse_missing(key: str, value: Any, absolute: Any) -> None:
+    """Refuse a part whose file a program or the command line names relative to the current directory, where there is none.
+
+    Parameters
+    ----------
+    key, value : as given
+    absolute : the value with absolute paths
+
+    Raises
+    ------
+    InputError : there is no such file
+    """
+    given, found = (of if isinstance(of, list) else [of] for of in (value, absolute))
+    for name, path in zip(given, found, strict=True):
+        if isinstance(path, str) and path != name and is_file_part(path) and not is_file(file_of(path)):
+            raise InputError(f"{key}: {file_of(path)}: there is no such file; check the path, relative to the current directory")
 
 
 def names_folder(key: str, name: str) -> bool:

@@ -133,6 +133,9 @@ def _check_vessel(scenario: Scenario) -> None:
 
 
 def _check_parts(scenario: Scenario) -> None:
+    sampled = any(draw.key.startswith("emission.") for draw in scenario.draws)
+    if "sniffer" in scenario.payload.instruments and scenario.emission.ship is None and not sampled:
+        raise InputError("payload.instruments has a sniffer, and there is no exhaust: set emission.ship, or leave the sniffer out")
     for key, name in part_names(scenario):
         try:
             if key in PART_REGISTRIES and not is_data_file(name):

@@ -99,6 +99,14 @@ def test_help_and_list_answer():
         (["sweep_nu", "--set", "aircraft=J246"], ["aircraft 'J246' cannot be flown", "rocket engines"]),
         (["sweep_nu", "--set", "guidance.bank_deg=60"], ["60.0 deg of bank", "stops at 50", "lower guidance.bank_deg"]),
         (["sweep_nu", "--set", "start.distance_m=[100, 150]"], ["begins at 100 m", "must exceed keepout.radius_m, 200 m"]),
+        (
+            ["sweep_nu", "--set", "guidance.law=own.py:Law"],
+            ["guidance.law: ", "own.py: there is no such file", "relative to the current directory"],
+        ),
+        (
+            ["sweep_nu", "--set", "payload.instruments=['sniffer']"],
+            ["payload.instruments has a sniffer, and there is no exhaust: set emission.ship"],
+        ),
         (["sweep_mu.toml"], ["no scenario file 'sweep_mu.toml'"]),
         (["sweep_nu", "--resume"], ["--resume needs --out"]),
         (["sweep_nu", "--jobs", "0"], ["--jobs", "greater than or equal to 1"]),
@@ -133,6 +141,13 @@ def test_a_run_that_is_resumed_with_other_keys_says_which_with_both_values(tmp_p
     assert_refused(both, "keepout.radius_m was 200.0, and is 190.0 now", "start.aspect_deg was not set, and is 20.0 now; resume")
     many = resumed("seed=7", "keepout.radius_m=190", "start.aspect_deg=20.0", "guidance.bank_deg=40", "guidance.reserve=0.1")
     assert_refused(many, "; and 2 more; resume it")
+
+
+def test_a_run_is_no_scenario_and_its_flights_are_replayed_by_name(tmp_path, run_here, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "manifest.json").write_text("{}", encoding="utf-8")
+    assert_refused(run_here("a"), "'a' is a run, and no scenario; a flight of it is replayed by its name, as a/flights/ID")
 
 
 def test_a_report_of_nothing_is_refused(tmp_path):

@@ -111,7 +111,8 @@ def test_another_law_does_not_inherit_the_keys_of_the_law_that_it_replaces(tmp_p
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("guidance.leed_s=2", "unknown key 'guidance.leed_s'; did you mean 'lead_s'?"),
+        ("guidance.leed_s=2", "unknown key 'guidance.leed_s'; did you mean 'guidance.lead_s'?"),
+        ("guidance.lead=2", "unknown key 'guidance.lead'; did you mean 'guidance.lead_s'?"),
         ("guidance.xyz=2", "unknown key 'guidance.xyz'; those of law "),
         ("guidance.lead_s=long", "lead_s is 'long'; law "),
         ("guidance.lead_s=inf", "takes a finite number, by default 1"),

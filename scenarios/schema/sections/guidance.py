@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from common.registry import PluginError
-from common.spelling import did_you_mean
+from common.spelling import nearest
 from gnc.laws.steering_law import STEERING_LAWS
 from scenarios.schema.sections.section import Angle, NonNegative, Positive, Section, check_divides, check_ordered
 
@@ -112,7 +112,8 @@ class GuidanceConfig(Section):
             raise ValueError(f"law: {error}") from None
         for name, value in (self.model_extra or {}).items():
             if name not in keys:
-                guess = did_you_mean(name, [*type(self).model_fields, *keys])
+                meant = nearest(name, [*type(self).model_fields, *keys])
+                guess = f"; did you mean 'guidance.{meant}'?" if meant else ""
                 others = f"; those of law '{self.law}' are {', '.join(keys)}"
                 raise ValueError(f"unknown key 'guidance.{name}'{guess or others}")
             if isinstance(keys[name], float) and not (type(value) in (int, float) and math.isfinite(value)):

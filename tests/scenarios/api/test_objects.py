@@ -151,7 +151,7 @@ def local_law():
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"law": object()}, "guidance.law is an object of class object; give the class itself"),
+        ({"law": object()}, "guidance.law is an object of class object, which is no dataclass; write @dataclass(frozen=True)"),
         ({"law": Clock}, "steering law 'Clock' has no method heading_rate()"),
         ({"law": lambda: None}, "has no name; define it by class or def"),
         ({"law": local_law()}, "guidance.law: 'Hidden' cannot be sent to other processes"),
@@ -163,7 +163,8 @@ def local_law():
         ({"wind": {"speed_mps": None}}, "wind.speed_mps: value is None"),
         ({"wind": {"sped_mps": 1.0}}, "unknown key 'wind.sped_mps'; did you mean 'wind.speed_mps'?"),
         ({"following": {"standoff_m": 50.0}}, "key 'following.standoff_m' has no effect here"),
-        ({"guidance": {"prevew": True}}, "did you mean 'preview'?"),
+        ({"guidance": {"prevew": True}}, "did you mean 'guidance.preview'?"),
+        ({"nu": "fast"}, "nu is 'fast'; give a number, as in nu=0.5, or a list of numbers"),
         ({"nu": 20.0}, "speed ratios lie between 0 and 10"),
         ({"jobs": 0}, "jobs is 0"),
     ],
@@ -180,3 +181,12 @@ def test_two_objects_of_one_name_are_refused():
     other = type("Pursuit", (Pursuit,), {})
     with pytest.raises(InputError, match="two objects are called 'Pursuit'"):
         load(SHORT, **{"sweep.guidance.law": [Pursuit, other]})
+
+
+def test_a_directory_that_is_taken_is_refused_in_the_words_of_a_program(tmp_path):
+    (tmp_path / "manifest.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(InputError) as refused:
+        fly(SHORT, nu=0.5, out=tmp_path)
+    assert str(refused.value).startswith("out: output directory '")
+    assert str(refused.value).endswith("holds another run; give the path of a directory that is new or empty")
+    assert "--" not in str(refused.value).replace(str(tmp_path), "")

@@ -256,3 +256,11 @@ def test_every_entry_of_the_observation_is_documented_with_its_unit():
     page = (PROJECT / "docs" / "howto" / "gym.md").read_text(encoding="utf-8")
     for name, (meaning, unit, _) in MEANINGS.items():
         assert f"| `{name}` | {unit} | {meaning} |" in page
+
+
+def test_without_its_extra_the_package_names_it_in_a_line():
+    code = "import sys; sys.modules['gymnasium'] = None; import scenarios.gym"
+    ended = subprocess.run([sys.executable, "-c", code], cwd=PROJECT, capture_output=True, text=True, check=False)
+    needed = "scenarios.gym needs gymnasium; install the extra: pip install 'plume-flight-study[gym]'"
+    assert ended.stderr.splitlines()[-1] == f"ImportError: {needed}"
+    assert "During handling" not in ended.stderr

@@ -71,6 +71,13 @@ def test_an_unknown_scenario_lists_the_known_ones():
         load_study("sweep_mu")
 
 
+def test_a_base_that_is_not_known_gets_the_nearest_of_the_bases_too(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text('title = "own"\nextends = "operatonal"\n', encoding="utf-8")
+    with pytest.raises(InputError, match=r"extends: unknown scenario 'operatonal'; did you mean 'operational'\?"):
+        load_study(str(path))
+
+
 def test_a_file_that_is_not_toml_is_refused(tmp_path):
     path = tmp_path / "broken.toml"
     path.write_text("title = \n", encoding="utf-8")
