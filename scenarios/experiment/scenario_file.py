@@ -32,6 +32,8 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
         "report",
     ):
         document.pop(experiment)
+    # It is of the experiment, and not of this flight.
+    document.pop("description")
     # The random variables have their values, and nothing is sampled again.
     document.pop("speed_ratio")
     one = {"study": "flights", "title": title, "flights": 1, "flight_seed": request.seed}

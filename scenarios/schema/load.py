@@ -179,7 +179,8 @@ def _base(base: str, folder: Path, where: object, extended_by: tuple[Path, ...])
         path = scenario_path(base, folder, extended=True)
     except InputError as error:
         raise InputError(f"{where}: extends: {error}") from None
-    return _read(path, extended_by)
+    # What a description says of one scenario is not so of another that changes its keys.
+    return {key: value for key, value in _read(path, extended_by).items() if key != "description"}
 
 
 def _own(path: Path) -> tuple[Document, str | None]:

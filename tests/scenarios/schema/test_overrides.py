@@ -104,7 +104,7 @@ def test_a_file_extends_a_scenario_of_the_catalog(tmp_path):
     path = write(tmp_path, "own.toml", 'extends = "sea_wind"\ntitle = "own"\n[wind]\nspeed_mps = 3.0\n')
     own, base = load_study(path), load_study("sea_wind")
     assert (own.title, own.wind.speed_mps) == ("own", 3.0)
-    same = {"title", "wind"}
+    same = {"title", "description", "wind"}
     assert own.model_dump(exclude=same) == base.model_dump(exclude=same)
 
 
@@ -116,6 +116,16 @@ def test_a_chain_of_files_is_resolved_relative_to_each_file(tmp_path):
     third = load_study(path)
     assert third.title == "third"
     assert (third.wind.speed_mps, third.wind.from_deg, third.vessel.speed_mps) == (4.0, 10.0, 5.0)
+
+
+def test_a_description_is_of_the_scenario_that_gives_it_and_not_of_those_that_extend_it(tmp_path):
+    assert load_study("sea_wind").description
+    second = write(tmp_path, "second.toml", 'extends = "sea_wind"\ntitle = "second"\ndescription = "Own."\n')
+    third = write(tmp_path, "third.toml", 'extends = "second.toml"\ntitle = "third"\n')
+    assert [load_study(path).description for path in (second, third)] == ["Own.", ""]
+    assert load_study({"extends": "sea_wind", "title": "of a program"}).description == ""
+    # With a key set for it, it is still the scenario that is described.
+    assert load_study("sea_wind", ["flights=2"]).description == load_study("sea_wind").description
 
 
 def test_overrides_come_after_what_a_file_extends(tmp_path):

@@ -10,6 +10,7 @@ from scenarios.studies.registry import run_study
 SEARCH = """
 study = "falsify"
 title = "short"
+description = "A search."
 fidelity = "kinematic"
 seed = 3
 [search]
@@ -53,6 +54,8 @@ def found(tmp_path_factory):
 def test_a_worst_flight_keeps_the_margin_that_allows_for_the_faults_of_the_whole_search(found, tmp_path, fault):
     searched = pd.read_csv(found / "summary.csv").set_index("flight_id")
     path = next(path for path in sorted((found / "worst").iterdir()) if searched.loc[path.stem[3:], "fault"] == fault)
+    # What is said of the search is not said of one of its flights.
+    assert "description" not in path.read_text(encoding="utf-8")
     run_study(load_study(str(path)), path.stem, tmp_path / "again")
     (again,) = pd.read_csv(tmp_path / "again" / "summary.csv").to_dict("records")
     row = searched.loc[path.stem[3:]]
