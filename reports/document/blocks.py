@@ -124,6 +124,25 @@ class Card(NamedTuple):
             return self.limit or "no criterion"
         return f"{'✓ met' if self.met else '✗ not met'}, required {self.limit}"
 
+    @property
+    def tone(self) -> str:
+        """Return the colour of its tile, in a word; none where nothing is required."""
+        return "" if self.met is None else "met" if self.met else "missed"
+
+
+class UndecidedCard(Card):
+    """A measured figure of which it stays open on which side of its limit it lies."""
+
+    @property
+    def judgement(self) -> str:
+        """Return that it is open, and what is required."""
+        return f"? open, required {self.limit}"
+
+    @property
+    def tone(self) -> str:
+        """Return the colour of its tile: neither that of a figure that meets its limit nor that of one that does not."""
+        return "open"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:

@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.intervals import CONFIDENCE, percent, upper_bound
+from common.intervals import percent
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import number
+from reports.flights.bounds import sampled, violation_bound
 from reports.flights.criteria import MEASURED, Criterion, criteria_of
 from reports.flights.first_page import hours
-from reports.measurement.flights import sulphur_cards
+from reports.measurement.flights import sulphur_below, sulphur_cards, sulphur_headline
 from reports.run.columns import (
     clearance,
     column,
@@ -43,14 +44,17 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     """Judge a run by its summary.
 
     It fails if no flight was flown, if one violated the keep-out area, or if one lost its aircraft that was required to complete.
-    It is complete if every planned flight met every criterion.
+    It is complete if every planned flight met every criterion, and the fuel of an only flight is called below its limit.
     """
     rows, flown = run.summary, measured(run.summary)
     planned = int(run.manifest["flights_planned"])
+    holds = len(flown) > 0 and total(flown, "keepout_violations") == 0 and not np.any(lost(rows) & ~passed(rows))
+    headlines = [words for words in (sulphur_headline(run), _headline(run, trials, flown, planned)) if words]
     return Verdict(
-        holds=len(flown) > 0 and total(flown, "keepout_violations") == 0 and not np.any(lost(rows) & ~passed(rows)),
-        complete=count(met(rows)) == planned,
-        headline=_headline(run, trials, flown, planned),
+        holds=holds,
+        complete=count(met(rows)) == planned and sulphur_below(run),
+        # What must never happen stands before what was measured.
+        headline=". ".join(headlines if holds else headlines[::-1]),
         detail=_detail(run, trials, flown, planned),
         failures=[*(line for trial in trials for line in _not_met(trial)), *_noteworthy(flown)],
         figures=[*sulphur_cards(run), *_bound_figure(run, trials, flown), *_figures(trials, flown, planned)],
@@ -63,7 +67,7 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
     rows, flights = run.summary, f"{len(flown):,} flight{'s' if len(flown) > 1 else ''}"
     if violations := total(flown, "keepout_violations"):
         return f"Keep-out violations in {count(violated(flown)):,} of {flights}, {violations:,} in all"
-    bound = _bound(run, trials, flown)
+    bound = violation_bound(run, trials, flown)
     shown = f": at most {percent(bound[0])} of such flights at {percent(bound[1])} confidence" if bound else ""
     counts = {
         "lost the aircraft": count(lost(rows)),
@@ -79,18 +83,6 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
     return f"{kept}; of {planned:,}, {', '.join(others)}" if others else f"{kept}; every flight met its criteria"
 
 
-def _bound(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> tuple[float, float] | None:
-    """Return the bound on the probability of a keep-out violation and its confidence; none where flights are no random sample.
-
-    A Monte Carlo study has its own, which allows for how often it was evaluated.
-    """
-    if run.statistics is not None:
-        return run.statistics["violation"]["pessimistic"]["upper"], run.statistics["confidence"]
-    if not len(flown) or not all(trial.sampled_at_random for trial in trials):
-        return None
-    return upper_bound(count(~kept_out(flown)), len(flown)), CONFIDENCE
-
-
 def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
     rows = run.summary
     several = f"Flights of {len(trials)} trials: " if len(trials) > 1 else ""
@@ -99,7 +91,7 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
         f" {count(met(rows)):,} met every criterion.",
         *([_closest(trials, flown)] if len(flown) else []),
     ]
-    if bound := _bound(run, trials, flown):
+    if bound := violation_bound(run, trials, flown):
         sentences.append(
             f"With {percent(bound[1])} confidence a flight sampled as these were violates the keep-out area with a probability of"
             f" at most {percent(bound[0])}, on average and in this simulation."
@@ -108,6 +100,9 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
             sentences.append(
                 "Subset simulation leads its flights towards violations: their share in these flights is no probability."
             )
+    elif len(flown) and (run.statistics is not None or sampled(trials)):
+        few = "A single flight sets" if len(flown) == 1 else "So few flights set"
+        sentences.append(f"{few} no bound on the probability of a keep-out violation that is worth stating.")
     elif len(flown):
         sentences.append("No bound on a probability follows from these flights: they are no random sample.")
     if "required" in rows and (rows["required"] == "keep_out").any():
@@ -176,7 +171,7 @@ def _noteworthy(flown: pd.DataFrame) -> list[str]:
 
 
 def _bound_figure(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> list[Card]:
-    bound = _bound(run, trials, flown)
+    bound = violation_bound(run, trials, flown)
     if bound is None:
         return []
     name = f"Probability of a keep-out violation in a flight, at most, with {percent(bound[1])} confidence"

@@ -7,7 +7,7 @@ import pandas as pd
 
 from common.intervals import percent
 from measurement.gases import limit_words
-from reports.document.blocks import Block, Card, Heading, Section, Text
+from reports.document.blocks import Block, Card, Heading, Section, Text, UndecidedCard
 from reports.document.chart import Chart
 from reports.document.tables import number
 from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
@@ -43,22 +43,71 @@ def sulphur_cards(run: RunData) -> list[Card]:
         return []
     if len(measured) == 1:
         row = measured.iloc[0]
-        result = f"{row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} %"
         return [
-            Card("Sulphur in the fuel, with its 95 % interval", result),
-            Card(
-                f"Verdict on {limit_words(float(row['sulphur_limit_percent']))}, and probability of more",
-                "no verdict: quality C"
-                if row["sulphur_quality"] == "C"
-                else f"{row['sulphur_verdict']}, {probability(float(row['probability_above']))}",
-            ),
+            Card("Sulphur in the fuel, with its 95 % interval", _content(row)),
+            _verdict_card(row),
         ]
+    bias, inside = _bias_and_coverage(measured)
+    return [
+        Card("Bias of the sulphur content, mean of flights", number(bias, "{:+.4f} %")),
+        Card("Flights whose 95 % interval holds the truth", percent(inside)),
+    ]
+
+
+def _verdict_card(row: "pd.Series[Any]") -> Card:
+    limit, called = limit_words(float(row["sulphur_limit_percent"])), str(row["sulphur_verdict"])
+    kind = UndecidedCard if called == "open" else Card
+    words = "no verdict: quality C" if row["sulphur_quality"] == "C" else f"{called}, {probability(float(row['probability_above']))}"
+    return kind(f"Verdict on {limit}, and probability of more", words, f"≤ {limit}", {"above": False, "below": True}.get(called))
+
+
+def sulphur_below(run: RunData) -> bool:
+    """Return whether nothing is left to be said of the fuel: the only flight that measured it called it below its limit.
+
+    Flights of a study are judged as a method, not by what their ships burn.
+    """
+    measured = _measured(run)
+    return len(measured) != 1 or measured.iloc[0]["sulphur_verdict"] == "below"
+
+
+def sulphur_headline(run: RunData) -> str:
+    """Return what was measured of the fuel, with interval and verdict, in a sentence; no word of a run without a sniffer."""
+    measured, sniffed = _measured(run), run.summary[run.summary["min_distance_m"].notna()]
+    if "fsc_percent" not in run.summary:
+        return ""
+    if not len(measured):
+        return f"No fuel sulphur content from {_flights(len(sniffed))} with a sniffer"
+    if len(measured) == 1:
+        row = measured.iloc[0]
+        limit, chance = limit_words(float(row["sulphur_limit_percent"])), probability(float(row["probability_above"]))
+        called = {"above": f"above the limit of {limit}", "below": f"below the limit of {limit}"}
+        words = called.get(str(row["sulphur_verdict"]), f"it stays open whether that is above the limit of {limit}")
+        words = "no verdict, as quality C gives none" if row["sulphur_quality"] == "C" else f"{words}, probability of more {chance}"
+        return f"Fuel sulphur {_content(row)} (95 % interval): {words}"
+    names = {"above": "above the limit", "below": "below it", "open": "left open"}
+    counts = measured["sulphur_verdict"].value_counts()
+    called_so = ", ".join(f"{counts[verdict]:,} {words}" for verdict, words in names.items() if verdict in counts)
+    bias, inside = _bias_and_coverage(measured)
+    of = "" if len(measured) == len(sniffed) else f" of {len(sniffed):,}"
+    return (
+        f"Fuel sulphur from {len(measured):,}{of} flights: mean error {number(bias, '{:+.4f} %')}, the 95 % interval holds the"
+        f" truth in {percent(inside)} of them; {called_so}"
+    )
+
+
+def _flights(count: int) -> str:
+    return f"{count:,} flight{'s' * (count != 1)}"
+
+
+def _content(row: "pd.Series[Any]") -> str:
+    return f"{row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} %"
+
+
+def _bias_and_coverage(measured: pd.DataFrame) -> tuple[float, float]:
+    """Return the mean error [% m/m], and the fraction of flights whose stated interval holds what a perfect instrument reads."""
     expected, found = (column(measured, name) for name in ("fsc_expected_percent", "fsc_percent"))
     inside = (column(measured, "fsc_low_percent") <= expected) & (expected <= column(measured, "fsc_high_percent"))
-    return [
-        Card("Bias of the sulphur content, mean of flights", number(np.mean(found - expected), "{:+.4f} %")),
-        Card("Flights whose 95 % interval holds the truth", percent(float(np.mean(inside)))),
-    ]
+    return float(np.mean(found - expected)), float(np.mean(inside))
 
 
 def _measured(run: RunData) -> pd.DataFrame:
@@ -129,7 +178,7 @@ def _told(row: "pd.Series[Any]") -> str:
         "below": f"The fuel is below the limit of {limit}",
         "open": f"Whether the fuel is above the limit of {limit} stays open",
     }[str(row["sulphur_verdict"])]
-    result = f"{row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} % sulphur (95 %)"
+    result = f"{_content(row)} sulphur (95 %)"
     verdict = f"{called}: it holds {result}, and the probability that this is more than the limit is {chance}."
     if row["sulphur_quality"] == "C":
         verdict = f"There is no verdict on the limit of {limit}, as quality C gives none; the estimate is {result}."

@@ -11,7 +11,7 @@ from typing import Any
 import typst
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 
-from reports.document.blocks import Block, Content, FlightContent, FlightPicker, Section
+from reports.document.blocks import Block, Card, Content, FlightContent, FlightPicker, Section
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in
 from reports.render.matplotlib_charts import draw
@@ -52,11 +52,15 @@ def _data(report: Content, directory: Path, *, all_flights: bool) -> Data:
         "flown": report.flown,
         "verdict": {"tone": verdict.tone, "sign": verdict.sign, "headline": verdict.headline, "detail": verdict.detail},
         "failures": verdict.first_failures,
-        "cards": [{**card._asdict(), "judgement": card.judgement if verdict.judges else ""} for card in verdict.cards],
+        "cards": [_card(card, judges=verdict.judges) for card in verdict.cards],
         "picture": _image(report.picture, directory) if report.picture else None,
         "sections": [section for section in sections if section["blocks"]],
         "flights": [_flight(flight, directory, numbers) for flight in flights],
     }
+
+
+def _card(card: Card, *, judges: bool) -> Data:
+    return {"name": card.name, "value": card.value, "tone": card.tone, "judgement": card.judgement if judges else ""}
 
 
 def _section(section: Section, directory: Path) -> Data:

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.intervals import CONFIDENCE, percent, upper_bound
+from common.intervals import CONFIDENCE, percent
 from common.run_layout import SUMMARY
 from reports.document.blocks import Block, Table, Text
 from reports.document.tables import ending, number, outcome, span
+from reports.flights.bounds import trial_bound
 from reports.flights.criteria import counted, criteria_of
 from reports.flights.names import fault_name
 from reports.run.columns import clearance, column, completed, count, kept_out, lost, met, total, violated
@@ -93,7 +94,7 @@ def trial_table(trials: list[Trial]) -> Table:
             f"{count(met(trial.rows))}",
             f"{count(lost(trial.rows))}",
             f"{count(kept_out(flown))}",
-            percent(upper_bound(count(~kept_out(flown)), len(flown))) if trial.sampled_at_random and len(flown) else _NOTHING,
+            _NOTHING if (bound := trial_bound(trial)) is None else percent(bound),
             f"{total(flown, 'keepout_violations')}",
             number(np.min(column(flown, "min_distance_m"), initial=np.inf) if len(flown) else None, "{:.1f}"),
             number(np.min(clearance(flown)) if len(flown) else None, "{:+.1f}"),

@@ -20,7 +20,7 @@ SHORT = """
 title = "Short"
 description = "Flights for a test."
 fidelity = "kinematic"
-flights = 3
+flights = 5
 seed = 3
 vessel.speed_mps = 8.0
 flight.crossings = 2
@@ -31,7 +31,7 @@ criteria.tracking_error_rms_m = 1e-4
 
 @pytest.fixture(scope="module")
 def run_path(tmp_path_factory):
-    """Three flights that fail the criterion on tracking, as nothing tracks to 0.1 mm, and meet the others."""
+    """Five flights, enough for a bound, that fail the criterion on tracking, as nothing tracks to 0.1 mm, and meet the others."""
     folder = tmp_path_factory.mktemp("front")
     (folder / "short.toml").write_text(SHORT, encoding="utf-8")
     ended = run_command("scenarios.run", folder / "short.toml", "--out", folder / "run", "--no-report")
@@ -67,7 +67,7 @@ def card(report, name):
 def test_page_1_says_when_and_what_was_flown_and_shows_the_closest_flight_and_a_typical_one(report):
     assert re.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC", report.letterhead.when)
     assert re.fullmatch(
-        r"3 flights \(0\.\d+ h\) of the kinematic vehicle, eq\. \(1\), beside a vessel at 8 m/s, in still air\.", report.flown
+        r"5 flights \(0\.\d+ h\) of the kinematic vehicle, eq\. \(1\), beside a vessel at 8 m/s, in still air\.", report.flown
     )
     titles = [panel.title for panel in report.picture.panels]
     assert [title.split(":")[0] for title in titles] == ["Closest", "Typical"]
@@ -77,7 +77,7 @@ def test_the_closest_and_the_median_flight_are_those_of_the_summary(run_path, re
     rows = read_run(run_path).summary.sort_values("min_distance_m")
     shown = [float(re.search(r"([\d.]+) m$", panel.title)[1]) for panel in report.picture.panels]
     # Titles have a digit after the point.
-    assert shown == [round(float(rows["min_distance_m"].iloc[i]), 1) for i in (0, 1)]
+    assert shown == [round(float(rows["min_distance_m"].iloc[i]), 1) for i in (0, 2)]
 
 
 def test_a_figure_says_in_words_whether_its_criterion_is_met(report):

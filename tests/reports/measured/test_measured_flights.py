@@ -72,6 +72,43 @@ def test_several_flights_are_judged_as_a_method(several):
     assert any("Bias of the sulphur content" in name for name, *_ in several.verdict.figures)
 
 
+def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_area(one, several):
+    plain = one.verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
+    assert re.match(
+        r"Fuel sulphur 0\.\d{3} ± 0\.\d{3} % \(95 % interval\): .* limit of 0\.10 %, probability of more [\d.]+ %\. No keep-out",
+        plain,
+    )
+    assert re.match(
+        r"Fuel sulphur from 24 flights: mean error [+−]0\.\d{4} %, the 95 % interval holds the truth in \d.* of them; \d+ above",
+        several.verdict.headline.replace("\N{NO-BREAK SPACE}", " "),
+    )
+
+
+@pytest.mark.parametrize(
+    ("called", "judgement", "tone"),
+    [
+        ("above", "✗ not met, required ≤ 0.10 %", "missed"),
+        ("below", "✓ met, required ≤ 0.10 %", "met"),
+        ("open", "? open, required ≤ 0.10 %", "open"),
+    ],
+)
+def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(called, judgement, tone):
+    row = {
+        "fsc_percent": 0.1, "fsc_uncertainty_percent": 0.02, "sulphur_limit_percent": 0.1, "sulphur_verdict": called,
+        "probability_above": 0.5, "min_distance_m": 250.0,
+    }  # fmt: skip
+    run = SimpleNamespace(summary=pd.DataFrame([row]))
+    card = flights.sulphur_cards(run)[1]
+    assert (card.judgement.replace("\N{NO-BREAK SPACE}", " "), card.tone) == (judgement, tone)
+    assert flights.sulphur_below(run) == (called == "below")
+    assert ("stays open" in flights.sulphur_headline(run)) == (called == "open")
+
+
+def test_a_sniffer_without_a_result_is_said_on_page_1():
+    run = SimpleNamespace(summary=pd.DataFrame([{"fsc_percent": float("nan"), "min_distance_m": 250.0}]))
+    assert flights.sulphur_headline(run) == "No fuel sulphur content from 1 flight with a sniffer"
+
+
 def test_a_probability_is_never_told_as_certain():
     row = {
         "fsc_percent": 0.5, "fsc_uncertainty_percent": 0.02, "sulphur_limit_percent": 0.1, "sulphur_verdict": "above",

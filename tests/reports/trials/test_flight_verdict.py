@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import replace
 
+import pandas as pd
 import pytest
 from report_parts import blocks_of
 from trial_runs import rows_of, with_values
@@ -97,9 +98,11 @@ def test_flights_that_are_not_flown_yet_are_not_failed_ones(run):
 
 
 def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
-    verdict = content(run).verdict
-    # Clopper and Pearson, none of four: 1 - 0.05^(1/4).
-    assert "at most 52.7 % of such flights at 95 % confidence" in verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
+    again = run.summary.assign(flight_id=[f"{flight_id}_again" for flight_id in run.summary["flight_id"]])
+    eight = replace(run, summary=pd.concat([run.summary, again], ignore_index=True), manifest=run.manifest | {"flights_planned": 8})
+    verdict = content(eight).verdict
+    # Clopper and Pearson, none of eight: 1 - 0.05^(1/8).
+    assert "at most 31.2 % of such flights at 95 % confidence" in verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
     texts = [verdict.headline, verdict.detail, *verdict.failures, *(text for figure in verdict.figures for text in figure[:3])]
     assert not any(re.search(r"\bsafe", text, re.IGNORECASE) for text in texts)
     # Those of a search are no random sample: no bound follows from them.
@@ -107,6 +110,17 @@ def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
     chosen = content(replace(run, manifest=manifest)).verdict
     assert "confidence" not in chosen.headline
     assert "No bound on a probability follows from these flights" in chosen.detail
+
+
+def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
+    # None of four, 1 - 0.05^(1/4): 52.7 %; none of the two of a trial: 77.6 %.
+    report = content(run)
+    assert "at most" not in report.verdict.headline
+    assert "So few flights set no bound on the probability of a keep-out violation" in report.verdict.detail
+    assert not any(card.name.startswith("Probability") for card in report.verdict.figures)
+    assert rows_of(report, "Steady")[0][6] == "–"
+    alone = content(replace(run, summary=run.summary.iloc[:1])).verdict
+    assert "A single flight sets no bound on the probability of a keep-out violation" in alone.detail
 
 
 def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
