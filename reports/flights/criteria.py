@@ -25,6 +25,8 @@ class Criterion:
     worst : what was measured at worst, in words
     failed : flights that failed it, or have no such figure
     fraction : the worst over the limit, where both are figures; else not a number [-]
+    missing : flights that have no such figure and why, in words; none where all of them have it
+    flown_failed : flights that failed it and were flown
     """
 
     key: str
@@ -33,6 +35,8 @@ class Criterion:
     worst: str
     failed: int
     fraction: float = float("nan")
+    missing: str = ""
+    flown_failed: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,16 +155,28 @@ def _figure(rows: pd.DataFrame, key: str, value: float, measure: _Measure) -> Cr
     measured = measure.values(rows)
     known = measured[np.isfinite(measured)]
     worst = float(known.max()) if len(known) else float("nan")
-    missing = len(measured) - len(known)
+    missing = _without(rows[~np.isfinite(measured)])
+    failed = ~(measured <= value)
     words = f"{_rounded(measure.scale * worst, measure.scale * value):.3g} {measure.unit}" if len(known) else "none measured"
     return Criterion(
         key=key,
         what=measure.what,
         limit=f"≤ {limit(measure.scale * value)} {measure.unit}",
-        worst=words + (f"; {missing} without" if missing and len(known) else ""),
-        failed=int(np.count_nonzero(~(measured <= value))),
+        worst=words + (f"; {missing}" if missing and len(known) else ""),
+        failed=count(failed),
         fraction=worst / value if value else float("nan"),
+        missing=missing,
+        flown_failed=count(failed & rows["min_distance_m"].notna().to_numpy()),
     )
+
+
+def _without(rows: pd.DataFrame) -> str:
+    """Return how many flights have no figure, and how they ended; no word where there are none."""
+    if not len(rows):
+        return ""
+    ends = ["not flown" if pd.isna(row["min_distance_m"]) else str(row["outcome"]).replace("_", " ") for _, row in rows.iterrows()]
+    why = ends[0] if len(set(ends)) == 1 else counted(pd.Series(ends))
+    return f"{len(rows):,} {'flight has' if len(rows) == 1 else 'flights have'} no figure: {why}"
 
 
 def _rounded(value: float, most: float) -> float:

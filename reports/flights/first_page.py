@@ -39,7 +39,7 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
 def hours(flown: pd.DataFrame) -> str:
     """Return how long all flights took together."""
     time = total(flown, "duration_s") / SECONDS_PER_HOUR
-    return f"{time:,.0f} h" if time >= 100.0 else f"{time:.2g} h"
+    return f"{time:,.0f} h simulated" if time >= 100.0 else f"{time:.2g} h simulated"
 
 
 def _range(values: Array) -> str:

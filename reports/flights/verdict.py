@@ -36,6 +36,9 @@ _NAMED_MAX = 3
 ROUNDING = 1e-9
 """What binary fractions may add to a figure that is limited by design [-]."""
 
+_COMMAND, _DEMAND = (f"Heading rate {what}, largest, as a ratio to ω_max" for what in ("commanded", "demanded"))
+"""Names of figures."""
+
 _QUANTILE = 0.99
 """Fraction of flights whose tracking error is no larger than the one that is shown."""
 
@@ -190,23 +193,21 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
         Card("Keep-out violations", f"{violations:,}", "0", len(flown) > 0 and violations == 0),
         _closest_figure(trials, nearest),
         # Of some flights it may be required to keep out, and no more.
-        Card("Missions completed", f"{done:,} of {len(flown):,}", *(() if apart else ("all", done == len(flown)))),
+        Card("Missions completed", f"{done:,} of {planned:,}", *(() if apart else ("all", done == planned))),
         *(figure for figure in worst if figure),
         Card("Flights flown", f"{len(flown):,} of {planned:,}, {hours(flown)}", "all", len(flown) == planned),
         Card("Flights that kept out", f"{count(kept_out(flown)):,} of {len(flown):,}"),
         Card("Aircraft lost", f"{count(lost(flown)):,}"),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
         *_tracking(flown),
-        Card("Heading-rate command over ω_max, worst", "none")
-        if command is None
-        else Card("Heading-rate command over ω_max, worst", f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
+        Card(_COMMAND, "none") if command is None else Card(_COMMAND, f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
     ]
     if any(trial.setting("guidance.tuning") == "bounded" for trial in trials):
         demand = largest(column(flown, "heading_rate_demand_max_rad_s") / limits)
         bound = largest(column(flown, "heading_rate_bound_rad_s") / limits)
         if demand is not None and bound is not None:
             words = f"≤ {bound:.4f} in any state"
-            figures.append(Card("Heading-rate demand over ω_max, worst", f"{demand:.3f}", words, demand <= bound + ROUNDING))
+            figures.append(Card(_DEMAND, f"{demand:.3f}", words, demand <= bound + ROUNDING))
     if guarded:
         figures.append(Card("Flights in which the guard intervened", f"{guarded:,} of {len(flown):,}"))
     if unable:
@@ -236,8 +237,8 @@ def _tracking(flown: pd.DataFrame) -> list[Card]:
     if not len(known):
         return []
     high = float(np.quantile(known, _QUANTILE))
-    name = f"Tracking error, rms after settling: {percent(_QUANTILE)} quantile, largest"
-    return [Card(name, f"{high:.3g}, {known.max():.3g} m")]
+    name = f"Tracking error, rms after settling: {percent(_QUANTILE)} quantile of the flights, and their largest"
+    return [Card(name, f"{high:.3g} m, largest {known.max():.3g} m")]
 
 
 def _worst(criteria: list[Criterion], key: str) -> Card | None:
@@ -246,7 +247,8 @@ def _worst(criteria: list[Criterion], key: str) -> Card | None:
     if not known:
         return None
     worst = max(known, key=lambda criterion: criterion.fraction)
-    failed = sum(criterion.failed for criterion in criteria if criterion.key == key)
-    # Flights without the figure fail the criterion as well.
-    without = f", {failed:,} without" if failed and worst.fraction <= 1.0 else ""
+    failed = sum(criterion.flown_failed for criterion in criteria if criterion.key == key)
+    missing = [criterion.missing for criterion in criteria if criterion.key == key and criterion.missing]
+    # Flights that were flown and have no figure fail the criterion; of those that were not another tile tells.
+    without = "".join(f"; {words}" for words in missing) if worst.fraction <= 1.0 else ""
     return Card(f"{worst.what}, worst", worst.worst.split(";")[0] + without, worst.limit, not failed)

@@ -37,6 +37,6 @@ def test_the_line_of_sight_has_no_bound(directory):
 def test_the_report_says_the_laws_largest_demand_and_with_which_look_ahead(directory):
     html, _ = build_reports(directory)
     text = html.read_text(encoding="utf-8")
-    assert "Heading-rate demand over ω_max, worst" in text
+    assert "Heading rate demanded, largest, as a ratio to ω_max" in text
     assert "R as searched" in text
     assert "of the kinematic vehicle, eq. (1)" in text

@@ -67,7 +67,8 @@ def card(report, name):
 def test_page_1_says_when_and_what_was_flown_and_shows_the_closest_flight_and_a_typical_one(report):
     assert re.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC", report.letterhead.when)
     assert re.fullmatch(
-        r"5 flights \(0\.\d+ h\) of the kinematic vehicle, eq\. \(1\), beside a vessel at 8 m/s, in still air\.", report.flown
+        r"5 flights \(0\.\d+ h simulated\) of the kinematic vehicle, eq\. \(1\), beside a vessel at 8 m/s, in still air\.",
+        report.flown,
     )
     titles = [panel.title for panel in report.picture.panels]
     assert [title.split(":")[0] for title in titles] == ["Closest", "Typical"]

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 from report_parts import blocks_of
-from trial_runs import rows_of, with_values
+from trial_runs import rows_of, with_criterion, with_values
 
 from reports.document.blocks import FlightPicker
 from reports.registry import content
@@ -79,6 +79,31 @@ def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
     assert report.verdict.failures == ["steady_00000: incomplete; flew 1 of 3 crossings"]
 
 
+NOT_FLOWN = {
+    "outcome": "infeasible", "message": "too fast a vessel", "criteria_met": False, "kept_out": False,
+    "min_distance_m": float("nan"), "tracking_error_rms_m": float("nan"),
+}  # fmt: skip
+
+
+def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_figure_red(run):
+    judged = with_criterion(with_values(run, 1, **NOT_FLOWN), "steady", "tracking_error_rms_m", 50.0)
+    figures = {card.name: card for card in content(judged).verdict.figures}
+    worst = figures["Tracking error, rms after settling, worst"]
+    assert worst.met
+    assert re.fullmatch(r"[\d.]+ m; 1 flight has no figure: not flown", worst.value)
+    # Of all that were planned, not of those that were flown.
+    assert (figures["Missions completed"].value, figures["Missions completed"].met) == ("3 of 4", False)
+    assert any(row[2].endswith(" m; 1 flight has no figure: not flown") for row in rows_of(content(judged), "Steady"))
+
+
+def test_a_flight_that_was_flown_and_has_no_figure_fails_the_criterion_on_it(run):
+    values = {"outcome": "not_settled", "criteria_met": False, "tracking_error_rms_m": float("nan")}
+    judged = with_criterion(with_values(run, 1, **values), "steady", "tracking_error_rms_m", 50.0)
+    (worst,) = (card for card in content(judged).verdict.figures if card.name == "Tracking error, rms after settling, worst")
+    assert not worst.met
+    assert worst.value.endswith("; 1 flight has no figure: not settled")
+
+
 def test_flights_of_one_reason_share_a_line(run):
     values = {"outcome": "not_settled", "message": "did not settle within 300 s", "criteria_met": False}
     report = content(with_values(with_values(run, 0, **values), 1, **values))
@@ -126,7 +151,7 @@ def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
 def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
     report = content(with_values(run, 2, tracking_error_rms_m=107.0, guard_lost_s=3.2, guard_interventions=1, manoeuvres_unflown=1))
     (tracking,) = (value for name, value, *_ in report.verdict.figures if "99" in name)
-    assert tracking.endswith(", 107 m")
+    assert tracking.endswith(" m, largest 107 m")
     assert report.verdict.failures == [
         "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",
         "In 1 flight a manoeuvre of the vessel begins after the end of the flight, and was never flown.",

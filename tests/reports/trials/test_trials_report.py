@@ -82,7 +82,7 @@ def test_the_worst_measured_value_of_a_criterion_is_that_of_the_summary(run, rep
 def test_a_criterion_without_a_figure_counts_as_failed(run):
     steady = read_trials(with_values(run, 0, crossing_interval_mean_s=math.nan))[0]
     row = next(row for row in rows_of(content(steady.run), "Steady")[1:] if row[0].startswith("Mean"))
-    assert row[2].endswith("; 1 without")
+    assert row[2].endswith("; 1 flight has no figure: completed")
     assert row[3] == "1"
 
 
