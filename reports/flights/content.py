@@ -8,7 +8,7 @@ from reports.document.chart import Chart
 from reports.finding.flights import finding_sections
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import closest_and_typical, flights_in_words
-from reports.flights.names import flight_name, swept_name, swept_value
+from reports.flights.names import flight_name, flown_elsewhere, swept_column
 from reports.flights.parameter_tables import parameter_blocks
 from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
@@ -36,7 +36,7 @@ def flights_content(run: RunData) -> Findings:
         _overview(trials),
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
         comparison_section(run, trials),
-        Section(anchor="failed", title="Flights that failed a criterion", nav_title="Failed", blocks=failed_blocks(run)),
+        Section(anchor="failed", title="Flights that failed a criterion", nav_title="Failed", blocks=failed_blocks(trials)),
         flight_section(trials),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
@@ -72,8 +72,8 @@ def _trial(trial: Trial, *, only: bool) -> Section:
     if trial.kind is Kind.FAULTS and len(trial.flown):
         table.append(fault_table(trial))
     if trial.swept or (only and len(trial.rows) <= _LISTED_MAX):
-        head, name = (swept_name(trial), swept_value) if trial.swept else ("Flight", flight_name)
-        table.append(flight_table(trial.rows, head, partial(name, trial)))
+        head, name = swept_column(trial) if trial.swept else ("Flight", partial(flight_name, trial))
+        table.append(flight_table(trial.rows, head, name, flown_ratio=flown_elsewhere(trial)))
     # The head of the report says what an only trial is.
     text: list[Block] = [] if only else [Text(str(trial.config["description"]))]
     title = trial.title if not only else "Over the speed ratio" if list(trial.swept) == ["nu"] else "Flights"

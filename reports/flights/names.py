@@ -1,47 +1,102 @@
 """What flights, swept keys, faults and manoeuvres are called."""
 
 import json
+import math
 import re
+from collections.abc import Callable
+from functools import partial
+from numbers import Number
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
+from reports.document.tables import parameter_value
 from reports.monte_carlo.names import input_name, input_unit
 from reports.run.trials import Trial
+
+_SAME_RATIO = 0.005
+"""Within which two speed ratios are written the same [-]."""
+
+_BARE = ("none", "yes", "no", "not set")
+"""Values that say nothing without the name of their key."""
 
 
 def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
     """Return what a flight is called: by what was swept, or by its number, or by its name."""
     flight_id = str(row["flight_id"])
-    if trial.swept:
-        first, *others = (_swept(key, trial.input(key)[flight_id]) for key in trial.swept)
-        return ", ".join([first, *(words[0].lower() + words[1:] for words in others)])
     counted = re.search(r"_(\d+)$", flight_id)
+    if trial.swept:
+        first, *others = (_swept(key, value) for key, value in _values(trial, row).items())
+        words = [first, *(words[0].lower() + words[1:] for words in others)]
+        # Of several flights at the same values each has its number.
+        return ", ".join([*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])])
     return f"Flight {int(counted[1])}" if counted else flight_id
 
 
-def swept_name(trial: Trial) -> str:
-    """Return what was swept, for the head of a column of ``swept_value``."""
-    first, *others = ("ν" if key == "nu" else input_name(key) for key in trial.swept)
-    return ", ".join([first, *(words[0].lower() + words[1:] for words in others)])
+def told_name(trial: Trial, row: "pd.Series[Any]") -> str:
+    """Return what sentences and lists call a flight: a swept one as figures do, any other by its name in the run."""
+    several = len(trial.run.manifest["trials"]) > 1
+    if not trial.swept:
+        return str(row["flight_id"])
+    return f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
 
 
-def swept_value(trial: Trial, row: "pd.Series[Any]") -> str:
-    """Return the values of a flight of what was swept, without their names."""
-    return ", ".join(_value(key, trial.input(key)[str(row["flight_id"])]) for key in trial.swept)
+def swept_column(trial: Trial) -> tuple[str, Callable[["pd.Series[Any]"], str]]:
+    """Return head and cells of a column that says which flight a row is about: the values of one key, else whole names."""
+    if len(trial.swept) > 1 or _repeated(trial):
+        return "Flight", partial(flight_name, trial)
+    (key,) = trial.swept
+    return "ν" if key == "nu" else input_name(key), lambda row: _value(key, _values(trial, row)[key])
+
+
+def flown_elsewhere(trial: Trial) -> bool:
+    """Return whether flights have another speed ratio than the one that was swept: in wind it is that through the air."""
+    if "nu" not in trial.swept:
+        return False
+    return any(abs(float(row["nu"]) - _ratio(trial, row)) > _SAME_RATIO for _, row in trial.flown.iterrows())
+
+
+def _repeated(trial: Trial) -> bool:
+    """Return whether several flights have the same values of what was swept."""
+    return trial.planned > math.prod(len(values) for values in trial.swept.values())
+
+
+def _values(trial: Trial, row: "pd.Series[Any]") -> dict[str, Any]:
+    """Return the values of a flight of what was swept."""
+    flight_id = str(row["flight_id"])
+    return {key: _ratio(trial, row) if key == "nu" else trial.input(key)[flight_id] for key in trial.swept}
+
+
+def _ratio(trial: Trial, row: "pd.Series[Any]") -> float:
+    """Return the speed ratio that was swept: that of the speeds in still air, of which the run records another one in wind."""
+    key = "guidance.airspeed_mps"
+    airspeed = float(trial.input(key)[str(row["flight_id"])] if key in trial.swept else trial.setting(key))
+    over_ground = float(row.get("vessel_speed_mps", math.nan)) / airspeed
+    nearest = min((float(nu) for nu in trial.swept["nu"]), key=lambda nu: abs(nu - over_ground))
+    return nearest if abs(nearest - over_ground) < _SAME_RATIO else float(row["nu"])
 
 
 def _swept(key: str, value: Any) -> str:
     if key == "nu":
         return f"ν = {_value(key, value)}"
-    return f"{input_name(key)} {_value(key, value)}" if isinstance(value, float) else _value(key, value)
+    # Of words some say nothing by themselves.
+    return f"{input_name(key)} {_value(key, value)}" if _is_number(value) or _value(key, value) in _BARE else _value(key, value)
 
 
 def _value(key: str, value: Any) -> str:
     if key == "nu":
         return f"{value:.2f}"
     unit = input_unit(key)
-    return f"{value:.4g}{'' if unit == '-' else f' {unit}'}" if isinstance(value, float) else str(value)
+    return (
+        f"{value:.4g}{'' if unit == '-' else f' {unit}'}"
+        if _is_number(value)
+        else parameter_value(value.item() if isinstance(value, np.generic) else value, key)
+    )
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Number) and not isinstance(value, bool)
 
 
 def fault_name(kind: object) -> str:

@@ -1,12 +1,11 @@
 """Tables of parameters: what trials set, sweep and sample, what follows from it, and the defaults."""
 
 import re
-from functools import partial
 from typing import Any
 
 from reports.document.blocks import Block, Heading, Table
 from reports.document.tables import parameter_value, span
-from reports.flights.names import manoeuvre_name, swept_name, swept_value
+from reports.flights.names import flown_elsewhere, manoeuvre_name, swept_column
 from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
 from reports.monte_carlo.names import input_name, input_unit
 from reports.run.columns import column
@@ -24,9 +23,9 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
         blocks += [
             flight_table(
                 trials[0].flown,
-                swept_name(trials[0]),
-                partial(swept_value, trials[0]),
+                *swept_column(trials[0]),
                 OSCILLATION_COLUMNS,
+                flown_ratio=flown_elsewhere(trials[0]),
                 caption="The reference's oscillation in each flight; equation numbers are the paper's.",
             ),
         ]

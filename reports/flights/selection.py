@@ -10,7 +10,7 @@ import pandas as pd
 from reports.document.blocks import Block, FlightContent, FlightPicker, Section, Text
 from reports.document.tables import number, outcome
 from reports.flights.flight_view import flight_view
-from reports.flights.names import flight_name
+from reports.flights.names import flight_name, flown_elsewhere
 from reports.flights.single_flight import flight_charts
 from reports.replay.flight_scene import flight_scene
 from reports.run.columns import clearance, column, met, violated
@@ -58,7 +58,11 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
     several = len(trial.run.manifest["trials"]) > 1
     name = f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
     known = [("", "min_distance_m", "{:.1f} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", "{:.1f} m/s")]
-    shown = [item for item in known if item[1] not in trial.swept and not pd.isna(row.get(item[1]))]
+    given = {key.replace("wind.speed_mps", "wind_speed_mps") for key in trial.swept}
+    if flown_elsewhere(trial):
+        known[1], given = ("flown at ν = ", "nu", "{:.2f}"), given - {"nu"}
+    flown = not pd.isna(row["min_distance_m"])
+    shown = [item for item in known if flown and item[1] not in given and not pd.isna(row.get(item[1]))]
     # A name, its figure and its unit stay on one line.
     world = ", ".join(f"{words}{number(row[key], pattern)}".replace(" ", "\N{NO-BREAK SPACE}") for words, key, pattern in shown)
     # Page 1 shows the tracks of a run's only flight.

@@ -12,6 +12,7 @@ from reports.document.tables import number
 from reports.flights.bounds import sampled, violation_bound
 from reports.flights.criteria import MEASURED, Criterion, criteria_of
 from reports.flights.first_page import hours
+from reports.flights.names import told_name
 from reports.measurement.flights import sulphur_below, sulphur_cards, sulphur_headline
 from reports.run.columns import (
     clearance,
@@ -32,6 +33,9 @@ from reports.run.trials import Trial
 
 _NAMED_MAX = 3
 """Flights of a trial that failed a criterion and that the verdict names one by one."""
+
+_SEVERAL = {False: ", ", True: "; "}
+"""Between the names of flights, whether or not these have commas of their own."""
 
 ROUNDING = 1e-9
 """What binary fractions may add to a figure that is limited by design [-]."""
@@ -124,10 +128,12 @@ def _closest(trials: list[Trial], flown: pd.DataFrame) -> str:
     """Return how close the closest flight came, and to what: the shape of the keep-out area decides what a distance is."""
     closest = flown.iloc[int(np.argmin(clearance(flown)))]
     (trial,) = [trial for trial in trials if trial.key == closest["trial"]]
+    name = told_name(trial, closest)
+    where = f" ({name})" if trial.swept else f", in {name}"
     words = (
         "Closest approach of any flight, from its first second:"
         f" {_distance(float(closest['min_distance_m']), float(closest['keepout_radius_m']))}"
-        f" {trial.measured_from}, in {closest['flight_id']}"
+        f" {trial.measured_from}{where}"
     )
     beside = closest.get("horizontal_distance_min_m", math.nan)
     if trial.shape == "sphere" and beside < float(closest["min_distance_m"]) - 1.0:
@@ -143,8 +149,8 @@ def _not_met(trial: Trial) -> list[str]:
     if len(others) <= _NAMED_MAX:
         reasons: dict[str, list[str]] = {}
         for _, row in others.iterrows():
-            reasons.setdefault(_reason(row), []).append(str(row["flight_id"]))
-        return [*(f"{', '.join(flights)}: {reason}" for reason, flights in reasons.items()), *lines]
+            reasons.setdefault(_reason(row), []).append(told_name(trial, row))
+        return [*(f"{_SEVERAL[bool(trial.swept)].join(flights)}: {reason}" for reason, flights in reasons.items()), *lines]
     inside, depth = count(violated(rows)), largest(column(rows, "keepout_depth_m"))
     parts = [f"{inside} violated the keep-out area, by up to {number(depth, '{:.1f} m')}"] if inside else []
     parts += [f"{c.failed}: {c.what}" + f", {c.limit}" * (c.key != "mission") for c in criteria_of(trial) if c.failed]

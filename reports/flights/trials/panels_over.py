@@ -7,6 +7,7 @@ import numpy as np
 from reports.document.chart import Line, Panel, Style
 from reports.document.palette import Meaning
 from reports.document.panels import Group, around, capped, level, points
+from reports.flights.names import flown_elsewhere
 from reports.monte_carlo.names import input_label
 from reports.run.columns import clearance, column, interval_error, violated
 from reports.run.trials import Trial
@@ -48,7 +49,8 @@ class PanelsOver:
         self._trial, self._key, self._groups, self._rows = trial, key, groups, trial.flown
         self._x = trial.input(key).reindex(self._rows["flight_id"]).to_numpy(dtype=np.float64)
         self._span = np.array([0.0, 1.0]) if key == "nu" else self._x
-        self._label = "Speed ratio ν [-]" if key == "nu" else input_label(key)
+        ratio = "Speed ratio ν as flown [-]" if flown_elsewhere(trial) else "Speed ratio ν [-]"
+        self._label = ratio if key == "nu" else input_label(key)
 
     def figure(self, name: str, y_label: str) -> Panel | None:
         """Return a panel of any figure, its criterion if it has one, and those far above all others at its edge."""

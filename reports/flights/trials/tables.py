@@ -1,6 +1,6 @@
 """Tables of trials and of their flights."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,9 +12,8 @@ from reports.document.blocks import Block, Table, Text
 from reports.document.tables import ending, number, outcome, span
 from reports.flights.bounds import trial_bound
 from reports.flights.criteria import counted, criteria_of
-from reports.flights.names import fault_name
+from reports.flights.names import fault_name, told_name
 from reports.run.columns import clearance, column, completed, count, kept_out, lost, met, total, violated
-from reports.run.run_data import RunData
 from reports.run.time_history import keepout_distance
 from reports.run.trials import Trial
 
@@ -55,6 +54,8 @@ def flight_table(
     name: Callable[["pd.Series[Any]"], str],
     columns: Columns = _FLIGHT_COLUMNS,
     caption: str = "The flights, a row each, with their outcome.",
+    *,
+    flown_ratio: bool = False,
 ) -> Table:
     """Return a row per flight, and its outcome in words.
 
@@ -64,7 +65,12 @@ def flight_table(
     head, name : of the first column, and what it says of a flight
     columns : title, name and pattern of the columns after the outcome
     caption : what the table shows
+    flown_ratio : whether a column says the speed ratio that was flown, where that is not the one that was swept
     """
+    if flown_ratio:
+        rows = rows.assign(flown_ratio=rows["nu"].where(rows["min_distance_m"].notna()))
+        columns = (("ν flown [-]", "flown_ratio", "{:.2f}"), *columns)
+        caption += " ν is swept as the ratio of the speeds over the ground; as flown, in wind, it is that through the air."
     cells = [
         [name(row), outcome(row), *(number(row.get(key), pattern) for _, key, pattern in columns)] for _, row in rows.iterrows()
     ]
@@ -179,23 +185,24 @@ def _closest_after(trial: Trial, row: "pd.Series[Any]") -> float | None:
     return float(keepout_distance(after, trial.source_height, trial.shape).min()) if len(after) else None
 
 
-def failed_blocks(run: RunData) -> list[Block]:
+def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     """Return the flights that failed a criterion, keep-out violations first, ``FAILED_MAX`` at most, each with its reason."""
-    failed = run.summary[~met(run.summary)]
+    by_key, summary = {trial.key: trial for trial in trials}, pd.concat([trial.rows for trial in trials])
+    failed = summary[~met(summary)]
     if not len(failed):
         return []
     order = np.lexsort((np.arange(len(failed)), -np.nan_to_num(column(failed, "keepout_depth_m")), ~violated(failed)))
     rows = [
         [
-            str(row["flight_id"]),
-            number(row["nu"], "{:.2f}"),
+            told_name(by_key[row["trial"]], row),
+            number(row["nu"] if pd.notna(row["min_distance_m"]) else None, "{:.2f}"),
             number(row["keepout_violations"], "{:.0f}"),
             number(row["min_distance_m"], "{:.1f}"),
             ending(row),
         ]
         for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()
     ]
-    head = ["Flight", "ν [-]", "Keep-out violations", "Closest [m]", "How it ended, and the criteria that it failed"]
+    head = ["Flight", "ν flown [-]", "Keep-out violations", "Closest [m]", "How it ended, and the criteria that it failed"]
     table = Table(
         caption="Flights that failed a criterion, keep-out violations first, each with its reason.",
         head=head,

@@ -1,9 +1,15 @@
 """Figures of a sweep over several keys: a column for each in two figures, instead of four figures for each."""
 
-import pytest
+import re
 
-from reports.flights.names import flight_name
+import numpy as np
+import pytest
+from report_parts import blocks_of
+
+from reports.document.blocks import FlightPicker, Table
+from reports.flights.names import _swept, flight_name, flown_elsewhere
 from reports.flights.trials.charts import trial_charts
+from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
 from tests.in_process import run_command
@@ -43,3 +49,71 @@ def test_several_numbers_have_a_column_each_in_two_figures_and_words_have_one_of
 
 def test_a_flight_is_called_by_all_that_was_swept(trial):
     assert flight_name(trial, trial.rows.iloc[0]) == "ν = 0.20, keep-out radius 150 m, cascade"
+
+
+WINDY = """
+title = "Windy"
+description = "Flights for a test."
+fidelity = "kinematic"
+seed = 3
+flight.crossings = 2
+start.distance_m = [300.0, 400.0]
+
+[criteria]
+crossing_interval_error = 0.9
+tracking_error_rms_m = 90.0
+airspeed_error_rms_mps = 9.0
+altitude_error_max_m = 90.0
+
+[sweep]
+nu = [0.3, 0.6]
+"wind.speed_mps" = [0, 10]
+"""
+"""Of the four the last cannot be flown: the vessel is too fast through the air."""
+
+
+@pytest.fixture(scope="module")
+def windy(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("windy")
+    (folder / "windy.toml").write_text(WINDY, encoding="utf-8")
+    run_command("scenarios.run", folder / "windy.toml", "--out", folder / "run", "--no-report", "--jobs", 1)
+    return content(read_run(folder / "run"))
+
+
+NAMES = [f"ν = {nu}, wind speed {wind} m/s" for nu in ("0.30", "0.60") for wind in (0, 10)]
+
+
+def test_each_swept_value_has_its_name_and_unit_and_a_flight_one_name_everywhere(windy):
+    (trial,) = [section for section in windy.sections if section.anchor == "trial1"]
+    flights = next(block for block in trial.blocks if isinstance(block, Table) and block.head[1] == "Outcome")
+    assert [row[0] for row in flights.rows] == NAMES
+    assert re.search(r"centre \(ν = 0\.\d0, wind speed \d+ m/s\)\.", windy.verdict.detail)
+    assert windy.verdict.failures[0].startswith(f"{NAMES[3]}: infeasible")
+    (failed,) = blocks_of(windy, Table, "failed")
+    assert failed.rows[0][0] == NAMES[3]
+    titles = [panel.title for panel in windy.picture.panels]
+    assert all(any(f": {name}, " in title for name in NAMES) for title in titles)
+    (picker,) = blocks_of(windy, FlightPicker)
+    assert [flight.title.partition(":")[0] for flight in picker.flights] == NAMES
+    assert not any("nu_0" in text for text in (windy.verdict.detail, *windy.verdict.failures, *titles))
+
+
+def test_where_the_flown_speed_ratio_is_not_the_swept_one_a_column_says_it(windy, trial):
+    for anchor in ("trial1", "parameters"):
+        flights = next(table for table in blocks_of(windy, Table, anchor) if "ν flown [-]" in table.head)
+        ratios = [row[flights.head.index("ν flown [-]")] for row in flights.rows]
+        # (0.3 * 19.42 + 10)/19.42 = 0.815: head wind on a vessel on course north, at the X8's airspeed.
+        assert ratios[:3] == ["0.30", "0.81", "0.60"]
+        # What was not flown has none.
+        assert ratios[3:] in ([], ["–"])
+    (picker,) = blocks_of(windy, FlightPicker)
+    assert "flown at ν = 0.81" in picker.flights[1].title.replace("\N{NO-BREAK SPACE}", " ")
+    assert picker.flights[3].title.endswith("(not flown)")
+    assert not flown_elsewhere(trial)
+
+
+def test_a_value_that_says_nothing_by_itself_has_the_name_of_its_key():
+    assert _swept("turbulence.level", "none") == "Turbulence level none"
+    assert _swept("guidance.preview", np.bool_(False)) == "Guidance preview no"
+    assert _swept("turbulence.level", "severe") == "severe"
+    assert _swept("guidance.law", "/home/me/laws/mylaw.py:MyLaw") == "mylaw.py:MyLaw"
