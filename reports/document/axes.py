@@ -20,6 +20,9 @@ _MANTISSAS = ((1,), (1, 3), (1, 2, 5), (1, 2, 3, 4, 5, 6, 7, 8, 9))
 _MARKS_MIN, _MARKS_MAX = 3, 8
 """Marks of a logarithmic axis."""
 
+_TINY, _ABOUT = 1e-3, 0.05
+"""Range of values, over the largest, below which an axis would mark their last digits; and how far it then reaches about them."""
+
 _LINES = 2
 """Lines of a label at most."""
 
@@ -67,6 +70,17 @@ def log_axis(limits: tuple[float, float] | None, curves: Sequence[Array]) -> tup
         if len(marks) >= _MARKS_MIN:
             break
     return limits, marks[:: -(-len(marks) // _MARKS_MAX) or 1]
+
+
+def about_values(curves: Sequence[Array]) -> tuple[float, float] | None:
+    """Return limits of a linear axis whose values are nearly the same, so that its marks have few digits; none for others."""
+    known = np.concatenate([np.asarray(curve, dtype=np.float64) for curve in curves] or [np.empty(0)])
+    known = known[np.isfinite(known)]
+    largest = float(np.max(np.abs(known), initial=0.0))
+    if not len(known) or not 0.0 < float(np.ptp(known)) < _TINY * largest:
+        return None
+    middle, spare = 0.5 * float(known.min() + known.max()), _ABOUT * largest
+    return middle - spare, middle + spare
 
 
 def wrapped(label: str, room: float) -> list[str]:

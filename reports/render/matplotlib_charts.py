@@ -8,7 +8,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from reports.document.axes import log_axis, mark_text, wrapped
+from reports.document.axes import about_values, log_axis, mark_text, wrapped
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import BAND_OPACITY, COLOURS, INK, SCALE
 from reports.run.columns import Array
@@ -44,6 +44,8 @@ _STYLE: dict[Any, Any] = {
     "axes.edgecolor": "#999999",
     "axes.spines.top": False,
     "axes.spines.right": False,
+    # Nobody reads what has to be added to every mark.
+    "axes.formatter.useoffset": False,
     "legend.frameon": False,
     "svg.fonttype": "path",
     "svg.hashsalt": "report",
@@ -196,6 +198,8 @@ def _mark(ax: Any, name: str, curves: list[Array], limits: Limits, *, log: bool,
         axis.set_ticks(marks, [mark_text(mark) for mark in marks])
         # Ticks between those would crowd the axis, and take most of the time to draw it.
         axis.set_minor_locator(NullLocator())
+    else:
+        limits = limits or about_values(curves)
     if whole:
         axis.set_major_locator(MaxNLocator(nbins=6, integer=True))
     return limits

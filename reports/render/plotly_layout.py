@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from reports.document.axes import log_axis, mark_text, wrapped
+from reports.document.axes import about_values, log_axis, mark_text, wrapped
 from reports.document.chart import Chart, Panel
 from reports.document.palette import BAND_OPACITY, COLOURS, INK
 
@@ -187,7 +187,7 @@ def _marks(curves: Sequence[np.ndarray[Any, Any]], limits: tuple[float, float] |
         axis: Data = {"type": "log", "tickvals": marks, "ticktext": [mark_text(mark) for mark in marks]}
         return axis | {"range": [math.log10(limit) for limit in limits]}
     # Plotly would write 20k and 50µ, before a unit that has a prefix of its own.
-    axis = {"exponentformat": "none"}
+    axis, limits = {"exponentformat": "none"}, limits or about_values(curves)
     if whole:
         known = np.concatenate([*curves, np.array(limits or ())])
         known = known[np.isfinite(known)]

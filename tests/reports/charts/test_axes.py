@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from reports.document.axes import cut_words, in_kilometres, log_axis, mark_text, wrapped
+from reports.document.axes import about_values, cut_words, in_kilometres, log_axis, mark_text, wrapped
 from reports.document.chart import Chart, Line, Note, Panel
 from reports.render import matplotlib_charts, plotly_charts
 
@@ -127,3 +127,36 @@ def test_a_dollar_sign_is_one(words):
     assert len(texts) == 5
     assert not any(text.get_parse_math() for text in texts)
     figure.savefig(io.BytesIO(), format="svg")
+
+
+NEARLY_THE_SAME = np.array([0.50493, 0.50497])
+"""Largest heading rates of two flights in a side wind, both at ω_max [rad/s]."""
+
+
+def test_an_axis_of_values_that_are_nearly_the_same_has_marks_of_few_digits_and_no_offset():
+    line = Line(x=np.array([0.3, 0.6]), y=NEARLY_THE_SAME, label="flight", colour="blue", style="points")
+    chart = Chart(name="a", caption="", panels=[Panel(x_label="x [-]", y_label="y [rad/s]", lines=[line])])
+    figure = matplotlib_charts.draw(chart)
+    figure.canvas.draw()
+    (ax,) = figure.axes
+    assert ax.yaxis.get_offset_text().get_text() == ""
+    marks = [label.get_text() for label in ax.get_yticklabels()]
+    assert all(len(mark) <= 5 for mark in marks)
+    low, high = plotly_charts.draw(chart)["layout"]["yaxis"]["range"]
+    assert (low, high) == pytest.approx(ax.get_ylim())
+    assert low < NEARLY_THE_SAME.min() < NEARLY_THE_SAME.max() < high
+
+
+def test_no_axis_has_an_offset_where_its_limits_are_given_and_near_to_each_other():
+    line = Line(x=np.array([0.3, 0.6]), y=NEARLY_THE_SAME, label="flight", colour="blue", style="points")
+    panel = Panel(x_label="x [-]", y_label="y [rad/s]", lines=[line], y_range=(0.50492, 0.50498))
+    figure = matplotlib_charts.draw(Chart(name="a", caption="", panels=[panel]))
+    figure.canvas.draw()
+    assert figure.axes[0].yaxis.get_offset_text().get_text() == ""
+
+
+def test_limits_of_values_that_differ_are_left_to_the_axis():
+    # 0.5 and 0.501 differ by 2 in a thousand.
+    assert about_values([np.array([0.5, 0.501])]) is None
+    assert about_values([np.zeros(3)]) is None
+    assert about_values([]) is None
