@@ -50,6 +50,16 @@ def swept_column(trial: Trial) -> tuple[str, Callable[["pd.Series[Any]"], str]]:
     return "ν" if key == "nu" else input_name(key), lambda row: _value(key, _values(trial, row)[key])
 
 
+def swept_words(trial: Trial) -> dict[str, list[str]]:
+    """Return the values in each flown flight of every key that was swept over words, without the folders of files."""
+    values = {key: trial.input(key).reindex(trial.flown["flight_id"]) for key in trial.swept}
+    return {
+        key: [_value(key, value).replace("_", " ") for value in of]
+        for key, of in values.items()
+        if not pd.api.types.is_numeric_dtype(of) or pd.api.types.is_bool_dtype(of)
+    }
+
+
 def flown_elsewhere(trial: Trial) -> bool:
     """Return whether flights have another speed ratio than the one that was swept: in wind it is that through the air."""
     if "nu" not in trial.swept:

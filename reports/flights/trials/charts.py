@@ -5,14 +5,13 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.map_marks import hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
 from reports.document.panels import COUNTED_MIN, Group, capped, classes, histogram, points, quartiles, strips
-from reports.flights.names import fault_name, manoeuvres_flown
-from reports.flights.trials.panels_over import CLEARANCE, PanelsOver, by_violation
+from reports.flights.names import fault_name, manoeuvres_flown, swept_words
+from reports.flights.trials.panels_over import CLEARANCE, LIMIT_LABEL, PanelsOver, by_violation, by_words
 from reports.monte_carlo.names import input_name
 from reports.run.columns import NOTICEABLE, Array, clearance, column, total
 from reports.run.ship import hull_of
@@ -26,6 +25,12 @@ _ROW = 3
 
 _OVER_THEORY = 2
 """Figures of a sweep that show theory, too, and so are drawn of a single flight: the table says all that is in the others."""
+
+_LIMIT_TOLD = (
+    " The limit is the shortest that bank and roll rate allow any path with two crossings a period, by optimal control, with"
+    " nothing reserved for feedback."
+)
+"""What a caption says of the shortest interval of any path, where that is drawn."""
 
 _R_MIN = (0.0, "r_min")
 _TRACKING = ("tracking_error_rms_m", "Tracking error, rms [m]")
@@ -55,30 +60,30 @@ def _chart(trial: Trial, name: str, caption: str, panels: Sequence[Panel | None]
 
 def _sweep(trial: Trial) -> list[Chart]:
     """Return the figures over the keys that were swept: over several numbers in as many columns, over one in more detail."""
-    values = {key: trial.input(key).reindex(trial.flown["flight_id"]) for key in trial.swept}
     names = {key: f"{key.rsplit('.', 1)[-1]}{i}".replace("_", "") for i, key in enumerate(trial.swept, start=1)}
-    numbers = [key for key, of in values.items() if pd.api.types.is_numeric_dtype(of)]
+    words = swept_words(trial)
+    numbers = [key for key in trial.swept if key not in words]
     if len(numbers) > 1:
         in_rows = [numbers[i : i + _ROW] for i in range(0, len(numbers), _ROW)]
         charts = [chart for keys in in_rows for chart in _over_keys(trial, keys, names[keys[0]])]
     else:
         charts = [chart for key in numbers for chart in _over_key(trial, key, names[key])]
-    return [*charts, *(_by_word(trial, key, values[key], names[key]) for key in values if key not in numbers)]
+    return [*charts, *(_by_word(trial, key, of, names[key]) for key, of in words.items())]
 
 
-def _by_word(trial: Trial, key: str, values: "pd.Series[Any]", name: str) -> Chart:
+def _by_word(trial: Trial, key: str, words: list[str], name: str) -> Chart:
     """Return figures by a key that is no number."""
     figures: list[_Figure] = [
         (clearance(trial.flown), CLEARANCE, [_R_MIN]),
         (column(trial.flown, _TRACKING[0]), _TRACKING[1], []),
     ]
     caption = "Closest approach of the whole flight, and tracking error after settling."
-    return _strips(trial, name, caption, [str(value).replace("_", " ") for value in values], input_name(key), figures)
+    return _strips(trial, name, caption, words, input_name(key), figures)
 
 
 def _over_keys(trial: Trial, keys: Sequence[str], name: str) -> list[Chart]:
     """Return two figures over several keys, a column for each."""
-    every = [PanelsOver(trial, key, by_violation(trial)) for key in keys]
+    every = [PanelsOver(trial, key, by_words(trial), by_words=True) for key in keys]
     crossings = (
         "Time between plume crossings against half the reference's period, π/ω₀, with bars of one standard deviation; below,"
         " distances from the funnel's mouth, of the crossings after settling, three-dimensional, and the closest approach of the"
@@ -101,17 +106,17 @@ def _over_keys(trial: Trial, keys: Sequence[str], name: str) -> list[Chart]:
 
 def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
     """Return four figures over one key."""
-    over = PanelsOver(trial, key, by_violation(trial))
+    over = PanelsOver(trial, key, by_words(trial), by_words=True)
+    interval = over.interval()
     bank = "Largest commanded heading rate against ω_max, largest bank, and settling time."
     if trial.setting("fidelity") == "kinematic":
         bank += " The kinematic vehicle has no bank: shown is that of a coordinated turn."
     charts = [
         _chart(
             trial, f"{name}-interval",
-            "Time between plume crossings against half the reference's period, π/ω₀. Bars are one standard deviation. The limit is"
-            " the shortest that bank and roll rate allow any path with two crossings a period, by optimal control, with nothing"
-            " reserved for feedback.",
-            [over.interval(), over.interval_error()], 0.4,
+            "Time between plume crossings against half the reference's period, π/ω₀. Bars are one standard deviation."
+            + (_LIMIT_TOLD if interval and any(line.label == LIMIT_LABEL for line in interval.lines) else ""),
+            [interval, over.interval_error()], 0.4,
         ),
         _chart(
             trial, f"{name}-distance",

@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from reports.document.chart import Line, Panel, Style
-from reports.document.palette import Meaning
+from reports.document.palette import SERIES, Meaning, series_colour
 from reports.document.panels import Group, around, capped, level, points
-from reports.flights.names import flown_elsewhere
+from reports.flights.names import flown_elsewhere, swept_words
 from reports.monte_carlo.names import input_label
 from reports.run.columns import clearance, column, interval_error, violated
 from reports.run.trials import Trial
@@ -20,8 +20,13 @@ _OSCILLATIONS: tuple[tuple[str, str, str, Style], ...] = (
 )
 """Shapes whose crossing interval is shown where another one is flown: name, label, colour and style."""
 
-_LIMIT: tuple[str, str, Style] = ("limit, two crossings a period", Meaning.LIMIT, "dot")
+LIMIT_LABEL = "limit, two crossings a period"
+
+_LIMIT: tuple[str, str, Style] = (LIMIT_LABEL, Meaning.LIMIT, "dot")
 """Label, colour and style of the shortest interval of any path."""
+
+_PLAIN = ("flight", "largest command")
+"""Labels of what a panel shows alone: a word that was swept stands in the place of these."""
 
 _MARGINS_APART = 0.05
 """Range of the planned margins, over the largest, from which they are an abscissa [-]."""
@@ -36,6 +41,21 @@ def by_violation(trial: Trial) -> list[Group]:
     return [(~inside, "flight", Meaning.FLOWN), (inside, "flight with a keep-out violation", Meaning.LIMIT)]
 
 
+def by_words(trial: Trial) -> list[Group]:
+    """Return the flights in groups of the words that were swept, as laws, each of a colour; by violation where there are none.
+
+    Of more words than there are colours none has one of its own.
+    """
+    words, inside = [", ".join(each) for each in zip(*swept_words(trial).values(), strict=True)], violated(trial.flown)
+    names = list(dict.fromkeys(words))
+    if not 1 < len(names) <= len(SERIES):
+        return by_violation(trial)
+    groups: list[Group] = [
+        (np.array([word == name for word in words]) & ~inside, name, series_colour(i)) for i, name in enumerate(names)
+    ]
+    return [*groups, *by_violation(trial)[1:]]
+
+
 class PanelsOver:
     """Panels over one key, of the flights that were flown; each is None if no flight has its figure.
 
@@ -43,9 +63,11 @@ class PanelsOver:
     ----------
     trial, key : whose flights, and over what; a key of figures
     groups : in which markers are coloured
+    by_words : whether these are of words that were swept, so that what is measured of flights is coloured by them, too
     """
 
-    def __init__(self, trial: Trial, key: str, groups: list[Group]) -> None:
+    def __init__(self, trial: Trial, key: str, groups: list[Group], *, by_words: bool = False) -> None:
+        self._parted = by_words and len(groups) > len(by_violation(trial))
         self._trial, self._key, self._groups, self._rows = trial, key, groups, trial.flown
         self._x = trial.input(key).reindex(self._rows["flight_id"]).to_numpy(dtype=np.float64)
         self._span = np.array([0.0, 1.0]) if key == "nu" else self._x
@@ -71,7 +93,7 @@ class PanelsOver:
         """Return the crossing interval, with bars of one standard deviation, its prediction, and what else could be flown."""
         flown = self._points("crossing_interval_mean_s", "flight", Meaning.FLOWN, error="crossing_interval_std_s")
         theory = self._theory("crossing_interval_predicted_s", "theory, π/ω₀", "black")
-        return self._panel("Crossing interval [s]", [*self._other_intervals(), theory, flown])
+        return self._panel("Crossing interval [s]", [*self._other_intervals(), theory, *flown])
 
     def _other_intervals(self) -> list[Line]:
         """Return the intervals of the oscillations that were not flown, and the shortest of any path; none over other keys."""
@@ -94,20 +116,16 @@ class PanelsOver:
         lines = [
             self._limit("keepout_radius_m", f"r_min of the keep-out {self._trial.shape}"),
             self._theory("r_co_m", "centre of oscillation r_CO", "grey"),
-            self._points("crossing_distance_mean_m", "crossings, mean", Meaning.CROSSING),
-            self._points("crossing_distance_min_m", "crossings, closest", Meaning.CROSSING, "ring"),
-            self._points(
-                "min_distance_m",
-                closest,
-                Meaning.FLOWN,
-            ),
+            *self._points("crossing_distance_mean_m", "crossings, mean", Meaning.CROSSING, "dots" if self._parted else "points"),
+            *self._points("crossing_distance_min_m", "crossings, closest", Meaning.CROSSING, "ring"),
+            *self._points("min_distance_m", closest, Meaning.FLOWN, "square" if self._parted else "points"),
         ]
         return self._panel("Distance from the funnel [m]", lines)
 
     def command(self) -> Panel | None:
         """Return the largest commanded heading rate, and its limit."""
         command = self._points("heading_rate_command_max_rad_s", "largest command", Meaning.ASKED)
-        return self._panel("Heading rate [rad/s]", [command, self._limit("heading_rate_limit_rad_s", "ω_max")])
+        return self._panel("Heading rate [rad/s]", [*command, self._limit("heading_rate_limit_rad_s", "ω_max")])
 
     def margin(self) -> Panel | None:
         """Return what of the planned margin was left, over the margin if flights differ in it by much."""
@@ -129,9 +147,23 @@ class PanelsOver:
         # A criterion that does not apply is false.
         return math.nan if value is None or value is False else float(value)
 
-    def _points(self, name: str, label: str, colour: str, style: Style = "points", error: str = "") -> Line:
-        bars = column(self._rows, error) if error else None
-        return Line(x=self._x, y=column(self._rows, name), label=label, colour=colour, style=style, error=bars)
+    def _points(self, name: str, label: str, colour: str, style: Style = "points", error: str = "") -> list[Line]:
+        """Return what is measured of the flights, in its colour; of each word that was swept in the colour of that."""
+        bars, values = column(self._rows, error) if error else None, column(self._rows, name)
+        if not self._parted:
+            return [Line(x=self._x, y=values, label=label, colour=colour, style=style, error=bars)]
+        return [
+            Line(
+                x=self._x[of],
+                y=values[of],
+                label=word if label in _PLAIN else f"{word}: {label}",
+                colour=tint,
+                style=style,
+                error=None if bars is None else bars[of],
+            )
+            for of, word, tint in self._groups
+            if np.any(of)
+        ]
 
     def _theory(self, name: str, label: str, colour: str) -> Line:
         """Return what theory says: its curve over the speed ratio, however few flights there are; else a mark for each flight."""
@@ -149,7 +181,7 @@ class PanelsOver:
 
     def _panel(self, y_label: str, lines: list[Line], y_range: tuple[float, float] | None = None) -> Panel | None:
         known = [line for line in lines if np.isfinite(line.y).any()]
-        shown = any(line.style in ("points", "diamonds", "ring") for line in known)
+        shown = any(line.style in ("points", "dots", "diamonds", "ring", "square") for line in known)
         if not shown:
             return None
         x_range = _RATIOS if self._key == "nu" else around(self._x)

@@ -1,6 +1,7 @@
 """Figures of a sweep over several keys: a column for each in two figures, instead of four figures for each."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from report_parts import blocks_of
 from reports.document.blocks import FlightPicker, Table
 from reports.flights.names import _swept, flight_name, flown_elsewhere
 from reports.flights.trials.charts import trial_charts
+from reports.flights.trials.panels_over import LIMIT_LABEL
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
@@ -49,6 +51,31 @@ def test_several_numbers_have_a_column_each_in_two_figures_and_words_have_one_of
 
 def test_a_flight_is_called_by_all_that_was_swept(trial):
     assert flight_name(trial, trial.rows.iloc[0]) == "ν = 0.20, keep-out radius 150 m, cascade"
+
+
+def test_words_that_were_swept_are_told_apart_by_colour_and_a_file_is_named_without_its_folders(trial):
+    laws = trial.run.draws["guidance.law"].replace("line_of_sight", "/home/me/laws/mylaw.py:MyLaw")
+    own = replace(trial, run=replace(trial.run, draws=trial.run.draws.assign(**{"guidance.law": laws})))
+    *charts, by_word = trial_charts(own)
+    assert [name for _, name in by_word.panels[0].y_names] == ["cascade", "mylaw.py:MyLaw"]
+    for panel in (panel for chart in charts for panel in chart.panels):
+        colours = {line.label.partition(":")[0]: line.colour for line in panel.lines if line.label.startswith(("cascade", "mylaw"))}
+        assert len(set(colours.values())) == len(colours) == 2
+    # Of every flight there is one marker in each panel of a figure.
+    assert sum(len(line.x) for line in charts[1].panels[0].lines if line.style == "points") == len(own.flown)
+
+
+def test_the_limit_of_any_path_is_told_where_it_is_drawn_and_nowhere_else(trial):
+    over_ratio = {"sweep": {"nu": [0.2, 0.4]}}
+    alone = replace(trial, config=trial.config | over_ratio)
+    shown = trial_charts(alone)[0]
+    drawn = any(line.label == LIMIT_LABEL for line in shown.panels[0].lines)
+    assert ("The limit is" in shown.caption) == drawn
+    theory = {"limit_nu": [0.0, 0.9], "crossing_interval_limit_s": [5.0, 9.0]}
+    with_limit = replace(alone, run=replace(alone.run, manifest=alone.run.manifest | {"theory": {alone.key: theory}}))
+    assert "The limit is" in trial_charts(with_limit)[0].caption
+    without = replace(alone, run=replace(alone.run, manifest=alone.run.manifest | {"theory": {}}))
+    assert "The limit is" not in trial_charts(without)[0].caption
 
 
 WINDY = """
