@@ -117,4 +117,4 @@ def _part_failed(row: Row) -> bool:
 
 
 def _at_most(name: str, value: float, limit: float, unit: str) -> Check:
-    return value <= limit, f"{name} {value:.2f} {unit} above {limit:g} {unit}"
+    return value <= limit, f"{name} {value:.2f} {unit}, above the limit of {limit:g} {unit}"

@@ -272,8 +272,8 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
         ("infeasible", "nu is 1.5; it must be below 1: slow the vessel", "infeasible: nu is 1.5"),
         (
             "completed",
-            "rms tracking error 2.00 m above 1.5 m; ended outrun",
-            "completed: rms tracking error 2.00 m above 1.5 m; ended outrun",
+            "rms tracking error 2.00 m, above the limit of 1.5 m; ended outrun",
+            "completed: rms tracking error 2.00 m, above the limit of 1.5 m; ended outrun",
         ),
     ],
 )

@@ -40,7 +40,7 @@ def test_a_flight_at_every_limit_has_met_them():
         ({"outcome": "diverged", "fault": "left_elevon", "fault_time_s": 50.0}, {"settles": False}, "did not complete"),
         ({"settling_time_s": math.nan}, {}, "did not settle"),
         ({"crossing_distance_min_m": 199.99}, {}, "crossed at 199.99 m"),
-        ({"tracking_error_rms_m": 1.51}, {}, "rms tracking error 1.51 m above 1.5 m"),
+        ({"tracking_error_rms_m": 1.51}, {}, "rms tracking error 1.51 m, above the limit of 1.5 m"),
         ({"tracking_error_rms_m": math.nan}, {}, "tracking error"),
         ({"airspeed_error_rms_mps": 0.31}, {}, "airspeed error"),
         ({"altitude_error_max_m": 1.6}, {}, "altitude error"),
@@ -55,7 +55,7 @@ def test_a_flight_at_every_limit_has_met_them():
         ({"resume_periods": 2.1}, {"resumes_within_periods": 2.0}, "crossings resumed 2.10 periods"),
         ({"outcome": "incomplete", "message": "flew 12 of 30 crossings"}, {"settles": False}, "flew 12 of 30 crossings"),
         ({"mode_at_end": "outrun"}, {"modes_at_end": ("tracking", "holding off")}, "ended outrun"),
-        ({"time_to_find_s": 301.0}, {"time_to_find_s": 300.0}, "time to find the plume 301.00 s above 300 s"),
+        ({"time_to_find_s": 301.0}, {"time_to_find_s": 300.0}, "time to find the plume 301.00 s, above the limit of 300 s"),
         # A plume that was never detected has no time.
         ({}, {"time_to_find_s": 300.0}, "time to find the plume nan s"),
         ({"altitude_outside_s": 0.1}, {"within_altitudes": True}, "0.1 s outside"),
