@@ -2,7 +2,7 @@
 
 import json
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
 from itertools import count
 from pathlib import Path
@@ -15,6 +15,9 @@ from reports.document.blocks import Block, Card, Content, FlightContent, FlightP
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in
 from reports.render.matplotlib_charts import draw
+
+_AFTER_FLIGHTS = 2
+"""Sections after the flights: parameters and provenance."""
 
 TEMPLATE = Path(__file__).parent / "templates" / "report.typ"
 
@@ -33,7 +36,7 @@ def write_pdf(report: Content, path: Path, *, all_flights: bool = False) -> None
 
 def _data(report: Content, directory: Path, *, all_flights: bool) -> Data:
     pickers = [block for section in report.sections for block in section.blocks if isinstance(block, FlightPicker)]
-    sections = [_section(section, directory) for section in report.sections]
+    sections = [_section(section, directory) for section in _in_print(report.sections)]
     # Flights have pages of their own before parameters and provenance, and their figures the numbers after all others.
     numbers = count(figures_in(report.picture, report.sections) + 1)
     flights = [flight for picker in pickers for flight in picker.flights if all_flights or flight.printed]
@@ -57,6 +60,13 @@ def _data(report: Content, directory: Path, *, all_flights: bool) -> Data:
         "sections": [section for section in sections if section["blocks"]],
         "flights": [_flight(flight, directory, numbers) for flight in flights],
     }
+
+
+def _in_print(sections: Sequence[Section]) -> list[Section]:
+    """Return the sections with that of single flights right before the flights, which are printed before the last two."""
+    of_flights = [any(isinstance(block, FlightPicker) for block in section.blocks) for section in sections]
+    flights, others = ([s for s, of in zip(sections, of_flights, strict=True) if of is which] for which in (True, False))
+    return [*others[:-_AFTER_FLIGHTS], *flights, *others[-_AFTER_FLIGHTS:]]
 
 
 def _card(card: Card, *, judges: bool) -> Data:

@@ -114,6 +114,15 @@ def test_page_1_holds_everything_that_is_for_the_client_and_the_contents_stand_o
     assert "short" in second.splitlines()[0]
 
 
+def test_single_flights_stand_in_print_below_the_words_on_them(built, report):
+    (section,) = [section for section in report.sections if section.anchor == "flights"]
+    text, picker = section.blocks
+    (page,) = [page for page in built[1] if " ".join(text.text.split())[:60] in " ".join(page.split())]
+    assert picker.flights[0].title.split(":")[0] in page
+    assert "printed flights" not in built[1][1]
+    assert built[1][1].count("Single flights") == 1
+
+
 def test_page_1_is_one_page_however_much_failed(report, tmp_path):
     long = "a flight that failed, " * 15
     verdict = replace(report.verdict, detail=long * 2, failures=[long] * 9)
