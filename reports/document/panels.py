@@ -26,6 +26,9 @@ _SPREAD = 0.32
 _OUTLIERS = 1.6
 """Largest ordinate that is shown, over the limit or twice the median, whichever is larger."""
 
+_NAMED = 3
+"""Values beyond a panel that its legend names one by one."""
+
 _SPARE = 1.15
 """Largest ordinate that is shown, over the highest marker, where none is cut."""
 
@@ -66,8 +69,8 @@ def points(x: Array, y: Array, groups: Sequence[Group]) -> list[Line]:
     ]
 
 
-def capped(x: Array, y: Array, groups: Sequence[Group], limit: float) -> tuple[list[Line], float]:
-    """Return markers as ``points`` does, those far above all others on the upper edge, and where that is."""
+def capped(x: Array, y: Array, groups: Sequence[Group], limit: float, unit: str = "") -> tuple[list[Line], float]:
+    """Return markers as ``points`` does, those far above all others on the upper edge with their values, and where that is."""
     known = y[np.isfinite(y)]
     least = 0.0 if math.isnan(limit) else limit
     highest = _SPARE * max([*known, least]) or 1.0
@@ -78,8 +81,14 @@ def capped(x: Array, y: Array, groups: Sequence[Group], limit: float) -> tuple[l
     lines = points(np.where(beyond, np.nan, x), y, groups)
     if beyond.any():
         edge = np.full(int(np.count_nonzero(beyond)), 0.97 * top)
-        lines.append(Line(x=x[beyond], y=edge, label="beyond the panel", colour="black", style="diamonds"))
+        lines.append(Line(x=x[beyond], y=edge, label=beyond_label(y[beyond], unit), colour="black", style="diamonds"))
     return lines, top
+
+
+def beyond_label(values: Array, unit: str) -> str:
+    """Return what the legend says of values that a panel has no room for: each of a few, else how far they reach."""
+    shown = ", ".join(f"{value:.3g}" for value in np.sort(values)) if len(values) <= _NAMED else f"up to {np.max(values):.3g}"
+    return f"beyond the panel: {shown} {unit}".strip()
 
 
 def level(x: Array, value: float, label: str, colour: str = Meaning.LIMIT) -> Line:

@@ -15,7 +15,9 @@ from reports.run.run_data import RunData
 
 def parameter_table(run: RunData) -> Table:
     """Return every parameter of the run with its unit and meaning."""
-    rows = [[p["key"], parameter_value(p["value"], p["key"]), p["unit"], p["meaning"]] for p in run.manifest["parameters"]]
+    rows = [
+        [p["key"], parameter_value(p["value"], p["key"]), p["unit"], in_symbols(p["meaning"])] for p in run.manifest["parameters"]
+    ]
     return Table(
         caption="Every parameter, with its unit and meaning.",
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
@@ -92,11 +94,22 @@ def span(values: Array, pattern: str) -> str:
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
+_SYMBOLS = {r"\bpi/omega_0\b": "π/ω₀", r"\bomega_0\b": "ω₀", r"\bomega_max\b": "ω_max", r"\bnu = ": "ν = "}
+"""How documents and messages, which are plain, write symbols; and how figures and tables do."""
+
+
+def in_symbols(text: str) -> str:
+    """Return a text with its quantities written as figures and tables write them."""
+    for plain, symbol in _SYMBOLS.items():
+        text = re.sub(plain, symbol, text)
+    return text
+
+
 def outcome(row: "pd.Series[Any]") -> str:
     """Return how a flight ended, in words, and which criteria it failed."""
     if row["criteria_met"]:
         return "met"
-    ended, message = str(row["outcome"]).replace("_", " "), str(row["message"])
+    ended, message = str(row["outcome"]).replace("_", " "), in_symbols(str(row["message"]))
     return f"{ended}: {message}" if message else ended
 
 

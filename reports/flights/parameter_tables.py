@@ -4,7 +4,7 @@ import re
 from typing import Any
 
 from reports.document.blocks import Block, Heading, Table
-from reports.document.tables import parameter_value, span
+from reports.document.tables import in_symbols, parameter_value, span
 from reports.flights.names import flown_elsewhere, manoeuvre_name, swept_column
 from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
 from reports.monte_carlo.names import input_name, input_unit
@@ -41,7 +41,7 @@ def _table(rows: list[list[str]]) -> Table:
     shown = [i for i in range(len(_HEAD)) if i in (0, 4) or any(row[i] for row in rows)]
     return Table(
         head=[_HEAD[i] for i in shown],
-        rows=[[row[i] for i in shown] for row in rows],
+        rows=[[in_symbols(row[i]) if _HEAD[i].startswith("Meaning") else row[i] for i in shown] for row in rows],
         widths=[_WIDTHS[i] for i in shown],
         left_columns=len(shown),
         prose=True,

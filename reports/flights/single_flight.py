@@ -21,6 +21,9 @@ _NEAR, _FAR = 0.95, 1.6
 _ERROR_MIN = 0.1
 """Floor of the tracking error's logarithmic axis [m]."""
 
+_HIDDEN = 0.2
+"""Height within which a flight that stays there hides a level [m]."""
+
 _TWO_COLUMNS = 6
 """Panels that stand in two columns; more are in three, so that each is higher than its label is long."""
 
@@ -128,8 +131,12 @@ class _Histories:
         if rise > 0.0:
             levels["centre of oscillation"] = (funnel + rise, Meaning.PLUME)
         altitude, highest = self._column("altitude_m"), max(height for height, _ in levels.values())
-        # The true wind is dashed.
-        lines = [self._level(height, label, colour, "thin") for label, (height, colour) in levels.items()]
+        # The true wind is dashed. A level that nearly all of the flight lies upon would be in the legend alone.
+        lines = [
+            self._level(height, label, colour, "thin")
+            for label, (height, colour) in levels.items()
+            if np.nanquantile(np.abs(altitude - height), 0.95) > _HIDDEN
+        ]
         y_range = min(funnel - 1.0, float(altitude.min()) - 0.2), max(highest + 1.0, float(altitude.max()) + 0.2)
         return Panel(x_label=_TIME, y_label="Height [m]", lines=[*lines, self._line(altitude)], y_range=y_range)
 

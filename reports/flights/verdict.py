@@ -8,7 +8,7 @@ import pandas as pd
 
 from common.intervals import percent
 from reports.document.blocks import Card, Verdict
-from reports.document.tables import number
+from reports.document.tables import in_symbols, number
 from reports.flights.bounds import sampled, violation_bound
 from reports.flights.criteria import MEASURED, Criterion, criteria_of
 from reports.flights.first_page import hours
@@ -161,7 +161,7 @@ def _not_met(trial: Trial) -> list[str]:
 def _reason(row: "pd.Series[Any]") -> str:
     """Return why a flight failed a criterion; that it did not settle its message says already."""
     ended = "" if row["outcome"] == "not_settled" else str(row["outcome"]).replace("_", " ")
-    return "; ".join(words for words in (ended, str(row["message"])) if words)
+    return "; ".join(words for words in (ended, in_symbols(str(row["message"]))) if words)
 
 
 def _noteworthy(flown: pd.DataFrame) -> list[str]:

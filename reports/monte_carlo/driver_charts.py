@@ -9,7 +9,7 @@ import pandas as pd
 
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
-from reports.document.panels import Group, capped, level, strips
+from reports.document.panels import Group, beyond_label, capped, level, strips
 from reports.monte_carlo.names import CLEARANCE, FIGURES, input_label, input_name
 from reports.run.columns import Array, clearance, violated
 from reports.run.run_data import RunData
@@ -108,7 +108,7 @@ def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
 
 def _scatter(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> Panel:
     x = values.to_numpy(dtype=np.float64)
-    lines, top = capped(x, near, groups, float("nan"))
+    lines, top = capped(x, near, groups, float("nan"), unit="m")
     bottom = min(0.0, float(near.min()))
     lines.append(level(x, 0.0, "r_min"))
     y_range = (bottom - 0.05 * (top - bottom), top)
@@ -119,7 +119,10 @@ def _strips(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> P
     """Return a row of flights for each word, those far above all others at the edge."""
     _, top = capped(near, near, groups, float("nan"))
     beyond = near > top
-    shown = [*((mask & ~beyond, name, colour) for mask, name, colour in groups), (beyond, "beyond the panel", "black")]
+    shown = [
+        *((mask & ~beyond, name, colour) for mask, name, colour in groups),
+        *([(beyond, beyond_label(near[beyond], "m"), "black")] if beyond.any() else []),
+    ]
     words, label = [str(value).replace("_", " ") for value in values], input_name(str(values.name))
     return strips(np.minimum(near, top), words, CLEARANCE, label, shown, [(0.0, "r_min")], named=True)
 

@@ -1,5 +1,6 @@
 """What the figures and the inputs of a Monte Carlo study are called, and how they are written."""
 
+import re
 from dataclasses import dataclass
 
 from reports.document.tables import minus
@@ -56,6 +57,9 @@ CLEARANCE = FIGURES["clearance_m"].label
 def input_name(key: str) -> str:
     """Return what an input is called, by its dotted key, without its unit."""
     bare = next((key.removesuffix(suffix) for suffix in _UNITS if key.endswith(suffix)), key)
+    # Entries of a list count from 1, and have a time rather than an "at".
+    bare = re.sub(r"s?\.(\d+)\.", lambda entry: f" {int(entry[1]) + 1} ", bare)
+    bare = re.sub(r"(?<=[. ])at$", "time", bare)
     return bare.replace(".", " ").replace("_", " ").replace("keepout", "keep-out").capitalize()
 
 

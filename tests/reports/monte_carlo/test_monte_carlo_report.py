@@ -184,7 +184,7 @@ def test_a_flight_far_from_all_others_does_not_squeeze_them_whatever_they_are_dr
     # Medians lie at some 5 m, and all others within 8 m (study_rows).
     assert wind.y_range[1] < 30.0
     assert level.x_range[1] < 30.0
-    assert [len(lines_of(panel)["beyond the panel"].x) for panel in (wind, level)] == [1, 1]
+    assert [len(lines_of(panel)["beyond the panel: 500 m"].x) for panel in (wind, level)] == [1, 1]
 
 
 def test_why_there_are_no_indices_is_said():

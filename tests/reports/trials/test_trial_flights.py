@@ -12,7 +12,7 @@ from trial_runs import with_values
 
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart, Line, Panel
-from reports.flights.flight_view import flight_view
+from reports.flights.flight_view import FlightView, flight_view
 from reports.flights.selection import PICKED_MAX, picked_flights
 from reports.flights.single_flight import flight_charts
 from reports.flights.trials.charts import trial_charts
@@ -145,3 +145,14 @@ def test_clearances_are_drawn_over_the_planned_margin_only_where_that_differs_by
         run = with_values(run, number, keepout_margin_m=margin)
     trial = read_trials(run)[0]
     assert PanelsOver(trial, "nu", by_violation(trial)).margin().x_label == over
+
+
+@pytest.mark.parametrize(("above", "drawn"), [(0.0, False), (0.1, False), (5.0, True)])
+def test_the_level_of_the_funnel_is_drawn_where_the_flight_does_not_hide_it(run, above, drawn):
+    trial = read_trials(run)[0]
+    row = trial.rows.iloc[0]
+    history = run.history(str(row["flight_id"]))
+    history = history.assign(altitude_m=trial.source_height + above)
+    histories = flight_charts(FlightView(trial, row, history))[1]
+    (height,) = [panel for panel in histories.panels if panel.y_label == "Height [m]"]
+    assert ("funnel" in {line.label for line in height.lines}) == drawn

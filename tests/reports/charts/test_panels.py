@@ -1,0 +1,39 @@
+"""Markers that a panel has no room for, and what inputs of a list are called."""
+
+import numpy as np
+import pytest
+
+from reports.document.panels import beyond_label, capped
+from reports.document.tables import in_symbols
+from reports.monte_carlo.names import input_label
+
+
+def test_a_marker_beyond_its_panel_has_its_value_in_the_legend():
+    values = np.array([80.0, 82.0, 84.0, 900.0])
+    lines, top = capped(np.arange(4.0), values, [(np.ones(4, dtype=bool), "flight", "blue")], float("nan"), unit="s")
+    assert top < 900.0
+    assert lines[-1].label == "beyond the panel: 900 s"
+
+
+def test_of_many_values_beyond_a_panel_the_largest_is_told():
+    assert beyond_label(np.array([3.0, 2.0]), "m") == "beyond the panel: 2, 3 m"
+    assert beyond_label(np.arange(100.0, 110.0), "m") == "beyond the panel: up to 109 m"
+
+
+@pytest.mark.parametrize(
+    ("key", "label"),
+    [
+        ("vessel.manoeuvres.0.at_s", "Vessel manoeuvre 1 time [s]"),
+        ("vessel.manoeuvres.1.turn_deg", "Vessel manoeuvre 2 turn [deg]"),
+        ("wind.speed_mps", "Wind speed [m/s]"),
+        ("sensors.heat", "Sensors heat [-]"),
+    ],
+)
+def test_an_entry_of_a_list_counts_from_one(key, label):
+    assert input_label(key) == label
+
+
+def test_symbols_of_messages_and_documents_are_those_of_figures():
+    assert in_symbols("off pi/omega_0, at nu = 1.11, above omega_max = 0.50") == "off π/ω₀, at ν = 1.11, above ω_max = 0.50"
+    # Keys of a file stay what they are.
+    assert in_symbols("omega_0_rad_s, sweep.nu=[0.3]") == "omega_0_rad_s, sweep.nu=[0.3]"
