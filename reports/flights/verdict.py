@@ -14,6 +14,7 @@ from reports.flights.criteria import MEASURED, Criterion, criteria_of
 from reports.flights.first_page import hours
 from reports.flights.names import told_name
 from reports.measurement.flights import sulphur_below, sulphur_cards, sulphur_headline
+from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
 from reports.run.columns import (
     clearance,
     column,
@@ -72,22 +73,32 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
     if not len(flown):
         return "Nothing was flown"
     rows, flights = run.summary, f"{len(flown):,} flight{'s' if len(flown) > 1 else ''}"
-    if violations := total(flown, "keepout_violations"):
-        return f"Keep-out violations in {count(violated(flown)):,} of {flights}, {violations:,} in all"
-    bound = violation_bound(run, trials, flown)
+    led, bound = _subset(run), violation_bound(run, trials, flown)
+    violations, inside = total(flown, "keepout_violations"), count(violated(flown))
+    if violations and led is None:
+        return f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
     shown = f": at most {percent(bound[0])} of such flights at {percent(bound[1])} confidence" if bound else ""
     counts = {
         "lost the aircraft": count(lost(rows)),
         "did not complete the mission": count(~completed(flown) & ~lost(flown)),
         "could not be flown": count(~lost(rows)) - count(~lost(flown)),
-        "failed another criterion": count(completed(rows) & ~met(rows)),
+        "failed another criterion": count(completed(rows) & ~met(rows) & ~violated(rows)),
         "not flown yet": planned - len(rows),
     }
     others = [f"{number_of:,} {what}" for what, number_of in counts.items() if number_of]
     kept = f"No keep-out violation in {flights} ({hours(flown)}){shown}"
+    if led is not None and bound:
+        kept = f"{subset_headline(led)}; {inside:,} of its {flights} ({hours(flown)}) violated the keep-out area"
+    elif violations:
+        kept = f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
     if np.any(lost(rows) & ~passed(rows)):
         return f"{others[0].capitalize()}, of {planned:,} flights{''.join(f', {other}' for other in others[1:])}. {kept}"
     return f"{kept}; of {planned:,}, {', '.join(others)}" if others else f"{kept}; every flight met its criteria"
+
+
+def _subset(run: RunData) -> "dict[str, Any] | None":
+    """Return the statistics of a study by subset simulation; None of any other run."""
+    return run.statistics if run.statistics is not None and run.statistics.get("method") == "subset" else None
 
 
 def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
@@ -98,15 +109,18 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
         f" {count(met(rows)):,} met every criterion.",
         *([_closest(trials, flown)] if len(flown) else []),
     ]
-    if bound := violation_bound(run, trials, flown):
+    led, bound = _subset(run), violation_bound(run, trials, flown)
+    if bound and led is not None:
+        sentences.append(
+            f"The simulation's bound, {percent(bound[1])} confidence, is on flights whose inputs are distributed as the scenario"
+            f" declares, in this simulation. {plain_bound_in_words(led)} Flights of further levels are led towards violations:"
+            " their share in all flights is no probability."
+        )
+    elif bound:
         sentences.append(
             f"With {percent(bound[1])} confidence a flight sampled as these were violates the keep-out area with a probability of"
             f" at most {percent(bound[0])}, on average and in this simulation."
         )
-        if run.statistics is not None and run.statistics.get("method") == "subset":
-            sentences.append(
-                "Subset simulation leads its flights towards violations: their share in these flights is no probability."
-            )
     elif len(flown) and (run.statistics is not None or sampled(trials)):
         few = "A single flight sets" if len(flown) == 1 else "So few flights set"
         sentences.append(f"{few} no bound on the probability of a keep-out violation that is worth stating.")

@@ -69,7 +69,7 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
         if least >= 0.0
         else f"{inside:,} of the flights violated the keep-out area, the deepest by {-least:.1f} m."
     )
-    methods = ", ".join(map(method_name, settings["methods"]))
+    methods = _methods(settings["methods"], set(searched["search_method"]))
     budget = (
         f"{settings['generations'] + 1} turns of {settings['population']} points"
         if settings["time_s"] is None
@@ -81,6 +81,15 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
         f"A search over {len(config['draws'])} inputs within their declared ranges by {methods}: {budget}, {len(searched):,}"
         f" flights{left_out}. {found} A search finds the worst flight within its budget and proves no bound."
     )
+
+
+def _methods(asked: list[str], flown: set[str]) -> str:
+    """Return the methods that proposed a flight, and those that had no turn within the budget."""
+    had = [method_name(name) for name in asked if name in flown]
+    without = [method_name(name) for name in asked if name not in flown]
+    if not had or not without:
+        return ", ".join(had or without)
+    return f"{', '.join(had)} ({', '.join(without)} had no turn within the budget)"
 
 
 def _about_worst(config: dict[str, Any], search: dict[str, Any]) -> str:

@@ -7,7 +7,7 @@ from report_parts import assert_axes_read_quantity_and_unit
 
 from reports.document.blocks import Table, Text
 from reports.document.chart import Chart
-from reports.monte_carlo.subset import probability_in_words, subset_sections
+from reports.monte_carlo.subset import plain_bound_in_words, probability_in_words, subset_headline, subset_sections
 from reports.monte_carlo.tables import percent
 from reports.render import matplotlib_charts, plotly_charts
 from scenarios.statistics.subset_estimates import input_shifts, near_event
@@ -50,6 +50,21 @@ def test_the_probability_is_said_with_its_interval_and_how_it_was_made(reached):
     assert "3 independent subset simulations estimate it." in words
     assert "log-normal" in words
     assert "is not found by chains" in words
+
+
+def test_the_headline_is_about_what_the_simulation_bounds(reached, unreached):
+    found = reached["violation"]
+    assert subset_headline(reached) == (
+        f"Keep-out violation with a probability of {percent(found['estimate'])} in a flight, at most"
+        f" {percent(found['pessimistic']['upper'])} at {percent(0.95)} confidence, by subset simulation"
+    )
+    assert subset_headline(unreached).startswith("Subset simulation reached no keep-out violation: a probability of at most ")
+    plain = unreached["violation"]["first_levels"]
+    # Clopper and Pearson, none of 300: 1 - 0.05^(1/300) = 0.994 %.
+    assert f"sample of 300 flights with 0 violations, bound the probability by {percent(plain['upper'])}" in plain_bound_in_words(
+        unreached
+    )
+    assert percent(plain["upper"]).startswith("0.994")
 
 
 def test_where_nothing_was_reached_only_an_upper_bound_is_claimed(unreached):

@@ -191,6 +191,11 @@ def test_its_report_says_the_probability_and_shows_levels_and_inputs(whole, tmp_
     for words in ("subset simulation", "Levels", "Start range", "noise floor", "is no probability"):
         assert words in text
     assert pdf.read_bytes().startswith(b"%PDF")
+    # Its flights are led: that they are sampled as these were would be untrue.
+    summary = text[text.index('id="summary"') : text.index("<nav>")]
+    assert "ubset simulation" in summary
+    assert "sampled as these were" not in summary
+    assert "of such flights" not in summary
 
 
 @pytest.mark.parametrize(
