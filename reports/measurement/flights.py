@@ -57,7 +57,9 @@ def sulphur_cards(run: RunData) -> list[Card]:
 def _verdict_card(row: "pd.Series[Any]") -> Card:
     limit, called = limit_words(float(row["sulphur_limit_percent"])), str(row["sulphur_verdict"])
     kind = UndecidedCard if called == "open" else Card
-    words = "no verdict: quality C" if row["sulphur_quality"] == "C" else f"{called}, {probability(float(row['probability_above']))}"
+    words = f"{called}, {probability(float(row['probability_above']))}"
+    if row["sulphur_quality"] == "C":
+        words = "no verdict: quality C"
     return kind(f"Verdict on {limit}, and probability of more", words, f"≤ {limit}", {"above": False, "below": True}.get(called))
 
 
