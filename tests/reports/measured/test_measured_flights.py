@@ -95,7 +95,7 @@ def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_are
 def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(called, judgement, tone):
     row = {
         "fsc_percent": 0.1, "fsc_uncertainty_percent": 0.02, "sulphur_limit_percent": 0.1, "sulphur_verdict": called,
-        "probability_above": 0.5, "min_distance_m": 250.0,
+        "probability_above": 0.5, "sulphur_quality": "A", "min_distance_m": 250.0,
     }  # fmt: skip
     run = SimpleNamespace(summary=pd.DataFrame([row]))
     card = flights.sulphur_cards(run)[1]
