@@ -114,7 +114,8 @@ def _check_fault(scenario: Scenario) -> None:
         known |= set(fault_names(find_spec(scenario.aircraft)))
     for kind in sorted(kinds - known):
         guess = did_you_mean(kind, known)
-        raise InputError(f"fault.kind is '{kind}'{guess or ';'} what can fail is {', '.join(sorted(known))}")
+        key = "fault.declared has" if kind in scenario.fault.declared else "fault.kind is"
+        raise InputError(f"{key} '{kind}'{guess or ';'} what can fail is {', '.join(sorted(known))}")
 
 
 def _check_vessel(scenario: Scenario) -> None:

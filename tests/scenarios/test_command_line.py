@@ -107,6 +107,10 @@ def test_help_and_list_answer():
             ["sweep_nu", "--set", "payload.instruments=['sniffer']"],
             ["payload.instruments has a sniffer, and there is no exhaust: set emission.ship"],
         ),
+        (
+            ["sea_faults", "--set", "fault.declared=['engin']"],
+            ["fault.declared has 'engin'; did you mean 'engine'? what can fail is "],
+        ),
         (["sweep_mu.toml"], ["no scenario file 'sweep_mu.toml'"]),
         (["sweep_nu", "--resume"], ["--resume needs --out"]),
         (["sweep_nu", "--jobs", "0"], ["--jobs", "greater than or equal to 1"]),
