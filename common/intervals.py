@@ -11,6 +11,9 @@ Array = npt.NDArray[np.float64]
 CONFIDENCE = 0.95
 """Confidence of a bound where nothing else is asked for [-]."""
 
+TELLING = 0.5
+"""Largest bound on a probability that is stated: a flight, or a handful of them, bounds it by nearly everything [-]."""
+
 TINY = 1e-5
 """Probabilities below are written as powers of ten: nobody reads zeros behind a point."""
 

@@ -2,13 +2,10 @@
 
 import pandas as pd
 
-from common.intervals import CONFIDENCE, upper_bound
+from common.intervals import CONFIDENCE, TELLING, upper_bound
 from reports.run.columns import count, kept_out
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
-
-_TELLING = 0.5
-"""Largest bound that is stated: a flight or a handful of them bound a probability by nearly everything."""
 
 
 def violation_bound(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> tuple[float, float] | None:
@@ -35,4 +32,4 @@ def sampled(trials: list[Trial]) -> bool:
 
 
 def _telling(bound: float, confidence: float) -> tuple[float, float] | None:
-    return (bound, confidence) if bound <= _TELLING else None
+    return (bound, confidence) if bound <= TELLING else None

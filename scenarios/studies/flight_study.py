@@ -253,6 +253,7 @@ class FlightStudy:
         lines.append(f"flights: {whole.line()}")
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
+        lines += whole.sulphur_lines()
         if whole.flown and all(self._sampled_at_random().values()):
             lines.append(whole.bound_line())
         lines += [whole.exit_line(), *whole.not_met_lines("    "), *whole.warnings()]

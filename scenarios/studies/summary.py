@@ -6,9 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Self
 
-from common.intervals import CONFIDENCE, percent, upper_bound
+from common.intervals import CONFIDENCE, TELLING, percent, upper_bound
 from common.physics.units import SECONDS_PER_HOUR
 from common.run_layout import SUMMARY
+from measurement.estimate.flight_log.words import probability
+from measurement.gases import limit_words
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
 
@@ -39,6 +41,8 @@ class FlightCounts:
     duration : of all flights [s]
     unflown_manoeuvres : number of flights that ended before a manoeuvre of their vessel began
     not_met : rows of the first flights that did not meet every criterion
+    sulphur : row of the first flight with a sulphur content of the fuel
+    verdicts : number of such flights by their verdict
     """
 
     planned: int
@@ -56,6 +60,8 @@ class FlightCounts:
     duration: float = 0.0
     unflown_manoeuvres: int = 0
     not_met: list[Row] = field(default_factory=list)
+    sulphur: Row | None = None
+    verdicts: Counter[str] = field(default_factory=Counter)
 
     @classmethod
     def of(cls, rows: Iterable[Row], planned: int) -> Self:
@@ -81,6 +87,9 @@ class FlightCounts:
         self.nearest = min(self.nearest, row.get("min_distance_m", math.inf))
         self.duration += row.get("duration_s", 0.0)
         self.unflown_manoeuvres += row.get("manoeuvres_unflown", 0) > 0
+        if math.isfinite(row.get("fsc_percent", math.nan)):
+            self.sulphur = self.sulphur or row
+            self.verdicts["quality C" if row["sulphur_quality"] == "C" else row["sulphur_verdict"]] += 1
         if row["criteria_met"]:
             self.met += 1
         elif len(self.not_met) < NOT_MET_SHOWN:
@@ -107,14 +116,36 @@ class FlightCounts:
         about = f" ({_MEASURED_FROM[next(iter(self.shapes))]})" if len(self.shapes) == 1 else ""
         return f"{counts}; {kept}, closest approach {self.nearest:.1f} m{about}"
 
+    def sulphur_lines(self) -> list[str]:
+        """Return what was measured of the fuel: of one flight content and verdict, of several how many were called what."""
+        row, flights = self.sulphur, self.verdicts.total()
+        if row is None:
+            return []
+        if flights > 1:
+            told = {
+                "above": "above the limit",
+                "below": "below it",
+                "open": "left open",
+                "quality C": "without a verdict (quality C)",
+            }
+            return [f"fuel sulphur of {flights} flights: {', '.join(f'{self.verdicts[called]} {told[called]}' for called in told)}"]
+        limit, chance = limit_words(row["sulphur_limit_percent"]), probability(row["probability_above"])
+        verdict = f"the limit of {limit} stays open" if row["sulphur_verdict"] == "open" else f"{row['sulphur_verdict']} {limit}"
+        verdict = "no verdict, for its quality is C" if "quality C" in self.verdicts else f"{verdict}, probability of more {chance}"
+        low, high = row["fsc_low_percent"], row["fsc_high_percent"]
+        return [f"fuel sulphur {row['fsc_percent']:.3f} %, 95 % interval {low:.3f} to {high:.3f} %: {verdict}"]
+
     def bound_line(self) -> str:
-        """Return the bound on the probability of a keep-out violation, if flights are a random sample; none of a search."""
+        """Return how many flights are not known to have kept out, with the bound on the probability of that if it says anything.
+
+        It is one if flights are a random sample, and not those of a search.
+        """
         bound, confidence = (percent(p).replace("\N{NO-BREAK SPACE}", " ") for p in (self._bound, CONFIDENCE))
         hours = self.duration / SECONDS_PER_HOUR
-        return (
-            f"{self.flown - self.kept_out} of {self.flown} flights ({hours:.3g} h) violated the keep-out area or ended unknown:"
-            f" at most {bound} of flights sampled as these were, at {confidence} confidence"
-        )
+        flights = f"{self.flown - self.kept_out} of {self.flown} flights ({hours:.3g} h simulated) are not known to have kept out"
+        if self._bound > TELLING:
+            return f"{flights}; they are too few to bound a probability"
+        return f"{flights}: at most {bound} of flights sampled as these were, at {confidence} confidence"
 
     @property
     def _bound(self) -> float:

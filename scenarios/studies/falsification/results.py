@@ -103,11 +103,12 @@ def _confirmed(repeats: Sequence[SearchedFlight]) -> dict[str, Any]:
 def search_lines(found: dict[str, Any]) -> Iterator[str]:
     """Yield what a search has found in lines of text, from its entry in the manifest."""
     for name, of in found["methods"].items():
-        yield f"  {name}: {of['flights']} flights, {of['violations']} violated, closest {of['worst_clearance_m']:.2f} m"
+        nearest = f"nearest {of['worst_clearance_m']:.2f} m outside of r_min"
+        yield f"  {name}: {of['flights']} flights, {of['violations']} violated, {nearest}"
     for rank, flight in enumerate(found["worst"][:1], start=1):
         repeats = (
-            f"; with fresh noise {flight['confirmations_violating']} of {flight['confirmations']} violated, closest"
-            f" {flight['confirmations_nearest_m']:.2f} m"
+            f"; with fresh noise {flight['confirmations_violating']} of {flight['confirmations']} violated, nearest"
+            f" {flight['confirmations_nearest_m']:.2f} m outside of r_min"
             if flight["confirmations"]
             else ""
         )

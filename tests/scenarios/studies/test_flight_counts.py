@@ -63,7 +63,7 @@ def test_a_bound_follows_from_the_flights_that_were_flown():
     counts = FlightCounts.of([row(i, min_distance_m=201.0) for i in range(64)], planned=200)
     # The rule of three: 1 - 0.05^(1/64) = 4.57 %.
     assert counts.bound_line() == (
-        "0 of 64 flights (32 h) violated the keep-out area or ended unknown: at most 4.57 % of flights sampled as these were,"
+        "0 of 64 flights (32 h simulated) are not known to have kept out: at most 4.57 % of flights sampled as these were,"
         " at 95 % confidence"
     )
 
@@ -80,3 +80,34 @@ def test_of_many_flights_that_are_not_met_the_first_are_named_and_the_rest_count
     assert len(lines) == 21
     assert lines[0] == "f0: completed: why 0"
     assert lines[-1] == "and 9980 more, see summary.csv"
+
+
+def test_a_handful_of_flights_bounds_no_probability():
+    row = {"outcome": "completed", "kept_out": True, "criteria_met": True, "duration_s": 1800.0}
+    line = FlightCounts.of([row] * 4, planned=4).bound_line()
+    # With none of four, 1 - 0.05^(1/4) = 0.53 is above a half; with none of five 0.45 is not.
+    assert line == "0 of 4 flights (2 h simulated) are not known to have kept out; they are too few to bound a probability"
+    assert "at most 45.1 %" in FlightCounts.of([row] * 5, planned=5).bound_line()
+
+
+@pytest.mark.parametrize(
+    ("quality", "verdict", "words"),
+    [
+        ("A", "above", "above 0.10 %, probability of more 99.0 %"),
+        ("B", "open", "the limit of 0.10 % stays open, probability of more 99.0 %"),
+        ("C", "open", "no verdict, for its quality is C"),
+    ],
+)
+def test_the_sulphur_of_one_flight_is_told_with_its_interval_and_of_several_by_their_verdicts(quality, verdict, words):
+    row = {
+        "outcome": "completed", "kept_out": True, "criteria_met": True, "fsc_percent": 0.2, "fsc_low_percent": 0.12,
+        "fsc_high_percent": 0.28, "sulphur_limit_percent": 0.1, "probability_above": 0.99, "sulphur_quality": quality,
+        "sulphur_verdict": verdict,
+    }  # fmt: skip
+    (line,) = FlightCounts.of([row], planned=1).sulphur_lines()
+    assert line == f"fuel sulphur 0.200 %, 95 % interval 0.120 to 0.280 %: {words}"
+    (line,) = FlightCounts.of([row] * 3, planned=3).sulphur_lines()
+    called = {"above": "3 above the limit", "open": "3 left open"}[verdict] if quality != "C" else "3 of quality C"
+    assert line.startswith("fuel sulphur of 3 flights: ")
+    assert called in line
+    assert FlightCounts.of([{**row, "fsc_percent": float("nan")}], planned=1).sulphur_lines() == []
