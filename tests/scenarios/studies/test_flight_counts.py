@@ -107,7 +107,7 @@ def test_the_sulphur_of_one_flight_is_told_with_its_interval_and_of_several_by_t
     (line,) = FlightCounts.of([row], planned=1).sulphur_lines()
     assert line == f"fuel sulphur 0.200 %, 95 % interval 0.120 to 0.280 %: {words}"
     (line,) = FlightCounts.of([row] * 3, planned=3).sulphur_lines()
-    called = {"above": "3 above the limit", "open": "3 left open"}[verdict] if quality != "C" else "3 of quality C"
+    called = {"above": "3 above the limit", "open": "3 left open"}[verdict] if quality != "C" else "3 without a verdict (quality C)"
     assert line.startswith("fuel sulphur of 3 flights: ")
     assert called in line
     assert FlightCounts.of([{**row, "fsc_percent": float("nan")}], planned=1).sulphur_lines() == []
