@@ -215,7 +215,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
         # Of some flights it may be required to keep out, and no more.
         Card("Missions completed", f"{done:,} of {planned:,}", *(() if apart else ("all", done == planned))),
         *(figure for figure in worst if figure),
-        Card("Flights flown", f"{len(flown):,} of {planned:,}, {hours(flown)}", "all", len(flown) == planned),
+        Card(f"Flights flown, {hours(flown)}", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
         Card("Flights that kept out", f"{count(kept_out(flown)):,} of {len(flown):,}"),
         Card("Aircraft lost", f"{count(lost(flown)):,}"),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
