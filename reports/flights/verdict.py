@@ -270,5 +270,5 @@ def _worst(criteria: list[Criterion], key: str) -> Card | None:
     failed = sum(criterion.flown_failed for criterion in criteria if criterion.key == key)
     missing = [criterion.missing for criterion in criteria if criterion.key == key and criterion.missing]
     # Flights that were flown and have no figure fail the criterion; of those that were not another tile tells.
-    without = "".join(f"; {words}" for words in missing) if worst.fraction <= 1.0 else ""
-    return Card(f"{worst.what}, worst", worst.worst.split(";")[0] + without, worst.limit, not failed)
+    without = f" ({'; '.join(missing)})" if missing and worst.fraction <= 1.0 else ""
+    return Card(f"{worst.what}, worst{without}", worst.worst.split(";")[0], worst.limit, not failed)
