@@ -221,8 +221,11 @@ def test_a_directory_tells_which_aircraft_it_holds(heavy, tmp_path):
             folder_path(fleet, name)
     with pytest.raises(AircraftError, match="there is no such directory"):
         folder_names(tmp_path / "none")
-    with pytest.raises(AircraftError, match="holds no aircraft"):
+    with pytest.raises(AircraftError, match="is the folder of an aircraft itself, 'heavy'; give the directory that it is in"):
         folder_names(tmp_path / "fleet" / "heavy")
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(AircraftError, match="holds no aircraft"):
+        folder_names(tmp_path / "empty")
 
 
 def test_a_model_that_ends_jsbsims_process_and_a_property_that_does_not_exist_are_refused_in_a_line(heavy):
