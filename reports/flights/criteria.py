@@ -171,7 +171,7 @@ def _figure(rows: pd.DataFrame, key: str, value: float, measure: _Measure) -> Cr
 
 
 def _without(rows: pd.DataFrame) -> str:
-    """Return how many flights have no figure, and how they ended; no word where there are none."""
+    """Return how many flights have no figure, and how they ended; an empty text if every flight has one."""
     if not len(rows):
         return ""
     ends = ["not flown" if pd.isna(row["min_distance_m"]) else str(row["outcome"]).replace("_", " ") for _, row in rows.iterrows()]

@@ -42,7 +42,7 @@ def by_violation(trial: Trial) -> list[Group]:
 
 
 def by_words(trial: Trial) -> list[Group]:
-    """Return the flights in groups of the words that were swept, as laws, each of a colour; by violation where there are none.
+    """Return the flights in groups of the words that were swept, as laws, each of a colour; by violation where no word was swept.
 
     Of more words than there are colours none has one of its own.
     """

@@ -84,6 +84,14 @@ def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_are
     )
 
 
+ROW = {
+    "fsc_percent": 0.5, "fsc_uncertainty_percent": 0.02, "sulphur_limit_percent": 0.1, "sulphur_verdict": "above",
+    "probability_above": 1.0, "sulphur_quality": "A", "sulphur_reason": "", "fsc_fuel_percent": 0.5, "fsc_expected_percent": 0.49,
+    "min_distance_m": 250.0,
+}  # fmt: skip
+"""Of a flight that measured the fuel, in the summary."""
+
+
 @pytest.mark.parametrize(
     ("called", "judgement", "tone"),
     [
@@ -93,10 +101,7 @@ def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_are
     ],
 )
 def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(called, judgement, tone):
-    row = {
-        "fsc_percent": 0.1, "fsc_uncertainty_percent": 0.02, "sulphur_limit_percent": 0.1, "sulphur_verdict": called,
-        "probability_above": 0.5, "sulphur_quality": "A", "min_distance_m": 250.0,
-    }  # fmt: skip
+    row = {**ROW, "fsc_percent": 0.1, "sulphur_verdict": called, "probability_above": 0.5}
     run = SimpleNamespace(summary=pd.DataFrame([row]))
     card = flights.sulphur_cards(run)[1]
     assert (card.judgement.replace("\N{NO-BREAK SPACE}", " "), card.tone) == (judgement, tone)
@@ -110,24 +115,15 @@ def test_a_sniffer_without_a_result_is_said_on_page_1():
 
 
 def test_a_probability_is_never_told_as_certain():
-    row = {
-        "fsc_percent": 0.5, "fsc_uncertainty_percent": 0.02, "sulphur_limit_percent": 0.1, "sulphur_verdict": "above",
-        "probability_above": 1.0, "sulphur_quality": "A", "sulphur_reason": "",
-        "fsc_fuel_percent": 0.5, "fsc_expected_percent": 0.49,
-    }  # fmt: skip
-    told = flights._told(pd.Series(row))
+    told = flights._told(pd.Series(ROW))
     assert "The fuel is above the limit of 0.10 %" in told
     assert "and the probability that this is more than the limit is more than 99.9 %. Quality A." in told
-    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([row])))[1]
+    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([ROW])))[1]
     assert card[:2] == ("Verdict on 0.10 %, and probability of more", "above, more than 99.9 %")
 
 
 def test_quality_c_gives_no_verdict_in_words_either():
-    row = {
-        "fsc_percent": 0.5, "fsc_uncertainty_percent": 0.02, "sulphur_limit_percent": 0.1, "sulphur_verdict": "open",
-        "probability_above": 1.0, "sulphur_quality": "C", "sulphur_reason": "SO2 is saturated",
-        "fsc_fuel_percent": 0.5, "fsc_expected_percent": 0.49,
-    }  # fmt: skip
+    row = {**ROW, "sulphur_verdict": "open", "sulphur_quality": "C", "sulphur_reason": "SO2 is saturated"}
     told = flights._told(pd.Series(row))
     assert told.startswith("There is no verdict on the limit of 0.10 %, as quality C gives none; the estimate is 0.500 ± 0.039 %")
     assert "Quality C: SO2 is saturated." in told

@@ -16,14 +16,17 @@ from reports.run.run_data import read_run
 from reports.run.trials import read_trials
 from tests.in_process import run_command
 
-SHORT = """
-title = "Short"
+KINEMATIC = """
 description = "Flights for a test."
 fidelity = "kinematic"
 seed = 3
 flight.crossings = 2
 start.distance_m = [300.0, 400.0]
+"""
 
+SHORT = f"""
+title = "Short"
+{KINEMATIC}
 [sweep]
 nu = [0.2, 0.4]
 "keepout.radius_m" = [150.0, 200.0]
@@ -78,14 +81,9 @@ def test_the_limit_of_any_path_is_told_where_it_is_drawn_and_nowhere_else(trial)
     assert "The limit is" not in trial_charts(without)[0].caption
 
 
-WINDY = """
+WINDY = f"""
 title = "Windy"
-description = "Flights for a test."
-fidelity = "kinematic"
-seed = 3
-flight.crossings = 2
-start.distance_m = [300.0, 400.0]
-
+{KINEMATIC}
 [criteria]
 crossing_interval_error = 0.9
 tracking_error_rms_m = 90.0
