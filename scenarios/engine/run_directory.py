@@ -4,7 +4,7 @@ import json
 import os
 import re
 import uuid
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -64,14 +64,14 @@ class RunDirectory:
         self.model = path / MODEL
         self.gone: list[str] = []
 
-    def open(self, config_hash: str, *, resume: bool, manifest: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    def open(self, config_hash: str, *, resume: bool, manifest: Callable[[], Mapping[str, Any]] | None = None) -> dict[str, Any]:
         """Open the directory and return the manifest of the run that is resumed, empty for a new one.
 
         Parameters
         ----------
         config_hash : of the configuration that is to be flown
         resume : continue the run that is there
-        manifest : of what is to be flown, by which an error names the keys that differ
+        manifest : returns that of what is to be flown, by which an error names the keys that differ
 
         Raises
         ------
@@ -81,7 +81,7 @@ class RunDirectory:
         try:
             # A run that was killed before it had a manifest has nothing to continue, and is begun anew.
             if resume and (self.manifest.exists() or not self._is_begun()):
-                return self._open_existing(config_hash, manifest or {})
+                return self._open_existing(config_hash, manifest)
             self.refuse_taken()
             self._create()
         except OSError as error:
@@ -112,7 +112,7 @@ class RunDirectory:
         except OSError as error:
             raise self._unwritable(error) from None
 
-    def _open_existing(self, config_hash: str, ours: Mapping[str, Any]) -> dict[str, Any]:
+    def _open_existing(self, config_hash: str, ours: Callable[[], Mapping[str, Any]] | None) -> dict[str, Any]:
         if not self.manifest.is_file():
             raise InputError(f"'{self.path}' holds no run to resume; leave out --resume to start one")
         try:
@@ -121,7 +121,7 @@ class RunDirectory:
         except (ValueError, KeyError, TypeError, OSError, RecursionError):
             raise InputError(f"'{self.manifest}' cannot be read; start a new run in another --out") from None
         if found != config_hash:
-            keys = changed_keys(manifest, ours) if ours else ""
+            keys = changed_keys(manifest, ours()) if ours else ""
             raise InputError(
                 f"'{self.path}' was run with another configuration{f': {keys}' if keys else ''}; resume it with the same scenario,"
                 " --seed and --set values"

@@ -135,7 +135,7 @@ def fly_study(
     InputError : the directory or its journal cannot be used, or the disk is full; finished results are kept
     """
     run = RunDirectory(directory)
-    before = run.open(study.config_hash, resume=resume, manifest=study.initial_manifest() if resume else None)
+    before = run.open(study.config_hash, resume=resume, manifest=study.initial_manifest)
     try:
         journal = Journal(run.journal)
         try:
