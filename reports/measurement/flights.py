@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from common.intervals import percent
+from measurement.estimate.words import counted_verdicts, probability, verdict_words
 from measurement.gases import limit_words
 from reports.document.blocks import Block, Card, Heading, Section, Text, UndecidedCard
 from reports.document.chart import Chart
@@ -15,7 +16,6 @@ from reports.measurement.data import Record
 from reports.measurement.flight_charts import error_chart, operating_curve, sulphur_track_chart, trajectory_chart
 from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table
 from reports.measurement.tables import over_time_table, result_table
-from reports.measurement.verdict import probability
 from reports.run.columns import column
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
@@ -81,14 +81,8 @@ def sulphur_headline(run: RunData) -> str:
         return f"No fuel sulphur content from {_flights(len(sniffed))} with a sniffer"
     if len(measured) == 1:
         row = measured.iloc[0]
-        limit, chance = limit_words(float(row["sulphur_limit_percent"])), probability(float(row["probability_above"]))
-        called = {"above": f"above the limit of {limit}", "below": f"below the limit of {limit}"}
-        words = called.get(str(row["sulphur_verdict"]), f"it stays open whether that is above the limit of {limit}")
-        words = "no verdict, as quality C gives none" if row["sulphur_quality"] == "C" else f"{words}, probability of more {chance}"
-        return f"Fuel sulphur {_content(row)} (95 % interval): {words}"
-    names = {"above": "above the limit", "below": "below it", "open": "left open"}
-    counts = measured["sulphur_verdict"].value_counts()
-    called_so = ", ".join(f"{counts[verdict]:,} {words}" for verdict, words in names.items() if verdict in counts)
+        return f"Fuel sulphur {_content(row)} (95 % interval): {_verdict_words(row)}"
+    called_so = counted_verdicts(zip(measured["sulphur_verdict"], measured["sulphur_quality"], strict=True))
     bias, inside = _bias_and_coverage(measured)
     of = "" if len(measured) == len(sniffed) else f" of {len(sniffed):,}"
     return (
@@ -172,18 +166,14 @@ def _track(run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> Chart 
     return sulphur_track_chart(settled, surroundings(config, row, settled)) if len(settled) > 1 else None
 
 
+def _verdict_words(row: "pd.Series[Any]") -> str:
+    limit, chance = float(row["sulphur_limit_percent"]), float(row["probability_above"])
+    return verdict_words(str(row["sulphur_verdict"]), limit, chance, str(row["sulphur_quality"]))
+
+
 def _told(row: "pd.Series[Any]") -> str:
-    """Return the verdict in words, with probability and limit."""
-    limit, chance = limit_words(float(row["sulphur_limit_percent"])), probability(float(row["probability_above"]))
-    called = {
-        "above": f"The fuel is above the limit of {limit}",
-        "below": f"The fuel is below the limit of {limit}",
-        "open": f"Whether the fuel is above the limit of {limit} stays open",
-    }[str(row["sulphur_verdict"])]
-    result = f"{_content(row)} sulphur (95 %)"
-    verdict = f"{called}: it holds {result}, and the probability that this is more than the limit is {chance}."
-    if row["sulphur_quality"] == "C":
-        verdict = f"There is no verdict on the limit of {limit}, as quality C gives none; the estimate is {result}."
+    """Return result and verdict in words, with probability and limit."""
+    verdict = f"The fuel holds {_content(row)} sulphur (95 % interval): {_verdict_words(row)}."
     return (
         f"{verdict} Quality {row['sulphur_quality']}"
         + (f": {row['sulphur_reason']}." if row["sulphur_reason"] and pd.notna(row["sulphur_reason"]) else ".")

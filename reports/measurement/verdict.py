@@ -2,8 +2,7 @@
 
 from typing import Any
 
-import numpy as np
-
+from measurement.estimate.words import probability, verdict_words
 from measurement.gases import FUEL_SULPHUR_MOST, limit_words
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import number
@@ -29,22 +28,12 @@ def measurement_verdict(record: Record) -> Verdict:
 
 
 def sentence(verdict: dict[str, Any], quality: str, *, known: bool) -> str:
-    """Return a verdict in words; that there is none of a record of quality C."""
-    limit = limit_words(float(verdict["limit_percent"]))
+    """Return a verdict in words; that there is none without a result, or of a record of quality C."""
+    limit = float(verdict["limit_percent"])
     if not known:
-        return f"Nothing can be said of the limit of {limit}: there is no result"
-    if quality == "C":
-        return f"No verdict on the limit of {limit}: quality C gives none"
-    chance = probability(value(verdict, "probability_above"))
-    side = {"above": "Above", "below": "Below", "open": "Open for"}[verdict["verdict"]]
-    return f"{side} the limit of {limit}: the probability that the fuel is above it is {chance}"
-
-
-def probability(share: float) -> str:
-    """Return a probability in percent, never as certain."""
-    if np.isnan(share):
-        return "not known"
-    return "more than 99.9 %" if share > 0.999 else "less than 0.1 %" if share < 0.001 else f"{100.0 * share:.1f} %"
+        return f"Nothing can be said of the limit of {limit_words(limit)}: there is no result"
+    words = verdict_words(verdict["verdict"], limit, value(verdict, "probability_above"), quality)
+    return f"{words[0].upper()}{words[1:]}"
 
 
 def _result(record: Record) -> str:

@@ -9,8 +9,7 @@ from typing import Any, Self
 from common.intervals import CONFIDENCE, TELLING, percent, upper_bound
 from common.physics.units import SECONDS_PER_HOUR
 from common.run_layout import SUMMARY
-from measurement.estimate.flight_log.words import probability
-from measurement.gases import limit_words
+from measurement.estimate.words import counted_verdicts, verdict_words
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
 
@@ -42,7 +41,7 @@ class FlightCounts:
     unflown_manoeuvres : number of flights that ended before a manoeuvre of their vessel began
     not_met : rows of the first flights that did not meet every criterion
     sulphur : row of the first flight with a sulphur content of the fuel
-    verdicts : number of such flights by their verdict
+    verdicts : number of such flights by verdict and quality
     """
 
     planned: int
@@ -61,7 +60,7 @@ class FlightCounts:
     unflown_manoeuvres: int = 0
     not_met: list[Row] = field(default_factory=list)
     sulphur: Row | None = None
-    verdicts: Counter[str] = field(default_factory=Counter)
+    verdicts: Counter[tuple[str, str]] = field(default_factory=Counter)
 
     @classmethod
     def of(cls, rows: Iterable[Row], planned: int) -> Self:
@@ -89,7 +88,7 @@ class FlightCounts:
         self.unflown_manoeuvres += row.get("manoeuvres_unflown", 0) > 0
         if math.isfinite(row.get("fsc_percent", math.nan)):
             self.sulphur = self.sulphur or row
-            self.verdicts["quality C" if row["sulphur_quality"] == "C" else row["sulphur_verdict"]] += 1
+            self.verdicts[row["sulphur_verdict"], row["sulphur_quality"]] += 1
         if row["criteria_met"]:
             self.met += 1
         elif len(self.not_met) < NOT_MET_SHOWN:
@@ -118,22 +117,16 @@ class FlightCounts:
 
     def sulphur_lines(self) -> list[str]:
         """Return what was measured of the fuel: of one flight content and verdict, of several how many were called what."""
-        row, flights = self.sulphur, self.verdicts.total()
+        row = self.sulphur
         if row is None:
             return []
-        if flights > 1:
-            told = {
-                "above": "above the limit",
-                "below": "below it",
-                "open": "left open",
-                "quality C": "without a verdict (quality C)",
-            }
-            return [f"fuel sulphur of {flights} flights: {', '.join(f'{self.verdicts[called]} {told[called]}' for called in told)}"]
-        limit, chance = limit_words(row["sulphur_limit_percent"]), probability(row["probability_above"])
-        verdict = f"the limit of {limit} stays open" if row["sulphur_verdict"] == "open" else f"{row['sulphur_verdict']} {limit}"
-        verdict = "no verdict, for its quality is C" if "quality C" in self.verdicts else f"{verdict}, probability of more {chance}"
+        if (flights := self.verdicts.total()) > 1:
+            return [f"fuel sulphur of {flights} flights: {counted_verdicts(self.verdicts.elements())}"]
+        words = verdict_words(
+            row["sulphur_verdict"], row["sulphur_limit_percent"], row["probability_above"], row["sulphur_quality"]
+        )
         low, high = row["fsc_low_percent"], row["fsc_high_percent"]
-        return [f"fuel sulphur {row['fsc_percent']:.3f} %, 95 % interval {low:.3f} to {high:.3f} %: {verdict}"]
+        return [f"fuel sulphur {row['fsc_percent']:.3f} %, 95 % interval {low:.3f} to {high:.3f} %: {words}"]
 
     def bound_line(self) -> str:
         """Return how many flights are not known to have kept out, with the bound on the probability of that if it says anything.

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator
 
 from measurement.estimate.flight_log.analysis import Analysis
-from measurement.estimate.result import FscEstimate, Quality
-from measurement.estimate.verdict import ABOVE, BELOW, CONFIDENCE, Verdict
-from measurement.gases import FUEL_SULPHUR_MOST, limit_words
+from measurement.estimate.result import FscEstimate
+from measurement.estimate.words import verdict_words
+from measurement.gases import FUEL_SULPHUR_MOST
 
 ERRORS = {
     "calibration": "calibration of SO2 and CO2",
@@ -33,7 +33,7 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
             yield f"  {ERRORS.get(key, key)} {size:.4f}"
     yield f"quality {found.quality}" + (f": {'; '.join(found.quality_reasons)}" if found.quality_reasons else "")
     for verdict in found.verdicts:
-        yield sentence(verdict, found.quality)
+        yield verdict_words(verdict.verdict, verdict.limit_percent, verdict.probability_above, found.quality)
 
 
 def result(found: FscEstimate) -> str:
@@ -43,26 +43,6 @@ def result(found: FscEstimate) -> str:
     return (
         f"fuel sulphur content {found.fsc_percent:.3f} % m/m, 95 % interval {found.low_percent:.3f} to {found.high_percent:.3f} %"
     )
-
-
-def sentence(verdict: Verdict, quality: Quality = "A") -> str:
-    """Return a verdict in words, with its probability and its limit; that there is none of a record of quality C."""
-    limit, told = limit_words(verdict.limit_percent), probability(verdict.probability_above)
-    if quality == "C":
-        return f"no verdict on the limit of {limit}: quality C gives none"
-    if verdict.verdict == ABOVE:
-        return f"above the limit of {limit}: the probability that the fuel is above it is {told}"
-    if verdict.verdict == BELOW:
-        return f"below the limit of {limit}: the probability that the fuel is above it is {told}"
-    needed = "the result is within the guard band" if verdict.probability_above > CONFIDENCE else "95 % or 5 % are needed"
-    return f"open for the limit of {limit}: the probability that the fuel is above it is {told}; {needed}"
-
-
-def probability(share: float) -> str:
-    """Return a probability in percent, never as certain."""
-    if math.isnan(share):
-        return "not known"
-    return "more than 99.9 %" if share > 0.999 else "less than 0.1 %" if share < 0.001 else f"{100.0 * share:.1f} %"
 
 
 def by_size(found: FscEstimate) -> list[tuple[str, float]]:

@@ -45,7 +45,7 @@ def test_one_flight_is_told_with_result_probability_and_limit(one):
     assert {"sulphur-track", "fsc-over-time", "budget", "channels", "regression"} <= set(named_charts(one))
     assert_axes_read_quantity_and_unit(named_charts(one).values())
     told = next(block.text for block in section.blocks if isinstance(block, Text))
-    assert re.search(r"the limit of 0\.10 %.*: it holds 0\.\d{3} ± 0\.\d{3} % sulphur \(95 %\), and the probability that", told)
+    assert re.match(r"The fuel holds 0\.\d{3} ± 0\.\d{3} % sulphur \(95 % interval\): .* limit of 0\.10 %; the", told)
     assert "The fuel's own content is 0.100 %, of which a perfect instrument reads 0.097 %." in told
     name, value, *_ = one.verdict.figures[0]
     assert name.startswith("Sulphur in the fuel")
@@ -75,7 +75,8 @@ def test_several_flights_are_judged_as_a_method(several):
 def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_area(one, several):
     plain = one.verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
     assert re.match(
-        r"Fuel sulphur 0\.\d{3} ± 0\.\d{3} % \(95 % interval\): .* limit of 0\.10 %, probability of more [\d.]+ %\. No keep-out",
+        r"Fuel sulphur 0\.\d{3} ± 0\.\d{3} % \(95 % interval\): .* limit of 0\.10 %; the probability that the fuel is above it is"
+        r" [\d.]+ %(; .* needed)?\. No keep-out",
         plain,
     )
     assert re.match(
@@ -106,7 +107,7 @@ def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(c
     card = flights.sulphur_cards(run)[1]
     assert (card.judgement.replace("\N{NO-BREAK SPACE}", " "), card.tone) == (judgement, tone)
     assert flights.sulphur_below(run) == (called == "below")
-    assert ("stays open" in flights.sulphur_headline(run)) == (called == "open")
+    assert ("open for the limit" in flights.sulphur_headline(run)) == (called == "open")
 
 
 def test_a_sniffer_without_a_result_is_said_on_page_1():
@@ -116,8 +117,8 @@ def test_a_sniffer_without_a_result_is_said_on_page_1():
 
 def test_a_probability_is_never_told_as_certain():
     told = flights._told(pd.Series(ROW))
-    assert "The fuel is above the limit of 0.10 %" in told
-    assert "and the probability that this is more than the limit is more than 99.9 %. Quality A." in told
+    assert told.startswith("The fuel holds 0.500 ± 0.039 % sulphur (95 % interval): above the limit of 0.10 %; ")
+    assert "the probability that the fuel is above it is more than 99.9 %. Quality A." in told
     card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([ROW])))[1]
     assert card[:2] == ("Verdict on 0.10 %, and probability of more", "above, more than 99.9 %")
 
@@ -125,9 +126,9 @@ def test_a_probability_is_never_told_as_certain():
 def test_quality_c_gives_no_verdict_in_words_either():
     row = {**ROW, "sulphur_verdict": "open", "sulphur_quality": "C", "sulphur_reason": "SO2 is saturated"}
     told = flights._told(pd.Series(row))
-    assert told.startswith("There is no verdict on the limit of 0.10 %, as quality C gives none; the estimate is 0.500 ± 0.039 %")
+    assert told.startswith("The fuel holds 0.500 ± 0.039 % sulphur (95 % interval): no verdict on the limit of 0.10 %: quality C")
     assert "Quality C: SO2 is saturated." in told
-    assert "stays open" not in told
+    assert "open for" not in told
     card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([row])))[1]
     assert card[1] == "no verdict: quality C"
 

@@ -93,16 +93,16 @@ def test_a_handful_of_flights_bounds_no_probability():
 @pytest.mark.parametrize(
     ("quality", "verdict", "words"),
     [
-        ("A", "above", "above 0.10 %, probability of more 99.0 %"),
-        ("B", "open", "the limit of 0.10 % stays open, probability of more 99.0 %"),
-        ("C", "open", "no verdict, for its quality is C"),
+        ("A", "above", "above the limit of 0.10 %; the probability that the fuel is above it is 99.0 %"),
+        ("B", "open", "open for the limit of 0.10 %; the probability that the fuel is above it is 94.0 %; 95 % or 5 % are needed"),
+        ("C", "open", "no verdict on the limit of 0.10 %: quality C gives none"),
     ],
 )
 def test_the_sulphur_of_one_flight_is_told_with_its_interval_and_of_several_by_their_verdicts(quality, verdict, words):
     row = {
         "outcome": "completed", "kept_out": True, "criteria_met": True, "fsc_percent": 0.2, "fsc_low_percent": 0.12,
-        "fsc_high_percent": 0.28, "sulphur_limit_percent": 0.1, "probability_above": 0.99, "sulphur_quality": quality,
-        "sulphur_verdict": verdict,
+        "fsc_high_percent": 0.28, "sulphur_limit_percent": 0.1, "probability_above": 0.94 if verdict == "open" else 0.99,
+        "sulphur_quality": quality, "sulphur_verdict": verdict,
     }  # fmt: skip
     (line,) = FlightCounts.of([row], planned=1).sulphur_lines()
     assert line == f"fuel sulphur 0.200 %, 95 % interval 0.120 to 0.280 %: {words}"

@@ -1,0 +1,52 @@
+"""The verdict on a limit in words, the same on consoles and in reports."""
+
+import math
+from collections.abc import Iterable
+
+from measurement.estimate.result import Quality
+from measurement.estimate.verdict import ABOVE, BELOW, CONFIDENCE, OPEN
+from measurement.gases import limit_words
+
+_WITHOUT = "C"
+"""Quality of records that are given no verdict."""
+
+_COUNTED = {ABOVE: "above the limit", BELOW: "below it", OPEN: "left open", _WITHOUT: "without a verdict (quality C)"}
+"""What is said of several records, by their verdict, or by the quality that gives none."""
+
+
+def probability(share: float) -> str:
+    """Return a probability in percent, never as certain."""
+    if math.isnan(share):
+        return "not known"
+    return "more than 99.9 %" if share > 0.999 else "less than 0.1 %" if share < 0.001 else f"{100.0 * share:.1f} %"
+
+
+def verdict_words(verdict: str, limit_percent: float, probability_above: float, quality: Quality | str = "A") -> str:
+    """Return a verdict with its limit and probability; that there is none of a record of quality C.
+
+    Parameters
+    ----------
+    verdict : "above", "below" or "open"
+    limit_percent : [% m/m]
+    probability_above : that the fuel's sulphur content is above the limit
+    quality : of the record
+    """
+    limit = limit_words(limit_percent)
+    if quality == _WITHOUT:
+        return f"no verdict on the limit of {limit}: quality {_WITHOUT} gives none"
+    side = "open for" if verdict == OPEN else verdict
+    words = f"{side} the limit of {limit}; the probability that the fuel is above it is {probability(probability_above)}"
+    if verdict != OPEN:
+        return words
+    return f"{words}; {'the result is within the guard band' if probability_above > CONFIDENCE else '95 % or 5 % are needed'}"
+
+
+def counted_verdicts(records: Iterable[tuple[str, str]]) -> str:
+    """Return how many of several records were called what.
+
+    Parameters
+    ----------
+    records : verdict and quality of each
+    """
+    called = [quality if quality == _WITHOUT else verdict for verdict, quality in records]
+    return ", ".join(f"{called.count(verdict):,} {words}" for verdict, words in _COUNTED.items() if verdict in called)
