@@ -18,6 +18,7 @@ from common.spelling import nearest
 from scenarios.schema.documented_parts import FLIGHT_STUDIES, DocumentedKey, documented_part_keys, line, split_unit
 from scenarios.schema.effect import named_by, unused
 from scenarios.schema.effect_rules import RULES
+from scenarios.schema.experiment_checks import ONE_POINT
 from scenarios.schema.keys import models_in
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.convergence import ConvergenceScenario
@@ -48,8 +49,7 @@ class DocumentedSection:
     keys: tuple[DocumentedKey, ...]
 
 
-_ONE_POINT = ("falsify", "arena", "patrol")
-_REFUSING = {"sweep": (*_ONE_POINT, "paper"), "cases": _ONE_POINT, "comparison": _ONE_POINT}
+_REFUSING = {"sweep": (*ONE_POINT, "paper"), "cases": tuple(ONE_POINT), "comparison": tuple(ONE_POINT)}
 """Studies that refuse a section of several points; ``paper`` has cases, beside which there is no sweep."""
 
 

@@ -14,6 +14,20 @@ The last one can be where ``flight.altitude_m`` is given.
 """
 
 
+ONE_POINT = {
+    "falsify": "it searches one point",
+    "arena": "what differs are the laws (laws) and the conditions (arena.conditions)",
+    "patrol": "give each value a run of its own",
+}
+"""Studies of one point, and why."""
+
+
+def check_one_point(scenario: "Scenario") -> None:
+    """Refuse several points in a study of one."""
+    if scenario.several_points and (why := ONE_POINT.get(scenario.study)):
+        raise ValueError(f"study is '{scenario.study}' beside a sweep, cases, a comparison or two vehicles; {why}: remove them")
+
+
 def check_subset(scenario: "Scenario") -> None:
     """Refuse subset simulation of what is not one probability."""
     if not scenario.draws:
@@ -31,13 +45,9 @@ def check_subset(scenario: "Scenario") -> None:
 
 
 def check_search(scenario: "Scenario") -> None:
-    """Refuse a search that has nothing to search over, or is not of one point."""
+    """Refuse a search that has nothing to search over, or more flights than can be numbered."""
     if not scenario.draws:
         raise ValueError("draws is empty; give the keys to search over, each with its range")
-    if scenario.several_points:
-        raise ValueError(
-            "study is 'falsify' beside a sweep, cases, a comparison or two vehicles; it searches one point: remove them"
-        )
     if (most := scenario.search.flights_max) * (1 + scenario.search.confirmations) > FLIGHTS_MAX:
         raise ValueError(
             f"search.population and search.generations make {most} flights, with search.confirmations of each numbered up to"

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
-from scenarios.schema.experiment_checks import check_draws, check_search, check_subset
+from scenarios.schema.experiment_checks import check_draws, check_one_point, check_search, check_subset
 from scenarios.schema.sections.equipment import (
     REPORTS_MAX,
     FaultConfig,
@@ -285,6 +285,7 @@ class Scenario(Section):
 
     @model_validator(mode="after")
     def _varied(self) -> "Scenario":
+        check_one_point(self)
         if self.study == "falsify":
             check_search(self)
         if self.study == "monte_carlo" and self.method == "subset":

@@ -36,17 +36,12 @@ class ArenaStudy(FlightStudy):
 
     Raises
     ------
-    InputError : as of ``FlightStudy``; a law or a condition that does not exist, or an arena of several points
+    InputError : as of ``FlightStudy``; a law or a condition that does not exist
     """
 
     chooses_flights = True
 
     def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
-        if scenario.several_points:
-            raise InputError(
-                "study is 'arena' beside a sweep, cases, a comparison or two vehicles; what differs are the laws (laws) and the"
-                " conditions (arena.conditions): remove them"
-            )
         self._arena, self._seed = scenario.arena, scenario.seed
         super().__init__(scenario, name, trials, overrides=overrides)
         keys = dict.fromkeys(f"guidance.{key}" for entrant in self.entrants for key in entrant.defaults)

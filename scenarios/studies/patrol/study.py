@@ -154,10 +154,6 @@ def _given(scenario: Scenario, key: str) -> bool:
 
 def _check(scenario: Scenario) -> None:
     """Refuse what is no patrol."""
-    if scenario.several_points:
-        raise InputError(
-            "study is 'patrol' beside a sweep, cases, a comparison or two vehicles; give each value a run of its own: remove them"
-        )
     if scenario.vessel.from_file or scenario.vessel.manoeuvres or scenario.wind.table is not None:
         raise InputError(
             "study is 'patrol' beside vessel.manoeuvres, a vessel.track from a file or wind.table; ships and wind of a patrol are"
