@@ -155,17 +155,16 @@ def _figure(rows: pd.DataFrame, key: str, value: float, measure: _Measure) -> Cr
     measured = measure.values(rows)
     known = measured[np.isfinite(measured)]
     worst = float(known.max()) if len(known) else float("nan")
-    missing = _without(rows[~np.isfinite(measured)])
     failed = ~(measured <= value)
     words = f"{_rounded(measure.scale * worst, measure.scale * value):.3g} {measure.unit}" if len(known) else "none measured"
     return Criterion(
         key=key,
         what=measure.what,
         limit=f"≤ {limit(measure.scale * value)} {measure.unit}",
-        worst=words + (f"; {missing}" if missing and len(known) else ""),
+        worst=words,
         failed=count(failed),
         fraction=worst / value if value else float("nan"),
-        missing=missing,
+        missing=_without(rows[~np.isfinite(measured)]),
         flown_failed=count(failed & rows["min_distance_m"].notna().to_numpy()),
     )
 

@@ -271,4 +271,4 @@ def _worst(criteria: list[Criterion], key: str) -> Card | None:
     missing = [criterion.missing for criterion in criteria if criterion.key == key and criterion.missing]
     # Flights that were flown and have no figure fail the criterion; of those that were not another tile tells.
     without = f" ({'; '.join(missing)})" if missing and worst.fraction <= 1.0 else ""
-    return Card(f"{worst.what}, worst{without}", worst.worst.split(";")[0], worst.limit, not failed)
+    return Card(f"{worst.what}, worst{without}", worst.worst, worst.limit, not failed)

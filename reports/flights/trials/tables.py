@@ -125,7 +125,7 @@ def criteria_table(trials: list[Trial]) -> Table:
     rows = []
     for trial in trials:
         listed = criteria_of(trial)
-        rows += [[trial.title, c.what, c.limit, c.worst, f"{c.failed}"] for c in listed]
+        rows += [[trial.title, c.what, c.limit, "; ".join(filter(None, (c.worst, c.missing))), f"{c.failed}"] for c in listed]
     head, widths = ["Trial", "Criterion", "Limit", "Worst measured", "Not met"], [1.7, 2.5, 1.2, 1.7, 0.7]
     if len(trials) == 1:
         return Table(
