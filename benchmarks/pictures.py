@@ -14,17 +14,23 @@ from PIL import Image
 
 from common.run_layout import REPORT_PDF
 
+_HOUSE = Path(__file__).parents[1]
+_EXAMPLES = _HOUSE / "docs" / "examples"
+
 COMMANDS = {
     "sweep": ("scenarios.run", "sweep_nu"),
     "paper": ("scenarios.run", "paper"),
     "trials": ("scenarios.run", "sea_trial", "--set", "share=0.02"),
     "monte_carlo": ("scenarios.run", "monte_carlo", "--set", "flights=64"),
     "sulphur": ("scenarios.run", "sulphur"),
+    "measuring": (
+        "measurement.estimate", str(_EXAMPLES / "example_flight.csv"), "--config", str(_EXAMPLES / "example_instrument.toml"),
+    ),
     "design": ("innerloop.design", "x8"),
-}
+}  # fmt: skip
 """Module and arguments that make each run."""
 
-FOLDER = Path(__file__).parents[1] / "docs" / "pictures"
+FOLDER = _HOUSE / "docs" / "pictures"
 
 WIDTH, COLOURS = 1000, 128
 """Width of a picture [px], and how many colours it has: few are enough, and make it small."""

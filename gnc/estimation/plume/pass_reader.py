@@ -18,6 +18,9 @@ _SHAPE_ERROR = 0.15
 _TAIL_ERROR = 0.3
 """Error of what is left of the pass before in the sensor, over itself [-]: as the strength of a pass is known."""
 
+_UNSEEN_DRIFT = 1.0
+"""Time of drift by which the level at the end of a pass is less sure than its fit says [s]: drift is no straight line."""
+
 _FIRST_BACKGROUND = 1e3
 """Standard deviation of the background before anything is read [ppm]: clean air has some 400."""
 
@@ -164,7 +167,8 @@ class PassReader:
         # Level and slope at the end of the pass.
         end = background[:2, -1]
         self._level = level + float(end @ known[:2])
-        self._level_deviation = math.sqrt(variance * float(end @ covariance[:2, :2] @ end)) + self._sensor.background_drift
+        fitted = math.sqrt(variance * float(end @ covariance[:2, :2] @ end))
+        self._level_deviation = fitted + _UNSEEN_DRIFT * self._sensor.background_drift
 
     def _templates(self, path: Path, places: Array, spreads: Array) -> Array:
         """Responses to pulses of strength 1 at every place with every spread, shape (w j, m)."""
