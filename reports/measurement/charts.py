@@ -15,7 +15,7 @@ from reports.run.columns import Array, column
 POINTS_MAX = 2500
 """Samples of a figure at most."""
 
-_TIME, _FSC = "Time [s]", "FSC [% m/m]"
+_TIME, _FSC = "Time [s]", "Fuel sulphur content [% m/m]"
 
 
 _BAR = 0.72
@@ -41,7 +41,9 @@ def over_time_chart(record: Record) -> Chart | None:
     limits = [float(verdict["limit_percent"]) for verdict in record["estimate"]["verdicts"]]
     around_it = np.concatenate([time, time[::-1]])
     lines = [
-        Line(x=around_it, y=np.concatenate([low, high[::-1]]), label="95 % interval", colour=Meaning.FLOWN, fill=True),
+        Line(
+            x=around_it, y=np.concatenate([low, high[::-1]]), label="95 % interval", colour=Meaning.FLOWN, style="thin", fill=True
+        ),
         Line(x=time, y=found, label="estimate", colour=Meaning.FLOWN),
     ]
     top = 1.25 * max(float(np.max(found)), float(high[-1]), *(limit for limit in limits if limit < 2.0 * float(high[-1])))
