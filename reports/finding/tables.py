@@ -24,7 +24,8 @@ def search_table(variants: list[Variant]) -> Table:
         " same cases told where the axis is, median of the pairs.",
         head=[
             "Variant", "Flights", f"Found within {FOUND_WITHIN / 60.0:g} min", "Time to find, median [s]", "95 % quantile [s]",
-            "Hits after found", "Sulphur error, rms [% m/m]", "Sulphur 1σ stated, median [% m/m]", "1σ over told", "Its noise over told",
+            "Hits after found", "Sulphur error, rms [% m/m]", "Sulphur 1σ stated, median [% m/m]", "1σ over told",
+            "Its noise over told",
         ],
         rows=[
             [
