@@ -47,7 +47,7 @@ class Recorder:
         self._axis_at = world.plume.axis if world else _no_axis
         self.columns = COLUMNS + tuple(column for instrument in payload for column in instrument.COLUMNS)
         # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and slow to make an array of.
-        self._rows, self._pack = bytearray(), struct.Struct(f"{len(self.columns)}d").pack
+        self._rows, self._pack = list[bytes](), struct.Struct(f"{len(self.columns)}d").pack
 
     def reference(self) -> Place | None:
         """Return where the reference is in the frame of the air mass; nothing before the mission has placed it."""
@@ -75,14 +75,14 @@ class Recorder:
         seen_north, seen_east = target.north, target.east
         sample = self._sample()
         read = [value for instrument in self._payload for value in instrument.read(time, motion, sample)] if self._payload else ()
-        self._rows += self._pack(
+        self._rows.append(self._pack(
             time, *motion, math.atan2(v_east, v_north), *vessel, axis, north, east, course, heading_rate,
             seen_north + centre.x, seen_east + centre.y, centre_error, own.wind_north, own.wind_east,
             seen_north, seen_east, centre.speed_ratio, mission.mode.number,
             tracker.heading_rate_demand, guidance.heading_rate_command, guidance.airspeed_command, guidance.altitude_command,
             tracker.saturated, guard.intervening + guard.lost if guard is not None else 0.0,
             *sample, *read,
-        )  # fmt: skip
+        ))  # fmt: skip
         if not judged:
             return sample, False
         error = math.hypot(north - own_north, east - own_east)
@@ -91,7 +91,7 @@ class Recorder:
 
     def rows(self) -> Array:
         """Return what is recorded, shape (rows, columns)."""
-        return np.frombuffer(self._rows).reshape(-1, len(self.columns))
+        return np.frombuffer(b"".join(self._rows)).reshape(-1, len(self.columns))
 
 
 def _no_vessel(_time: float) -> Place:

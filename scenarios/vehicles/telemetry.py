@@ -7,16 +7,8 @@ from aircraft.simulation.local_frame import EquatorFrame
 from common.physics.units import METRES_PER_FOOT
 from innerloop.jsbsim.properties import CONTROL_COMMAND, HEADING_RATE
 
-_SAMPLED = (
-    ("position/h-sl-ft", METRES_PER_FOOT),
-    ("velocities/vt-fps", METRES_PER_FOOT),
-    ("attitude/phi-rad", 1.0),
-    ("velocities/h-dot-fps", METRES_PER_FOOT),
-    ("attitude/psi-rad", 1.0),
-    ("attitude/theta-rad", 1.0),
-    ("aero/alpha-rad", 1.0),
-    ("aero/beta-rad", 1.0),
-)
+_CONTROLS = ("elevator", "aileron", "throttle", "rudder")
+"""Whose commands are sampled."""
 
 
 def _nothing() -> float:
@@ -33,7 +25,8 @@ class Telemetry:
     """
 
     __slots__ = (
-        "_airspeed", "_east", "_heading", "_heading_rate", "_latitude", "_longitude", "_north", "_roll", "_sampled", "_to_local",
+        "_airspeed", "_altitude", "_climb", "_controls", "_east", "_heading", "_heading_rate", "_incidence", "_latitude",
+        "_longitude", "_north", "_pitch", "_roll", "_sideslip", "_to_local",
     )  # fmt: skip
 
     def __init__(self, fdm: Fdm, frame: EquatorFrame) -> None:
@@ -46,11 +39,15 @@ class Telemetry:
         self._heading = fdm.node("attitude/psi-rad").get_double_value
         self._roll = fdm.node("attitude/phi-rad").get_double_value
         self._to_local = frame.to_local
-        controls = {i.name for i in fdm.spec.inputs}
-        self._sampled = [(fdm.node(name).get_double_value, scale) for name, scale in _SAMPLED]
-        for name in ("elevator", "aileron", "throttle", "rudder"):
-            read = fdm.node(CONTROL_COMMAND.format(name)).get_double_value if name in controls else _nothing
-            self._sampled.append((read, 1.0))
+        self._altitude = fdm.node("position/h-sl-ft").get_double_value
+        self._climb = fdm.node("velocities/h-dot-fps").get_double_value
+        self._pitch = fdm.node("attitude/theta-rad").get_double_value
+        self._incidence = fdm.node("aero/alpha-rad").get_double_value
+        self._sideslip = fdm.node("aero/beta-rad").get_double_value
+        moved = {control.name for control in fdm.spec.inputs}
+        self._controls = tuple(
+            fdm.node(CONTROL_COMMAND.format(name)).get_double_value if name in moved else _nothing for name in _CONTROLS
+        )
 
     def motion(self) -> tuple[float, float, float, float, float]:
         """Return north, east [m], north and east velocity over the ground [m/s] and heading rate against the air [rad/s]."""
@@ -67,4 +64,18 @@ class Telemetry:
 
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``."""
-        return tuple([read() * scale for read, scale in self._sampled])
+        elevator, aileron, throttle, rudder = self._controls
+        return (
+            self._altitude() * METRES_PER_FOOT,
+            self._airspeed() * METRES_PER_FOOT,
+            self._roll(),
+            self._climb() * METRES_PER_FOOT,
+            self._heading(),
+            self._pitch(),
+            self._incidence(),
+            self._sideslip(),
+            elevator(),
+            aileron(),
+            throttle(),
+            rudder(),
+        )
