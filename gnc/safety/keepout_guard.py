@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from gnc.estimation.own_motion import AirMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.safety.given_commands import GivenCommands
-from gnc.safety.turn_prediction import Motion, Start, TurnPrediction
+from gnc.safety.turn_prediction import Motion, Start, TurnPrediction, nearer_side
 
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
@@ -155,8 +155,8 @@ class KeepoutGuard:
         """Take note of a heading rate that is flown in place of the last command [rad/s]."""
         self._given.since[-1] = command
 
-    def clearance(self, time: float, own: AirMotion, speed: float) -> float:
-        """Return by how much the better turn away, begun now, keeps off [m]; negative if no command can keep off.
+    def clearance(self, time: float, own: AirMotion, speed: float, enough: float = math.inf) -> float:
+        """Return by how much the better turn away, begun now, or one that does by ``enough``, keeps off [m]; negative if none can.
 
         Parameters are those of ``limit``. That no other commands do better is argued in docs/keepout_guard.md.
         """
@@ -164,8 +164,10 @@ class KeepoutGuard:
         for tube in self.tubes:
             then = self._prediction.when_acting(self._relative(tube, time, own, speed, to_come), self._given.under_way)
             start = (then[0], then[1], then[4], then[6])
-            for side in (1.0, -1.0):
-                best = max(best, self._prediction.turn_away(side, start, then, self._until_acting, -math.inf)[0])
+            for side in (nearer := nearer_side(*start[:3]), -nearer):
+                best = max(best, self._prediction.turn_away(side, start, then, self._until_acting, best)[0])
+                if best >= enough:
+                    return best
         return best
 
     def _look(self, command: float, time: float, own: AirMotion, speed: float, slowest: float) -> tuple[float, list[Situation]]:
@@ -234,10 +236,8 @@ class KeepoutGuard:
     def _free_by_turning_away(self, command: float, motions: tuple[Motion, ...]) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
         starts = self._after(command, motions)
-        x, y, course, _ = starts[0]
         floor = _RESOLUTION * motions[0][5] / self._rate
-        nearer = 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
-        for side in (nearer, -nearer):
+        for side in (nearer := nearer_side(*starts[0][:3]), -nearer):
             slack, free = self._slack(side, starts, motions, floor)
             if slack >= floor:
                 self._side = side

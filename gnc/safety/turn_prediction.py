@@ -171,6 +171,11 @@ class TurnPrediction:
         return least, max(gain, 0.0) * stretch / (2.0 * speed * self._rate)
 
 
+def nearer_side(x: float, y: float, course: float) -> float:
+    """Return the side to which it is less far to head straight away from a disc: 1 to the right, -1 to the left."""
+    return 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
+
+
 def _range_rate(start: Start, motion: Motion) -> float:
     """Return the rate at which the distance from the disc's centre grows [m/s]."""
     x, y, course, _ = start

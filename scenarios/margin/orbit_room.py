@@ -1,6 +1,7 @@
 """How far from the vessel an orbit has to lie for the keep-out guard not to act on it."""
 
 import itertools
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -101,5 +102,8 @@ def _distance(
     distance = _FAR * (guard.radius + vessel.radius)
     for _ in range(2):
         # Clearances change as the distance does, but for the curvature of a disc.
-        distance -= min(keeping.clearance(0.0, motion, speed) for motion in motions(distance))
+        least = math.inf
+        for motion in motions(distance):
+            least = min(least, keeping.clearance(0.0, motion, speed, enough=least))
+        distance -= least
     return distance

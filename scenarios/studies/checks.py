@@ -60,17 +60,27 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
             " plume.source_height_m); give each a run of its own"
         )
     for scenario in points:
-        _check_parts(scenario)
+        check_without_design(scenario)
         if envelope is not None and scenario.fidelity == "six_dof":
             check_flyable(scenario.guidance, find_spec(scenario.aircraft).title, envelope)
-        _check_fault(scenario)
-        _check_turbulence(scenario)
         _check_vessel(scenario)
     for experiment in experiments:
         if experiment.scenario.draws:
             for point in experiment.points:
                 with plugins_explained("a flight cannot be sampled", [point.scenario]):
                     check_draws(experiment.name, point.scenario)
+
+
+def check_without_design(scenario: Scenario) -> None:
+    """Check of flights what the aircraft's autopilot has no part in, so that nobody waits for its design to be refused.
+
+    Raises
+    ------
+    InputError : a part that does not exist, a fault that it cannot have, turbulence at an altitude for which it is not known
+    """
+    _check_parts(scenario)
+    _check_fault(scenario)
+    _check_turbulence(scenario)
 
 
 @contextmanager

@@ -46,7 +46,7 @@ from scenarios.schema.sections.experiment import TrialList
 from scenarios.simulation.time_history import UNFINISHED
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
 from scenarios.statistics.sulphur import sulphur_statistics
-from scenarios.studies.checks import check_flights, plugins_explained
+from scenarios.studies.checks import check_flights, check_without_design, plugins_explained
 from scenarios.studies.manifest import config_hash, flown_config, initial_manifest, parameters, plugins, vessel_files, write_logo
 from scenarios.studies.rows import frame
 from scenarios.studies.study import study
@@ -79,6 +79,8 @@ class FlightStudy:
     ) -> None:
         first = next(iter(trials.values()))
         spec = spec_of(first)
+        for point in (point for trial, of in trials.items() for point in Experiment(trial, of, alone=len(trials) == 1).points):
+            check_without_design(point.scenario)
         self._design, self._refusal = design_of(spec, first.altitude) if spec else (None, "")
         envelope = self._design.design.schedule.envelope if self._design else spec.envelope if spec else None
         if envelope is not None:
