@@ -5,17 +5,19 @@ import json
 import pandas as pd
 import pytest
 
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
-KINEMATIC = ("fidelity=kinematic", "comparison.variants=[]", "flight.crossings=4")
+SLOW_STEPS = ("fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5")
+KINEMATIC = (*SLOW_STEPS, "comparison.variants=[]", "flight.crossings=2")
 BOTH_LAWS = '[{name="line_of_sight", set={"guidance.law"="line_of_sight"}}, {name="lyapunov", set={"guidance.law"="lyapunov"}}]'
 
 
 def flown(out, name, *overrides, outcome="completed"):
     """Fly a study; return its rows, all with one outcome and outside the keep-out area."""
-    run_study(load_study(name, overrides), name, out, overrides=overrides)
+    run_study(load_study(name, overrides), name, out, overrides=overrides, executor_factory=InProcessExecutor)
     rows = rows_of(out)
     for row in rows:
         assert (row["outcome"], row["keepout_violations"]) == (outcome, 0), row["message"]
@@ -95,7 +97,7 @@ def test_a_value_that_cannot_be_swept_is_refused(tmp_path):
 
 def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_path):
     keys = ["flights=3", f"comparison.variants={BOTH_LAWS}", "comparison.flights=2"]
-    rows = flown(tmp_path / "run", "sea_wind", "fidelity=kinematic", "flight.crossings=2", *keys)
+    rows = flown(tmp_path / "run", "sea_wind", *SLOW_STEPS, "flight.crossings=1", *keys)
     variants = rows_of(tmp_path / "run", "comparison.csv")
     assert [row["variant"] for row in rows] == ["study"] * 3
     assert [row["variant"] for row in variants] == ["line_of_sight"] * 2 + ["lyapunov"] * 2
@@ -109,7 +111,7 @@ def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_
     assert manifest["flights_planned"] == 3
 
 
-SAMPLED = ("fidelity=kinematic", "turbulence={}", "flights=4", "flight.duration_max_s=40", "histories=0")
+SAMPLED = (*SLOW_STEPS, "turbulence={}", "flights=4", "flight.duration_max_s=10", "histories=0")
 TOO_SHORT = "not_settled"
 WIND = '{key="wind.speed_mps", uniform=[0, 5]}'
 

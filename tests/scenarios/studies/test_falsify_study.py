@@ -10,7 +10,12 @@ import pandas as pd
 import pytest
 
 from reports.build import build_reports
+from reports.document.chart import Chart
+from reports.monte_carlo.falsification import falsification_sections
+from reports.render.matplotlib_charts import draw
+from reports.run.run_data import read_run
 from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
@@ -43,11 +48,14 @@ key = "wind.from_deg"
 uniform = [0.0, 360.0]
 [wind]
 speed_mps = 3.0
+[guidance]
+rate_hz = 5.0
 [reports]
 interval_s = [1.0, 2.0]
 [flight]
 crossings = 0
 duration_max_s = 4.0
+log_rate_hz = 5.0
 [criteria]
 required = "keep_out"
 settles = false
@@ -61,16 +69,15 @@ def search(tmp_path_factory):
     return path
 
 
-def run(search, out, *overrides, jobs=2, resume=False, progress=lambda *_: None):
+def run(search, out, *overrides, factory=InProcessExecutor, resume=False, progress=lambda *_: None):
     scenario = load_study(str(search), overrides)
-    factory = ExecutorFactory(jobs=jobs)
     return run_study(scenario, "short", out, executor_factory=factory, resume=resume, progress=progress, overrides=overrides)
 
 
 @pytest.fixture(scope="module")
 def found(search, tmp_path_factory):
     out = tmp_path_factory.mktemp("falsify") / "run"
-    assert run(search, out).all_met
+    assert run(search, out, factory=ExecutorFactory(jobs=2)).all_met
     return out
 
 
@@ -151,14 +158,15 @@ def test_the_worst_flights_are_kept_as_scenarios_that_fly_again_to_the_last_bit(
     assert searched[kept[0].stem[3:]] == searched.min()
     for path in kept:
         out, flight_id = tmp_path / path.stem, path.stem[3:]
-        result = run_study(load_study(str(path)), path.stem, out)
+        result = run_study(load_study(str(path)), path.stem, out, executor_factory=InProcessExecutor)
         assert result.all_met
         assert pd.read_csv(out / "summary.csv")["min_distance_m"].tolist() == [searched[flight_id]]
         first = pd.read_parquet(found / "flights" / f"{flight_id}.parquet")
         again = pd.read_parquet(out / "flights" / f"{path.stem}_00000.parquet")
         pd.testing.assert_frame_equal(first, again, check_exact=True)
     # And what is flown again can be changed.
-    other = run_study(load_study(str(kept[0]), ["keepout.radius_m=150"]), "changed", tmp_path / "changed")
+    changed = load_study(str(kept[0]), ["keepout.radius_m=150"])
+    other = run_study(changed, "changed", tmp_path / "changed", executor_factory=InProcessExecutor)
     assert other.summary.done == 1
 
 
@@ -168,7 +176,7 @@ def test_flights_of_a_search_are_replayed_identically(found, tmp_path):
         result = fly_study(
             Replay(str(found / "flights" / flight_id)),
             tmp_path / flight_id,
-            executor_factory=ExecutorFactory(),
+            executor_factory=InProcessExecutor,
             resume=False,
             progress=lambda *_: None,
         )
@@ -191,9 +199,9 @@ def test_the_search_goes_the_same_way_whatever_the_number_of_processes_and_where
             raise KeyboardInterrupt
 
     out = tmp_path / "run"
-    assert run(search, out, jobs=1, progress=interrupt).interrupted
+    assert run(search, out, progress=interrupt).interrupted
     assert len(pd.read_csv(out / "summary.csv")) == after
-    assert run(search, out, jobs=1, resume=True).all_met
+    assert run(search, out, resume=True).all_met
     same_tables(found, out)
 
 
@@ -249,9 +257,14 @@ def test_a_search_by_time_ends_after_it_and_a_resumed_one_continues_for_as_long(
     assert len(list((out / "worst").iterdir())) == KEPT
 
 
+@pytest.mark.usefixtures("sketched")
 def test_its_report_says_what_was_found(found, tmp_path):
     copy = shutil.copytree(found, tmp_path / "copy")
     html, pdf = build_reports(copy)
+    # The figures of flights are drawn elsewhere; that of the search is its own.
+    (section,) = falsification_sections(read_run(copy))
+    (chart,) = [block for block in section.blocks if isinstance(block, Chart)]
+    draw(chart).draw_without_rendering()
     text = html.read_text(encoding="utf-8")
     least = pd.read_csv(found / "summary.csv")["min_distance_m"].min() - 200.0
     assert f"The closest that it found stayed {least:.1f} m outside the keep-out area." in text

@@ -7,13 +7,14 @@ import pytest
 
 from aircraft.errors import AircraftError
 from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 from tests.scenarios.short_trial import short_trial
 
-TRIAL = short_trial(flights=4, duration=8.0)
+TRIAL = short_trial(flights=4, duration=4.0)
 
 
 def written(directory):
@@ -44,11 +45,9 @@ def quiet(doing, done, total):
     """Say nothing."""
 
 
-def run(path, out, *overrides, jobs=1, resume=False, progress=quiet):
+def run(path, out, *overrides, factory=InProcessExecutor, resume=False, progress=quiet):
     study = load_study(str(path), overrides)
-    return run_study(
-        study, path.stem, out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress, overrides=overrides
-    )
+    return run_study(study, path.stem, out, executor_factory=factory, resume=resume, progress=progress, overrides=overrides)
 
 
 def tables(directory):
@@ -62,8 +61,8 @@ def same(one, other):
     return tables(one)[1] == tables(other)[1]
 
 
-def test_the_same_rows_come_from_one_process_and_from_two(listed, whole, tmp_path):
-    assert run(listed, tmp_path / "run", jobs=2).all_met
+def test_the_same_rows_come_from_this_process_and_from_two_others(listed, whole, tmp_path):
+    assert run(listed, tmp_path / "run", factory=ExecutorFactory(jobs=2)).all_met
     assert same(whole, tmp_path / "run")
     summary, _ = tables(whole)
     assert list(summary["flight_id"]) == [f"{trial}_{i:05d}" for trial in ("one", "two") for i in range(4)]
@@ -88,7 +87,7 @@ def test_a_key_of_the_trials_is_set_in_every_one(listed, tmp_path):
     assert {trial["seed"] for trial in manifest["trials"].values()} == {5}
     assert {trial["keepout"]["radius_m"] for trial in manifest["trials"].values()} == {150.0}
     assert manifest["flights_planned"] == 2
-    # 8 s are too short to settle, which is not required of these trials.
+    # 4 s are too short to settle, which is not required of these trials.
     assert [manifest[f"flights_{count}"] for count in ("kept_out", "passed", "met_criteria")] == [2, 2, 0]
 
 

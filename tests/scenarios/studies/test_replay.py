@@ -9,7 +9,7 @@ import pytest
 from common.run_layout import flight_of
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.journal import Journal
 from scenarios.engine.runner import fly_study
 from scenarios.engine.task import Result, Task
@@ -31,16 +31,16 @@ def runs(tmp_path_factory):
         (folder / f"{name}.toml").write_text(TRIAL, encoding="utf-8")
     trials = json.dumps([str(folder / "one.toml"), str(folder / "two.toml")])
     (folder / "list.toml").write_text(f'study = "trials"\ntitle = "two"\ntrials = {trials}\n', encoding="utf-8")
-    run_study(load_study(str(folder / "list.toml")), "list", folder / "trials")
+    run_study(load_study(str(folder / "list.toml")), "list", folder / "trials", executor_factory=InProcessExecutor)
     sweep = ["fidelity=kinematic", "sweep.nu=[0.3, 0.5]", "comparison.nu=[0.5]", "flight.crossings=3"]
-    run_study(load_study("sweep_nu", sweep), "sweep_nu", folder / "sweep")
+    run_study(load_study("sweep_nu", sweep), "sweep_nu", folder / "sweep", executor_factory=InProcessExecutor)
     # Neither is needed any more.
     (folder / "two.toml").unlink()
     return folder
 
 
 def replay(name, out):
-    return fly_study(Replay(str(name)), out, executor_factory=ExecutorFactory(), resume=False, progress=lambda *_: None)
+    return fly_study(Replay(str(name)), out, executor_factory=InProcessExecutor, resume=False, progress=lambda *_: None)
 
 
 @pytest.mark.parametrize(

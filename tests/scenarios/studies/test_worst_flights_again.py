@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
@@ -31,22 +31,29 @@ range_m = 400.0
 aspect_deg = 0.0
 [wind]
 speed_mps = 3.0
+[guidance]
+rate_hz = 5.0
 [reports]
 interval_s = [1.0, 2.0]
 [flight]
 crossings = 0
 duration_max_s = 30.0
+log_rate_hz = 5.0
 [criteria]
 required = "keep_out"
 settles = false
 """
 
 
+def flown(path, out, *overrides):
+    run_study(load_study(str(path), overrides), path.stem, out, executor_factory=InProcessExecutor)
+
+
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     folder = tmp_path_factory.mktemp("worst")
     (folder / "short.toml").write_text(SEARCH, encoding="utf-8")
-    run_study(load_study(str(folder / "short.toml")), "short", folder / "run", executor_factory=ExecutorFactory(jobs=2))
+    flown(folder / "short.toml", folder / "run")
     return folder / "run"
 
 
@@ -56,7 +63,7 @@ def test_a_worst_flight_keeps_the_margin_that_allows_for_the_faults_of_the_whole
     path = next(path for path in sorted((found / "worst").iterdir()) if searched.loc[path.stem[3:], "fault"] == fault)
     # What is said of the search is not said of one of its flights.
     assert "description" not in path.read_text(encoding="utf-8")
-    run_study(load_study(str(path)), path.stem, tmp_path / "again")
+    flown(path, tmp_path / "again")
     (again,) = pd.read_csv(tmp_path / "again" / "summary.csv").to_dict("records")
     row = searched.loc[path.stem[3:]]
     for figure in ("fault", "seed", "keepout_margin_m", "min_distance_m", "guard_interventions", "guard_time_s"):
@@ -66,5 +73,5 @@ def test_a_worst_flight_keeps_the_margin_that_allows_for_the_faults_of_the_whole
     pd.testing.assert_frame_equal(first, second, check_exact=True)
     # Without the declaration it would not: the margin of a flight that can lose no satellites is 1 m smaller here.
     if fault != "satellite_navigation":
-        run_study(load_study(str(path), ["fault.declared=[]"]), path.stem, tmp_path / "other")
+        flown(path, tmp_path / "other", "fault.declared=[]")
         assert pd.read_csv(tmp_path / "other" / "summary.csv")["keepout_margin_m"].item() < row["keepout_margin_m"] - 0.5
