@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -77,16 +78,23 @@ def _windows(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) ->
     """
     gases = used_gases(record)
     tail = _TAIL * max(instrument.known(gas).constants[0] for gas in gases)
-    weights = {gas: np.zeros(len(record.time)) for gas in gases}
     onsets = [*(found.start_s for found in passes[1:]), math.inf]
     ends = [min(found.end_s + tail, onset) for found, onset in zip(passes, onsets, strict=True)]
     # Where the one before is over, the window leads its pass; where not, it begins at the trough.
     starts = [max(found.start_s - _LEAD, before) for found, before in zip(passes, [-math.inf, *ends[:-1]], strict=True)]
+    windows, weights = tuple(zip(starts, ends, strict=True)), {}
     for gas in gases:
         late = instrument.known(gas).delay_s - instrument.known("co2").delay_s
-        for i, (start, end) in enumerate(zip(starts, ends, strict=True)):
-            free = (ends[i - 1] if i else -math.inf), (starts[i + 1] if i + 1 < len(starts) else math.inf)
-            _add_window(weights[gas], record, (start + late, end + late), (free[0] + late, free[1] + late))
+        weights[gas] = record.once(("areas", windows, late), partial(_all_windows, record, windows, late))
+    return weights
+
+
+def _all_windows(record: Record, windows: Sequence[tuple[float, float]], late: float) -> Array:
+    """Return the weights of samples in the areas over windows that are ``late`` [s]."""
+    weights = np.zeros(len(record.time))
+    for i, (start, end) in enumerate(windows):
+        free = (windows[i - 1][1] if i else -math.inf), (windows[i + 1][0] if i + 1 < len(windows) else math.inf)
+        _add_window(weights, record, (start + late, end + late), (free[0] + late, free[1] + late))
     return weights
 
 

@@ -14,7 +14,7 @@ from measurement.estimate.fit.alignment import Alignment, align, stated
 from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Signals, make_signals, used_gases
-from measurement.estimate.passes import SNR_LEAST, Pass, co2_background, find_passes, readings_noise
+from measurement.estimate.passes import SNR_LEAST, Pass, co2_excesses, find_passes, readings_noise
 from measurement.estimate.quality import judged_quality, quiet, stranger
 from measurement.estimate.record import Record, checked_record
 from measurement.estimate.result import Figures, FscEstimate, Method
@@ -225,10 +225,7 @@ def _told(
 
 def _figures(record: Record, passes: tuple[Pass, ...], instrument: SnifferSpec, snr: float, so2_snr: float) -> Figures:
     noise = instrument.known("co2").noise
-    above = sum(
-        int(np.sum(values["co2"] - co2_background(time, values["co2"], noise) > SNR_LEAST * noise))
-        for time, values in zip(record.times, record.values, strict=True)
-    )
+    above = sum(int(np.sum(excess > SNR_LEAST * noise)) for excess in co2_excesses(record, noise))
     times = np.array([found.centre_s for found in passes])
     return Figures(
         duration_s=record.duration,

@@ -70,14 +70,23 @@ def co2_background(time: Array, values: Array, noise: float) -> Array:
     return np.interp(time, middles, levels)
 
 
+def co2_excesses(record: Record, noise: float) -> list[Array]:
+    """Return the CO2 of each segment over its background."""
+
+    def found() -> list[Array]:
+        each = zip(record.times, record.values, strict=True)
+        return [values["co2"] - co2_background(time, values["co2"], noise) for time, values in each]
+
+    return record.once(("CO2 excess", noise), found)
+
+
 def find_passes(record: Record, channel: Channel) -> tuple[Pass, ...]:
     """Return the passes of a record, given its CO2 channel."""
     from scipy.signal import find_peaks
 
     noise = channel.noise
     passes: list[Pass] = []
-    for time, values in zip(record.times, record.values, strict=True):
-        excess = values["co2"] - co2_background(time, values["co2"], noise)
+    for time, values, excess in zip(record.times, record.values, co2_excesses(record, noise), strict=True):
         least = max(SNR_LEAST * noise, 1e-6 * float(np.abs(values["co2"]).max()))
         peaks, _ = find_peaks(np.concatenate([[-math.inf], excess, [-math.inf]]), height=least, prominence=least)
         passes += _bounded(time, excess, peaks - 1, channel)

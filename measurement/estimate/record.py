@@ -1,8 +1,10 @@
 """Readings, checked and laid on an even grid, in segments between gaps."""
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -48,6 +50,12 @@ _NOX_SIGMA = 3.0
 """A ship that is not measured for NO or NO2 may emit the expected by so many standard deviations more."""
 
 
+_KEPT = 32
+"""What is worked out of a record and kept, at most: to move one property of the instrument changes little of it."""
+
+_T = TypeVar("_T")
+
+
 @dataclass(frozen=True)
 class Record:
     """An even record.
@@ -66,11 +74,20 @@ class Record:
     values: tuple[dict[str, Array], ...]
     resolution: dict[str, float]
     problems: tuple[str, ...]
+    _kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
-    @property
+    @cached_property
     def time(self) -> Array:
         """Times of all samples."""
         return np.concatenate(self.times)
+
+    def once(self, key: Hashable, make: Callable[[], _T]) -> _T:
+        """Return what ``make`` makes of the record, kept from the last time that it was asked for by ``key``."""
+        made: _T = self._kept.pop(key) if key in self._kept else make()
+        self._kept[key] = made
+        if len(self._kept) > _KEPT:
+            del self._kept[next(iter(self._kept))]
+        return made
 
     def of(self, gas: str) -> Array:
         """Return all samples of a gas."""

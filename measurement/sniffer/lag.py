@@ -1,5 +1,6 @@
 """Lags of first and second order, stepped exactly for an input that is linear between samples."""
 
+import functools
 import math
 
 import numpy as np
@@ -59,22 +60,28 @@ def weights(step: Array | float, constant: float) -> tuple[Array, Array, Array]:
     return a, np.where(r > 0.0, m - a, 0.0), np.where(r > 0.0, 1.0 - m, 0.0)
 
 
+@functools.lru_cache(maxsize=256)
+def _weights_of_step(step: float, constant: float) -> tuple[float, float, float]:
+    a, old, new = weights(step, constant)
+    return float(a), float(old), float(new)
+
+
 def lag(signal: Array, step: float, constant: float, before: tuple[float, float] | None = None) -> Array:
     """Return the output of a first-order lag at every sample of its input.
 
     Parameters
     ----------
-    signal : input, shape (n,), linear between samples
+    signal : input, shape (n,) or (n, k), linear between samples
     step : between samples [s]
     constant : time constant [s]
     before : output and input a step before the first sample; without it the lag is at rest at the first sample
     """
     from scipy.signal import lfilter
 
-    a, old, new = (float(w) for w in weights(step, constant))
+    a, old, new = _weights_of_step(step, constant)
     if not len(signal):
         return signal.copy()
     # The state of the transposed direct form is what the past adds to the next output.
     state = (1.0 - new) * signal[0] if before is None else a * before[0] + old * before[1]
-    filtered, _ = lfilter([new, old], [1.0, -a], signal, zi=np.array([state]))
+    filtered, _ = lfilter([new, old], [1.0, -a], signal, axis=0, zi=np.reshape(state, (1, *signal.shape[1:])))
     return np.asarray(filtered, dtype=np.float64)

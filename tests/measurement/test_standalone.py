@@ -14,15 +14,11 @@ def test_the_bar_keeps_out_what_measurement_must_not_know(name):
     assert f"{name} is barred" in outcome.stderr
 
 
-def test_every_module_imports():
+def test_every_module_imports_and_the_tests_are_collected():
     assert {"measurement.gases", "measurement.emission.emission", "measurement.plume.fluctuating_plume"} <= set(MEASUREMENT.modules)
-    outcome = MEASUREMENT.run("".join(f"import {module}\n" for module in MEASUREMENT.modules))
-    assert outcome.returncode == 0, outcome.stderr
-
-
-def test_the_tests_are_collected():
+    imports = "".join(f"import {module}\n" for module in MEASUREMENT.modules)
     # What tests/conftest.py imports counts, too.
     options = ["--collect-only", "--assert=plain", "-p", "no:cacheprovider", "-p", "no:hypothesispytest", "tests/measurement"]
-    outcome = MEASUREMENT.run(f"import pytest; sys.exit(pytest.main({options}))")
+    outcome = MEASUREMENT.run(f"{imports}import pytest; sys.exit(pytest.main({options}))")
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert "test_flux.py::test_what_passes_a_plane_is_what_was_emitted" in outcome.stdout

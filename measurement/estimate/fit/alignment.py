@@ -97,9 +97,11 @@ def _place(instrument: SnifferSpec) -> Array:
 def _applied(instrument: SnifferSpec, place: Array) -> SnifferSpec:
     """Return the instrument with log(t90) of SO2 and its delay after CO2 [s]; where that is negative, all others are later."""
     late = max(0.0, -float(place[1]) - instrument.known("co2").delay_s)
-    moved = replace(instrument, channels=tuple(replace(channel, delay_s=channel.delay_s + late) for channel in instrument.channels))
-    delay = max(0.0, moved.known("co2").delay_s + float(place[1]))
-    return moved.with_channel(replace(moved.known("so2"), t90_s=math.exp(float(place[0])), delay_s=delay))
+    if late:
+        channels = tuple(replace(channel, delay_s=channel.delay_s + late) for channel in instrument.channels)
+        instrument = replace(instrument, channels=channels)
+    delay = max(0.0, instrument.known("co2").delay_s + float(place[1]))
+    return instrument.with_channel(replace(instrument.known("so2"), t90_s=math.exp(float(place[0])), delay_s=delay))
 
 
 def _round(record: Record, instrument: SnifferSpec, place: Array, free: npt.NDArray[np.int64]) -> tuple[Array, Array, float]:

@@ -11,7 +11,7 @@ from measurement.estimate.fit.background import without
 from measurement.estimate.fit.regression import noise_covariance
 from measurement.estimate.fit.response import equalised, shifted
 from measurement.estimate.fit.signals import Signals
-from measurement.estimate.passes import Pass, co2_background
+from measurement.estimate.passes import Pass, co2_excesses
 from measurement.sniffer.lag import Array
 
 GROUPS_MAX = 8
@@ -52,7 +52,8 @@ def grouped(signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: f
         return nothing
     parts = np.array_split(np.arange(len(passes)), min(GROUPS_MAX, len(passes)))
     cuts = [0.5 * (passes[part[-1]].end_s + passes[part[-1] + 1].start_s) for part in parts[:-1]]
-    co2 = np.stack([_part(signals, low, high) for low, high in zip([-math.inf, *cuts], [*cuts, math.inf], strict=True)], axis=1)
+    bounds = zip([-math.inf, *cuts], [*cuts, math.inf], strict=True)
+    co2 = np.stack([_part(signals, low, high) for low, high in bounds], axis=1)
     co2 = without(signals.basis, co2)
     sizes = np.linalg.svd(co2, compute_uv=False)
     if sizes[-1] <= _INDEPENDENT * sizes[0]:
@@ -77,8 +78,7 @@ def _part(signals: Signals, start: float, end: float) -> Array:
     record, channel = signals.record, signals.instrument.known("co2")
     late = signals.instrument.known("so2").delay_s - channel.delay_s
     parts = []
-    for time, values in zip(record.times, record.values, strict=True):
-        excess = (values["co2"] - co2_background(time, values["co2"], channel.noise)) / channel.gain
-        inside = np.where((time >= start) & (time < end), excess, 0.0)
+    for time, excess in zip(record.times, co2_excesses(record, channel.noise), strict=True):
+        inside = np.where((time >= start) & (time < end), excess / channel.gain, 0.0)
         parts.append(shifted(equalised(inside, record.step, channel.constants, signals.common), record.step, late))
     return np.concatenate(parts)

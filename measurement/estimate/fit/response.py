@@ -28,7 +28,7 @@ def equalised(signal: Array, step: float, own: Poles, common: Poles) -> Array:
 
     Parameters
     ----------
-    signal : shape (n,), a step [s] apart
+    signal : shape (n,) or (n, k), a step [s] apart
     own, common : poles; a missing one is 0
     """
     for i, target in enumerate(common):
@@ -43,13 +43,12 @@ def adjoint(weights: Array, step: float, own: Poles, common: Poles) -> Array:
 
     The filter begins with a memory that is empty; for weights that sum to zero against ``transients`` this makes no difference.
     """
-    columns = weights.reshape(len(weights), -1)[::-1].T
-    return np.stack([equalised_from_rest(column, step, own, common)[::-1] for column in columns], axis=1).reshape(weights.shape)
+    return np.ascontiguousarray(equalised_from_rest(weights[::-1], step, own, common)[::-1])
 
 
 def equalised_from_rest(signal: Array, step: float, own: Poles, common: Poles) -> Array:
     """Return the equalised signal where it was 0 before its first sample."""
-    padded = np.concatenate([np.zeros(1), signal])
+    padded = np.concatenate([np.zeros((1, *signal.shape[1:])), signal])
     return equalised(padded, step, own, common)[1:]
 
 
@@ -83,5 +82,5 @@ def shifted(signal: Array, step: float, delay: float) -> Array:
     moved = np.zeros(len(signal))
     for offset, weight in zip((-1, 0, 1, 2), weights, strict=True):
         if weight:
-            moved += weight * signal[np.clip(samples + offset, 0, len(signal) - 1)]
+            moved += weight * signal.take(samples + offset, mode="clip")
     return moved

@@ -1,6 +1,7 @@
 """SO2 and CO2 of a record, corrected for other gases and brought to one response and one delay."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -46,6 +47,10 @@ class Signals:
 
     def excess(self) -> tuple[Array, Array]:
         """Return CO2 and SO2 without what the background explains."""
+        return self._excess
+
+    @cached_property
+    def _excess(self) -> tuple[Array, Array]:
         return without(self.basis, self.co2), without(self.basis, self.so2)
 
     def backwards(self, gas: str, weights: Array) -> Array:
@@ -56,6 +61,9 @@ class Signals:
 
     def noise_energy(self, gas: str) -> float:
         """Return the expected sum of squares, beside the background, of a gas's equalised noise of standard deviation 1."""
+        return self.record.once(("noise energy", self.poles(gas), self.common), lambda: self._noise_energy(gas))
+
+    def _noise_energy(self, gas: str) -> float:
         energy = 0.0
         for segment in self.record.times:
             squares = self._impulse(gas, len(segment)) ** 2
@@ -86,7 +94,7 @@ def shares_of(instrument: SnifferSpec, gases: tuple[str, ...]) -> dict[str, tupl
     return {gas: (float(so2[i]), float(co2[i])) for i, gas in enumerate(gases)}
 
 
-def common_poles(instrument: SnifferSpec, gases: tuple[str, ...]) -> Poles:
+def common_poles(instrument: SnifferSpec, gases: tuple[str, ...], shares: dict[str, tuple[float, float]]) -> Poles:
     """Return the poles of the common response.
 
     They are the slowest of SO2 and CO2; a slower channel that corrects them joins in where bringing it to their response would make
@@ -94,7 +102,6 @@ def common_poles(instrument: SnifferSpec, gases: tuple[str, ...]) -> Poles:
     """
     main = [instrument.known(gas) for gas in ("so2", "co2")]
     poles = slowest([channel.constants for channel in main])
-    shares = shares_of(instrument, gases)
     slow = [
         channel.constants
         for channel in (instrument.known(gas) for gas in gases if gas not in ("so2", "co2"))
@@ -106,17 +113,27 @@ def common_poles(instrument: SnifferSpec, gases: tuple[str, ...]) -> Poles:
 def make_signals(record: Record, instrument: SnifferSpec) -> Signals:
     """Return the signals of a record, given the instrument's response, delays, gains and cross-sensitivities."""
     gases = used_gases(record)
-    common, shares = common_poles(instrument, gases), shares_of(instrument, gases)
+    shares = shares_of(instrument, gases)
+    common = common_poles(instrument, gases, shares)
     so2, co2 = np.zeros(len(record.time)), np.zeros(len(record.time))
     reference = instrument.known("so2").delay_s
     for gas in gases:
         channel = instrument.known(gas)
-        parts = [
-            shifted(equalised(segment[gas], record.step, channel.constants, common), record.step, reference - channel.delay_s)
-            for segment in record.values
-        ]
-        signal = np.concatenate(parts)
+        signal = _brought(record, gas, channel.constants, common, reference - channel.delay_s)
         so2 += shares[gas][0] * signal
         co2 += shares[gas][1] * signal
-    basis = background_basis(record, common)
+    basis = record.once(("basis", common), lambda: background_basis(record, common))
     return Signals(record=record, instrument=instrument, co2=co2, so2=so2, basis=basis, common=common, shares=shares)
+
+
+def _brought(record: Record, gas: str, own: Poles, common: Poles, late: float) -> Array:
+    """Return the readings of a gas with the common poles, ``late`` [s] later."""
+
+    def slowed() -> list[Array]:
+        return [equalised(segment[gas], record.step, own, common) for segment in record.values]
+
+    def brought() -> Array:
+        parts = record.once(("slowed", gas, own, common), slowed)
+        return np.concatenate([shifted(part, record.step, late) for part in parts])
+
+    return record.once(("brought", gas, own, common, late), brought)
