@@ -83,7 +83,7 @@ class SubsetStudy(ChosenFlightsStudy):
         return values
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
-        """Write ``statistics.json``; how well sulphur is measured is not told from flights that each follow from others."""
+        """Write ``statistics.json``."""
         progress("estimating", self.planned, self.planned)
         first = np.concatenate([simulation.levels[0].points for simulation in self._simulations])
         near = np.concatenate([simulation.levels[-1].points[chosen] for simulation, chosen in near_event(self._simulations)])
