@@ -1,14 +1,14 @@
-"""A typed view of JSBSim in SI that refuses property names JSBSim does not have."""
+"""A typed view of JSBSim in SI."""
 
 import contextlib
-import re
+import math
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import jsbsim
 
-from aircraft.errors import AircraftError, ReadOnlyPropertyError, UnknownPropertyError
+from aircraft.errors import AircraftError
 from aircraft.simulation.model_copy import copy_model
 from aircraft.simulation.pace import paced
 from aircraft.simulation.properties import (
@@ -27,6 +27,7 @@ from aircraft.simulation.properties import (
     component_names,
     initial_conditions,
 )
+from aircraft.simulation.property_tree import PropertyTree
 from aircraft.simulation.silence import silenced
 from aircraft.simulation.state import RigidBodyState, with_wind
 from aircraft.spec import AircraftSpec
@@ -35,15 +36,13 @@ from common.physics.units import METRES_PER_FOOT
 TIME_STEP = 1.0 / 120.0
 """Integration step of JSBSim and of the autopilot inside it [s]."""
 
-_PROPERTY_NAME = re.compile(r"[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*")
-
 _SETTLE_STRIDE = 4
 
 _FLIGHTGEAR = '<output name="{host}" type="FLIGHTGEAR" port="{port}" protocol="UDP" rate="30"/>'
 """JSBSim's output of FlightGear's own packets."""
 
 
-class Fdm:
+class Fdm(PropertyTree):
     """One aircraft in JSBSim.
 
     Parameters
@@ -68,7 +67,7 @@ class Fdm:
         else:
             self._exec = self._load(root)
         self._exec.disable_output()
-        self._properties = self._exec.get_property_manager()
+        super().__init__(spec.name, self._exec.get_property_manager())
         self._initial = [self.writable_node(name) for name in INITIAL_STATE]
         self._wind = [self.writable_node(name) for name in WIND]
         self._accelerations = [
@@ -110,36 +109,6 @@ class Fdm:
         if not accepted:
             raise AircraftError(f"JSBSim does not send to FlightGear at {host}:{port}; check the address")
         self.run = paced(self._exec.run, self.time_step)
-
-    def has(self, name: str) -> bool:
-        """Return whether there is a property of this name."""
-        return self._find(name) is not None
-
-    def node(self, name: str) -> jsbsim.FGPropertyNode:
-        """Return the node of an existing property, for repeated access at the least cost."""
-        node = self._find(name)
-        if node is None:
-            raise UnknownPropertyError(f"aircraft '{self.spec.name}' has no JSBSim property '{name}'; check its spelling")
-        return node
-
-    def _find(self, name: str) -> jsbsim.FGPropertyNode | None:
-        # An invalid name ends the whole process in JSBSim's property tree.
-        return self._properties.get_node(name) if _PROPERTY_NAME.fullmatch(name) else None
-
-    def writable_node(self, name: str) -> jsbsim.FGPropertyNode:
-        """Return the node of an existing property that takes writes."""
-        node = self.node(name)
-        if not node.get_attribute(jsbsim.Attribute.WRITE):
-            raise ReadOnlyPropertyError(f"JSBSim property '{name}' is read-only; a write to it would be ignored")
-        return node
-
-    def read(self, name: str) -> float:
-        """Return a property in JSBSim's own unit."""
-        return float(self.node(name).get_double_value())
-
-    def write(self, name: str, value: float) -> None:
-        """Set a property in JSBSim's own unit."""
-        self.writable_node(name).set_double_value(value)
 
     def place(self, state: RigidBodyState, wind: tuple[float, float] | None = None) -> None:
         """Put the aircraft into ``state``, configured as its spec says. Engines keep running; the first time they are
@@ -226,8 +195,9 @@ class Fdm:
         """Set control inputs by name [-], unclipped."""
         for name, value in inputs.items():
             control_input = self.spec.input(name)
-            for command in control_input.commands:
-                self.write(command, control_input.command(value))
+            command = control_input.command(value)
+            for commanded in control_input.commands:
+                self.write(commanded, command)
 
     def step(self, count: int = 1) -> None:
         """Advance ``count`` time steps."""
@@ -267,14 +237,16 @@ class Fdm:
         -------
         bool : whether that was reached within ``steps_max`` steps
         """
-        run, nodes = self.run, self._accelerations
-        before: list[float] = []
+        run, reads, limit = self.run, [node.get_double_value for node in self._accelerations], _SETTLE_STRIDE * tolerance
+        before = [math.nan] * len(reads)
         for _ in range(0, steps_max, _SETTLE_STRIDE):
             for _ in range(_SETTLE_STRIDE):
                 run()
-            after = [node.get_double_value() for node in nodes]
-            limit = _SETTLE_STRIDE * tolerance
-            if before and all(abs(a - b) <= limit * max(1.0, abs(a)) for a, b in zip(after, before, strict=True)):
+            after = [read() for read in reads]
+            for a, b in zip(after, before, strict=True):
+                if not abs(a - b) <= limit * max(1.0, abs(a)):
+                    break
+            else:
                 return True
             before = after
         return False

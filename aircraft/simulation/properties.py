@@ -1,5 +1,6 @@
 """JSBSim's properties that place, hold, start and read an aircraft, and what is written to them."""
 
+import functools
 from dataclasses import replace
 
 from aircraft.simulation.state import RigidBodyState
@@ -76,6 +77,7 @@ def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
     return replace(state, longitude=state.longitude + EARTH_RATE * duration)
 
 
-def component_names(pattern: str, components: str) -> list[str]:
+@functools.cache
+def component_names(pattern: str, components: str) -> tuple[str, ...]:
     """Return a vector's properties: ``pattern`` with each of its components, as in "uvw", put in."""
-    return [pattern.format(component) for component in components]
+    return tuple(pattern.format(component) for component in components)

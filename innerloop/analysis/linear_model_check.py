@@ -65,15 +65,15 @@ def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, An
 def _flown(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
     """Return time [s] and the deviations of ``OUTPUTS`` after a doublet, one second each way."""
     count = round(_DURATION / fdm.time_step)
-    nodes = {output: (fdm.node(prop), scale) for output, (prop, scale) in OUTPUTS.items()}
+    run, reads = fdm.run, [fdm.node(prop).get_double_value for prop, _ in OUTPUTS.values()]
     fdm.command(dict(level.inputs))
     fdm.hold(level.state(), round(fdm.spec.settle_time / fdm.time_step))
-    values = {output: np.empty(count) for output in nodes}
+    read = []
     for i in range(count):
-        for output, (node, scale) in nodes.items():
-            values[output][i] = node.get_double_value() * scale
+        read.append([each() for each in reads])
         t = i * fdm.time_step
         now = _SIZE if t < _HALF else -_SIZE if t < 2.0 * _HALF else 0.0
         fdm.command({name: level.inputs[name] + now})
-        fdm.step()
+        run()
+    values = {output: v * scale for (output, (_, scale)), v in zip(OUTPUTS.items(), np.array(read).T, strict=True)}
     return fdm.time_step * np.arange(count, dtype=np.float64), {output: v - v[0] for output, v in values.items()}

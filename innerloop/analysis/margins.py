@@ -65,33 +65,45 @@ class Loops:
         self._rows = [aircraft.output_labels.index(name) for name in self.measurements]
         self._columns = [aircraft.input_labels.index(name) for name in self.controls]
         self._reads = [autopilot.input_labels.index(name) for name in self.measurements]
-        self._plant = _response(aircraft, frequencies)[:, self._rows][:, :, self._columns]
+        self._plant = self._response_of(aircraft)
         self._law = -_response(autopilot, frequencies)[:, :, self._reads]
-        self._close()
 
-    def with_aircraft(self, aircraft: LinearModel, delay: float) -> "Loops":
-        """Return the loops of a changed aircraft, or of another delay, under the same autopilot, whose response is known."""
-        loops = copy.copy(self)
-        loops._aircraft, loops._delay = aircraft, delay
-        if aircraft is not self._aircraft:
-            loops._plant = _response(aircraft, self.frequencies)[:, self._rows][:, :, self._columns]
-        loops._close()
+    def with_aircraft(self, aircraft: LinearModel) -> "Loops":
+        """Return the loops of a changed aircraft under the same autopilot, whose response is known."""
+        loops = self._opened_copy()
+        loops._aircraft, loops._plant = aircraft, self._response_of(aircraft)
         return loops
 
-    def _close(self) -> None:
-        """Close every loop."""
+    def with_delay(self, delay: float) -> "Loops":
+        """Return the loops with another delay [s], the responses of aircraft and autopilot being known."""
+        loops = self._opened_copy()
+        loops._delay = delay
+        return loops
+
+    def _opened_copy(self) -> "Loops":
+        loops = copy.copy(self)
+        vars(loops).pop("_closed", None)
+        return loops
+
+    def _response_of(self, aircraft: LinearModel) -> Complex:
+        """Return the response of an aircraft's measurements to its controls."""
+        return _response(aircraft, self.frequencies)[:, self._rows][:, :, self._columns]
+
+    @functools.cached_property
+    def _closed(self) -> tuple[Complex, Complex]:
+        """The sensitivity at the controls, with every loop closed, and that at each measurement."""
         plant, law = self._plant * np.exp(-1j * self.frequencies * self._delay)[:, None, None], self._law
-        self._sensitivity = np.linalg.inv(np.eye(len(self.controls)) + law @ plant)
+        sensitivity = np.linalg.inv(np.eye(len(self.controls)) + law @ plant)
         # At the measurements S = 1 - P (1 + K P)^-1 K; only its diagonal is needed.
-        self._at_measurements = 1.0 - np.einsum("fik,fki->fi", plant @ self._sensitivity, law)
+        return sensitivity, 1.0 - np.einsum("fik,fki->fi", plant @ sensitivity, law)
 
     def opened(self, name: str) -> Complex:
         """Return the loop opened at a control or measurement, closed elsewhere, for negative feedback."""
         if name in self.controls:
             i = self.controls.index(name)
-            sensitivity = self._sensitivity[:, i, i]
+            sensitivity = self._closed[0][:, i, i]
         else:
-            sensitivity = self._at_measurements[:, self.measurements.index(name)]
+            sensitivity = self._closed[1][:, self.measurements.index(name)]
         return np.asarray(1.0 / sensitivity - 1.0)
 
     @property
@@ -130,7 +142,7 @@ class Loops:
         """Return disk margins for independent changes in all controls, by the structured singular value."""
         n = len(self.controls)
         one, complex_block = np.ones(n, dtype=int), np.full(n, 2)
-        balanced = self._sensitivity - 0.5 * np.eye(n)
+        balanced = self._closed[0] - 0.5 * np.eye(n)
         # The largest singular value bounds the structured one from above: below the largest found, none need be computed.
         bounds = np.linalg.norm(balanced, 2, axis=(1, 2))
         mu, peak = 0.0, 0
@@ -158,8 +170,12 @@ def _series(first: Matrices, then: Matrices) -> Matrices:
     """Return A, B, C, D of one system behind another."""
     a1, b1, c1, d1 = first
     a2, b2, c2, d2 = then
-    a = np.block([[a1, np.zeros((len(a1), len(a2)))], [b2 @ c1, a2]])
-    return a, np.vstack([b1, b2 @ d1]), np.hstack([d2 @ c1, c2]), d2 @ d1
+    n, size = len(a1), len(a1) + len(a2)
+    a, b, c = np.zeros((size, size)), np.empty((size, b1.shape[1])), np.empty((len(c2), size))
+    a[:n, :n], a[n:, :n], a[n:, n:] = a1, b2 @ c1, a2
+    b[:n], b[n:] = b1, b2 @ d1
+    c[:, :n], c[:, n:] = d2 @ c1, c2
+    return a, b, c, d2 @ d1
 
 
 def _disk(alpha: float) -> tuple[float, float]:
@@ -189,40 +205,83 @@ def loop_margins(names: Sequence[str], loops: Complex, frequencies: Array) -> li
     loops : negative feedback, shape (loops, frequencies)
     frequencies : [rad/s]
     """
-    logs = np.log(np.abs(loops))
-    phases = np.unwrap(np.angle(loops), axis=1)
+    logs, phases = np.log(np.abs(loops)), _unwrapped(np.angle(loops))
     disks = np.min(2.0 * np.abs(1.0 + loops) / np.abs(1.0 - loops), axis=1)
-    return [_loop_margin(*of_loop, frequencies) for of_loop in zip(names, logs, phases, disks.tolist(), strict=True)]
+    gains = _gains_at_half_turns(logs, phases)
+    crossovers = _crossovers(logs, phases, frequencies)
+    return [_loop_margin(*of_loop) for of_loop in zip(names, gains, crossovers, disks.tolist(), strict=True)]
 
 
-def _loop_margin(name: str, logs: Array, phase: Array, disk: float, frequencies: Array) -> Margin:
-    """Return the margins of a loop from its logarithmic gain, its unwrapped phase [rad] and the size of its disk."""
-    gains = [float(np.interp(0.0, *_ordered(phase[i : i + 2] - turn, logs[i : i + 2]))) for i, turn in _crossings(phase)]
-    at_unity = np.nonzero(np.sign(logs[:-1]) != np.sign(logs[1:]))[0]
-    shares = [logs[i] / (logs[i] - logs[i + 1]) for i in at_unity]
-    phases = [phase[i] + share * (phase[i + 1] - phase[i]) for i, share in zip(at_unity, shares, strict=True)]
-    crossovers = [
-        frequencies[i] * (frequencies[i + 1] / frequencies[i]) ** share for i, share in zip(at_unity, shares, strict=True)
-    ]
-    away = [abs(math.remainder(p - math.pi, 2.0 * math.pi)) for p in phases]
+def _loop_margin(name: str, gains: list[float], crossovers: list[tuple[float, float]], disk: float) -> Margin:
+    """Return the margins of a loop.
+
+    Parameters
+    ----------
+    name : of the loop
+    gains : logarithmic, where its phase is half a turn
+    crossovers : frequency [rad/s] and phase [rad] where its gain is 1
+    disk : its size
+    """
     disk_gain_db, disk_phase_deg = _disk(disk)
     return Margin(
         loop=name,
-        gain_db=min((abs(20.0 * g / math.log(10.0)) for g in gains), default=math.inf),
-        phase_deg=math.degrees(min(away, default=math.inf)),
-        crossover=max(crossovers, default=math.nan),
+        gain_db=min((abs(20.0 * gain / math.log(10.0)) for gain in gains), default=math.inf),
+        phase_deg=math.degrees(min((abs(math.remainder(p - math.pi, 2.0 * math.pi)) for _, p in crossovers), default=math.inf)),
+        crossover=max((frequency for frequency, _ in crossovers), default=math.nan),
         disk_gain_db=disk_gain_db,
         disk_phase_deg=disk_phase_deg,
     )
 
 
-def _crossings(phase: Array) -> list[tuple[int, float]]:
-    """Return where an unwrapped phase passes an odd multiple of pi, and that multiple."""
-    turns = np.floor((phase - math.pi) / (2.0 * math.pi))
-    crossed = np.nonzero(turns[:-1] != turns[1:])[0]
-    return [(int(i), math.pi + 2.0 * math.pi * float(max(turns[i], turns[i + 1]))) for i in crossed]
+def _gains_at_half_turns(logs: Array, phases: Array) -> list[list[float]]:
+    """Return the logarithmic gains of each loop where its unwrapped phase passes an odd multiple of pi."""
+    turns = np.floor((phases - math.pi) / (2.0 * math.pi))
+    before, after = turns[:, :-1], turns[:, 1:]
+    at = np.nonzero(before != after)
+    passed = math.pi + 2.0 * math.pi * np.maximum(before[at], after[at])
+    ends = (phases[:, :-1][at] - passed, logs[:, :-1][at], phases[:, 1:][at] - passed, logs[:, 1:][at])
+    gains: list[list[float]] = [[] for _ in logs]
+    for loop, *of_crossing in zip(at[0].tolist(), *(end.tolist() for end in ends), strict=True):
+        gains[loop].append(_at_zero(*of_crossing))
+    return gains
 
 
-def _ordered(x: Array, y: Array) -> tuple[Array, Array]:
-    order = np.argsort(x)
-    return x[order], y[order]
+def _at_zero(x0: float, y0: float, x1: float, y1: float) -> float:
+    """Return y at x = 0 on the line between two points on either side of it."""
+    if x1 < x0:
+        x0, y0, x1, y1 = x1, y1, x0, y0
+    if x0 >= 0.0:
+        return y0
+    if x1 <= 0.0:
+        return y1
+    return (y1 - y0) / (x1 - x0) * -x0 + y0
+
+
+def _crossovers(logs: Array, phases: Array, frequencies: Array) -> list[list[tuple[float, float]]]:
+    """Return frequency [rad/s] and phase [rad] of each loop where its gain is 1."""
+    signs = np.sign(logs)
+    loops, i = np.nonzero(signs[:, :-1] != signs[:, 1:])
+    shares = logs[loops, i] / (logs[loops, i] - logs[loops, i + 1])
+    at = phases[loops, i] + shares * (phases[loops, i + 1] - phases[loops, i])
+    # Powers of arrays can differ from those of numbers in the last bit.
+    ratios = (frequencies[i + 1] / frequencies[i]).tolist()
+    found: list[list[tuple[float, float]]] = [[] for _ in logs]
+    for loop, frequency, ratio, share, phase in zip(
+        loops.tolist(), frequencies[i].tolist(), ratios, shares.tolist(), at.tolist(), strict=True
+    ):
+        found[loop].append((frequency * ratio**share, phase))
+    return found
+
+
+def _unwrapped(angles: Array) -> Array:
+    """Return ``numpy.unwrap`` of each row, which takes its remainder of every step; here only of those that jump."""
+    steps = np.diff(angles, axis=1)
+    jumps = np.nonzero(~(np.abs(steps) < math.pi))
+    jump = steps[jumps]
+    short = np.mod(jump + math.pi, 2.0 * math.pi) - math.pi
+    short[(short == -math.pi) & (jump > 0.0)] = math.pi
+    corrections = np.zeros_like(steps)
+    corrections[jumps] = short - jump
+    unwrapped = angles.copy()
+    unwrapped[:, 1:] += np.cumsum(corrections, axis=1)
+    return unwrapped

@@ -1,13 +1,13 @@
 """Margins at every operating point of a design, between them, and with a perturbed aircraft."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.linear_model import LinearModel
 from innerloop.analysis.checks import NOMINAL, Check, Margin
 from innerloop.analysis.margins import Loops
-from innerloop.analysis.perturbations import CASES, Change
+from innerloop.analysis.perturbations import CASES
 from innerloop.law.control_law import ControlLaw
 from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.rate import loop_delay
@@ -83,8 +83,28 @@ def _between(first: LinearModel, second: LinearModel) -> list[LinearModel]:
     return [replace(first, **mean)]
 
 
-ClosedLoops = Sequence[tuple[OperatingPoint, Loops]]
-"""Operating points, and the loops that are closed there."""
+class ClosedPoint:
+    """An operating point and the loops that are closed there: as modelled, and with every changed aircraft that was asked for.
+
+    What an aircraft is changed to and how it responds are independent of the autopilot's period: each is computed once.
+    """
+
+    def __init__(self, point: OperatingPoint, as_modelled: Loops) -> None:
+        self.point = point
+        self._of = {NOMINAL: as_modelled}
+
+    def loops(self, case: str, period: int) -> Loops:
+        """Return the loops of one of ``CASES`` with the delay of a period, as in ``Schedule``."""
+        change, late = CASES[case]
+        if case not in self._of:
+            as_modelled = self._of[NOMINAL]
+            changed = change(self.point.model, self.point.trim)
+            self._of[case] = as_modelled if changed is self.point.model else as_modelled.with_aircraft(changed)
+        return self._of[case].with_delay(loop_delay(period, late))
+
+
+ClosedLoops = Sequence[ClosedPoint]
+"""The operating points of a schedule."""
 
 
 def closed_loops(schedule: Schedule) -> ClosedLoops:
@@ -93,7 +113,7 @@ def closed_loops(schedule: Schedule) -> ClosedLoops:
     But for their delay they are those of every ``period`` of the schedule.
     """
     law = ControlLaw(schedule)
-    return [(p, Loops(p.model, linear_controller(law, p.trim), schedule.delay)) for p in operating_points(schedule)]
+    return [ClosedPoint(p, Loops(p.model, linear_controller(law, p.trim), schedule.delay)) for p in operating_points(schedule)]
 
 
 def check_design(period: int, closed: ClosedLoops, *, changed: bool = True) -> list[Check]:
@@ -105,21 +125,20 @@ def check_design(period: int, closed: ClosedLoops, *, changed: bool = True) -> l
     closed : the loops of the schedule, as ``closed_loops`` returns them
     changed : whether the aircraft is perturbed, too
     """
-    cases = CASES if changed else {NOMINAL: CASES[NOMINAL]}
-    return [check for point, loops in closed for check in _checks(point, loops, period, cases)]
+    cases = tuple(CASES) if changed else (NOMINAL,)
+    return [_check(at, case, period) for at in closed for case in cases]
 
 
-def _checks(point: OperatingPoint, as_modelled: Loops, period: int, cases: "dict[str, tuple[Change, int]]") -> Iterator[Check]:
-    for case, (change, late) in cases.items():
-        loops = as_modelled.with_aircraft(change(point.model, point.trim), loop_delay(period, late))
-        yield Check(
-            case=case,
-            airspeed=point.trim.airspeed,
-            bank=point.bank,
-            between=point.between,
-            stable=loops.stable,
-            margins=tuple(loops.margins()),
-        )
+def _check(at: ClosedPoint, case: str, period: int) -> Check:
+    loops, point = at.loops(case, period), at.point
+    return Check(
+        case=case,
+        airspeed=point.trim.airspeed,
+        bank=point.bank,
+        between=point.between,
+        stable=loops.stable,
+        margins=tuple(loops.margins()),
+    )
 
 
 def with_all_controls(period: int, closed: ClosedLoops, checks: Sequence[Check]) -> list[Check]:
@@ -132,11 +151,10 @@ def with_all_controls(period: int, closed: ClosedLoops, checks: Sequence[Check])
     period, closed : as for ``check_design``
     checks : as it returned them
     """
-    of_grid = iter([(point, loops) for point, loops in closed if not point.between])
+    of_grid = iter([at for at in closed if not at.point.between])
 
     def at_all_controls() -> Margin:
-        point, loops = next(of_grid)
-        return loops.with_aircraft(point.model, loop_delay(period)).margin_at_all_controls()
+        return next(of_grid).loops(NOMINAL, period).margin_at_all_controls()
 
     return [
         replace(check, margins=(*check.margins, at_all_controls())) if check.case == NOMINAL and not check.between else check

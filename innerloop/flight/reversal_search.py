@@ -215,12 +215,12 @@ class _Flight:
         """Return the path from here [m], shape (steps, 2), under a command that is held for ``duration`` [s]."""
         self._aircraft.command_heading_rate(heading_rate)
         steps = max(1, round(duration / TIME_STEP))
-        flown = np.empty((steps + 1, 3))
-        flown[0] = self._north(), self._east(), self._rate()
-        run = self._aircraft.run
-        for i in range(1, steps + 1):
+        run, north, east, rate = self._aircraft.run, self._north, self._east, self._rate
+        values = [north(), east(), rate()]
+        for _ in range(steps):
             run()
-            flown[i] = self._north(), self._east(), self._rate()
+            values += north(), east(), rate()
+        flown = np.array(values).reshape(-1, 3)
         self._take_in(heading_rate, flown)
         return np.asarray(np.cumsum(flown[1:, :2], axis=0) * (TIME_STEP * METRES_PER_FOOT))
 
@@ -237,15 +237,18 @@ class _Flight:
         """
         lag, steps = self._response.lag, max(1, round(duration / TIME_STEP))
         decay, side = math.exp(-TIME_STEP / lag), math.copysign(1.0, turn)
-        rates, now = np.empty(steps), self._rate()
+        rates: list[float] = []
+        now = self._rate()
         to_come = math.copysign(max(0.0, abs(self._lack) - self._doubt * abs(now)), self._lack) / lag
-        for i, command in enumerate([*self.commands[-self._late :], *[turn] * (steps - self._late)]):
-            if i == self._late:
-                # What is to come counts where it is against the turn.
-                now += side * min(0.0, side * to_come)
-                change = 0.5 - 0.5 * side * now / rate
+        for command in self.commands[-self._late :]:
             now = command + (now - command) * decay
-            rates[i] = now
+            rates.append(now)
+        # What is to come counts where it is against the turn.
+        now += side * min(0.0, side * to_come)
+        change = 0.5 - 0.5 * side * now / rate
+        for _ in range(steps - self._late):
+            now = turn + (now - turn) * decay
+            rates.append(now)
         courses = math.atan2(self._east(), self._north()) + np.cumsum(rates) * TIME_STEP
         path = np.cumsum(np.column_stack([np.cos(courses), np.sin(courses)]), axis=0) * speed * TIME_STEP
         return np.asarray(path), max(LEAST_CHANGE, self._change / (2.0 * rate), change)

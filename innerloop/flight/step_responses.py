@@ -128,10 +128,10 @@ def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> floa
 
 
 def _record(fdm: Fdm, duration: float) -> tuple[Array, Array]:
-    nodes = [(fdm.node(name), scale) for name, scale in CHANNELS.values()]
+    run, reads = fdm.run, [fdm.node(name).get_double_value for name, _ in CHANNELS.values()]
     count = round(duration / TIME_STEP)
-    values = np.empty((count, len(nodes)))
-    for i in range(count):
-        values[i] = [node.get_double_value() * scale for node, scale in nodes]
-        fdm.run()
-    return TIME_STEP * np.arange(count, dtype=np.float64), values
+    values = []
+    for _ in range(count):
+        values.append([read() for read in reads])
+        run()
+    return TIME_STEP * np.arange(count, dtype=np.float64), np.array(values) * [scale for _, scale in CHANNELS.values()]

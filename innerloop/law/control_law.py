@@ -3,13 +3,13 @@
 Limits and saturations are left out: they are part of the autopilot in JSBSim, not of its linear model.
 """
 
+import bisect
 import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import RegularGridInterpolator
 
 from common.physics.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import LATERAL, LONGITUDINAL, Gains
@@ -45,7 +45,7 @@ class ControlLaw:
         self._gains = _table(schedule.gain_banks, self._airspeeds, stacked)
         self._slopes = bank_slopes(schedule)
         turns = schedule.turns()
-        self._bank_for_turn = _table(turns, self._airspeeds, schedule.bank_for_turn(turns))
+        self._bank_for_turn = _scalar_table(turns, self._airspeeds, schedule.bank_for_turn(turns))
 
     def trim_tables(self, bank: float, airspeed: float) -> dict[str, float]:
         """Return the tabled trim quantities at a bank [rad] and commanded airspeed [m/s]."""
@@ -60,7 +60,7 @@ class ControlLaw:
     def model_bank(self, heading_rate: float, measured_airspeed: float, airspeed: float) -> float:
         """Return the bank that turns at a heading rate [rad/s] with a measured and a commanded airspeed [m/s]."""
         turn = heading_rate * measured_airspeed / STANDARD_GRAVITY
-        return float(self._bank_for_turn(turn, airspeed))
+        return self._bank_for_turn(turn, airspeed)
 
     def bank_slope(self, bank: float, measured_airspeed: float, airspeed: float) -> float:
         """Return the bank rate per rate of heading rate [s] about a bank: cos^2(bank) V/g, more if it slips."""
@@ -125,16 +125,45 @@ class ControlLaw:
 
 
 def _table(rows: Sequence[float] | Array, columns: Array, values: Array) -> Callable[[float, float], Array]:
-    """Return the look-up of a table. To linearise asks for the same point again and again, and moves it in few directions."""
-    interpolate = RegularGridInterpolator((rows, columns), values, bounds_error=False, fill_value=None)
+    """Return the bilinear look-up of a table of vectors, extended past its edges.
+
+    To linearise asks for the same point again and again, and moves it in few directions.
+    """
+    at_row, at_column = _cells(rows), _cells(columns)
 
     @functools.lru_cache(maxsize=32)
     def value(row: float, column: float) -> Array:
-        found = np.asarray(interpolate([[row, column]])[0])
+        (i, y), (j, x) = at_row(row), at_column(column)
+        found = values[i, j] * ((1.0 - y) * (1.0 - x)) + values[i, j + 1] * ((1.0 - y) * x)
+        found = found + values[i + 1, j] * (y * (1.0 - x)) + values[i + 1, j + 1] * (y * x)
         found.flags.writeable = False
         return found
 
     return value
+
+
+def _scalar_table(rows: Sequence[float] | Array, columns: Array, values: Array) -> Callable[[float, float], float]:
+    """Return the bilinear look-up of a table of numbers, extended past its edges."""
+    at_row, at_column, table = _cells(rows), _cells(columns), values.tolist()
+
+    def value(row: float, column: float) -> float:
+        (i, y), (j, x) = at_row(row), at_column(column)
+        low, high = table[i], table[i + 1]
+        return float(low[j] * (1.0 - y) * (1.0 - x) + low[j + 1] * (1.0 - y) * x + high[j] * y * (1.0 - x) + high[j + 1] * y * x)
+
+    return value
+
+
+def _cells(points: Sequence[float] | Array) -> Callable[[float], tuple[int, float]]:
+    """Return a function from a coordinate to its cell among ascending ``points``: index, and share of the cell below it."""
+    at = [float(point) for point in points]
+    last = len(at) - 2
+
+    def cell(coordinate: float) -> tuple[int, float]:
+        i = min(max(bisect.bisect_right(at, coordinate) - 1, 0), last)
+        return i, (coordinate - at[i]) / (at[i + 1] - at[i])
+
+    return cell
 
 
 def gain_vector(gains: Gains) -> Array:
