@@ -205,7 +205,7 @@ def loop_margins(names: Sequence[str], loops: Complex, frequencies: Array) -> li
     loops : negative feedback, shape (loops, frequencies)
     frequencies : [rad/s]
     """
-    logs, phases = np.log(np.abs(loops)), _unwrapped(np.angle(loops))
+    logs, phases = np.log(np.abs(loops)), np.unwrap(np.angle(loops), axis=1)
     disks = np.min(2.0 * np.abs(1.0 + loops) / np.abs(1.0 - loops), axis=1)
     gains = _gains_at_half_turns(logs, phases)
     crossovers = _crossovers(logs, phases, frequencies)
@@ -271,17 +271,3 @@ def _crossovers(logs: Array, phases: Array, frequencies: Array) -> list[list[tup
     ):
         found[loop].append((frequency * ratio**share, phase))
     return found
-
-
-def _unwrapped(angles: Array) -> Array:
-    """Return ``numpy.unwrap`` of each row, which takes its remainder of every step; here only of those that jump."""
-    steps = np.diff(angles, axis=1)
-    jumps = np.nonzero(~(np.abs(steps) < math.pi))
-    jump = steps[jumps]
-    short = np.mod(jump + math.pi, 2.0 * math.pi) - math.pi
-    short[(short == -math.pi) & (jump > 0.0)] = math.pi
-    corrections = np.zeros_like(steps)
-    corrections[jumps] = short - jump
-    unwrapped = angles.copy()
-    unwrapped[:, 1:] += np.cumsum(corrections, axis=1)
-    return unwrapped
