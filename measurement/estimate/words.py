@@ -35,10 +35,12 @@ def verdict_words(verdict: str, limit_percent: float, probability_above: float, 
     if quality == _WITHOUT:
         return f"no verdict on the limit of {limit}: quality {_WITHOUT} gives none"
     side = "open for" if verdict == OPEN else verdict
-    words = f"{side} the limit of {limit}; the probability that the fuel is above it is {probability(probability_above)}"
-    if verdict != OPEN:
-        return words
-    return f"{words}; {'the result is within the guard band' if probability_above > CONFIDENCE else '95 % or 5 % are needed'}"
+    return f"{side} the limit of {limit}; probability above it: {probability(probability_above)}"
+
+
+def needed(probability_above: float) -> str:
+    """Return what an open verdict needs to be none."""
+    return "the result is within the guard band" if probability_above > CONFIDENCE else "95 % or 5 % are needed"
 
 
 def counted_verdicts(records: Iterable[tuple[str, str]]) -> str:

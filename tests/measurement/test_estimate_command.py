@@ -20,7 +20,7 @@ def test_a_flight_is_estimated_printed_and_written(logged, capsys):
     assert re.search(r"fuel sulphur content 0\.\d{3} % m/m, 95 % interval 0\.\d{3} to 0\.\d{3} %\n", printed)
     assert "standard uncertainty (1 sigma) 0." in printed
     assert "+-" not in printed
-    assert "above the limit of 0.10 %; the probability that the fuel is above it is more than 99.9 %" in printed
+    assert "above the limit of 0.10 %; probability above it: more than 99.9 %" in printed
     assert "below the limit of 0.50 %" in printed
     out = logged.parent / "out"
     manifest, record = (json.loads((out / name).read_text(encoding="utf-8")) for name in ("manifest.json", "estimate.json"))

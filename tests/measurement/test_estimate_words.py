@@ -7,7 +7,7 @@ import pytest
 from logged_flights import run
 
 from measurement.estimate.verdict import judged
-from measurement.estimate.words import verdict_words
+from measurement.estimate.words import needed, verdict_words
 from measurement.gases import limit_words
 
 
@@ -16,7 +16,7 @@ from measurement.gases import limit_words
 )
 def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
     assert limit_words(limit) == words
-    assert f"above the limit of {words}; the probability" in verdict_words("above", limit, 0.99)
+    assert f"above the limit of {words}; probability above it: 99.0 %" in verdict_words("above", limit, 0.99)
 
 
 @pytest.mark.parametrize("level", [420.0, None])
@@ -43,6 +43,6 @@ def test_an_open_verdict_beyond_the_probability_names_the_guard_band():
     verdict = judged(0.01, 0.163, 0.1, admitted=True)
     assert verdict.verdict == "open"
     assert verdict.probability_above > 0.95
-    assert verdict_words("open", 0.01, verdict.probability_above).endswith("is 98.8 %; the result is within the guard band")
-    near = judged(0.1, 0.12, 0.1, admitted=True)
-    assert verdict_words(near.verdict, 0.1, near.probability_above).endswith("95 % or 5 % are needed")
+    assert verdict_words("open", 0.01, verdict.probability_above).endswith(": 98.8 %")
+    assert needed(verdict.probability_above) == "the result is within the guard band"
+    assert needed(judged(0.1, 0.12, 0.1, admitted=True).probability_above) == "95 % or 5 % are needed"

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 
 from measurement.estimate.flight_log.analysis import Analysis
 from measurement.estimate.result import FscEstimate
-from measurement.estimate.words import verdict_words
+from measurement.estimate.verdict import OPEN
+from measurement.estimate.words import needed, verdict_words
 from measurement.gases import FUEL_SULPHUR_MOST
 
 ERRORS = {
@@ -33,7 +34,9 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
             yield f"  {ERRORS.get(key, key)} {size:.4f}"
     yield f"quality {found.quality}" + (f": {'; '.join(found.quality_reasons)}" if found.quality_reasons else "")
     for verdict in found.verdicts:
-        yield verdict_words(verdict.verdict, verdict.limit_percent, verdict.probability_above, found.quality)
+        chance = verdict.probability_above
+        words = verdict_words(verdict.verdict, verdict.limit_percent, chance, found.quality)
+        yield f"{words}; {needed(chance)}" if verdict.verdict == OPEN and found.quality != "C" else words
 
 
 def result(found: FscEstimate) -> str:

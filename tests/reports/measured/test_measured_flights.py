@@ -45,7 +45,7 @@ def test_one_flight_is_told_with_result_probability_and_limit(one):
     assert {"sulphur-track", "fsc-over-time", "budget", "channels", "regression"} <= set(named_charts(one))
     assert_axes_read_quantity_and_unit(named_charts(one).values())
     told = next(block.text for block in section.blocks if isinstance(block, Text))
-    assert re.match(r"The fuel holds 0\.\d{3} ± 0\.\d{3} % sulphur \(95 % interval\): .* limit of 0\.10 %; the", told)
+    assert re.match(r"The fuel holds 0\.\d{3} ± 0\.\d{3} % sulphur \(95 % interval\): .* limit of 0\.10 %; prob", told)
     assert "The fuel's own content is 0.100 %, of which a perfect instrument reads 0.097 %." in told
     name, value, *_ = one.verdict.figures[0]
     assert name.startswith("Sulphur in the fuel")
@@ -75,8 +75,7 @@ def test_several_flights_are_judged_as_a_method(several):
 def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_area(one, several):
     plain = one.verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
     assert re.match(
-        r"Fuel sulphur 0\.\d{3} ± 0\.\d{3} % \(95 % interval\): .* limit of 0\.10 %; the probability that the fuel is above it is"
-        r" [\d.]+ %(; .* needed)?\. No keep-out",
+        r"Fuel sulphur 0\.\d{3} ± 0\.\d{3} % \(95 % interval\): .* limit of 0\.10 %; probability above it: [\d.]+ %\. No keep-out",
         plain,
     )
     assert re.match(
@@ -118,7 +117,7 @@ def test_a_sniffer_without_a_result_is_said_on_page_1():
 def test_a_probability_is_never_told_as_certain():
     told = flights._told(pd.Series(ROW))
     assert told.startswith("The fuel holds 0.500 ± 0.039 % sulphur (95 % interval): above the limit of 0.10 %; ")
-    assert "the probability that the fuel is above it is more than 99.9 %. Quality A." in told
+    assert "probability above it: more than 99.9 %. Quality A." in told
     card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([ROW])))[1]
     assert card[:2] == ("Verdict on 0.10 %, and probability of more", "above, more than 99.9 %")
 

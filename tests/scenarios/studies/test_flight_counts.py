@@ -93,8 +93,8 @@ def test_a_handful_of_flights_bounds_no_probability():
 @pytest.mark.parametrize(
     ("quality", "verdict", "words"),
     [
-        ("A", "above", "above the limit of 0.10 %; the probability that the fuel is above it is 99.0 %"),
-        ("B", "open", "open for the limit of 0.10 %; the probability that the fuel is above it is 94.0 %; 95 % or 5 % are needed"),
+        ("A", "above", "above the limit of 0.10 %; probability above it: 99.0 %"),
+        ("B", "open", "open for the limit of 0.10 %; probability above it: 94.0 %"),
         ("C", "open", "no verdict on the limit of 0.10 %: quality C gives none"),
     ],
 )
