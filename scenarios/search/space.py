@@ -87,5 +87,5 @@ class Space:
 
     def alike(self, one: Array, other: Array) -> bool:
         """Return whether two points are so close that they show the same; a realisation of noise does not count."""
-        squares = [of.difference(a, b) ** 2 for of, a, b in zip(self.coordinates, one, other, strict=True)]
-        return bool(np.mean(squares) < ALIKE**2)
+        pairs = zip(self.coordinates, one.tolist(), other.tolist(), strict=True)
+        return sum(of.difference(a, b) ** 2 for of, a, b in pairs) < ALIKE**2 * self.dimension

@@ -76,11 +76,14 @@ def check_without_design(scenario: Scenario) -> None:
 
     Raises
     ------
-    InputError : a part that does not exist, a fault that it cannot have, turbulence at an altitude for which it is not known
+    InputError : a part that does not exist, a fault that it cannot have, turbulence at an altitude for which it is not known, files
+        of a track or of wind that are of no use
     """
     _check_parts(scenario)
     _check_fault(scenario)
     _check_turbulence(scenario)
+    if _vessel_known(scenario) and (scenario.vessel.from_file or scenario.wind.table is not None):
+        mean_wind(scenario, vessel_of(scenario))
 
 
 @contextmanager
@@ -129,18 +132,18 @@ def _check_fault(scenario: Scenario) -> None:
 
 
 def _check_vessel(scenario: Scenario) -> None:
-    """Refuse manoeuvres that overlap in every flight, and files of a track or of wind that are of no use.
-
-    Where they are sampled, a flight with such a vessel is not flown.
-    """
-    if any(draw.key.startswith(("vessel.", "wind.table")) for draw in scenario.draws):
+    """Refuse manoeuvres that overlap in every flight."""
+    if not _vessel_known(scenario):
         return
-    if scenario.vessel.from_file or scenario.wind.table is not None:
-        mean_wind(scenario, vessel_of(scenario))
     try:
         check_manoeuvres(scenario.vessel, scenario.vessel_speed)
     except InfeasibleError as error:
         raise InputError(str(error)) from None
+
+
+def _vessel_known(scenario: Scenario) -> bool:
+    """Return whether no flight has a vessel or a file of wind of its own; with one that is of no use, it is not flown."""
+    return not any(draw.key.startswith(("vessel.", "wind.table")) for draw in scenario.draws)
 
 
 def _check_parts(scenario: Scenario) -> None:

@@ -74,13 +74,13 @@ class Sniffer:
 '''
 
 AIRCRAFT = '''
-"""An X8 that cruises at 18 m/s."""
+"""An X8 that cruises at 19.1 m/s."""
 
 from dataclasses import replace
 
 from aircraft.fleet.x8 import X8
 
-SLOW_X8 = replace(X8, name="slow_x8", title="Slow X8", envelope=replace(X8.envelope, airspeed=18.0))
+SLOW_X8 = replace(X8, name="slow_x8", title="Slow X8", envelope=replace(X8.envelope, airspeed=19.1))
 '''
 
 FILES = {"law.py": LAW, "plume.py": PLUME, "track.py": TRACK, "instrument.py": INSTRUMENT, "aeroplane.py": AIRCRAFT}
@@ -98,7 +98,9 @@ SHORT = """
 title = "parts of others"
 fidelity = "kinematic"
 sweep.nu = [0.3, 0.5]
-flight.crossings = 4
+guidance.rate_hz = 5.0
+flight.log_rate_hz = 5.0
+flight.crossings = 2
 criteria.crossing_interval_error = 0.2
 start.spread_deg = 10.0
 """

@@ -16,7 +16,8 @@ from tests.run_tables import rows_of
 from tests.scenarios.plugin_files import LAW
 
 QUICK = (
-    "fidelity=kinematic", "flights=2", "flight.duration_max_s=80", "arena.window_s=30", "arena.tuning_duration_s=40",
+    "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5",
+    "flights=2", "flight.duration_max_s=80", "arena.window_s=30", "arena.tuning_duration_s=40",
     "arena.evaluations=4", "arena.tuning_flights=1", "arena.resamples=100", "start.distance_m=[300,350]", "start.spread_deg=20",
     'arena.tracking=["npfg","park_l1_point"]', 'arena.standoff=["npfg","lgvf"]', "arena.limits=[[0.0,5.0],[1.0,9.0]]",
     'arena.conditions=[{name="calm",title="Calm"},{name="wind",title="Wind",set={"wind.speed_mps"=4.0}}]',
@@ -37,7 +38,7 @@ def law(tmp_path_factory):
 @pytest.fixture(scope="module")
 def run(tmp_path_factory, law):
     out = tmp_path_factory.mktemp("arena") / "run"
-    run_study(arena(f'laws=["{law}"]'), "arena", out)
+    run_study(arena(f'laws=["{law}"]'), "arena", out, executor_factory=InProcessExecutor)
     return out
 
 
@@ -116,7 +117,9 @@ def test_the_exhaust_and_the_sniffer_are_those_of_the_flights_that_measure():
 
 def test_without_a_sniffer_laws_are_compared_by_crossings_alone(tmp_path):
     keys = ('arena.conditions=[{name="calm",title="Calm"}]', "flights=1", 'arena.tracking=["npfg"]', "payload=[]")
-    run_study(arena(*keys, "arena.standoff=[]", "arena.evaluations=0"), "arena", tmp_path / "run")
+    run_study(
+        arena(*keys, "arena.standoff=[]", "arena.evaluations=0"), "arena", tmp_path / "run", executor_factory=InProcessExecutor
+    )
     estimates = json.loads((tmp_path / "run" / "arena.json").read_text(encoding="utf-8"))["estimates"]
     means = {estimate["figure"]: estimate["mean"] for estimate in estimates}
     assert means["crossings_per_minute"] > 0.0
@@ -131,7 +134,7 @@ def test_a_law_without_an_adapter_for_a_task_is_named_with_its_reason(record):
 
 def test_a_resumed_arena_has_nothing_to_do_and_a_flight_replays_as_it_was(run, tmp_path, law):
     before = (run / "arena.json").read_bytes()
-    result = run_study(arena(f'laws=["{law}"]'), "arena", run, resume=True)
+    result = run_study(arena(f'laws=["{law}"]'), "arena", run, executor_factory=InProcessExecutor, resume=True)
     assert not result.changed
     assert (run / "arena.json").read_bytes() == before
     flight = "wind_npfg_kinematic_00001"
@@ -144,7 +147,7 @@ def test_a_resumed_arena_has_nothing_to_do_and_a_flight_replays_as_it_was(run, t
 
 def test_without_evaluations_laws_fly_their_defaults(tmp_path):
     keys = ("arena.evaluations=0", 'arena.conditions=[{name="calm",title="Calm"}]', "flights=1", 'arena.tracking=["npfg"]')
-    run_study(arena(*keys, "arena.standoff=[]"), "arena", tmp_path / "run")
+    run_study(arena(*keys, "arena.standoff=[]"), "arena", tmp_path / "run", executor_factory=InProcessExecutor)
     (entrant,) = json.loads((tmp_path / "run" / "arena.json").read_text(encoding="utf-8"))["entrants"]
     assert (entrant["tuned"], entrant["evaluations"]) == (entrant["defaults"], 0)
 

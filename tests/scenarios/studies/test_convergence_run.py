@@ -9,12 +9,13 @@ import pytest
 from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.build import build_reports
 from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.schema.sections.convergence import ConvergenceScenario
 from scenarios.studies.registry import run_study
 
-FEW = ["ensemble.trajectories=30", "ensemble.distance_max_m=300", "ensemble.samples=2"]
+FEW = ["ensemble.trajectories=12", "ensemble.distance_max_m=100", "ensemble.samples=2"]
 
 
 def study(*overrides):
@@ -23,8 +24,8 @@ def study(*overrides):
     return loaded
 
 
-def run(scenario, path, *, resume=False, progress=lambda *_: None, jobs=1):
-    return run_study(scenario, "convergence", path, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
+def run(scenario, path, *, resume=False, progress=lambda *_: None, factory=InProcessExecutor):
+    return run_study(scenario, "convergence", path, executor_factory=factory, resume=resume, progress=progress)
 
 
 @pytest.fixture(scope="module")
@@ -37,8 +38,8 @@ def directory(tmp_path_factory):
 
 def test_every_trajectory_is_a_row_and_those_that_did_not_converge_are_in_a_file(directory):
     summary = pd.read_csv(directory / "summary.csv")
-    # 30 initial states with each of the two laws.
-    assert len(summary) == 60
+    # 12 initial states with each of the two laws.
+    assert len(summary) == 24
     assert set(summary["law"]) == {"lyapunov", "cascade"}
     assert (summary["outcome"] == "converged").all()
     assert (summary["distance_final_m"] <= DISTANCE_CONVERGED).all()
@@ -58,7 +59,7 @@ def test_both_laws_start_from_the_same_states(directory):
 @pytest.mark.usefixtures("sketched")
 def test_its_reports_are_built_and_say_what_happened(directory):
     html, pdf = build_reports(directory)
-    assert "All 60 trajectories converged" in html.read_text(encoding="utf-8")
+    assert "All 24 trajectories converged" in html.read_text(encoding="utf-8")
     assert pdf.read_bytes().startswith(b"%PDF")
 
 
@@ -73,11 +74,11 @@ def test_those_that_do_not_converge_are_kept_with_their_time_histories(tmp_path)
         result = run(scenario, tmp_path / "run")
     failed = pd.read_csv(tmp_path / "run" / "counterexamples.csv")
     assert not result.all_met
-    assert len(failed) == 30
+    assert len(failed) == 12
     assert failed["message"].str.contains("m from the reference after 1 s").all()
-    assert len(list((tmp_path / "run" / "trajectories").glob("cascade_*.parquet"))) == 30
+    assert len(list((tmp_path / "run" / "trajectories").glob("cascade_*.parquet"))) == 12
     manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
-    assert manifest["outcomes"]["time_up"] == 30
+    assert manifest["outcomes"]["time_up"] == 12
 
 
 def test_an_interrupted_study_resumes_to_the_same_rows(directory, tmp_path):
@@ -85,23 +86,23 @@ def test_an_interrupted_study_resumes_to_the_same_rows(directory, tmp_path):
 
     def interrupt(doing, done, total):
         told.append((doing, done, total))
-        if done >= 10:
+        if done >= 8:
             raise KeyboardInterrupt
 
     path = tmp_path / "run"
     first = run(study(), path, progress=interrupt)
     assert first.interrupted
-    assert 0 < first.summary.done < 60
+    assert 0 < first.summary.done < 24
     assert json.loads((path / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
     again = run(study(), path, resume=True)
-    assert again.summary.done == again.planned == 60
+    assert again.summary.done == again.planned == 24
     pd.testing.assert_frame_equal(pd.read_csv(path / "summary.csv"), pd.read_csv(directory / "summary.csv"), check_exact=True)
     with pytest.raises(InputError, match="another configuration"):
         run(study("seed=3"), path, resume=True)
 
 
 def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
-    few = study("ensemble.trajectories=12", "ensemble.distance_max_m=60")
+    few = study("ensemble.distance_max_m=60")
     told = []
 
     def tell(doing, done, total):
@@ -111,7 +112,7 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
         if done == 12:
             raise KeyboardInterrupt
 
-    run(few, tmp_path / "whole", progress=tell, jobs=2)
+    run(few, tmp_path / "whole", progress=tell, factory=ExecutorFactory(jobs=2))
     # Two laws, three kinds of reference: six blocks of four trajectories.
     assert [done for doing, done, _ in told if doing == "flying"] == [0, 4, 8, 12, 16, 20, 24]
     assert run(few, tmp_path / "broken", progress=interrupt).summary.done == 12
@@ -126,16 +127,16 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
 
 @pytest.mark.usefixtures("sketched")
 def test_a_study_of_cut_commands_alone_is_no_verdict_on_the_theory(tmp_path):
-    # Every circle but those at the very limit converges; none of these 30 references, from near by, is one of them.
+    # Every circle but those at the very limit converges; none of these 12 references, from near by, is one of them.
     run(study('guidance.laws=["cascade_cut"]'), tmp_path / "run")
     html, _ = build_reports(tmp_path / "run")
-    assert "30 of 30 trajectories converged, under laws that no theory covers" in html.read_text(encoding="utf-8")
+    assert "12 of 12 trajectories converged, under laws that no theory covers" in html.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_a_study_that_is_done_can_be_resumed_all_the_same(jobs, directory, tmp_path):
     copy = shutil.copytree(directory, tmp_path / "copy")
-    assert run(study(), copy, resume=True, jobs=jobs).all_met
+    assert run(study(), copy, resume=True, factory=ExecutorFactory(jobs=jobs)).all_met
 
 
 def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_resumed(tmp_path, monkeypatch):

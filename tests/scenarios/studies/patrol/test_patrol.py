@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
@@ -21,6 +22,8 @@ from tests.run_tables import rows_of
 
 QUICK = (
     "fidelity=kinematic",
+    "guidance.rate_hz=5",
+    "flight.log_rate_hz=5",
     "flights=1",
     "patrol.ships=2",
     "patrol.area_m=8000",
@@ -36,7 +39,7 @@ def patrol(*overrides):
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     out = tmp_path_factory.mktemp("patrol") / "run"
-    return run_study(patrol(), "patrol", out), out
+    return run_study(patrol(), "patrol", out, executor_factory=InProcessExecutor), out
 
 
 def test_both_ships_are_served_with_the_right_verdict_and_the_run_is_met(run):
@@ -80,11 +83,14 @@ def test_a_flight_begins_where_the_way_to_the_ship_ends(run):
         assert math.hypot(leg["to_north_m"] - north, leg["to_east_m"] - east) == pytest.approx(800.0, abs=1e-6)
 
 
-def test_the_same_patrol_is_flown_again_to_the_last_bit(run, tmp_path):
-    _, out = run
-    run_study(patrol(), "patrol", tmp_path / "again")
+def test_the_same_patrol_is_flown_again_to_the_last_bit_in_this_process_or_another(tmp_path):
+    # Beside each ship until its patience is over, long before there is a verdict.
+    short = patrol("patrol.patience_s=30")
+    run_study(short, "patrol", tmp_path / "one")
+    run_study(short, "patrol", tmp_path / "again", executor_factory=InProcessExecutor)
+    assert [ship["ended_s"] > 0.0 for ship in rows_of(tmp_path / "one", "ships.csv")] == [True, True]
     for name in ("ships.csv", "phases.csv"):
-        assert (tmp_path / "again" / name).read_bytes() == (out / name).read_bytes()
+        assert (tmp_path / "again" / name).read_bytes() == (tmp_path / "one" / name).read_bytes()
 
 
 def test_a_complete_run_that_is_resumed_flies_nothing(run):
