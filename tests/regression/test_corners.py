@@ -19,14 +19,14 @@ ORDINARY_REPORTS = [
     "start.aspect_deg=-13.3",
 ]  # fmt: skip
 GUSTS = [
-    "sea_wind", "flights=3", "turbulence.gusts=12", "turbulence.gust_speed_mps=8", "flight.duration_max_s=250",
+    "sea_wind", "flights=2", "turbulence.gusts=12", "turbulence.gust_speed_mps=8", "flight.duration_max_s=250",
     "flight.crossings=0",
 ]  # fmt: skip
-WITHOUT_SATELLITES = ["sea_wind", "flights=3", "fault.kind=satellite_navigation", "flight.duration_max_s=280", "flight.crossings=0"]
+WITHOUT_SATELLITES = ["sea_wind", "flights=2", "fault.kind=satellite_navigation", "flight.duration_max_s=280", "flight.crossings=0"]
 STEEP = ["sweep_nu", "sweep.nu=[0.1,0.6]", "start.spread_deg=180", "guidance.bank_deg=49.9", "flight.crossings=4"]
 
 FAST = [
-    "sea_wind", "guidance.law=constant_bearing", "flights=4", "speed_ratio=[0.3,0.7]", "flight.duration_max_s=130",
+    "sea_wind", "guidance.law=constant_bearing", "flights=3", "speed_ratio=[0.3,0.7]", "flight.duration_max_s=130",
     "flight.crossings=0",
 ]  # fmt: skip
 """A law that does not track: the aircraft falls behind, and is commanded an airspeed at which it cannot turn at omega_max."""

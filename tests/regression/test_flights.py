@@ -27,7 +27,7 @@ def fly(tmp_path):
     return run
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 0.85, 0.95])
+@pytest.mark.parametrize("nu", [0.0, 0.1, 0.3, 0.5, 0.7, 0.95])
 def test_crossings_stay_outside_r_min_and_nothing_ever_enters_it(fly, nu):
     row, _ = fly(nu=nu)
     assert row["outcome"] == "completed"
@@ -54,18 +54,12 @@ def assert_the_papers_two_numbers(row):
     assert row["crossing_distance_mean_m"] == pytest.approx(214.0, rel=0.02)
 
 
-def test_the_papers_own_parameters_give_its_two_numbers(fly):
-    row, _ = fly(scenario="sim3")
-    assert_the_papers_two_numbers(row)
-    assert row["keepout_violations"] == 0
-
-
 def test_the_law_alone_flies_into_the_keep_out_area_where_the_guard_does_not(fly):
     # The sweep's own start at nu = 0.15, tracked from the first step on as the paper does: 10 m inside without the guard.
-    without, _ = fly("guidance.approach=false", "guidance.keepout_guard=false", nu=0.15)
+    without, _ = fly("guidance.approach=false", "guidance.keepout_guard=false", "flight.crossings=3", nu=0.15)
     assert without["keepout_violations"] > 0
     assert "guard_interventions" not in without
-    guarded, history = fly("guidance.approach=false", nu=0.15)
+    guarded, history = fly("guidance.approach=false", "flight.crossings=3", nu=0.15)
     assert guarded["keepout_violations"] == 0
     assert guarded["guard_interventions"] > 0
     # Recorded at half the rate of the guidance.
@@ -77,29 +71,30 @@ def test_the_law_alone_flies_into_the_keep_out_area_where_the_guard_does_not(fly
 
 @pytest.mark.parametrize("nu", [0.0, 0.95])
 def test_a_flight_that_needs_no_guard_flies_the_same_without_one_to_the_last_bit(fly, nu):
-    row, guarded = fly("flight.crossings=5", nu=nu)
+    row, guarded = fly("flight.crossings=2", nu=nu)
     assert row["guard_interventions"] == 0
-    _, alone = fly("flight.crossings=5", "guidance.keepout_guard=false", nu=nu)
+    _, alone = fly("flight.crossings=2", "guidance.keepout_guard=false", nu=nu)
     pd.testing.assert_frame_equal(guarded, alone, check_exact=True)
 
 
-@pytest.mark.parametrize("approach", ["true", "false"])
-@pytest.mark.parametrize(("seed", "nu"), [(1, 0.0), (10, 0.9), (7, 0.75)])
-def test_from_anywhere_about_the_ship_nothing_enters(fly, seed, nu, approach):
+@pytest.mark.parametrize(
+    ("seed", "nu", "approach", "duration"),
+    [(1, 0.0, "true", 60), (1, 0.0, "false", 250), (10, 0.9, "false", 250), (7, 0.75, "false", 250)],
+)
+def test_from_anywhere_about_the_ship_nothing_enters(fly, seed, nu, approach, duration):
     # Starts from which the law alone, or a guard that takes the lag of slow commands for that of a reversal, got 3 to 7 m in.
-    words = ["start.spread_deg=180", f"seed={seed}", "flight.duration_max_s=250", f"guidance.approach={approach}"]
+    words = ["start.spread_deg=180", f"seed={seed}", f"flight.duration_max_s={duration}", f"guidance.approach={approach}"]
     row, _ = fly(*words, nu=nu)
     assert row["keepout_violations"] == 0
-    if approach == "false":
-        # The way round the vessel needs the guard seldom; the paper's tracking does from each of these starts.
-        assert row["guard_interventions"] > 0
+    # The way round the vessel needs the guard seldom, and here only from the first; the paper's tracking does from each of them.
+    assert row["guard_interventions"] > 0
 
 
-@pytest.mark.parametrize("course", [-150, -60, 30, 120])
+@pytest.mark.parametrize("course", [-150, 30])
 def test_starting_ahead_of_the_vessel_without_an_approach_the_guard_keeps_out_and_it_gets_round(fly, course):
     # With an approach it goes round by itself, and the guard has nothing to do.
     words = [f"start.course_deg={course}", "start.spread_deg=180", "start.distance_m=[300, 500]", "guidance.approach=false"]
-    row, _ = fly(*words, "seed=4", "flight.crossings=4", nu=0.3)
+    row, _ = fly(*words, "seed=4", "flight.crossings=1", nu=0.3)
     assert abs(row["start_aspect_deg"]) > 90.0
     assert row["outcome"] == "completed"
     assert row["keepout_violations"] == 0
@@ -108,7 +103,7 @@ def test_starting_ahead_of_the_vessel_without_an_approach_the_guard_keeps_out_an
 
 def test_preview_and_airspeed_trim_each_take_away_error(fly):
     def steady_error(*overrides):
-        _, history = fly("flight.crossings=18", *overrides)
+        _, history = fly("flight.crossings=13", *overrides)
         late = history[history["time_s"] > history["time_s"].iloc[-1] - 100.0]
         off = np.hypot(late["reference_north_m"] - late["north_m"], late["reference_east_m"] - late["east_m"])
         return math.sqrt(float(np.mean(off**2)))
@@ -123,7 +118,7 @@ def test_preview_and_airspeed_trim_each_take_away_error(fly):
 
 
 def test_a_plume_that_rises_is_crossed_at_its_own_height(fly):
-    row, history = fly("plume.elevation_deg=10", "flight.crossings=8")
+    row, history = fly("plume.elevation_deg=10", "flight.crossings=4")
     assert row["keepout_violations"] == 0
     assert row["crossing_distance_min_m"] >= 200.0
     # Equation (9): z_CO = r_CO sin(alpha_P) above the funnel at 60 m; altitude within the 1.5 m.
@@ -133,16 +128,16 @@ def test_a_plume_that_rises_is_crossed_at_its_own_height(fly):
 def test_the_compass_does_not_matter(fly):
     # The same flight on another course differs by the earth's rotation and shape only. Starts are drawn in the vessel's frame but
     # for the course, which is given here relative to the vessel's.
-    north, _ = fly("vessel.course_deg=0", "start.course_deg=20", "flight.crossings=10")
-    east, _ = fly("vessel.course_deg=110", "start.course_deg=130", "flight.crossings=10")
+    north, _ = fly("vessel.course_deg=0", "start.course_deg=20", "flight.crossings=4")
+    east, _ = fly("vessel.course_deg=110", "start.course_deg=130", "flight.crossings=4")
     # Measured: 4e-6 s and 2 mm apart; the room is for another start.
     assert east["crossing_interval_mean_s"] == pytest.approx(north["crossing_interval_mean_s"], abs=0.01)
     assert east["crossing_distance_mean_m"] == pytest.approx(north["crossing_distance_mean_m"], abs=0.1)
 
 
 def test_the_same_seed_flies_the_same_flight_to_the_last_bit(fly):
-    first, history = fly("flight.crossings=3")
-    second, again = fly("flight.crossings=3")
+    first, history = fly("flight.crossings=2")
+    second, again = fly("flight.crossings=2")
     pd.testing.assert_frame_equal(history, again, check_exact=True)
     assert {k: v for k, v in first.items() if k != "wall_time_s"} == {k: v for k, v in second.items() if k != "wall_time_s"}
 

@@ -12,7 +12,13 @@ from scenarios.studies.registry import run_study
 def directory(tmp_path_factory):
     # README, "Bounds", on the kinematic vehicle and at two speed ratios; comparisons are flown too, line of sight among them.
     path = tmp_path_factory.mktemp("guaranteed") / "run"
-    overrides = ["fidelity=kinematic", "sweep.nu=[0.5, 0.7]", "guidance.tuning=bounded", "guidance.reserve=0.4"]
+    overrides = [
+        "fidelity=kinematic",
+        "sweep.nu=[0.5, 0.7]",
+        "guidance.tuning=bounded",
+        "guidance.reserve=0.4",
+        "flight.crossings=10",
+    ]
     scenario = load_study("sweep_nu", overrides)
     result = run_study(scenario, "sweep_nu", path, overrides=overrides)
     assert result.all_met

@@ -21,13 +21,19 @@ from scenarios.studies import paper
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
+FEW_RESERVES = (0.0, 0.015, 0.2, 0.4, 0.6)
+"""Of the reserves at which a run prices a guarantee: each takes a search of a tenth of a second."""
+
 BOTH = pytest.mark.parametrize("fidelity", ["kinematic", "six_dof"])
 
 
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory):
     path = tmp_path_factory.mktemp("paper") / "run"
-    result = run_study(load_study("paper"), "paper", path)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(paper, "SEARCH_STATES", 50_000)
+        patch.setattr(paper, "RESERVES", FEW_RESERVES)
+        result = run_study(load_study("paper"), "paper", path)
     assert result.planned == result.summary.done == len(rows_of(path)) == 8
     return path
 
@@ -133,8 +139,10 @@ def test_sim_2_the_line_of_sight_is_near_sooner_but_never_on_the_reference(histo
 
 
 def test_bounds_stand_beside_the_worst_states_found(directory):
+    assert paper.SEARCH_STATES >= 1_000_000
+    assert set(FEW_RESERVES) < set(paper.RESERVES)
     record = json.loads((directory / "bounds.json").read_text(encoding="utf-8"))
-    assert record["samples"] >= 1_000_000
+    assert record["samples"] == 50_000
     for row in record["flown"]:
         # Never exceeded, and tight: see docs/actuation_bounds.md.
         assert row["largest_found_rad_s"] <= row["bound_rad_s"] <= 1.001 * row["largest_found_rad_s"]
@@ -147,6 +155,7 @@ def test_bounds_stand_beside_the_worst_states_found(directory):
     assert times == sorted(times, reverse=True)
 
 
+@pytest.mark.usefixtures("sketched")
 def test_its_report_has_every_figure_for_both_vehicles_and_every_published_number(directory, rows):
     html, pdf = build_reports(directory)
     assert pdf.read_bytes().startswith(b"%PDF")
@@ -191,8 +200,8 @@ def test_saddle_points_are_marked_where_the_relative_courses_meet(directory):
 @pytest.fixture
 def few_bounds(monkeypatch):
     """Search few states and reserves, where a run's bounds are not what is tested: they take two thirds of its time."""
-    monkeypatch.setattr(paper, "SEARCH_STATES", 10_000)
-    monkeypatch.setattr(paper, "RESERVES", (0.0, 0.2, 0.4))
+    monkeypatch.setattr(paper, "SEARCH_STATES", 1000)
+    monkeypatch.setattr(paper, "RESERVES", (0.0, 0.4))
 
 
 def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
@@ -241,8 +250,7 @@ def test_what_is_not_the_papers_is_not_called_reproduced(override, headline, tmp
     assert not [cell for cell in cells if "nan" in cell]
 
 
-def test_a_study_of_cases_with_a_sniffer_has_its_sulphur_statistics(tmp_path, monkeypatch):
-    monkeypatch.setattr(paper, "SEARCH_STATES", 1000)
+def test_a_study_of_cases_with_a_sniffer_has_its_sulphur_statistics(tmp_path, few_bounds):
     overrides = ["study=paper", 'cases=[{name="one"}]', "fidelity=kinematic"]
     short = ["flight.after_settling_s=1", "flight.duration_max_s=3"]
     run_study(load_study("sulphur", [*overrides, *short]), "sulphur", tmp_path / "run")

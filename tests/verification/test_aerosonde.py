@@ -81,6 +81,7 @@ def published_start():
     return bm.trim_level(AIRSPEED, ALTITUDE, WORLD)
 
 
+@cache
 def flown(name, size, time_step, root=None):
     """What JSBSim flies from its trim, in the order of FLOWN_STATES."""
     found = start()
@@ -89,12 +90,14 @@ def flown(name, size, time_step, root=None):
     fdm.hold(found.state(), round(2.0 / time_step))
     nodes = [(fdm.node(READS[state][0]), READS[state][1]) for state in bm.FLOWN_STATES]
     every = round(TIMES[1] / time_step)
-    rows = []
+    rows, before = [], 0.0
     for i in range(every * (len(TIMES) - 1) + 1):
         if i % every == 0:
             rows.append([node.get_double_value() * scale for node, scale in nodes])
-        fdm.command({name: found.inputs[name] + size * shape(name, (i + 0.5) * time_step)})
-        fdm.step()
+        if (now := shape(name, (i + 0.5) * time_step)) != before:
+            fdm.command({name: found.inputs[name] + size * now})
+            before = now
+        fdm.run()
     rows = np.array(rows)
     rows[:, bm.FLOWN_STATES.index("yaw")] = np.unwrap(rows[:, bm.FLOWN_STATES.index("yaw")])
     return rows
@@ -103,7 +106,7 @@ def flown(name, size, time_step, root=None):
 @cache
 def flown_answer(name, time_step, root=None):
     """The part of the flight that the input makes: JSBSim's earth is round, and 5 s of straight flight curve by a millimetre."""
-    return flown(name, SIZES[name], time_step, root) - flown(name, 0.0, time_step, root)
+    return flown(name, SIZES[name], time_step, root) - flown("throttle", 0.0, time_step, root)
 
 
 def published_answer(name, lags=LAGS):

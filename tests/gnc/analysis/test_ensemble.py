@@ -83,7 +83,7 @@ def test_the_rates_and_commands_of_an_ensemble_are_those_of_the_four_states(law,
 
 @LAWS
 @pytest.mark.parametrize("refs", [references(rate=[0.3]), oscillating(), wandering()], ids=["circle", "oscillation", "random"])
-@pytest.mark.parametrize("start", [(-250.0, 400.0, 2.0), (1500.0, -900.0, -2.9), (3.0, 2.0, 0.5)])
+@pytest.mark.parametrize("start", [(1500.0, -900.0, -2.9), (3.0, 2.0, 0.5)])
 def test_an_ensemble_flies_as_the_cartesian_equations_integrated_by_scipy(law, refs, start):
     north, east, course = start
     duration = 25.0
@@ -108,7 +108,7 @@ def test_an_ensemble_flies_as_the_cartesian_equations_integrated_by_scipy(law, r
 
 
 @pytest.mark.parametrize("refs", [references(rate=[-0.2]), oscillating(), wandering()], ids=["circle", "oscillation", "random"])
-@pytest.mark.parametrize("start", [(-700.0, 400.0, 2.0), (20.0, -150.0, -1.0), (2.0, 1.0, 3.0)])
+@pytest.mark.parametrize("start", [(-400.0, 250.0, 2.0), (2.0, 1.0, 3.0)])
 def test_v_2_never_rises_along_an_ensembles_trajectory_under_law_24(refs, start):
     result, _, states, phis, _ = history(Steering.LYAPUNOV, refs, start[:2], start[2], tolerances=TIGHT)
     values = 0.5 * (states[:, 0] ** 2 + states[:, 1] ** 2) + (1.0 - np.cos(phis)) / K_1

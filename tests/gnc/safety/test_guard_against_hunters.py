@@ -17,9 +17,9 @@ HUNTED = pytest.mark.parametrize("hunter", HUNTERS, ids=lambda hunter: hunter.__
 
 
 @HUNTED
-@pytest.mark.parametrize("silence", [0.0, 60.0, 150.0])
+@pytest.mark.parametrize("silence", [0.0, 90.0])
 def test_a_hunter_does_not_get_in_however_she_reports(hunter, silence):
-    for seed in range(3):
+    for seed in range(2):
         found = hunted(seed, hunter, silence=silence)
         # What is kept for the looks, 4 cm, is on the safe side of it.
         assert found.closest >= RADIUS
@@ -31,15 +31,15 @@ def test_a_hunter_does_not_get_in_however_she_reports(hunter, silence):
 
 @pytest.mark.parametrize("hunter", [ahead_of, turning], ids=lambda hunter: hunter.__name__)
 def test_a_hunter_nearly_as_fast_as_the_vehicle_does_not_get_in(hunter):
-    for seed in range(5):
+    for seed in range(3):
         found = hunted(seed, hunter, silence=90.0, speed_max=0.9 * SPEED)
         assert found.closest >= RADIUS
         assert found.lost == 0
 
 
-@pytest.mark.parametrize(("delay", "lag", "rate"), [(0.27, 0.3, 5.0), (0.13, 0.2, 5.0), (0.5, 0.4, 5.0), (0.07, 0.3, 20.0)])
+@pytest.mark.parametrize(("delay", "lag", "rate"), [(0.27, 0.3, 5.0), (0.5, 0.4, 5.0), (0.07, 0.3, 20.0)])
 def test_a_dead_time_of_no_whole_number_of_steps_lets_nobody_in(delay, lag, rate):
-    for seed, hunter in enumerate((*HUNTERS, *HUNTERS)):
+    for seed, hunter in enumerate(HUNTERS):
         found = hunted(seed, hunter, delay=delay, lag=lag, time_step=1.0 / rate, silence=60.0 * (seed % 2))
         assert found.closest >= RADIUS
         assert found.lost == 0
@@ -48,7 +48,7 @@ def test_a_dead_time_of_no_whole_number_of_steps_lets_nobody_in(delay, lag, rate
 @HUNTED
 def test_where_the_vessel_is_taken_to_be_is_not_enough(hunter):
     # The same hunts, and a guard that knows where the newest report says that she is. Measured, 27 to 200 m inside.
-    assert min(hunted(seed, hunter, silence=60.0, known=as_it_was_known).closest for seed in range(3)) < RADIUS - 20.0
+    assert min(hunted(seed, hunter, silence=60.0, known=as_it_was_known).closest for seed in range(2)) < RADIUS - 20.0
 
 
 def test_a_guard_that_forgets_what_it_kept_off_finds_no_way_out():
@@ -91,7 +91,7 @@ def test_dead_reckoning_that_goes_wrong_as_fast_as_declared_does_not_lead_in(rat
     worst = {}
     for declared in (rate, 0.0):
         closest, lost = math.inf, 0
-        for _ in range(6):
+        for _ in range(4):
             guard = KeepoutGuard(
                 radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=0.4, time_step=TIME_STEP, drift_rate=declared
             )
@@ -99,7 +99,7 @@ def test_dead_reckoning_that_goes_wrong_as_fast_as_declared_does_not_lead_in(rat
             bearing = generator.uniform(-math.pi, math.pi)
             state = (450.0 * math.cos(bearing), 450.0 * math.sin(bearing), bearing + math.pi, 0.0)
             wrong_north = wrong_east = 0.0
-            for step in range(1400):
+            for step in range(1100):
                 time = step * TIME_STEP
                 north, east = state[0] - 4.0 * time, state[1]
                 outage = time - 20.0 if 20.0 < time < 50.0 else 0.0

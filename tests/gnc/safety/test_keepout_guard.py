@@ -35,7 +35,7 @@ from gnc.reference.placement import PlumeAxis, distance_by_paper
 def test_no_commands_lead_in(lag, delay, nu):
     generator = np.random.default_rng(5)
     worked = 0
-    for i in range(12):
+    for i in range(6):
         velocity, start = random_velocity(generator, nu * SPEED), random_start(generator)
         guard = make_guard(lag=lag, delay=delay)
         if guard.clearance(*start[:2], *velocity, start[2], SPEED, start[3]) < 0.0:
@@ -47,14 +47,14 @@ def test_no_commands_lead_in(lag, delay, nu):
         assert not any(lost)
         worked += any(changed)
     # It had to work for it.
-    assert worked >= 6
+    assert worked >= 3
 
 
 @pytest.mark.parametrize(("speed_error", "acceleration"), [(0.5, 0.0), (0.0, 0.2), (1.0, 0.1)])
 def test_a_disc_that_hunts_the_vehicle_within_its_bounds_does_not_get_it(speed_error, acceleration):
     generator = np.random.default_rng(8)
     worked = 0
-    for _ in range(6):
+    for _ in range(3):
         start = random_start(generator, nearest=350.0)
         # Slower than the vehicle by all that may be wrong.
         disc = Hunter(
@@ -67,7 +67,7 @@ def test_a_disc_that_hunts_the_vehicle_within_its_bounds_does_not_get_it(speed_e
         closest, changed, _ = fly_guarded(guard, start, aim_at_the_centre, disc, lag=0.4)
         assert closest >= RADIUS
         worked += any(changed)
-    assert worked == 6
+    assert worked == 3
 
 
 def test_a_guard_that_knows_nothing_of_the_hunters_acceleration_is_caught():
@@ -112,7 +112,7 @@ def test_looking_less_often_where_nothing_can_happen_changes_nothing(lag, delay)
     generator = np.random.default_rng(1)
     velocity = (0.6 * SPEED, 0.0)
     skipped = 0
-    for _ in range(4):
+    for _ in range(2):
         guard, x_y = make_guard(lag=lag, delay=delay), random_start(generator)
         want, state = held_at_random(generator), x_y
         under_way = deque([state[3]] * round(delay / TIME_STEP))
@@ -128,7 +128,7 @@ def test_looking_less_often_where_nothing_can_happen_changes_nothing(lag, delay)
             x, y, course, heading_rate = moved(state, under_way.popleft(), lag, TIME_STEP)
             state = (x - velocity[0] * TIME_STEP, y - velocity[1] * TIME_STEP, course, heading_rate)
     # There were steps at which it did not look; where it works, it looks at each.
-    assert skipped > 300
+    assert skipped > 100
 
 
 @examples(200)

@@ -16,11 +16,9 @@ from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.rate import loop_delay
 
 CONDITIONS = {
-    "slow": ("x8", 0, 2),
     "middle": ("x8", 2, 2),
     "fast left turn": ("x8", 4, 0),
-    "with a rudder": ("aerosonde", 2, 2),
-    "with a rudder, right turn": ("aerosonde", 1, 4),
+    "with a rudder, slow right turn": ("aerosonde", 0, 4),
 }
 """Aircraft, index of the airspeed, index of the bank."""
 
@@ -75,8 +73,8 @@ def test_the_opened_loop_is_that_of_the_block_diagram(systems, loops, condition,
 @pytest.mark.parametrize(("condition", "name"), CASES)
 def test_classical_margins_are_those_that_python_control_finds(margins, loops, condition, name):
     margin = margins[condition, name]
-    # Its way by polynomials overflows at this order, so it gets a response ten times finer than the package's own.
-    sampled = control.frd(loops[condition, name], np.logspace(-3.0, 2.4, 3000))
+    # Its way by polynomials overflows at this order, so it gets a response three times finer than the package's own.
+    sampled = control.frd(loops[condition, name], np.logspace(-3.0, 2.4, 1000))
     gains, phases, _, _, crossings, _ = control.stability_margins(sampled, returnall=True)
     # From 300 frequencies, 4 % apart, with phase and log gain interpolated: errors of second order in 4 %.
     inside = (crossings > FREQUENCIES[0]) & (crossings < FREQUENCIES[-1])
@@ -89,8 +87,8 @@ def test_classical_margins_are_those_that_python_control_finds(margins, loops, c
 @pytest.mark.parametrize(("condition", "name"), CASES)
 def test_disk_margins_are_those_that_python_control_finds(margins, loops, condition, name):
     margin = margins[condition, name]
-    _, gain_db, phase_deg = control.disk_margins(loops[condition, name], np.logspace(-2.0, 2.3, 3000), skew=0.0)
-    # A grid ten times finer than the package's finds a lowest point lower by a fraction of a per cent.
+    _, gain_db, phase_deg = control.disk_margins(loops[condition, name], np.logspace(-2.0, 2.3, 1000), skew=0.0)
+    # A grid four times finer than the package's finds a lowest point lower by a fraction of a per cent.
     assert margin.disk_gain_db == pytest.approx(gain_db, rel=5e-3)
     assert margin.disk_phase_deg == pytest.approx(phase_deg, rel=5e-3)
 
