@@ -4,6 +4,7 @@ Seen from the centre of oscillation the reference flies a figure of eight: perio
 Jacobi-Anger expansion of cos and sin of [eta cos(theta)] turns its integrals into Fourier series that converge in a dozen terms.
 """
 
+import functools
 import math
 
 import numpy as np
@@ -13,12 +14,13 @@ from scipy.special import jv
 from gnc.reference.reference import Array, Orbit
 
 _TERMS = np.arange(1, 25)
+_ODD = 2 * _TERMS - 1
 
 
 def f_x(oscillation: Orbit, time: npt.ArrayLike) -> Array:
     """Return F_x = integral of cos[eta cos(omega_0 t)] from 0 [s]: equation (12)."""
     t = np.asarray(time, dtype=np.float64)[..., None]
-    series = (-1.0) ** _TERMS * jv(2 * _TERMS, oscillation.eta) / (_TERMS * oscillation.omega_0)
+    series, _ = _series(oscillation.eta, oscillation.omega_0)
     periodic = np.sum(series * np.sin(2 * _TERMS * oscillation.omega_0 * t), axis=-1)
     return np.asarray(oscillation.nu * t[..., 0] + periodic)
 
@@ -26,9 +28,16 @@ def f_x(oscillation: Orbit, time: npt.ArrayLike) -> Array:
 def f_y(oscillation: Orbit, time: npt.ArrayLike) -> Array:
     """Return F_y = integral of sin[eta cos(omega_0 t)] from 0 [s]: equation (12)."""
     t = np.asarray(time, dtype=np.float64)[..., None]
-    odd = 2 * _TERMS - 1
-    series = 2.0 * (-1.0) ** (_TERMS - 1) * jv(odd, oscillation.eta) / (odd * oscillation.omega_0)
-    return np.asarray(np.sum(series * np.sin(odd * oscillation.omega_0 * t), axis=-1))
+    _, series = _series(oscillation.eta, oscillation.omega_0)
+    return np.asarray(np.sum(series * np.sin(_ODD * oscillation.omega_0 * t), axis=-1))
+
+
+@functools.lru_cache(maxsize=8)
+def _series(eta: float, omega_0: float) -> tuple[Array, Array]:
+    """Return the coefficients of both series [s], of which a reference that is joined anywhere on its orbit asks again and again."""
+    along = (-1.0) ** _TERMS * jv(2 * _TERMS, eta) / (_TERMS * omega_0)
+    across = 2.0 * (-1.0) ** (_TERMS - 1) * jv(_ODD, eta) / (_ODD * omega_0)
+    return along, across
 
 
 def offset(oscillation: Orbit, time: npt.ArrayLike) -> tuple[Array, Array]:

@@ -1,6 +1,7 @@
 """Find a scenario file, apply overrides and check it; everything that is wrong with it is one line."""
 
 import copy
+import functools
 import json
 import re
 import tomllib
@@ -52,6 +53,7 @@ CATALOG, BASES = Path(__file__).parents[1] / "catalog", "bases"
 """The directory of the catalog, whose folders hold a kind of scenario each, and the one of them with bases."""
 
 
+@functools.cache
 def catalog() -> dict[str, Path]:
     """Return the scenarios that come with the project, by name."""
     files = [path for path in CATALOG.glob("*/*.toml") if path.parent.name != BASES]
@@ -124,6 +126,7 @@ def _section(override: str) -> str:
     return override.partition("=")[0].strip().partition(".")[0]
 
 
+@functools.cache
 def bases() -> dict[str, Path]:
     """Return the bases that scenarios may extend, by name."""
     return {path.stem: path for path in sorted((CATALOG / BASES).glob("*.toml"))}
