@@ -19,7 +19,8 @@ SHORT = {
     "title": "Short <b>flights</b>",
     "fidelity": "kinematic",
     "sweep": {"nu": [0.3, 0.5]},
-    "flight": {"crossings": 2},
+    "guidance": {"rate_hz": 5.0},
+    "flight": {"crossings": 2, "log_rate_hz": 5.0},
     "criteria": {"crossing_interval_error": False, "tracking_error_rms_m": False},
 }
 
@@ -29,7 +30,8 @@ SAMPLED = {
     "extends": "operational",
     "fidelity": "kinematic",
     "flights": 12,
-    "flight": {"crossings": 1},
+    "guidance": {"rate_hz": 5.0},
+    "flight": {"crossings": 1, "log_rate_hz": 5.0},
     "draws": [{"key": "wind.speed_mps", "uniform": [0.0, 4.0]}],
 }
 
@@ -176,13 +178,13 @@ def test_a_scenario_of_which_no_one_flight_can_be_flown_is_refused(scenario, wor
 
 
 def test_a_study_of_no_flights_has_its_table():
-    study = run("convergence", ensemble={"trajectories": 3, "time_max_s": 20.0}, jobs=1)
+    study = run("convergence", ensemble={"trajectories": 3, "distance_max_m": 60.0, "samples": 0}, jobs=1)
     assert study.flights == {}
     assert len(study.summary) == 6  # each with both laws of the catalog's scenario
 
 
 def test_statistics_are_an_object_with_the_bounds_of_the_file(tmp_path):
-    study = run(SAMPLED, jobs=2, out=tmp_path / "run")
+    study = run(SAMPLED, jobs=1, out=tmp_path / "run")
     found = study.statistics
     content = json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))
     assert found.content == content
