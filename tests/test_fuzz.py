@@ -19,6 +19,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from common.command_line import BAD_INPUT
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.memory import data_memory
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
@@ -115,6 +116,8 @@ def place(tmp_path_factory):
     (place / "short.toml").write_text(short_trial(flights=FLIGHTS, duration=5.0), encoding="utf-8")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(place)
+        # In this process: what examples damage is not how flights are spread over processes.
+        patch.setattr("scenarios.engine.executors.LocalExecutor", lambda work, **_: InProcessExecutor(work))
         assert run_command("scenarios.run", "short.toml", "--out", "whole", "--jobs", "1", "--no-report").status == 0
         yield place
 

@@ -34,7 +34,7 @@ def f_y(oscillation: Orbit, time: npt.ArrayLike) -> Array:
 
 @functools.lru_cache(maxsize=8)
 def _series(eta: float, omega_0: float) -> tuple[Array, Array]:
-    """Return the coefficients of both series [s], of which a reference that is joined anywhere on its orbit asks again and again."""
+    """Return the coefficients of both series [s], which to find where to join an orbit asks for again and again."""
     along = (-1.0) ** _TERMS * jv(2 * _TERMS, eta) / (_TERMS * omega_0)
     across = 2.0 * (-1.0) ** (_TERMS - 1) * jv(_ODD, eta) / (_ODD * omega_0)
     return along, across

@@ -135,11 +135,13 @@ def test_a_directory_that_holds_another_run_is_left_alone(tmp_path, run_here):
 
 
 def test_a_run_that_is_resumed_with_other_keys_says_which_with_both_values(tmp_path, run_here):
-    def resumed(*changes):
-        sets = [word for change in changes for word in ("--set", change)]
-        return run_here("sweep_nu", "--out", tmp_path / "run", "--no-report", "--resume", *SHORT, *sets)
+    sweep = ["sweep_nu", "--out", tmp_path / "run", "--jobs", "1", *SHORT]
+    sweep += ["--set", "fidelity=kinematic", "--set", "sweep.nu=[0.5]"]
 
-    run_here("sweep_nu", "--out", tmp_path / "run", "--no-report", *SHORT)
+    def resumed(*changes):
+        return run_here(*sweep, "--resume", *(word for change in changes for word in ("--set", change)))
+
+    run_here(*sweep)
     assert_refused(resumed("seed=7"), "another configuration: seed was ", ", and is 7 now; resume it with the same scenario")
     both = resumed("keepout.radius_m=190", "start.aspect_deg=20.0")
     assert_refused(both, "keepout.radius_m was 200.0, and is 190.0 now", "start.aspect_deg was not set, and is 20.0 now; resume")
@@ -181,9 +183,9 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
     # Two crossings are too few for means over them.
     settings = ["sweep_nu", *SHORT, "--jobs", "1", "--set", "criteria.crossing_interval_error=0.1"]
     settings += ["--set", "criteria.tracking_error_rms_m=5.0"]
-    # Flights enough that some are left when the interrupt comes: the autopilot is remembered, and each takes a fifth of a second.
-    nus = [0.2, 0.4, 0.5, 0.7, 0.9]
-    settings += ["--set", f"sweep.nu={nus}"]
+    # Flights enough that some are left when the interrupt comes: each takes a tenth of a second.
+    nus = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
+    settings += ["--set", "fidelity=kinematic", "--set", f"sweep.nu={nus}"]
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     assert run_here(*settings, "--out", whole).returncode == 0
     process = subprocess.Popen(

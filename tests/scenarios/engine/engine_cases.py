@@ -8,6 +8,7 @@ from pathlib import Path
 
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.fingerprint import fingerprint
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.runner import StudySummary, fly_study, write_tables
 from scenarios.engine.task import Result, Task
 
@@ -99,8 +100,10 @@ class SquareStudy:
         return StudySummary(done=done, met=done == self.planned, lines=[], manifest={"squares_done": done})
 
 
-def fly(study, out, *, resume=False, jobs=1, progress=lambda *_: None):
-    return fly_study(study, out, executor_factory=ExecutorFactory(jobs=jobs), resume=resume, progress=progress)
+def fly(study, out, *, resume=False, jobs=0, progress=lambda *_: None):
+    """Fly a study in as many processes, or in this one."""
+    factory = ExecutorFactory(jobs=jobs) if jobs else InProcessExecutor
+    return fly_study(study, out, executor_factory=factory, resume=resume, progress=progress)
 
 
 def interrupt_at(count):

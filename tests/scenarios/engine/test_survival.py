@@ -20,7 +20,7 @@ from tests.scenarios.short_trial import short_trial
 
 FLIGHTS = 120
 
-TRIAL = short_trial(flights=FLIGHTS, duration=12.0, histories=10)
+TRIAL = short_trial(flights=FLIGHTS, duration=5.0, histories=10)
 
 
 @pytest.fixture(scope="module")

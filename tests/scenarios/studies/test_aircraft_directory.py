@@ -16,7 +16,7 @@ from scenarios.schema.load import load_document
 from tests.in_process import assert_refused, run_command
 
 SCRIPT = Path(__file__).parents[3] / "docs" / "scripts" / "aircraft_directory.py"
-SWEEP = ["--set", "sweep.nu=[0.3, 0.6]", "--set", "flight.crossings=10", "--set", "comparison.variants=[]", "--set", "histories=2"]
+SWEEP = ["--set", "sweep.nu=[0.3, 0.6]", "--set", "flight.crossings=4", "--set", "comparison.variants=[]", "--set", "histories=2"]
 
 
 @pytest.fixture(scope="module")
