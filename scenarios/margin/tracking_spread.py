@@ -16,6 +16,7 @@ an X8 can lose its reference, and no such margin holds.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +35,7 @@ FREQUENCIES = np.logspace(-2.5, 1.9, 400)
 _ORBIT_POINTS = 60
 
 Array = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,43 +81,60 @@ CALM_AIR_SPREAD = Spread(along=0.0, across=0.0, radial=0.0, radial_rate=0.0, air
 """The spread in air that does not move."""
 
 
-def tracking_spread(
+def tracking_spreads(
     schedule: Schedule,
     turbulence: GustStatistics,
-    oscillation: Orbit,
+    oscillations: Sequence[Orbit],
     guidance: TrackingParameters,
     hold: SpeedHold,
     *,
     span: float,
-) -> Spread:
-    """Return the spread that the linear closed loop predicts at the design airspeed nearest to the reference's speed.
+) -> tuple[Spread, ...]:
+    """Return the spreads that the linear closed loop predicts at the design airspeed nearest to the references' speed.
 
     Parameters
     ----------
     schedule : the autopilot
     turbulence, span : the air, and the wing that averages its rotation [m]
-    oscillation, guidance, hold : the reference, and how it is tracked
+    oscillations, guidance, hold : references of one speed, and how they are tracked
     """
     # They need python-control, which a flight in calm air does without.
     from innerloop.analysis.dryden import dryden_filters
     from scenarios.margin.gusts_on_orbit import gusts_on_orbit
     from scenarios.margin.tracking_response import RESPONSES, tracking_response
 
-    speed = oscillation.speed
+    (speed,) = {oscillation.speed for oscillation in oscillations}
     index = int(np.argmin(np.abs(np.array(schedule.airspeeds) - speed)))
-    gusts = gusts_on_orbit(dryden_filters(turbulence, airspeed=speed, span=span), oscillation, FREQUENCIES)
-    responses = [tracking_response(schedule, index, j, guidance, hold, speed, FREQUENCIES) for j in range(len(schedule.gain_banks))]
+    filters = dryden_filters(turbulence, airspeed=speed, span=span)
+    banks = range(len(schedule.gain_banks))
+    responses = [tracking_response(schedule, index, j, guidance, hold, speed, FREQUENCIES) for j in banks]
+    steps = [schedule.gain_trim(index, j).yaw_rate for j in banks]
+    room = min(speed - hold.airspeed_min, hold.airspeed_max - speed)
+    return tuple(
+        _spread(oscillation, gusts_on_orbit(filters, oscillation, FREQUENCIES), responses, steps, RESPONSES.index("pace"), room)
+        for oscillation in oscillations
+    )
+
+
+def _spread(oscillation: Orbit, gusts: Array, responses: list[Complex], steps: list[float], airspeed: int, room: float) -> Spread:
+    """Return the spread on an orbit.
+
+    Parameters
+    ----------
+    oscillation, gusts : the orbit, and the spectral densities of the gusts that are met on it
+    responses, steps : to gusts, and the heading rates that they are for [rad/s]
+    airspeed : row of the responses that keeps pace
+    room : how far airspeed may go [m/s]
+    """
     densities = [np.einsum("fig,fg,fjg->fij", r, gusts, r.conj()).real for r in responses]
     now = [_integral(density) for density in densities]
     rates = [_integral(density * FREQUENCIES[:, None, None] ** 2) for density in densities]
 
     phases = 2.0 * math.pi * (np.arange(_ORBIT_POINTS) + 0.5) / _ORBIT_POINTS
     turns = np.array([-oscillation.heading_rate(phase) for phase in phases.tolist()])
-    steps = [schedule.gain_trim(index, j).yaw_rate for j in range(len(schedule.gain_banks))]
     mean, mean_rate = (_over_turns(turns, steps, matrices).mean(axis=0) for matrices in (now, rates))
     steep = np.array([-oscillation.amplitude, oscillation.amplitude])
     largest, fastest = (np.linalg.eigvalsh(_over_turns(steep, steps, m)[:, :2, :2]).max() for m in (now, rates))
-    airspeed = RESPONSES.index("pace")
     return Spread(
         along=math.sqrt(mean[0, 0]),
         across=math.sqrt(mean[1, 1]),
@@ -123,7 +142,7 @@ def tracking_spread(
         radial_rate=math.sqrt(fastest),
         airspeed=math.sqrt(mean[airspeed, airspeed]),
         airspeed_rate=math.sqrt(mean_rate[airspeed, airspeed]),
-        airspeed_limit=min(speed - hold.airspeed_min, hold.airspeed_max - speed),
+        airspeed_limit=room,
     )
 
 

@@ -10,7 +10,7 @@ from common.physics.units import METRES_PER_FOOT
 from innerloop.analysis.gust_statistics import low_altitude_turbulence
 from innerloop.designs.designed import Designed
 from scenarios.errors import InputError
-from scenarios.margin.tracking_spread import SpreadTable, tracking_spread
+from scenarios.margin.tracking_spread import SpreadTable, tracking_spreads
 from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.reference import oscillation_at
 from scenarios.schema.effect_rules import LAW_KEYS
@@ -87,8 +87,7 @@ def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> S
     air = low_altitude_turbulence(scenario.altitude, TURBULENCE[scenario.turbulence.level].wind_at_20ft)
     tracking, hold, span = tracking_parameters(scenario, setup), speed_hold(scenario, setup), _wing_span(schedule.spec)
     orbits = [oscillation_at(scenario.guidance, scenario.reference, nu) for nu in SPREAD_RATIOS]
-    spreads = [tracking_spread(schedule, air, orbit, tracking, hold, span=span) for orbit in orbits]
-    return SpreadTable(speed_ratios=SPREAD_RATIOS, spreads=tuple(spreads))
+    return SpreadTable(speed_ratios=SPREAD_RATIOS, spreads=tracking_spreads(schedule, air, orbits, tracking, hold, span=span))
 
 
 def _wing_span(spec: AircraftSpec) -> float:

@@ -23,7 +23,7 @@ from scenarios.margin.tracking_spread import (
     beyond_limits,
     level_crossed,
     planned_margin,
-    tracking_spread,
+    tracking_spreads,
 )
 from scenarios.planning.planner import plan_flight
 from scenarios.schema.load import load_study, with_values
@@ -182,7 +182,7 @@ def test_light_turbulence_spreads_flights_as_predicted_and_the_margin_holds_them
         airspeed_min=X8.envelope.airspeed_min,
         airspeed_max=X8.envelope.airspeed_max,
     )
-    spread = tracking_spread(schedule, LIGHT, flight.oscillation, flight.guidance.tracking, hold, span=2.1)
+    (spread,) = tracking_spreads(schedule, LIGHT, [flight.oscillation], flight.guidance.tracking, hold, span=2.1)
     errors = np.vstack([fly_in_turbulence(x8_root, start, flight, hold, seed) for seed in range(1, 5)])
     along, across = np.sqrt(np.mean(errors**2, axis=0))
     # 18 minutes of errors that last 5 s are 200 independent ones: 5 % of their deviation, 15 % three times over. Thirty flights
