@@ -61,7 +61,8 @@ class Replay {
     for (const kind of ["guard", "guardLost"])
       this.part(kind).hidden = !this.flight.guard.some(([, , held]) => held === (kind === "guard"));
     this.plot.take(this.flight);
-    this.world?.dispose();
+    this.gone?.dispose();
+    this.gone = this.world;
     if (this.renderer) this.world = new World(this.flight, this.colours);
     this.resize();
     // A free camera stays where it is, which is at another flight's place.
@@ -141,6 +142,9 @@ class Replay {
     this.world.show(time, options);
     this.part("needle").style.transform = `rotate(${-this.camera.course}rad)`;
     this.renderer.render(this.world.scene, this.camera.camera);
+    // That of the flight before goes once the new one is drawn, which takes over its shaders: to compile them takes longest.
+    this.gone?.dispose();
+    this.gone = null;
   }
 
   // Where the aircraft is drawn, from the drawing itself, and at which time [s]; null where nothing is drawn.
