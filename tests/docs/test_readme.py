@@ -80,12 +80,12 @@ def test_the_pages_write_commands_in_one_form():
 @pytest.mark.parametrize("word", sorted(commands()))
 def test_every_command_takes_the_options_that_are_given(word, monkeypatch, capsys):
     """Of the commands that the pages show; what is asked for is their help, so that nothing is flown."""
+    monkeypatch.setattr(sys, "argv", ["plume-flight", word, "--help"])
+    with pytest.raises(SystemExit):
+        run_command(commands(), "plume-flight")
+    shown = capsys.readouterr().out
     for arguments in _commands(word, (*PAGES, *DOCS)):
         options = [argument for argument in arguments if argument.startswith("--")]
-        monkeypatch.setattr(sys, "argv", ["plume-flight", word, "--help"])
-        with pytest.raises(SystemExit):
-            run_command(commands(), "plume-flight")
-        shown = capsys.readouterr().out
         assert [option for option in options if option not in shown] == []
 
 

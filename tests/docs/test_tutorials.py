@@ -21,9 +21,10 @@ def test_every_tutorial_is_tested():
     assert {path.stem for path in TUTORIALS.glob("*.md")} == set(PRINTED)
 
 
-@pytest.mark.usefixtures("x8_design")
 @pytest.mark.parametrize("name", PRINTED)
-def test_the_cells_of_a_tutorial_run(name, tmp_path, monkeypatch, capsys):
+def test_the_cells_of_a_tutorial_run(name, designs, tmp_path, monkeypatch, capsys):
+    # At whatever altitude, with the autopilot that other tests have: to design another takes seconds.
+    monkeypatch.setattr("scenarios.studies.flight_study.design_of", lambda spec, _: (designs(spec.name), ""))
     cells = re.findall(
         r"^```\{code-cell\}[^\n]*\n(.*?)^```$", (TUTORIALS / f"{name}.md").read_text("utf-8"), re.MULTILINE | re.DOTALL
     )

@@ -13,8 +13,8 @@ TRAJECTORIES = 1200
 """Of each law, in the studies that several tests read."""
 
 
-def write_convergence_run(path, trajectories, *, seed=1, failures=(), cut_failures=0, state="complete", planned=None):
-    """Write a run directory.
+def write_convergence_run(path, trajectories, *, seed=1, failures=(), cut_failures=0, state="complete", planned=None, samples=1):
+    """Write a run directory, with the time histories of the first ``samples`` trajectories and of those that failed.
 
     ``failures`` are (law, trajectory, outcome); ``cut_failures`` so many more under the cut law, which run out of time.
     """
@@ -27,7 +27,7 @@ def write_convergence_run(path, trajectories, *, seed=1, failures=(), cut_failur
     (path / "trajectories").mkdir(parents=True)
     rows.to_csv(path / "summary.csv", index=False)
     failed.to_csv(path / "counterexamples.csv", index=False)
-    kept = pd.concat([rows[rows["trajectory"] < SAMPLES], failed]).drop_duplicates(["law", "trajectory"])
+    kept = pd.concat([rows[rows["trajectory"] < samples], failed]).drop_duplicates(["law", "trajectory"])
     for _, row in kept.iterrows():
         history(row).to_parquet(path / "trajectories" / f"{row['law']}_{row['trajectory']:05d}.parquet")
     text = json.dumps(manifest(planned or trajectories, seed, state))

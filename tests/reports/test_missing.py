@@ -86,8 +86,13 @@ def test_a_file_that_is_gone_is_named_with_what_is_not_shown_for_it(copy, name, 
     assert named(copy) == [(name, "is gone", shows)]
 
 
-@pytest.mark.parametrize("cut", [0, 3, 200])
-@pytest.mark.parametrize("name", ["flights/short_00001.parquet", "statistics.json", "innerloop.json"])
+@pytest.mark.parametrize(
+    ("name", "cut"),
+    [
+        *(("flights/short_00001.parquet", cut) for cut in (0, 3, 200)),
+        *((f"{name}.json", 20) for name in ("statistics", "innerloop")),
+    ],
+)
 def test_a_file_that_is_empty_or_cut_is_named(copy, name, cut):
     whole = (copy / name).read_bytes() if (copy / name).is_file() else b'{"confidence": 0.95, "violation"'
     (copy / name).write_bytes(whole[:cut])

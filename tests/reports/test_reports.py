@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from design_runs import record
-from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built
+from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built, named_charts
 
 from reports.build import build_reports
 from reports.document.axes import in_kilometres
@@ -110,6 +110,7 @@ def test_no_curve_is_empty_or_not_a_number_where_there_is_data(report):
             assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)
 
 
+@pytest.mark.usefixtures("without_single_flights")
 def test_a_violation_is_in_the_headline(report, copy):
     assert report.verdict.holds
     summary = pd.read_csv(copy / "summary.csv")
@@ -189,6 +190,7 @@ def test_a_record_of_another_aircraft_over_airspeed_and_bank_is_shown_in_the_swe
     assert all(table.rows for table in shown)
 
 
+@pytest.mark.usefixtures("without_single_flights")
 def test_poles_are_shown_as_far_out_as_the_aircraft_has_them(copy):
     # Else those of an airliner would be one dot at the origin. One at -80 1/s is a servo's, and off the figure.
     design = record()
@@ -196,7 +198,7 @@ def test_poles_are_shown_as_far_out_as_the_aircraft_has_them(copy):
     for poles in design["poles"]:
         poles["open_loop"] = poles["closed_loop"] = slow
     (copy / "innerloop.json").write_text(json.dumps(design), encoding="utf-8")
-    panel = next(chart for chart in charts_of(content(read_run(copy))) if chart.name == "poles").panels[0]
+    panel = named_charts(content(read_run(copy)))["poles"].panels[0]
     # A tenth beyond the farthest, to the left and with 0.45 of that either way.
     assert panel.x_range == pytest.approx((-3.3, 0.165), rel=1e-9)
     assert panel.y_range == pytest.approx((-1.485, 1.485), rel=1e-9)
@@ -276,6 +278,7 @@ def test_a_damaged_run_is_refused_in_one_line(copy, damage, words):
     assert "\n" not in str(refusal.value)
 
 
+@pytest.mark.usefixtures("without_single_flights")
 @pytest.mark.parametrize("flights", [1, 3])
 def test_theory_is_a_curve_over_the_speed_ratio_however_few_flights_there_are(run_path, flights):
     run = read_run(run_path)

@@ -1,7 +1,7 @@
 """Two made-up studies, in one of which all trajectories converged, and their reports."""
 
 import pytest
-from convergence_runs import TRAJECTORIES, write_convergence_run
+from convergence_runs import SAMPLES, TRAJECTORIES, write_convergence_run
 
 from reports.registry import content
 from reports.run.run_data import read_run
@@ -11,12 +11,14 @@ FAILURES = [("lyapunov", 3, "time_up"), ("cascade", 7, "steps_up"), ("cascade", 
 
 @pytest.fixture(scope="session")
 def converged_path(tmp_path_factory):
-    return write_convergence_run(tmp_path_factory.mktemp("converged") / "run", TRAJECTORIES)
+    return write_convergence_run(tmp_path_factory.mktemp("converged") / "run", TRAJECTORIES, samples=SAMPLES)
 
 
 @pytest.fixture(scope="session")
 def failed_path(tmp_path_factory):
-    return write_convergence_run(tmp_path_factory.mktemp("failed") / "run", TRAJECTORIES, failures=FAILURES, cut_failures=40)
+    return write_convergence_run(
+        tmp_path_factory.mktemp("failed") / "run", TRAJECTORIES, samples=SAMPLES, failures=FAILURES, cut_failures=40
+    )
 
 
 @pytest.fixture(scope="session")

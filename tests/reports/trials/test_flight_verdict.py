@@ -6,23 +6,22 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
-from report_parts import blocks_of
 from trial_runs import rows_of, with_criterion, with_values
 
-from reports.document.blocks import FlightPicker
 from reports.registry import content
+
+pytestmark = pytest.mark.usefixtures("without_single_flights")
 
 
 def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
-    assert content(run).verdict.headline.startswith("No keep-out violation in 4 flights (")
-    assert content(run).verdict.holds
+    verdict = content(run).verdict
+    assert verdict.headline.startswith("No keep-out violation in 4 flights (")
+    assert verdict.holds
     judged = content(with_values(run, 3, keepout_violations=2, keepout_depth_m=1.5, min_distance_m=198.5, criteria_met=False))
     assert not judged.verdict.holds
     assert judged.verdict.headline == "Keep-out violations in 1 of 4 flights, 2 in all"
     assert ("Closest approach, from the keep-out sphere's centre", "198.5 m", "≥ 200 m", False) in judged.verdict.figures
     assert judged.verdict.failures == ["turns_00001: completed"]
-    (picker,) = blocks_of(judged, FlightPicker, "flights")
-    assert "deepest keep-out violation" in next(flight.title for flight in picker.flights if flight.flight_id == "turns_00001")
     # Keep-out violations and the closest approach, from r_min too, are in the trial's row.
     assert rows_of(judged, "Turns")[0][7:10] == ["2", "198.5", "−1.5"]
 
@@ -87,13 +86,14 @@ NOT_FLOWN = {
 
 def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_figure_red(run):
     judged = with_criterion(with_values(run, 1, **NOT_FLOWN), "steady", "tracking_error_rms_m", 50.0)
-    figures = {card.name: card for card in content(judged).verdict.figures}
+    report = content(judged)
+    figures = {card.name: card for card in report.verdict.figures}
     worst = figures["Tracking error, rms after settling, worst (1 flight has no figure: not flown)"]
     assert worst.met
     assert re.fullmatch(r"[\d.]+ m", worst.value)
     # Of all that were planned, not of those that were flown.
     assert (figures["Missions completed"].value, figures["Missions completed"].met) == ("3 of 4", False)
-    assert any(row[2].endswith(" m; 1 flight has no figure: not flown") for row in rows_of(content(judged), "Steady"))
+    assert any(row[2].endswith(" m; 1 flight has no figure: not flown") for row in rows_of(report, "Steady"))
 
 
 def test_a_flight_that_was_flown_and_has_no_figure_fails_the_criterion_on_it(run):

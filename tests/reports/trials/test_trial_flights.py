@@ -33,6 +33,7 @@ def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(run_p
     deep = content(with_values(bare, 0, keepout_violations=1, keepout_depth_m=0.5, criteria_met=False))
     (picker,) = blocks_of(deep, FlightPicker, "flights")
     assert (picker.flights[0].flight_id, picker.flights[0].charts) == ("steady_00000", [])
+    assert "deepest keep-out violation" in picker.flights[0].title
 
 
 def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
@@ -125,6 +126,7 @@ def test_an_ordinate_of_names_is_marked_alike_on_screen_and_in_print():
     assert list(zip(screen["tickvals"], screen["ticktext"], strict=True)) == names
 
 
+@pytest.mark.usefixtures("without_single_flights")
 def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):
     manifest = json.loads(json.dumps(run.manifest))
     manifest["trials"]["steady"]["sweep"] = {"wind.speed_mps": [2.0, 4.0]}

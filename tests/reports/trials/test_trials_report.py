@@ -28,6 +28,8 @@ from scenarios.schema.load import OPERATIONAL, bases, load_study
 from scenarios.schema.overrides import given_keys
 from scenarios.studies.manifest import parameters
 
+BRIEF = pytest.mark.usefixtures("without_single_flights")
+
 
 def test_trials_are_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
     # Drawing takes nearly all of this test's time: one flight tells whether they are.
@@ -54,12 +56,14 @@ def test_every_axis_of_trials_reads_quantity_and_unit_and_every_chart_shows_some
     assert_axes_read_quantity_and_unit(charts_of(report))
 
 
+@BRIEF
 def test_of_nothing_flown_nothing_is_claimed(run):
     empty = replace(run, summary=run.summary.assign(min_distance_m=math.nan, criteria_met=False))
     verdict = content(empty).verdict
     assert (verdict.holds, verdict.headline) == (False, "Nothing was flown")
 
 
+@BRIEF
 def test_the_limits_shown_are_those_of_the_manifest(run, report):
     # 0.0321 stands in the scenario above.
     asked = {row[0]: row for row in rows_of(report, "Steady")[1:]}
@@ -79,6 +83,7 @@ def test_the_worst_measured_value_of_a_criterion_is_that_of_the_summary(run, rep
     assert float(shown.removesuffix(" %")) == pytest.approx(100.0 * worst, rel=5e-3)
 
 
+@BRIEF
 def test_a_criterion_without_a_figure_counts_as_failed(run):
     steady = read_trials(with_values(run, 0, crossing_interval_mean_s=math.nan))[0]
     row = next(row for row in rows_of(content(steady.run), "Steady")[1:] if row[0].startswith("Mean"))
@@ -86,6 +91,7 @@ def test_a_criterion_without_a_figure_counts_as_failed(run):
     assert row[3] == "1"
 
 
+@BRIEF
 @pytest.mark.parametrize(("measured", "shown"), [(0.63712, "0.637 m"), (0.0063712, "0.006 m"), (12.345, "12.3 m")])
 def test_a_figure_has_three_digits_and_none_below_a_thousandth_of_its_limit(run, measured, shown):
     both = with_values(with_values(run, 0, tracking_error_rms_m=measured), 1, tracking_error_rms_m=measured)
@@ -93,17 +99,20 @@ def test_a_figure_has_three_digits_and_none_below_a_thousandth_of_its_limit(run,
     assert next(row for row in rows if row[0].startswith("Tracking error"))[2] == shown
 
 
+@BRIEF
 def test_a_criterion_that_the_report_does_not_know_is_shown_all_the_same(run):
     rows = rows_of(content(with_criterion(run, "turns", "loops_per_hour", 7)), "Turns")
     assert ["Loops per hour", "7", "see the flights that failed it", "0"] in rows
 
 
+@BRIEF
 @pytest.mark.parametrize("settles", [True, False])
 def test_what_is_measured_after_settling_is_judged_where_flights_have_to_settle(run, settles):
     judged = with_criterion(with_criterion(run, "turns", "settles", settles), "turns", "tracking_error_rms_m", 1e-9)
     assert any(row[0].startswith("Tracking error, rms") for row in rows_of(content(judged), "Turns")) is settles
 
 
+@BRIEF
 def test_resuming_is_judged_of_flights_whose_vessel_ends_a_manoeuvre(run):
     ended = with_values(run, 2, manoeuvre_end_s=190.0, resume_periods=0.7)
     with_end = with_values(ended, 3, manoeuvre_end_s=math.nan, resume_periods=math.nan)
@@ -111,6 +120,7 @@ def test_resuming_is_judged_of_flights_whose_vessel_ends_a_manoeuvre(run):
     assert ["Next crossing after the last manoeuvre", "≤ 1 periods", "0.7 periods", "0"] in rows
 
 
+@BRIEF
 @pytest.mark.parametrize(
     ("key", "value", "values", "shown"),
     [
@@ -178,6 +188,7 @@ def test_a_trial_is_known_by_what_it_holds_not_by_its_name(run, name, kind):
     assert Trial(run=run, key="any", name="trial1", config=config, rows=run.summary).kind is kind
 
 
+@BRIEF
 def test_a_long_list_of_failed_flights_is_cut_and_says_so(run):
     count = FAILED_MAX + 7
     row = run.summary.iloc[[0]].assign(criteria_met=False)
@@ -211,6 +222,7 @@ def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
     assert listed["vessel.manoeuvres"]["default"] == []
 
 
+@BRIEF
 def test_many_comparisons_have_a_row_for_each_variant(run):
     rows = pd.concat([run.summary[run.summary["trial"] == "steady"]] * 20, ignore_index=True)
     rows["flight_id"] = [f"steady_{i:05d}" for i in range(len(rows))]
@@ -220,6 +232,7 @@ def test_many_comparisons_have_a_row_for_each_variant(run):
     assert [row[:3] for row in table.rows] == [["as in the study", "40", "0"], ["no preview", "40", "0"]]
 
 
+@BRIEF
 def test_a_comparison_is_named_as_the_flight_of_the_study_also_where_that_is_not_in_the_summary(run):
     compared = run.summary.iloc[[0]].assign(variant="no_preview", beside="steady_00007")
     charts = blocks_of(content(replace(run, comparison=compared)), Chart, "comparison")
@@ -254,6 +267,7 @@ def test_a_criterion_that_does_not_apply_is_no_limit(run):
     assert set(level.y) == {2.0}
 
 
+@BRIEF
 def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run):
     changed = with_criterion(run, "turns", "within_altitudes", True)
     rows = changed.summary.assign(altitude_outside_s=[0.0 if trial != "turns" else 1.5 for trial in changed.summary["trial"]])
