@@ -15,6 +15,7 @@ from reports.export import EXPORTERS
 from reports.export.tracks_csv import COLUMNS
 from reports.output import write_flight
 from reports.run.run_data import read_run
+from tests.in_process import assert_refused, run_command
 
 OWN = """
 from pathlib import Path
@@ -95,15 +96,11 @@ def test_a_run_without_time_histories_has_no_tracks(run_path):
 
 
 def test_the_command_exports_and_names_what_it_knows(run_path):
-    def build(*words):
-        return subprocess.run(
-            [sys.executable, "-m", "reports.build", str(run_path), *words], capture_output=True, text=True, check=False
-        )
-
-    assert build("--export", "tracks_csv").stdout == f"export: {run_path / 'export' / 'small.tracks.csv'}\n"
-    refused = build("--export", "track_csv")
-    assert refused.returncode == 2
-    assert refused.stderr.startswith("error: unknown exporter 'track_csv'; did you mean 'tracks_csv'?")
+    command = [sys.executable, "-m", "reports.build", str(run_path), "--export", "tracks_csv"]
+    exported = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert exported.stdout == f"export: {run_path / 'export' / 'small.tracks.csv'}\n"
+    refused = run_command("reports.build", run_path, "--export", "track_csv")
+    assert_refused(refused, "error: unknown exporter 'track_csv'; did you mean 'tracks_csv'?")
     assert "tracks_csv" in EXPORTERS.names()
 
 

@@ -138,6 +138,7 @@ def test_the_caption_has_the_factor_of_the_fuels_carbon(run_directory, record):
     assert "the sulphur content is 0.2269 times the slope" in regression_chart(samples, record | {"carbon": 0.85}).caption
 
 
+@pytest.mark.usefixtures("sketched")
 def test_a_flight_without_a_result_says_why(run_directory, tmp_path, record):
     nothing = dict.fromkeys(("fsc_percent", "noise_percent", "total_percent", "slope_ppb_per_ppm", "agreement", "misfit"))
     record["estimate"] |= nothing | {"quality": "C", "quality_reasons": ["no pass through a plume"], "common_percent": {}}
