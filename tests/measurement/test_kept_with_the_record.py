@@ -1,16 +1,19 @@
 """What is worked out of a record and kept for the next instrument that is asked about is of its response, delays and windows."""
 
-from crossings import changed, flight
+from crossings import changed, crossings, read
 
 from measurement.estimate.areas import area_ratio
 from measurement.estimate.fit.regression import regress
 from measurement.estimate.fit.signals import make_signals
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
+from measurement.sniffer import sensor_preset
 
 
 def test_a_record_that_was_asked_before_answers_as_a_new_one():
-    readings, spec = flight("electrochemical", 0.3, 4, duration=120.0)
+    # Passes so far from each other that a window is as long as the slowest response asks for.
+    spec = sensor_preset("electrochemical")
+    readings = read(spec, crossings(0.3, interval=75.0))
     so2, co2 = spec.known("so2"), spec.known("co2")
     instruments = [
         spec,
