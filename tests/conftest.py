@@ -10,6 +10,7 @@ import functools
 import gc
 import os
 import runpy
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -54,8 +55,13 @@ SWEPT_ALTITUDE = 60.0
 
 
 def pytest_configure() -> None:
-    """Leave what tests are collected from to stay: looking for garbage among it took a third of the time of collecting them."""
+    """Leave what tests are collected from to stay: looking for garbage among it took a third of the time of collecting them.
+
+    Bytecode is written whatever the shell says: without it each run, and each process that tests begin, compiles all modules anew.
+    """
     gc.disable()
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    sys.dont_write_bytecode = False
 
 
 def pytest_collection_finish() -> None:
