@@ -6,8 +6,14 @@ from pathlib import Path
 
 from aircraft.errors import AircraftError
 
-SHARED = {"engine": "engine", "thruster": "engine", "system": "systems", "autopilot": "systems"}
+SHARED = {
+    "propulsion": "engine", "engine": "engine", "thruster": "engine",
+    "flight_control": "systems", "system": "systems", "autopilot": "systems",
+}  # fmt: skip
 """Folder of a JSBSim root where files of an element stand."""
+
+_NO_SECTIONS = ("system", "autopilot", "input", "output")
+"""Parts of a model of which it has any number; of its sections it has one each."""
 
 _OWN = ("", "Engines", "Systems", "systems")
 """Folders of a model in which JSBSim looks for files, in order."""
@@ -42,6 +48,25 @@ class ModelFiles:
         if element.tag in SHARED:
             folders += [root / SHARED[element.tag] for root in self.roots]
         return next((folder / name for folder in folders if (folder / name).is_file()), None)
+
+
+def read_model(files: ModelFiles) -> "ET.ElementTree[ET.Element]":
+    """Return the XML of a model, in which each section that is a file of its own stands in its place, as JSBSim reads it.
+
+    A section whose file is missing stays as it is.
+
+    Raises
+    ------
+    AircraftError : as of ``read_xml``
+    """
+    document = read_xml(files.file)
+    config = document.getroot()
+    for i, section in enumerate(config):
+        if section.tag not in _NO_SECTIONS and (found := files.find(section)):
+            content = read_xml(found).getroot()
+            content.tag, content.tail = section.tag, section.tail
+            config[i] = content
+    return document
 
 
 def read_xml(path: Path) -> "ET.ElementTree[ET.Element]":

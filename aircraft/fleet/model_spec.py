@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ET
 
 from aircraft.errors import AircraftError
 from aircraft.fleet.settings import ModelSettings
-from aircraft.model_files import ModelFiles, read_xml
+from aircraft.model_files import ModelFiles, read_model, read_xml
 from aircraft.spec import AircraftSpec, ControlInput, Envelope, numbered, surface, throttle
 
 _SURFACES = ("elevator", "aileron", "rudder")
@@ -37,13 +37,14 @@ def spec_of_model(files: ModelFiles, *, name: str, source: str, settings: ModelS
     """
     said = settings or ModelSettings()
     try:
-        config = read_xml(files.file).getroot()
+        config = read_model(files).getroot()
         engines = [_kind(engine, files) for engine in config.iterfind("propulsion/engine")]
         thrusters = [_kind(thruster, files) for thruster in config.iterfind("propulsion/engine/thruster")]
+        lifting = any(_lifts(thruster) for thruster in config.iterfind("propulsion/engine/thruster"))
     except AircraftError as error:
         raise AircraftError(f"aircraft '{name}' cannot be flown: {error}") from None
     inputs = _inputs(len(engines), said)
-    if reason := _no_aeroplane(config, engines, thrusters) or _deaf(inputs, config, files):
+    if reason := _no_aeroplane(config, engines, thrusters, lifting=lifting) or _deaf(inputs, config, files):
         raise AircraftError(f"aircraft '{name}' cannot be flown: {reason}")
     root, *others = files.roots
     usual = {
@@ -112,12 +113,23 @@ def _envelope(said: ModelSettings) -> Envelope | None:
     )
 
 
-def _no_aeroplane(config: ET.Element, engines: list[str], thrusters: list[str]) -> str:
+def _lifts(thruster: ET.Element) -> bool:
+    """Return whether a thruster lifts more than it drives."""
+    try:
+        pitch = float(thruster.findtext("orient/pitch", "0"))
+    except ValueError:
+        return False  # JSBSim refuses it in its own words
+    unit = next((orient.get("unit") for orient in thruster.iterfind("orient")), None)
+    return abs(math.radians(pitch) if unit == "DEG" else pitch) > math.pi / 4.0
+
+
+def _no_aeroplane(config: ET.Element, engines: list[str], thrusters: list[str], *, lifting: bool) -> str:
     """Return why this is no aeroplane with engines, or an empty text."""
     odd = [kind for kind in engines if kind not in (*_RUNNING_ENGINES, *_ELECTRIC)]
     reasons = (
         (config.find("buoyant_forces") is not None, "it is lighter than air"),
         ("rotor" in thrusters, "it is a rotorcraft"),
+        (lifting, "its engines lift it"),
         (not engines, "it has no engine"),
         ("rocket_engine" in engines, "it flies on rocket engines, for minutes"),
         (bool(odd), f"its engine's file is {', '.join(odd)}"),

@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from aircraft.errors import AircraftError
-from aircraft.model_files import SHARED, ModelFiles, read_xml
+from aircraft.model_files import SHARED, ModelFiles, read_model, read_xml
 
 _OWN_AUTOPILOT = re.compile(r"(^|[^a-z])(ap|autopilot|autothrottle)([^a-z]|$)")
 _PLAY = ("hysteresis_width", "deadband_width")
@@ -40,7 +40,7 @@ def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path
         _, _, why = error.args[0][0]  # the first of them
         raise AircraftError(f"model files of {files.folder} cannot be copied: {why}; check that file") from None
     model_file = target / f"{files.model}.xml"
-    document = read_xml(files.file)
+    document = read_model(files)
     config = document.getroot()
     at_rest = [*_take_out(config, files), *_of_another_program(config, files)]
     if at_rest:

@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
 
-from aircraft.model_files import ModelFiles, read_xml
+from aircraft.model_files import read_xml
 
 _DEFLECTION = re.compile(r"^-?fcs/.*pos")
 """Properties of surfaces' deflections, as JSBSim's own and those of models are called."""
@@ -43,23 +43,17 @@ PERTURBATIONS = {
 
 
 def perturb(model_file: Path, by: Perturbation) -> None:
-    """Change a JSBSim model's file, and the files beside it in which it keeps sections of its own.
+    """Change the file of a JSBSim model that has all its sections, as a copy has.
 
     A model without perturbation is left as it is, to the last byte.
     """
     if by == Perturbation():
         return
     document = read_xml(model_file)
-    files = ModelFiles(model=model_file.stem, folder=model_file.parent, roots=())
     for tag, change in _CHANGES.items():
         section = document.getroot().find(tag)
-        if section is None:
-            continue
-        change(section, by)
-        if (own := files.find(section)) is not None:
-            part = read_xml(own)
-            change(part.getroot(), by)
-            part.write(own, encoding="utf-8", xml_declaration=True)
+        if section is not None:
+            change(section, by)
     document.write(model_file, encoding="utf-8", xml_declaration=True)
 
 

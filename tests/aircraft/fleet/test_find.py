@@ -78,6 +78,7 @@ def test_a_spec_has_a_throttle_and_a_running_flag_for_each_engine_that_must_be_s
         ("ah1s", "rotorcraft"),
         ("weather-balloon", "lighter than air"),
         ("Submarine_Scout", "lighter than air"),
+        ("F450", "its engines lift it"),
         ("J246", "rocket"),
         ("X15", "rocket"),
         ("SGS", "no engine"),

@@ -15,6 +15,7 @@ from aircraft.fleet.settings import ModelSettings
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.model_copy import model_hash
 from aircraft.simulation.user_check import check_user_aircraft
+from tests.aircraft.split_model import split_model
 
 STOCK = Path(jsbsim.get_default_root_dir())
 WEIGHT = '<emptywt unit="LBS"> 1500'  # of the c172p, in its model file
@@ -114,6 +115,13 @@ def test_pictures_and_sounds_beside_the_model_are_not_copied_and_do_not_count(he
     assert model_hash(find_spec(str(heavy)).files) == before
     (heavy / "heavy.toml").write_text("settle_time_s = 10", encoding="utf-8")
     assert model_hash(find_spec(str(heavy)).files) != before
+
+
+def test_sections_may_be_files_of_their_own(tmp_path):
+    mine, stock = find_spec(str(split_model("c172x", tmp_path))), find_spec("c172x")
+    for name in ("inputs", "configuration", "engine_flags", "settle_time"):
+        assert getattr(mine, name) == getattr(stock, name)
+    check_user_aircraft(mine)
 
 
 def test_settings_say_title_commands_properties_and_envelope(heavy):

@@ -1,18 +1,18 @@
 """Aircraft whose mass, inertia or controls' effectiveness are not as modelled."""
 
-import shutil
 import xml.etree.ElementTree as ET
-from pathlib import Path
 
 import pytest
 
 from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
+from aircraft.simulation.model_copy import copy_model
 from aircraft.simulation.perturbed_model import perturb
 from aircraft.simulation.state import RigidBodyState
 from innerloop.analysis import perturbations
 from innerloop.flight.perturbed_aircraft import CASES, perturbed_aircraft
+from tests.aircraft.split_model import split_model
 
 
 @pytest.fixture(scope="module")
@@ -60,33 +60,14 @@ def test_what_a_deflection_does_is_as_modelled_times_the_factor(flown, case):
     assert rolled == pytest.approx(0.12019 * CASES[case].effectiveness * aileron, rel=0.02)
 
 
-def split(model_file):
-    """Move sections of a model into files beside it, as those of JSBSim's Short S.23 and F450 are."""
-    document = ET.parse(model_file)
-    config = document.getroot()
-    for tag, name in (("mass_balance", "Mass.xml"), ("propulsion", "Propulsion"), ("aerodynamics", "Systems/aero.xml")):
-        section = config.find(tag)
-        file = model_file.parent / f"{name.removesuffix('.xml')}.xml"
-        file.parent.mkdir(exist_ok=True)
-        ET.ElementTree(section).write(file)
-        config[list(config).index(section)] = ET.Element(tag, file=name)
-    document.write(model_file)
-
-
 @pytest.mark.parametrize("case", CASES)
 def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file_are(tmp_path, case):
     # JSBSim's Cessna has what the X8 has not: fuel, a crew of point masses.
-    spec = find_spec("c172p")
     state = RigidBodyState(altitude=300.0, roll=0.1, pitch=0.05, velocity_body=(50.0, 0.5, 2.0), rates_body=(0.1, 0.1, 0.1))
     moved = []
-    for form in ("whole", "split"):
-        root = tmp_path / form
-        for part in ("engine", "aircraft/c172p"):
-            shutil.copytree(spec.root / part, root / part)
-        model_file = root / "aircraft" / "c172p" / "c172p.xml"
-        if form == "split":
-            split(model_file)
-        perturb(model_file, CASES[case])
+    for spec in (find_spec("c172p"), find_spec(str(split_model("c172p", tmp_path)))):
+        root = tmp_path / f"copy{len(moved)}"
+        perturb(copy_model(spec.files, root), CASES[case])
         fdm = Fdm(spec, root)
         fdm.command({"elevator": -0.1, "aileron": 0.2, "rudder": 0.1, "throttle": 0.5})
         fdm.hold(state, 240)
@@ -94,11 +75,11 @@ def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file
     assert moved[1] == moved[0]
 
 
-def test_the_deflections_of_jsbsims_short_s23_are_scaled_in_the_file_of_its_aerodynamics(tmp_path):
-    folder = Path(shutil.copytree(find_spec("Short_S23").files.folder, tmp_path / "Short_S23"))
-    perturb(folder / "Short_S23.xml", CASES["control effectiveness +20 %"])
-    products = ET.parse(folder / "Systems" / "datcom_aero.xml").getroot().iter("product")
+def test_the_deflections_of_jsbsims_short_s23_are_scaled(tmp_path):
+    copy = copy_model(find_spec("Short_S23").files, tmp_path)
+    perturb(copy, CASES["control effectiveness +20 %"])
+    products = ET.parse(copy).getroot().find("aerodynamics").iter("product")
     scaled = [product.findtext("property").strip() for product in products if product.findtext("value") == "1.2"]
-    # Every <property> of a deflection that the file has, in its order; what tables are read at stays.
+    # Every <property> of a deflection that the file of its aerodynamics has, in its order; what tables are read at stays.
     rudder, aileron, elevator = (f"fcs/{name}-pos-rad" for name in ("rudder", "left-aileron", "elevator"))
     assert scaled == [rudder, aileron, rudder, rudder, elevator]
