@@ -146,11 +146,11 @@ def _coded(values: "pd.Series[float]") -> Array:
 
 def _indices(key: str, values: Array, figure: Array, resamples: Sequence[Indices], confidence: float) -> InputIndices:
     """Return the indices of one input, delta corrected for its bootstrap bias (Plischke et al., eq. 30)."""
-    from scipy.stats import norm
+    from scipy.special import ndtri
 
     delta, first_order = _estimated(values, figure)
     again = np.array([_estimated(values[chosen], figure[chosen]) for chosen in resamples])
-    delta_error, first_order_error = norm.ppf(0.5 + 0.5 * confidence) * again.std(axis=0, ddof=1)
+    delta_error, first_order_error = ndtri(0.5 + 0.5 * confidence) * again.std(axis=0, ddof=1)
     return InputIndices(
         key=key,
         delta=2.0 * delta - float(again[:, 0].mean()),

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from scipy.special import stdtrit
 
 from common.intervals import upper_bound
 from scenarios.statistics.subset_levels import Array, Indices, Simulation
@@ -135,9 +136,7 @@ def _log_mean(estimates: Array, variations: Array) -> tuple[float, float]:
 
 
 def _t_quantile(probability: float, count: int) -> float:
-    from scipy.stats import t
-
-    return float(t.ppf(probability, count - 1))
+    return float(stdtrit(count - 1, probability))
 
 
 def curve(simulations: Sequence[Simulation], confidence: float) -> list[tuple[float, RareProbability]]:
