@@ -99,20 +99,19 @@ def tracking_spreads(
     oscillations, guidance, hold : references of one speed, and how they are tracked
     """
     # They need python-control, which a flight in calm air does without.
-    from innerloop.analysis.dryden import dryden_filters
     from scenarios.margin.gusts_on_orbit import gusts_on_orbit
     from scenarios.margin.tracking_response import RESPONSES, tracking_response
 
     (speed,) = {oscillation.speed for oscillation in oscillations}
     index = int(np.argmin(np.abs(np.array(schedule.airspeeds) - speed)))
-    filters = dryden_filters(turbulence, airspeed=speed, span=span)
     banks = range(len(schedule.gain_banks))
     responses = [tracking_response(schedule, index, j, guidance, hold, speed, FREQUENCIES) for j in banks]
     steps = [schedule.gain_trim(index, j).yaw_rate for j in banks]
     room = min(speed - hold.airspeed_min, hold.airspeed_max - speed)
+    gusts = [gusts_on_orbit(turbulence, oscillation, FREQUENCIES, airspeed=speed, span=span) for oscillation in oscillations]
     return tuple(
-        _spread(oscillation, gusts_on_orbit(filters, oscillation, FREQUENCIES), responses, steps, RESPONSES.index("pace"), room)
-        for oscillation in oscillations
+        _spread(oscillation, met, responses, steps, RESPONSES.index("pace"), room)
+        for oscillation, met in zip(oscillations, gusts, strict=True)
     )
 
 

@@ -11,7 +11,6 @@ from common.physics.units import METRES_PER_FOOT
 from gnc.airspeed.pace_hold import SpeedHold, air_turn, airspeed_to_hold, design_speed_hold
 from gnc.reference.oscillation import Oscillation
 from gnc.tracker import Tracker
-from innerloop.analysis.dryden import dryden_filters
 from innerloop.analysis.gust_response import GUSTS
 from innerloop.analysis.gust_statistics import low_altitude_turbulence
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -104,8 +103,7 @@ def test_gusts_on_an_orbit_vary_as_the_course_makes_them():
     oscillation = Oscillation(nu=0.5, speed=19.42, eta=1.521, omega_0=0.3307, limit="heading rate")
     step = 0.005  # of rad/s, against corners of 0.09
     frequencies = step * (np.arange(4000) + 0.5)
-    filters = dryden_filters(LIGHT, airspeed=19.42, span=2.1)
-    found = gusts_on_orbit(filters, oscillation, frequencies)[:, GUSTS.index("gust_along")]
+    found = gusts_on_orbit(LIGHT, oscillation, frequencies, airspeed=19.42, span=2.1)[:, GUSTS.index("gust_along")]
     theta = np.linspace(0.0, 2.0 * math.pi, 721)[:-1]
     time = LIGHT.horizontal_length / 19.42
     for delay in (0.0, 1.0, 4.75, 9.5):
