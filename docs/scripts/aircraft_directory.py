@@ -20,5 +20,5 @@ def write_heavy_cessna(fleet: Path) -> Path:
 
 if __name__ == "__main__":
     folder = write_heavy_cessna(Path("fleet"))
-    sweep = run("sweep_nu", aircraft=folder, nu=[0.3, 0.6], flight={"crossings": 10}, comparison={"variants": []})
+    sweep = run("sweep_nu", aircraft=folder, nu=[0.3, 0.6], flight={"crossings": 4}, comparison={"variants": []})
     print(sweep.manifest["plugins"], sweep.summary[["nu", "criteria_met", "min_distance_m"]], sep="\n")

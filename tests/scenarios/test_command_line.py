@@ -56,7 +56,7 @@ DESIGNING = {"control", "slycot", "matplotlib", "scipy.signal", "plotly", "jinja
 FLIGHTS = """
 from scenarios import fly
 for fidelity in ("kinematic", "six_dof"):
-    fly("sweep_nu", nu=0.5, fidelity=fidelity, **{"flight.crossings": 2})
+    fly("sweep_nu", nu=0.5, fidelity=fidelity, **{"flight.duration_max_s": 5.0})
 """
 """Flights of both vehicles, the autopilot of one of them in the cache."""
 

@@ -26,7 +26,7 @@ def standard_error(found):
     return found.std(ddof=1) / math.sqrt(len(found))
 
 
-@pytest.mark.parametrize(("probability", "count"), [(1e-3, 40), (1e-7, 60)])
+@pytest.mark.parametrize(("probability", "count"), [(1e-3, 30), (1e-7, 40)])
 def test_the_mean_of_many_simulations_is_the_probability_of_a_plane(probability, count):
     found = estimates(linear(probability), count)[:, 0]
     # Thresholds from the same sample make the estimate biased by the order of 1/flights (Au and Beck 2001), here up to 15 %; beside
@@ -48,7 +48,7 @@ def test_four_branches_in_as_many_directions_are_all_found():
     assert four_branches_probability(3.0) == pytest.approx(4.46e-3, rel=0.01)
     for distance in (3.5, 4.9):
         probability = four_branches_probability(distance)
-        found = estimates(four_branches(distance), 24)[:, 0]
+        found = estimates(four_branches(distance), 16)[:, 0]
         assert abs(found.mean() - probability) < 0.15 * probability + 4.0 * standard_error(found)
 
 
@@ -69,8 +69,8 @@ def test_openturns_finds_the_same_with_the_same_effort():
         return algorithm.getResult().getProbabilityEstimate()
 
     for value, probability in ((linear(1e-5), 1e-5), (four_branches(4.0), four_branches_probability(4.0))):
-        theirs = np.array([openturns_estimate(value, seed) for seed in range(20)])
-        ours = estimates(value, 25)[:, 0]
+        theirs = np.array([openturns_estimate(value, seed) for seed in range(12)])
+        ours = estimates(value, 15)[:, 0]
         assert abs(ours.mean() - theirs.mean()) < 0.15 * probability + 4.0 * math.hypot(
             standard_error(ours), standard_error(theirs)
         )

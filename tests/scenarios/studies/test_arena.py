@@ -17,8 +17,8 @@ from tests.scenarios.plugin_files import LAW
 
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5",
-    "flights=2", "flight.duration_max_s=80", "arena.window_s=30", "arena.tuning_duration_s=40",
-    "arena.evaluations=4", "arena.tuning_flights=1", "arena.resamples=100", "start.distance_m=[300,350]", "start.spread_deg=20",
+    "flights=2", "flight.duration_max_s=60", "arena.window_s=30", "arena.tuning_duration_s=30",
+    "arena.evaluations=3", "arena.tuning_flights=1", "arena.resamples=100", "start.distance_m=[300,350]", "start.spread_deg=20",
     'arena.tracking=["npfg","park_l1_point"]', 'arena.standoff=["npfg","lgvf"]', "arena.limits=[[0.0,5.0],[1.0,9.0]]",
     'arena.conditions=[{name="calm",title="Calm"},{name="wind",title="Wind",set={"wind.speed_mps"=4.0}}]',
 )  # fmt: skip
@@ -60,7 +60,7 @@ def test_every_law_flies_every_task_that_it_can_in_every_condition_from_the_same
 
 def test_every_law_has_the_same_budget_and_seeds_that_the_comparison_does_not_use(run, record):
     tuning = pd.read_csv(run / "tuning.csv")
-    assert set(tuning.groupby("entrant").size()) == {4}
+    assert set(tuning.groupby("entrant").size()) == {3}
     assert tuning["message"].isna().all()
     for entrant in record["entrants"]:
         tried = tuning[tuning["entrant"] == entrant["name"]].sort_values("evaluation")

@@ -39,7 +39,7 @@ interval_s = [1.0, 2.0]
 missing = 0.5
 [[draws]]
 key = "start.range_m"
-uniform = [215.0, 400.0]
+uniform = [215.0, 350.0]
 [[draws]]
 key = "start.course_deg"
 uniform = [-180.0, 180.0]
@@ -56,7 +56,7 @@ log_rate_hz = 5.0
 [criteria]
 settles = false
 """
-"""Starts near r_min, of which about one in 30 is so near, and flown so straight at the vessel, that 3 s are enough."""
+"""Starts near r_min, of which about one in 20 is so near, and flown so straight at the vessel, that 3 s are enough."""
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +84,7 @@ def test_it_agrees_with_plain_sampling_where_both_can_see(rare, whole, tmp_path)
     scenario = load_study(str(rare), ["method=plain", "flights=120", "sampling=random"])
     run_study(scenario, "short", tmp_path / "plain", executor_factory=InProcessExecutor)
     plain = statistics_of(tmp_path / "plain")["violation"]["measured"]
-    # About 3 %: neither method may see nothing.
+    # About 5 %: neither method may see nothing.
     assert 2 <= plain["events"] <= 16
     found = statistics_of(whole[1])["violation"]
     interval = clopper_pearson(plain["events"], plain["flights"], 0.95)
@@ -117,7 +117,7 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
         "start.aspect_deg",
         "vessel.speed_mps",
     }
-    # Nothing enters from 400 m within 3 s, so the range decides.
+    # Nothing enters from 350 m within 3 s, so the range decides.
     assert found["inputs"][0]["distance"] > found["noise_floor"]
     ranges = next(entry for entry in found["inputs"] if entry["key"] == "start.range_m")
     assert ranges["median_near"] < 280.0 < ranges["median"]
@@ -139,7 +139,7 @@ def test_no_point_outside_the_declared_speed_ratios_is_flown(whole):
 
 def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_where_it_was_interrupted(rare, whole, tmp_path):
     def interrupt(doing, done, _):
-        if done == 200:
+        if done == 170:
             raise KeyboardInterrupt
 
     out = tmp_path / "run"
