@@ -19,8 +19,8 @@ LONG = {"crossings": 0, "duration_max_s": 3600.0}
 @pytest.fixture(scope="module")
 def hour():
     """An hour with a turn of 90 degrees and a slow-down, as the scenario of the catalog has it."""
-    rate = {"rate_hz": 10.0}
-    return fly(vessel=DANISH, following=DECLARED, flight=LONG, wind={"speed_mps": 5.0, "from_deg": 60.0}, guidance=rate)
+    slow = {"guidance": {"rate_hz": 5.0}, "flight": LONG | {"log_rate_hz": 5.0}}
+    return fly(vessel=DANISH, following=DECLARED, wind={"speed_mps": 5.0, "from_deg": 60.0}, **slow)
 
 
 def test_an_hour_beside_a_ship_from_a_file_keeps_out_and_crossings_resume(hour):

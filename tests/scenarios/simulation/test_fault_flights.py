@@ -66,7 +66,7 @@ def test_a_stuck_elevon_is_found_within_seconds_and_the_flight_leads_away_from_t
 @pytest.mark.parametrize(("required", "status"), [("criteria", False), ("keep_out", True)])
 def test_an_aircraft_that_is_lost_before_its_last_crossing_is_not_met_and_decides_the_exit_status(tmp_path, required, status):
     # Issue: an engine that fails in sea_wind ended in the sea, with "met every criterion" and exit status 0.
-    keys = ["flights=1", "fault.kind=engine", "fault.at_s=[50, 50]", f"criteria.required={required}"]
+    keys = ["flights=1", "fault.kind=engine", "fault.at_s=[20, 20]", f"criteria.required={required}"]
     result = run_study(load_study("sea_wind", keys), "sea_wind", tmp_path / "run", overrides=keys)
     (row,) = rows_of(tmp_path / "run")
     assert (row["outcome"], row["criteria_met"], row["kept_out"]) == ("aircraft_lost", False, True)

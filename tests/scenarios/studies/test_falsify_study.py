@@ -244,11 +244,11 @@ def test_a_method_of_ones_own_takes_its_turns(search, tmp_path):
 def test_a_search_by_time_ends_after_it_and_a_resumed_one_continues_for_as_long(search, tmp_path, monkeypatch):
     clock(monkeypatch)
     out = tmp_path / "run"
-    assert run(search, out, "search.time_s=6").all_met
+    assert run(search, out, "search.time_s=4").all_met
     before, repeats = tables(out)
     assert len(repeats) == KEPT * CONFIRMATIONS
     clock(monkeypatch)
-    assert run(search, out, "search.time_s=6", resume=True).all_met
+    assert run(search, out, "search.time_s=4", resume=True).all_met
     after, repeats_after = tables(out)
     assert len(after) > len(before)
     first = after.iloc[: len(before)].drop(columns="wall_time_s")
