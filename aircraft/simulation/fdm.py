@@ -9,6 +9,7 @@ from pathlib import Path
 import jsbsim
 
 from aircraft.errors import AircraftError
+from aircraft.simulation.ground_contacts import leave_out_ground_contacts
 from aircraft.simulation.model_copy import copy_model
 from aircraft.simulation.pace import paced
 from aircraft.simulation.properties import (
@@ -49,7 +50,7 @@ class Fdm(PropertyTree):
     ----------
     spec : the aircraft
     root : JSBSim root to load it from unchanged, e.g. one with an autopilot written into it; by default a copy of the
-        aircraft's own model without autopilot, outputs and servo play
+        aircraft's own model without autopilot, outputs, servo play and ground contacts
     time_step : integration step [s]
 
     Raises
@@ -63,6 +64,7 @@ class Fdm(PropertyTree):
         if root is None:
             with tempfile.TemporaryDirectory() as copy:
                 copy_model(spec.files, Path(copy), play=False)
+                leave_out_ground_contacts(spec, Path(copy))
                 self._exec = self._load(Path(copy))
         else:
             self._exec = self._load(root)

@@ -68,12 +68,16 @@ def _flown(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
     run, reads = fdm.run, [fdm.node(prop).get_double_value for prop, _ in OUTPUTS.values()]
     fdm.command(dict(level.inputs))
     fdm.hold(level.state(), round(fdm.spec.settle_time / fdm.time_step))
+    moved = fdm.spec.input(name)
+    commands = [fdm.writable_node(commanded).set_double_value for commanded in moved.commands]
     read = []
     for i in range(count):
         read.append([each() for each in reads])
         t = i * fdm.time_step
         now = _SIZE if t < _HALF else -_SIZE if t < 2.0 * _HALF else 0.0
-        fdm.command({name: level.inputs[name] + now})
+        value = moved.command(level.inputs[name] + now)
+        for command in commands:
+            command(value)
         run()
     values = {output: v * scale for (output, (_, scale)), v in zip(OUTPUTS.items(), np.array(read).T, strict=True)}
     return fdm.time_step * np.arange(count, dtype=np.float64), {output: v - v[0] for output, v in values.items()}

@@ -29,6 +29,9 @@ _MU_STRIDE = 4
 """Stride over the frequencies of the structured singular value, which takes a hundred times as long as a gain [-]; all
 frequencies about its peak are looked at."""
 
+_MU_ACCURACY = 1.01
+"""By how much a structured singular value may come out above a bound of it: it is found by iteration [-]."""
+
 FREQUENCIES = np.logspace(-3.0, 2.4, 300)
 """Frequencies at which loops are evaluated [rad/s]: from below any integral action to beyond any servo."""
 
@@ -114,7 +117,10 @@ class Loops:
     def margins(self) -> list[Margin]:
         """Return the margins at each of ``breaks``."""
         names = [BREAK_NAMES.get(name, name) for name in self.breaks]
-        return loop_margins(names, np.array([self.opened(name) for name in self.breaks]), self.frequencies)
+        of_controls, of_measurements = self._closed
+        measured = [self.measurements.index(name) for name in self.breaks[len(self.controls) :]]
+        sensitivities = np.vstack([np.diagonal(of_controls, axis1=1, axis2=2).T, of_measurements[:, measured].T])
+        return loop_margins(names, 1.0 / sensitivities - 1.0, self.frequencies)
 
     def margin_at_all_controls(self) -> Margin:
         """Return the disk margins for independent changes in all controls at once."""
@@ -143,16 +149,22 @@ class Loops:
         n = len(self.controls)
         one, complex_block = np.ones(n, dtype=int), np.full(n, 2)
         balanced = self._closed[0] - 0.5 * np.eye(n)
-        # The largest singular value bounds the structured one from above: below the largest found, none need be computed.
+        # The largest singular value bounds the structured one from above, whatever units controls have: below the largest that is
+        # found, none need be computed. Units that are good at one frequency are good at most.
         bounds = np.linalg.norm(balanced, 2, axis=(1, 2))
         mu, peak = 0.0, 0
         coarse = np.arange(0, len(bounds), _MU_STRIDE)
-        for k in coarse[np.argsort(-bounds[coarse])]:
-            if bounds[k] <= mu:
-                break
-            mu, peak = max((mu, peak), (float(ab13md(balanced[k], one, complex_block)[0]), int(k)))
+        for number, k in enumerate(coarse[np.argsort(-bounds[coarse])]):
+            if bounds[k] * _MU_ACCURACY <= mu:
+                continue
+            found, units, *_ = ab13md(balanced[k], one, complex_block)
+            mu, peak = max((mu, peak), (float(found), int(k)))
+            if number == 0:
+                scaled = balanced * (units[:, None] / units)
+                bounds = np.minimum(bounds, np.linalg.norm(scaled, 2, axis=(1, 2)))
         beside = range(max(0, peak - _MU_STRIDE + 1), min(len(bounds), peak + _MU_STRIDE))
-        return _disk(1.0 / max(float(ab13md(balanced[k], one, complex_block)[0]) for k in beside))
+        values = (float(ab13md(balanced[k], one, complex_block)[0]) for k in beside if k != peak)
+        return _disk(1.0 / max(mu, *values))
 
 
 Matrices = tuple[Array, Array, Array, Array]

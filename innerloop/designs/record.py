@@ -17,7 +17,7 @@ from innerloop.analysis.linear_model_check import verify_model
 from innerloop.analysis.margins import BREAK_NAMES, Loops
 from innerloop.designs.designed import Design, Record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.perturbed_aircraft import deviations_by_case, perturbed_aircraft
+from innerloop.flight.perturbed_aircraft import aircraft_as_modelled, deviations_by_case, perturbed_aircraft
 from innerloop.flight.reversal_search import reversals_of_a_design, search_reversals
 from innerloop.flight.step_responses import Response, flown_step, measure_lag, model_step, predicted_step
 from innerloop.flight.turn_reversal import measure_turn_reversal
@@ -47,7 +47,7 @@ def design_record(design: Design, root: Path) -> Record:
     root : JSBSim root that ``write_root`` wrote for it
     """
     schedule = design.schedule
-    aircraft = AutopilotedAircraft(schedule.spec, root)
+    aircraft = aircraft_as_modelled(schedule.spec, root)
     level = schedule.level(schedule.middle)
     slow_lag = measure_lag(aircraft, level, schedule.envelope.bank)
     return {

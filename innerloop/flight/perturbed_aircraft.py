@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from aircraft.simulation.ground_contacts import leave_out_ground_contacts
 from aircraft.simulation.perturbed_model import PERTURBATIONS, Perturbation, perturb
 from aircraft.spec import AircraftSpec
 from innerloop.analysis.checks import NOMINAL
@@ -18,13 +19,20 @@ CASES = {NOMINAL: Perturbation(), **PERTURBATIONS}
 
 def perturbed_aircraft(spec: AircraftSpec, root: Path) -> list[AutopilotedAircraft]:
     """Return the aircraft of ``CASES``, under the autopilot of a JSBSim root."""
-    aircraft = []
-    for case in CASES.values():
-        with tempfile.TemporaryDirectory() as folder:
-            copy = Path(shutil.copytree(root, Path(folder) / "root"))
-            perturb(copy / "aircraft" / spec.files.model / f"{spec.files.model}.xml", case)
-            aircraft.append(AutopilotedAircraft(spec, copy))
-    return aircraft
+    return [_flying(spec, root, case) for case in CASES.values()]
+
+
+def aircraft_as_modelled(spec: AircraftSpec, root: Path) -> AutopilotedAircraft:
+    """Return the first of them alone."""
+    return _flying(spec, root, CASES[NOMINAL])
+
+
+def _flying(spec: AircraftSpec, root: Path, case: Perturbation) -> AutopilotedAircraft:
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(shutil.copytree(root, Path(folder) / "root"))
+        perturb(copy / "aircraft" / spec.files.model / f"{spec.files.model}.xml", case)
+        leave_out_ground_contacts(spec, copy)
+        return AutopilotedAircraft(spec, copy)
 
 
 def deviations_by_case(searches: Sequence[ReversalSearch]) -> dict[str, float]:
