@@ -16,19 +16,14 @@ def test_the_bar_keeps_out_what_gnc_must_not_know(name):
     assert f"{name.partition('.')[0]} is barred" in outcome.stderr
 
 
-def test_every_module_of_gnc_imports_with_numpy_scipy_and_what_all_rooms_share():
+def test_every_module_of_gnc_imports_and_its_tests_are_collected_with_numpy_scipy_and_what_all_rooms_share():
     assert {"gnc.laws.cascade", "gnc.laws.lyapunov", "gnc.laws.delta", "gnc.tracker", "gnc.reference.oscillating"} <= set(
         GNC.modules
     )
-    outcome = GNC.run("".join(f"import {module}\n" for module in GNC.modules))
-    assert outcome.returncode == 0, outcome.stderr
-
-
-def test_the_tests_of_gnc_are_collected_with_numpy_and_scipy_alone():
+    imports = "".join(f"import {module}\n" for module in GNC.modules)
     # What tests/conftest.py imports counts, too.
-    outcome = GNC.run(
-        "import pytest; sys.exit(pytest.main(['--collect-only', '--assert=plain', '-p', 'no:cacheprovider', 'tests/gnc']))"
-    )
+    options = ["--collect-only", "--assert=plain", "-p", "no:cacheprovider", "tests/gnc"]
+    outcome = GNC.run(f"{imports}import pytest; sys.exit(pytest.main({options}))")
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert "test_cascade.py::test_equation_35_is_23_whatever_the_state" in outcome.stdout
 

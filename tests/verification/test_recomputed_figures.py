@@ -23,9 +23,9 @@ RUNS = {
     "rising": (
         "sweep_nu", "sweep.nu=[0.5]", "flight.crossings=6", "comparison.variants=[]", "comparison.nu=[]", "plume.elevation_deg=40",
     ),
-    "wind": ("sea_wind", "flights=2", "flight.crossings=6"),
+    "wind": ("sea_wind", "flights=1", "flight.crossings=6"),
     "turbulence": ("sea_turbulence_moderate", "flights=1", "flight.crossings=6"),
-    "manoeuvres": ("sea_manoeuvres", "flights=2", "flight.duration_max_s=420"),
+    "manoeuvres": ("sea_manoeuvres", "flights=1", "flight.duration_max_s=420"),
 }  # fmt: skip
 """Flights of the X8: with a steady axis, and with one that turns while they cross it."""
 

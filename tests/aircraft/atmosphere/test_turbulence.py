@@ -70,22 +70,18 @@ def blown(x8_fdm):
     return blow
 
 
-def test_jsbsim_shakes_as_strongly_as_the_standard_says(blown):
-    altitude, airspeed, steps = 60.0, 200.0, 80_000  # fast, so that many scale lengths go by
+def test_jsbsim_shakes_as_strongly_as_the_standard_says_and_has_the_spectra_of_dryden(blown):
+    # Fast, so that many scale lengths go by.
+    altitude, airspeed, steps = 60.0, 200.0, 160_000
     log = blown(Weather(turbulence=Turbulence(wind_at_20ft=10.0), seed=2), steps, altitude, airspeed)
     duration = steps / 120.0
     for measured, sigma, length in zip(log.std(axis=0), intensities(altitude, 10.0), scale_lengths(altitude), strict=True):
         # Of a process with the correlation exp(-t/tau), a standard deviation over T is known to sqrt(tau / 2T) of itself (Bendat
         # and Piersol, Random Data, 8.2); those across and down forget sooner. The start from smooth air is within that.
         assert measured == pytest.approx(sigma, rel=SIGMAS * math.sqrt(0.5 * length / airspeed / duration))
-
-
-def test_jsbsim_has_the_spectra_of_dryden(blown):
-    # With wind toward the north, after x scale lengths the wind along has the correlation exp(-x), those across and down have
-    # exp(-x) (1 - x/2): transforms of the Dryden spectra of MIL-F-8785C. First-order filters, as of JSBSim's type 3, would have
-    # exp(-2x) there: at half a scale length 0.37 in place of 0.45.
-    altitude, airspeed, steps = 60.0, 200.0, 160_000
-    log = blown(Weather(turbulence=Turbulence(wind_at_20ft=10.0), seed=2), steps, altitude, airspeed)
+    # And its spectra are those of Dryden: with wind toward the north, after x scale lengths the wind along has the correlation
+    # exp(-x), those across and down have exp(-x) (1 - x/2): transforms of the spectra of MIL-F-8785C. First-order filters, as of
+    # JSBSim's type 3, would have exp(-2x) there: at half a scale length 0.37 in place of 0.45.
     for wind, length, factor in zip(log.T, scale_lengths(altitude), (1.0, 0.75, 0.75), strict=True):
         lag = round(0.5 * 120.0 * length / airspeed)
         correlation = np.mean(wind[:-lag] * wind[lag:]) / np.mean(wind**2)

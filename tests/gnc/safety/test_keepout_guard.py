@@ -35,7 +35,7 @@ from gnc.reference.placement import PlumeAxis, distance_by_paper
 def test_no_commands_lead_in(lag, delay, nu):
     generator = np.random.default_rng(5)
     worked = 0
-    for i in range(6):
+    for i in range(4):
         velocity, start = random_velocity(generator, nu * SPEED), random_start(generator)
         guard = make_guard(lag=lag, delay=delay)
         if guard.clearance(*start[:2], *velocity, start[2], SPEED, start[3]) < 0.0:
@@ -47,7 +47,7 @@ def test_no_commands_lead_in(lag, delay, nu):
         assert not any(lost)
         worked += any(changed)
     # It had to work for it.
-    assert worked >= 3
+    assert worked >= 2
 
 
 @pytest.mark.parametrize(("speed_error", "acceleration"), [(0.5, 0.0), (0.0, 0.2), (1.0, 0.1)])

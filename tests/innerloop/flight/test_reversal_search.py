@@ -20,7 +20,7 @@ from innerloop.flight.step_responses import measure_lag
 from innerloop.flight.turn_reversal import TurnReversalResponse, measure_turn_reversal
 from innerloop.jsbsim.properties import HEADING_RATE
 
-REVERSALS = 20
+REVERSALS = 12
 
 
 @pytest.fixture
