@@ -47,7 +47,7 @@ def open_loop(state, omega_rho):
     return 0.2
 
 
-@examples(40)
+@examples(16)
 @given(start=tracking_starts(phi_max=2.8), reference_heading_rate=st.sampled_from([oscillating, circling]))
 @pytest.mark.parametrize("law", [open_loop, law_24, law_30])
 def test_the_nominal_system_is_the_cartesian_motion_in_other_words(law, start, reference_heading_rate):

@@ -86,7 +86,7 @@ def test_the_rates_and_commands_of_an_ensemble_are_those_of_the_four_states(law,
 @pytest.mark.parametrize("start", [(1500.0, -900.0, -2.9), (3.0, 2.0, 0.5)])
 def test_an_ensemble_flies_as_the_cartesian_equations_integrated_by_scipy(law, refs, start):
     north, east, course = start
-    duration = 25.0
+    duration = 12.0
     _, times, states, phis, _ = history(law, refs, (-north, -east), course, time_max=duration, tolerances=TIGHT)
 
     def reference_heading_rate(time):
@@ -122,7 +122,7 @@ def test_v_2_never_rises_along_an_ensembles_trajectory_under_law_24(refs, start)
 
 
 @LAWS
-@examples(15)
+@examples(6)
 @given(north=offsets, east=offsets, course=courses, rate=st.floats(0.05, 0.45))
 def test_the_mirrored_start_flies_the_mirrored_path(law, north, east, course, rate):
     refs = references(course=[0.3, -0.3], rate=[rate, -rate])

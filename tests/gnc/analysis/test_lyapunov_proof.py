@@ -99,7 +99,7 @@ def test_equation_26_is_the_rate_of_v_2_for_k_1_k_2_of_1_only(start, k_1_k_2, re
     assert rate == pytest.approx(v_2_rate(state, SPEED) + left_over, rel=1e-10, abs=1e-6)
 
 
-@examples(30)
+@examples(14)
 @given(start=tracking_starts(phi_max=3.1), reference_heading_rate=st.sampled_from([oscillating, circling]))
 def test_v_2_never_rises_under_law_24(start, reference_heading_rate):
     _, states, _ = fly_law_24(reference_heading_rate, start, 120.0)

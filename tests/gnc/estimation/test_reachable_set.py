@@ -40,7 +40,7 @@ def manoeuvres(draw):
     return [(course, size) for course, size, steps in pieces for _ in range(steps)]
 
 
-@examples(150)
+@examples(80)
 @given(
     manoeuvre=manoeuvres(),
     velocity=st.tuples(courses, st.floats(0.0, LIMITS.speed_max)),

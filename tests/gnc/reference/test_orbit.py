@@ -80,7 +80,7 @@ def test_the_advance_in_a_quarter_period_is_that_of_the_vessel(nu):
     assert advance == pytest.approx(0.25 * nu * SPEED * oscillation.period, rel=1e-13, abs=1e-12)
 
 
-@examples(30)
+@examples(14)
 @given(nu=ratios)
 def test_the_half_widths_are_the_largest_offsets_of_the_orbit(nu):
     oscillation = paper_oscillation(nu)

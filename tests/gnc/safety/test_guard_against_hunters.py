@@ -52,8 +52,8 @@ def test_where_the_vessel_is_taken_to_be_is_not_enough(hunter):
 
 def test_a_guard_that_forgets_what_it_kept_off_finds_no_way_out():
     # A report that says that she may be elsewhere leaves no turn that keeps off all that she may be then.
-    found = [hunted(seed, hunter, made=forgetful) for seed in range(3) for hunter in (towards, braking)]
-    assert sum(hunt.lost > 0 for hunt in found) >= 3
+    found = [hunted(seed, hunter, made=forgetful) for seed in range(2) for hunter in (towards, braking)]
+    assert sum(hunt.lost > 0 for hunt in found) >= 2
 
 
 def test_a_report_that_widens_the_disc_does_not_take_the_way_out():
