@@ -26,7 +26,7 @@ WITHOUT_SATELLITES = ["sea_wind", "flights=2", "fault.kind=satellite_navigation"
 STEEP = ["sweep_nu", "sweep.nu=[0.1,0.6]", "start.spread_deg=180", "guidance.bank_deg=49.9", "flight.crossings=4"]
 
 FAST = [
-    "sea_wind", "guidance.law=constant_bearing", "flights=1", "speed_ratio=[0.3,0.7]", "flight.duration_max_s=130",
+    "sea_wind", "guidance.law=constant_bearing", "flights=3", "speed_ratio=[0.3,0.7]", "flight.duration_max_s=130",
     "flight.crossings=0",
 ]  # fmt: skip
 """A law that does not track: the aircraft falls behind, and is commanded an airspeed at which it cannot turn at omega_max."""
