@@ -15,7 +15,9 @@ def leave_out_ground_contacts(spec: AircraftSpec, root: Path) -> None:
 
     In the air forces and moments of contacts are exactly 0: an aircraft flies the same without them, to the last bit.
     """
-    texts = (path.read_text(encoding="utf-8", errors="replace") for path in root.rglob("*.xml"))
+    # Whatever their encoding: in those of two bytes the other one is 0.
+    files = (path for path in root.rglob("*.xml") if path.is_file())
+    texts = (path.read_bytes().replace(b"\0", b"").decode("latin-1") for path in files)
     if any(_OF_CONTACTS.search(text) for text in (repr(spec), *texts)):
         return
     model_file = root / "aircraft" / spec.model / f"{spec.model}.xml"

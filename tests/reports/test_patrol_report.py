@@ -1,5 +1,7 @@
 """What the report of patrols shows, of one of the kinematic vehicle with a ship that is served and one that cannot be."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -57,9 +59,7 @@ def test_the_map_has_every_ship_and_marks_those_that_are_not_served(run):
 
 def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):
     failed = pd.DataFrame([{"flight_id": "patrol_00001", "criteria_met": False, "outcome": "failed", "message": "no room"}])
-    both = type(run)(**{name: getattr(run, name) for name in run.__dataclass_fields__} | {
-        "summary": pd.concat([run.summary, failed], ignore_index=True),
-    })  # fmt: skip
+    both = replace(run, summary=pd.concat([run.summary, failed], ignore_index=True))
     assert oracle_table(read_patrols(both)).rows[1][1:] == ["–"] * 13
     found = patrol_content(both)
     assert found.verdict.failures == ["patrol_00001: no room"]

@@ -49,10 +49,11 @@ def test_without_contacts_it_flies_the_same_to_the_last_bit(root):
     assert with_contacts[:, 0].min() > 50.0
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
 @pytest.mark.parametrize("name", ["gear/unit[1]/WOW", "contact/unit[4]/WOW", "gear/num-units", "fcs/steer-pos-deg[0]"])
-def test_a_model_that_reads_a_property_of_its_contacts_keeps_them(root, name):
+def test_a_model_that_reads_a_property_of_its_contacts_keeps_them(root, name, encoding):
     (root / "systems").mkdir(exist_ok=True)
-    (root / "systems" / "reads.xml").write_text(f"<system><property>{name}</property></system>", encoding="utf-8")
+    (root / "systems" / "reads.xml").write_text(f"<system><property>{name}</property></system>", encoding=encoding)
     leave_out_ground_contacts(SPEC, root)
     assert len(contacts(root)) == 7
 
