@@ -48,14 +48,7 @@ def vehicle_name(run: RunData, fidelity: str) -> str:
 
 
 def find_flight(run: RunData, flight_id: str) -> Flown | None:
-    """Return a flight of the study or of its comparisons, or none if it has no record; most figures ask for the same few."""
-    if flight_id not in run.found:
-        run.found[flight_id] = _read_flight(run, flight_id)
-    found: Flown | None = run.found[flight_id]
-    return found
-
-
-def _read_flight(run: RunData, flight_id: str) -> Flown | None:
+    """Return a flight of the study or of its comparisons, or none if it has no record."""
     history = run.history(flight_id)
     rows = pd.concat([frame[frame["flight_id"] == flight_id] for frame in (run.summary, run.comparison)])
     if history is None or len(history) < 2 or not len(rows):

@@ -51,7 +51,6 @@ class RunData:
     statistics : what a Monte Carlo study shows and how sure that is, or none of any other run
     draws : of each flight, what was swept or sampled
     unread : files that are there and cannot be read, as found so far
-    found : flights that a report has read and asks for again, by name
     """
 
     path: Path
@@ -63,7 +62,6 @@ class RunData:
     statistics: dict[str, Any] | None
     draws: pd.DataFrame
     unread: set[str] = field(default_factory=set)
-    found: dict[str, Any] = field(default_factory=dict, init=False, compare=False)
 
     def history(self, flight_id: str) -> pd.DataFrame | None:
         """Return a flight's time history, or None if it has none that can be read."""
