@@ -126,6 +126,7 @@ class SubsetSimulation:
     conditional_probability : fraction of a level that passes its threshold, about [-]
     levels_max : levels at most, the first one among them
     allowed : whether inputs, shape (dimension,) in the unit cube, can be sampled: the distribution is the declared one among these
+    seeded : whether the value at such inputs depends on the seed; where it does not, a new seed is taken without an evaluation
     """
 
     dimension: int
@@ -134,6 +135,7 @@ class SubsetSimulation:
     conditional_probability: float
     levels_max: int
     allowed: Callable[[Array], bool] = field(default=lambda _: True)
+    seeded: Callable[[Array], bool] = field(default=lambda _: True)
 
     def run(self, generator: np.random.Generator) -> Simulating:
         """Yield the points of a wave, take their values; infinite for a point that has none, which passes no threshold."""
@@ -173,7 +175,7 @@ class SubsetSimulation:
         found: list[Array] = []
         while len(found) < self.flights:
             normal = generator.standard_normal(self.dimension + DUMMIES)
-            if self._allowed(normal):
+            if self.allowed(self._inputs(normal)):
                 found.append(normal)
             else:
                 counts.outside += 1
@@ -227,13 +229,14 @@ class SubsetSimulation:
                     noise[i] = (seed, *noise[i][1:])
                 elif blended[i]:
                     noise[i] = _blended(noise[i], seed, step)
-        asked = np.flatnonzero(~moved | np.array([self._allowed(row) for row in normal]))
-        values = np.full(count, math.inf)
+        known = renewed & ~np.array([self.seeded(self._inputs(row)) for row in normal])
+        asked = np.flatnonzero(~known & (~moved | np.array([self.allowed(self._inputs(row)) for row in normal])))
+        values = np.where(known, states.values, math.inf)
         if len(asked):
             values[asked] = yield self._points(normal[asked], [noise[i] for i in asked])
         accepted = values <= threshold
         counts.evaluated += len(asked)
-        counts.outside += count - len(asked)
+        counts.outside += count - len(asked) - int(np.count_nonzero(known))
         counts.moved += int(np.count_nonzero(moved))
         counts.accepted += int(np.count_nonzero(accepted & moved))
         counts.blended += int(np.count_nonzero(blended))
@@ -246,8 +249,9 @@ class SubsetSimulation:
             values=np.where(accepted, values, states.values),
         )
 
-    def _allowed(self, normal: Array) -> bool:
-        return self.allowed(ndtr(normal[: self.dimension]))
+    def _inputs(self, normal: Array) -> Array:
+        inputs: Array = ndtr(normal[: self.dimension])
+        return inputs
 
     def _points(self, normal: Array, noise: Sequence[Point]) -> list[Point]:
         inputs = ndtr(normal[:, : self.dimension]).tolist()

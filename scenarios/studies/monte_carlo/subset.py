@@ -66,9 +66,16 @@ class SubsetStudy(ChosenFlightsStudy):
             conditional_probability=settings.conditional_probability,
             levels_max=settings.levels_max,
             allowed=lambda inputs: not beyond_declared(scenario, inputs.tolist()),
+            seeded=self._seeded,
         )
         seeds = np.random.SeedSequence(scenario.seed).spawn(settings.repeats)
         return {repeat: simulation.run(np.random.default_rng(seed)) for repeat, seed in enumerate(seeds)}
+
+    def _seeded(self, inputs: Array) -> bool:
+        """Return whether a flight depends on its seed: turbulence, and what exhaust and payload read, cannot be blended."""
+        drawn = {draw.key: value_at(draw, at) for draw, at in zip(self._scenario.draws, inputs.tolist(), strict=True)}
+        shaken = drawn.get("turbulence.level", self._scenario.turbulence.level) != "none"
+        return shaken or bool(self._scenario.payload.instruments) or any(key.startswith("payload.") for key in drawn)
 
     def _clearances(self, points: Sequence[Point], fly: Fly, journal: Journal) -> Array:
         """Return how far from the keep-out area flights at these points stay at their closest [m]; infinite if not measured."""

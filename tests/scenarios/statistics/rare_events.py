@@ -74,7 +74,7 @@ def noisy(probability, *, seed_share, blend_share):
     return value
 
 
-def simulated(value, seed, *, flights=500, conditional=0.1, levels=9, noise=False, allowed=lambda _: True):
+def simulated(value, seed, *, flights=500, conditional=0.1, levels=9, noise=False, **functions):
     """Return a subset simulation of a value, and how many points were evaluated."""
     simulation = SubsetSimulation(
         dimension=DIMENSION,
@@ -82,7 +82,7 @@ def simulated(value, seed, *, flights=500, conditional=0.1, levels=9, noise=Fals
         flights=flights,
         conditional_probability=conditional,
         levels_max=levels,
-        allowed=allowed,
+        **functions,
     )
     running = simulation.run(np.random.default_rng(seed))
     points, evaluated = next(running), 0

@@ -108,6 +108,18 @@ def test_the_same_noise_is_kept_while_inputs_move_and_a_renewal_moves_nothing_el
         assert sum(weight**2 for weight in point[DIMENSION + 2 :: 2]) == pytest.approx(1.0, abs=1e-12)
 
 
+def test_a_seed_that_nothing_depends_on_is_renewed_without_an_evaluation():
+    whole, evaluated = simulated(linear(1e-4), 4, noise=True)
+    found, fewer = simulated(linear(1e-4), 4, noise=True, seeded=lambda _: False)
+    assert found.below(0.0) == whole.below(0.0)
+    renewed = sum(level.renewed for level in found.levels)
+    assert renewed == sum(level.renewed_accepted for level in found.levels)
+    assert fewer == evaluated - renewed < evaluated
+    # Where it does at some of the points, those of others are evaluated.
+    _, some = simulated(linear(1e-4), 4, noise=True, seeded=lambda inputs: inputs[0] < 0.5)
+    assert fewer < some < evaluated
+
+
 def test_points_that_are_not_allowed_are_never_evaluated_and_the_rest_is_as_declared():
     seen = []
 

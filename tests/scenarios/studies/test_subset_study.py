@@ -11,11 +11,14 @@ from common.intervals import clopper_pearson
 from reports.build import build_reports
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.task import Task
 from scenarios.errors import InputError
-from scenarios.experiment.draws import sampled_flight
+from scenarios.experiment.declared import beyond_declared
+from scenarios.experiment.draws import sampled_flight, value_at
 from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.registry import run_study, study_of
 from scenarios.studies.replay import Replay
 from scenarios.world.noise import Noise
 
@@ -166,6 +169,23 @@ def test_a_point_carries_its_noise(rare):
     flight = sampled_flight("short", scenario, 0, (0.1, 0.2, 0.3, 0.6, 17.0, 5.0, 0.6, 6.0, 0.8))
     assert flight.noise == Noise(17, ((5, 0.6), (6, 0.8)))
     assert Experiment("short", scenario).request(0, (0.1, 0.2, 0.3, 0.6, 17.0, 5.0, 1.0)).seed == 17
+
+
+@pytest.mark.usefixtures("x8_design")
+@pytest.mark.parametrize("level", ["none", "light"])
+def test_a_flight_depends_on_the_seed_beside_its_blend_in_turbulence_alone(tmp_path, level):
+    study = study_of(load_study("monte_carlo", ["method=subset", "flight.duration_max_s=30"]), "monte_carlo")
+    run = RunDirectory(tmp_path / "run")
+    run.open("a", resume=False)
+    work, draws = study.work(run), study.trials["monte_carlo"].draws
+    drawn = next(i for i, draw in enumerate(draws) if draw.key == "turbulence.level")
+    inputs = [0.3] * len(draws)
+    inputs[drawn] = next(at for at in np.linspace(0.01, 0.99, 99) if value_at(draws[drawn], at) == level)
+    assert not beyond_declared(study.trials["monte_carlo"], inputs)
+    one, other = (work.fly(Task(number=0, point=(*inputs, seed, 5.0, 1.0))).tables["summary.csv"][0] for seed in (17.0, 18.0))
+    assert one["min_distance_m"] > 0.0
+    assert (one["min_distance_m"] == other["min_distance_m"]) is (level == "none")
+    assert study._seeded(np.array(inputs)) is (level != "none")
 
 
 def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, tmp_path):
