@@ -38,15 +38,19 @@ def repeated(spec, air, estimator):
     ids=["white", "noise in both", "drift", "CO2 slower", "two poles"],
 )
 def test_the_stated_noise_of_the_regression_is_its_scatter(spec):
-    air = crossings(0.25, duration=120.0, step=1.0, width=1.5)
+    air, misfits = crossings(0.25, duration=120.0, step=1.0, width=1.5), []
 
     def estimator(record):
         found = regress(make_signals(record, spec))
+        misfits.append(found.misfit)
         # The widening by the misfit is for what is not noise; here there is nothing else.
         return found.slope, found.noise / math.sqrt(max(1.0, found.misfit))
 
     slopes, stated = repeated(spec, air, estimator)
     assert np.std(slopes) == pytest.approx(np.sqrt(np.mean(stated**2)), rel=0.1)
+    # Beside the noise that is expected; a drift is no part of it. The slope takes 1 of 110 degrees of freedom.
+    drifts = spec.known("so2").random_walk > 0.0
+    assert np.mean(misfits) > 2.0 if drifts else np.mean(misfits) == pytest.approx(1.0, abs=0.05)
 
 
 def test_noise_in_co2_does_not_attenuate_the_slope():
