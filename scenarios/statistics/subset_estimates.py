@@ -9,9 +9,10 @@ correlation makes it narrow. Tests measure how often it holds what is true.
 
 Where a simulation has reached no event, its estimate is 0 and its logarithm does not exist. There the upper end is what
 it leaves open: with 0 of n chains of its last level in the event, 1 - (1 - confidence)^(1/n) of that level's
-probability, as Clopper and Pearson have it. States of one chain are alike, so that chains count, not states. If no
-simulation has reached any, all are judged at the threshold that even the least of them has reached: where some came
-much nearer than others, the probability of that threshold scatters, and the bound is the larger.
+probability, as Clopper and Pearson have it. States of one chain are alike, and so are chains that began at copies of one
+state: n is the number of different states that they began at. If no simulation has reached any, all are judged at the
+threshold that even the least of them has reached: where some came much nearer than others, the probability of that
+threshold scatters, and the bound is the larger.
 """
 
 import math
@@ -109,7 +110,7 @@ def _left_open(simulations: Sequence[Simulation], estimates: Array, variations: 
     What may go wrong is shared equally between the probability of the last levels and the fraction of these.
     """
     half = 0.5 + 0.5 * confidence
-    chains = [int(simulation.levels[-1].chains.max()) + 1 for simulation in simulations]
+    chains = [simulation.levels[-1].beginnings for simulation in simulations]
     if not estimates.any():
         common = max(simulation.levels[-1].below for simulation in simulations)
         if math.isinf(common):

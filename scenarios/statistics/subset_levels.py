@@ -52,6 +52,12 @@ class Level:
     scale: float
     noise_scale: float
 
+    @property
+    def beginnings(self) -> int:
+        """Return from how many different states its chains began: of states that passed, some are copies of one that stayed."""
+        _, first = np.unique(self.chains, return_index=True)
+        return len(np.unique(np.column_stack([self.points[first], self.values[first]]), axis=0))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Simulation:

@@ -2,12 +2,14 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
 from scipy.special import ndtri
 
+from common.intervals import upper_bound
 from scenarios.statistics.subset_estimates import curve, distance, input_shifts, near_event, noise_floor, rare_probability
 from scenarios.statistics.subset_statistics import subset_statistics
 from tests.scenarios.statistics.rare_events import DIMENSION, linear, noisy, simulated
@@ -42,9 +44,29 @@ def test_where_no_simulation_reaches_the_event_the_bound_says_what_is_left_open(
     simulations = repeats_of(linear(1e-12), 1, flights=200, levels=4)
     found = rare_probability(simulations, 0.95)
     assert (found.estimate, found.low, found.reached) == (0.0, 0.0, 0)
-    # The last level has about 1e-3, and 0 of 5 x 20 chains in the event: 1 - 0.025^(1/100) is 0.036 at half of what may go wrong.
+    # The last level has about 1e-3, and 0 of at most 5 x 20 chains in the event: 1 - 0.025^(1/100) is 0.036 at half of what may go
+    # wrong.
     assert 1e-3 * 0.036 < found.upper < 1e-3 * 0.036 * 10.0
     assert found.upper < found.high
+
+
+def test_chains_that_began_at_copies_of_one_state_count_as_one():
+    simulations = repeats_of(linear(1e-12), 1, flights=200, levels=4)
+
+    def begun_at_one(simulation):
+        last = simulation.levels[-1]
+        at = np.arange(len(last.values))
+        at[: last.chains.max() + 1] = 0
+        return replace(simulation, levels=(*simulation.levels[:-1], replace(last, points=last.points[at], values=last.values[at])))
+
+    copies = [begun_at_one(one) for one in simulations]
+    begun, of_copies = ([one.levels[-1].beginnings for one in those] for those in (simulations, copies))
+    assert all(10 <= count <= 20 for count in begun)
+    assert of_copies == [1] * REPEATS
+    found, without = rare_probability(copies, 0.95), rare_probability(simulations, 0.95)
+    for bound, confidence in (("upper", 0.975), ("high", 0.9875)):
+        left_open = [upper_bound(0, sum(counts), confidence) for counts in (of_copies, begun)]
+        assert getattr(found, bound) / getattr(without, bound) == pytest.approx(left_open[0] / left_open[1], rel=1e-9)
 
 
 def test_a_simulation_that_reaches_nothing_beside_others_that_do_widens_the_interval_to_zero():
