@@ -36,7 +36,7 @@ def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> flo
     ------
     ValueError : ``events`` is not within 0 to ``trials``, or ``confidence`` not between 0 and 1
     """
-    # The beta distribution's quantile; scipy.stats, which calls the same function, takes half a second to import.
+    # The beta distribution's quantile; scipy.stats, which calls the same function, takes a third of a second to import.
     from scipy.special import betaincinv
 
     _check(confidence)

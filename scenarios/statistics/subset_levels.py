@@ -28,7 +28,7 @@ class Level:
     evaluated : number of points whose values were asked for
     moved, accepted : moves of the inputs, and those that were accepted
     blended, blended_accepted : moves of the blended noise, and those that were accepted
-    renewed, renewed_accepted : renewals of the seed, and those that were accepted
+    renewed, renewed_accepted : renewals of a seed on which the value depends, and those that were accepted
     outside : moves to points that are not allowed, which were not evaluated
     scale, noise_scale : of the steps of inputs and of the blend at the end of the level [-]
     """

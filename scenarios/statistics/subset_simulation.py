@@ -241,8 +241,8 @@ class SubsetSimulation:
         counts.accepted += int(np.count_nonzero(accepted & moved))
         counts.blended += int(np.count_nonzero(blended))
         counts.blended_accepted += int(np.count_nonzero(accepted & blended))
-        counts.renewed += int(np.count_nonzero(renewed))
-        counts.renewed_accepted += int(np.count_nonzero(accepted & renewed))
+        counts.renewed += int(np.count_nonzero(renewed & ~known))
+        counts.renewed_accepted += int(np.count_nonzero(accepted & renewed & ~known))
         return _States(
             normal=np.where(accepted[:, None], normal, states.normal),
             noise=[new if better else old for new, old, better in zip(noise, states.noise, accepted, strict=True)],

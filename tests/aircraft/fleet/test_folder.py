@@ -248,6 +248,15 @@ def test_a_model_that_ends_jsbsims_process_and_a_property_that_does_not_exist_ar
     assert "\n" not in str(caught.value)
 
 
+def test_ground_contacts_are_looked_at_though_no_design_needs_them(heavy):
+    text = (heavy / "heavy.xml").read_text(encoding="utf-8")
+    begun = text.index("<location", text.index("<contact"))
+    ended = text.index("</location>", begun) + len("</location>")
+    (heavy / "heavy.xml").write_text(text[:begun] + text[ended:], encoding="utf-8")
+    with pytest.raises(AircraftError, match=r"JSBSim refused its model|JSBSim ends the whole process"):
+        check_user_aircraft(find_spec(str(heavy)))
+
+
 def test_an_error_while_the_model_runs_is_one_line_without_a_traceback_that_names_the_model_file(heavy):
     # In its first time step JSBSim raises an error of its own for an input that nothing sets.
     gain = '<pure_gain name="x/y"><input>no/such</input><gain>1</gain></pure_gain>'
