@@ -72,7 +72,7 @@ def _raised(lines: list[str]) -> str:
 
 
 def _look(spec: AircraftSpec) -> None:
-    # With its ground contacts, which are left out of what flies for a design: a fault in them would show only in flight.
+    # With its ground contacts, which designs leave out: a fault in them would show only in flight.
     with tempfile.TemporaryDirectory() as folder:
         copy_model(spec.files, Path(folder))
         fdm = Fdm(spec, Path(folder))

@@ -155,7 +155,7 @@ class SubsetSimulation:
                     threshold=0.0 if last else threshold,
                     probability=float(np.mean(event)),
                     variation=variation(event, chains),
-                    points=ndtr(states.normal[:, : self.dimension]),
+                    points=self._inputs(states.normal),
                     dummies=ndtr(states.normal[:, self.dimension :]),
                     values=states.values,
                     chains=chains,
@@ -229,8 +229,10 @@ class SubsetSimulation:
                     noise[i] = (seed, *noise[i][1:])
                 elif blended[i]:
                     noise[i] = _blended(noise[i], seed, step)
-        known = renewed & ~np.array([self.seeded(self._inputs(row)) for row in normal])
-        asked = np.flatnonzero(~known & (~moved | np.array([self.allowed(self._inputs(row)) for row in normal])))
+        inputs = self._inputs(normal)
+        known = np.array([new and not self.seeded(at) for new, at in zip(renewed, inputs, strict=True)])
+        renewed &= ~known
+        asked = np.flatnonzero(renewed | blended | (moved & np.array([self.allowed(at) for at in inputs])))
         values = np.where(known, states.values, math.inf)
         if len(asked):
             values[asked] = yield self._points(normal[asked], [noise[i] for i in asked])
@@ -241,8 +243,8 @@ class SubsetSimulation:
         counts.accepted += int(np.count_nonzero(accepted & moved))
         counts.blended += int(np.count_nonzero(blended))
         counts.blended_accepted += int(np.count_nonzero(accepted & blended))
-        counts.renewed += int(np.count_nonzero(renewed & ~known))
-        counts.renewed_accepted += int(np.count_nonzero(accepted & renewed & ~known))
+        counts.renewed += int(np.count_nonzero(renewed))
+        counts.renewed_accepted += int(np.count_nonzero(accepted & renewed))
         return _States(
             normal=np.where(accepted[:, None], normal, states.normal),
             noise=[new if better else old for new, old, better in zip(noise, states.noise, accepted, strict=True)],
@@ -250,12 +252,11 @@ class SubsetSimulation:
         )
 
     def _inputs(self, normal: Array) -> Array:
-        inputs: Array = ndtr(normal[: self.dimension])
+        inputs: Array = ndtr(normal[..., : self.dimension])
         return inputs
 
     def _points(self, normal: Array, noise: Sequence[Point]) -> list[Point]:
-        inputs = ndtr(normal[:, : self.dimension]).tolist()
-        return [(*at, *of_noise) for at, of_noise in zip(inputs, noise, strict=True)]
+        return [(*at, *of_noise) for at, of_noise in zip(self._inputs(normal).tolist(), noise, strict=True)]
 
 
 def _threshold(values: Array, passing: int) -> float:

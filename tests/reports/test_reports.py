@@ -14,9 +14,8 @@ from matplotlib.figure import Figure
 from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built, named_charts
 
 from reports.build import build_reports
-from reports.document.axes import in_kilometres
 from reports.document.blocks import FlightPicker, Table
-from reports.document.chart import Chart, Line, Panel
+from reports.document.chart import Chart
 from reports.document.tables import limit
 from reports.errors import ReportError
 from reports.registry import content
@@ -208,31 +207,6 @@ def test_poles_are_shown_as_far_out_as_the_aircraft_has_them(copy):
     # A tenth beyond the farthest, to the left and with 0.45 of that either way.
     assert panel.x_range == pytest.approx((-3.3, 0.165), rel=1e-9)
     assert panel.y_range == pytest.approx((-1.485, 1.485), rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("reach", "equal", "labels"),
-    [
-        ((9_999.0, 500.0), True, ("East [m]", "North [m]")),
-        # Of two axes that are equally long, both.
-        ((500.0, 10_000.0), True, ("East [km]", "North [km]")),
-        ((500.0, 10_000.0), False, ("East [m]", "North [km]")),
-    ],
-)
-def test_far_flights_are_shown_in_kilometres(reach, equal, labels):
-    line = Line(x=np.array([-reach[0], 0.0]), y=np.array([0.0, -reach[1]]), label="", colour="blue")
-    nothing = Line(x=np.array([]), y=np.array([]), label="", colour="blue")
-    panel = in_kilometres(Panel(x_label="East [m]", y_label="North [m]", lines=[nothing, line], equal=equal))
-    assert (panel.x_label, panel.y_label) == labels
-    shown = [1000.0 if "[km]" in label else 1.0 for label in labels]
-    assert panel.lines[1].x[0] * shown[0] == pytest.approx(-reach[0], rel=1e-12)
-    assert panel.lines[1].y[1] * shown[1] == pytest.approx(-reach[1], rel=1e-12)
-
-
-def test_what_has_another_unit_than_metres_stays_as_it_is():
-    time = Line(x=np.array([0.0, 20_000.0]), y=np.array([0.0, 1.0]), label="", colour="blue")
-    panel = Panel(x_label="Time [s]", y_label="Distance [m]", lines=[time])
-    assert in_kilometres(panel) is panel
 
 
 @pytest.mark.parametrize(("value", "text"), [(1.5, "1.5"), (40.0925, "40.1"), (1234.5, "1230"), (0.3, "0.3"), (0.01, "0.01")])

@@ -12,7 +12,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Task
 from scenarios.experiment.declared import beyond_declared
-from scenarios.experiment.draws import value_at
+from scenarios.experiment.draws import value_at, values_at
 from scenarios.schema.scenario import Scenario
 from scenarios.statistics.estimates import COLUMNS
 from scenarios.statistics.subset_estimates import RareProbability, input_shifts, near_event, rare_probability
@@ -73,7 +73,7 @@ class SubsetStudy(ChosenFlightsStudy):
 
     def _seeded(self, inputs: Array) -> bool:
         """Return whether a flight depends on its seed: turbulence, and what exhaust and payload read, cannot be blended."""
-        drawn = {draw.key: value_at(draw, at) for draw, at in zip(self._scenario.draws, inputs.tolist(), strict=True)}
+        drawn = values_at(self._scenario.draws, inputs.tolist())
         shaken = drawn.get("turbulence.level", self._scenario.turbulence.level) != "none"
         return shaken or bool(self._scenario.payload.instruments) or any(key.startswith("payload.") for key in drawn)
 

@@ -1,4 +1,4 @@
-"""Marks of logarithmic axes, and what a caption says of curves that leave their panels."""
+"""Marks of logarithmic axes, lengths in kilometres, and what a caption says of curves that leave their panels."""
 
 import io
 from dataclasses import replace
@@ -160,3 +160,28 @@ def test_limits_of_values_that_differ_are_left_to_the_axis():
     assert about_values([np.array([0.5, 0.501])]) is None
     assert about_values([np.zeros(3)]) is None
     assert about_values([]) is None
+
+
+@pytest.mark.parametrize(
+    ("reach", "equal", "labels"),
+    [
+        ((9_999.0, 500.0), True, ("East [m]", "North [m]")),
+        # Of two axes that are equally long, both.
+        ((500.0, 10_000.0), True, ("East [km]", "North [km]")),
+        ((500.0, 10_000.0), False, ("East [m]", "North [km]")),
+    ],
+)
+def test_far_flights_are_shown_in_kilometres(reach, equal, labels):
+    line = Line(x=np.array([-reach[0], 0.0]), y=np.array([0.0, -reach[1]]), label="", colour="blue")
+    nothing = Line(x=np.array([]), y=np.array([]), label="", colour="blue")
+    panel = in_kilometres(Panel(x_label="East [m]", y_label="North [m]", lines=[nothing, line], equal=equal))
+    assert (panel.x_label, panel.y_label) == labels
+    shown = [1000.0 if "[km]" in label else 1.0 for label in labels]
+    assert panel.lines[1].x[0] * shown[0] == pytest.approx(-reach[0], rel=1e-12)
+    assert panel.lines[1].y[1] * shown[1] == pytest.approx(-reach[1], rel=1e-12)
+
+
+def test_what_has_another_unit_than_metres_stays_as_it_is():
+    time = Line(x=np.array([0.0, 20_000.0]), y=np.array([0.0, 1.0]), label="", colour="blue")
+    panel = Panel(x_label="Time [s]", y_label="Distance [m]", lines=[time])
+    assert in_kilometres(panel) is panel

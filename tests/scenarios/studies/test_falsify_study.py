@@ -17,7 +17,6 @@ from reports.run.run_data import read_run
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.runner import fly_study
-from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.studies.falsification import study as falsification
 from scenarios.studies.registry import run_study
@@ -285,26 +284,3 @@ def test_how_well_sulphur_is_measured_is_not_told_from_flights_that_were_searche
     assert run(search, tmp_path / "run", *sniffing).summary.done
     assert "fsc_percent" in pd.read_csv(tmp_path / "run" / "summary.csv")
     assert not (tmp_path / "run" / "sulphur.json").exists()
-
-
-def test_a_search_without_anything_to_search_is_refused(search, tmp_path):
-    with pytest.raises(InputError, match="draws is empty; give the keys to search over"):
-        load_study(str(search), ["draws=[]"])
-
-
-@pytest.mark.parametrize(
-    ("override", "words"),
-    [
-        ("search.generations=5", r"'search\.generations' has no effect here: .*: leave search\.time_s out"),
-        ("search.methods=['locl']", r"unknown search method 'locl'; did you mean 'local'\?"),
-        ("search.methods=[]", r"search\.methods: value is \[\]"),
-        ("search.methods=['local','local']", "name each method once"),
-        ("search.mutation=[1.0,0.5]", "its first value must not exceed its second"),
-        ("search={population=10000, generations=100}", "make 1010000 flights, with search.confirmations of each numbered up to"),
-        ("search.time_s=0", r"search\.time_s"),
-    ],
-)
-def test_a_search_that_cannot_be_is_refused_in_one_line(search, override, words):
-    with pytest.raises(InputError, match=words) as refused:
-        load_study(str(search), [override, *(["search.time_s=60"] if "generations=5" in override else [])])
-    assert "\n" not in str(refused.value)

@@ -1,6 +1,7 @@
 """A search that finds nothing to fly ends, and says so in one line."""
 
 import itertools
+import re
 from types import SimpleNamespace
 
 import pytest
@@ -85,3 +86,23 @@ def test_a_number_of_flights_is_refused_with_what_a_search_flies():
     )
     scenario = load_study("falsify", keys)
     assert scenario.search.flights_max == 16 * (2 + 1)
+
+
+def test_a_search_without_anything_to_search_is_refused(tmp_path):
+    assert "draws is empty; give the keys to search over" in refused(tmp_path, "draws=[]")
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("search.generations=5", r"'search\.generations' has no effect here: .*: leave search\.time_s out"),
+        ("search.methods=['locl']", r"unknown search method 'locl'; did you mean 'local'\?"),
+        ("search.methods=[]", r"search\.methods: value is \[\]"),
+        ("search.methods=['local','local']", "name each method once"),
+        ("search.mutation=[1.0,0.5]", "its first value must not exceed its second"),
+        ("search={population=10000, generations=100}", "make 1010000 flights, with search.confirmations of each numbered up to"),
+        ("search.time_s=0", r"search\.time_s"),
+    ],
+)
+def test_a_search_that_cannot_be_is_refused_in_one_line(tmp_path, override, words):
+    assert re.search(words, refused(tmp_path, override, *(["search.time_s=60"] if "generations=5" in override else [])))
