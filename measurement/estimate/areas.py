@@ -10,6 +10,7 @@ import numpy as np
 from measurement.estimate.fit.signals import shares_of, used_gases
 from measurement.estimate.passes import Pass
 from measurement.estimate.record import Record
+from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array, parallel
 from measurement.sniffer.spec import SnifferSpec
 
@@ -63,11 +64,20 @@ def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
     if co2 <= 0.0:
         return Areas(ratio=math.nan, noise=math.nan, share=math.nan, separate=math.nan, interval_s=interval)
     ratio = sum(counted[gas][0] * areas[gas] for gas in gases) / co2
-    noises = {gas: (counted[gas][0] - ratio * counted[gas][1]) * instrument.known(gas).noise for gas in gases}
-    variance = sum(noises[gas] ** 2 * float(weights[gas] @ weights[gas]) for gas in gases)
+    variance = sum(
+        (counted[gas][0] - ratio * counted[gas][1]) ** 2 * _variance(weights[gas], instrument.known(gas), record.step)
+        for gas in gases
+    )
     remains = {gas: max(float(weights[gas] @ _puffs(record, instrument, passes, gas)) / co2, _SHARE_LEAST) for gas in gases}
     separate = sum(counted[gas][0] * areas[gas] / remains[gas] for gas in gases) / co2
     return Areas(ratio=ratio, noise=math.sqrt(variance) / co2, share=remains["so2"], separate=separate, interval_s=interval)
+
+
+def _variance(weights: Array, channel: Channel, step: float) -> float:
+    """Return the variance of a weighted sum of readings, by noise and by the drift of their zero."""
+    # A step of the drift is in all readings that follow it.
+    later = np.cumsum(weights[::-1])
+    return channel.noise**2 * float(weights @ weights) + channel.random_walk**2 * step * float(later @ later)
 
 
 def _windows(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> dict[str, Array]:

@@ -15,7 +15,7 @@ from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Signals, make_signals, used_gases
 from measurement.estimate.passes import SNR_LEAST, Pass, co2_excesses, find_passes, readings_noise
-from measurement.estimate.quality import judged_quality, quiet, stranger
+from measurement.estimate.quality import judged_quality, late, noise_alone, quiet, stranger
 from measurement.estimate.record import Record, checked_record
 from measurement.estimate.result import Figures, FscEstimate, Method
 from measurement.estimate.verdict import LIMITS_PERCENT, interval, judged
@@ -29,6 +29,9 @@ CARBON_LEAST, CARBON_MOST = 0.5, 0.95
 
 OVERLAP_LEAST = 0.95
 """Least share of the truth that areas must read, by how their passes overlap in the slow channel: 2.0 t90 between passes."""
+
+EXPLAINED_LEAST = 0.5
+"""Share of a misfit that another delay has to explain for it to be the true one."""
 
 _OUTSIDE = 0.1
 """Share of the samples with the least CO2, by which the level outside the plume is shown."""
@@ -71,7 +74,7 @@ def estimate(
     """
     check_parameters(method, carbon, limits_percent)
     record = checked_record(readings, instrument)
-    unlikely = quiet(record.scatter("so2"), instrument.known("so2"))
+    unlikely = [problem for gas in _telling(record, instrument) for problem in quiet(record.scatter(gas), instrument.known(gas))]
     noise = readings_noise(record, instrument)
     instrument = replace(
         instrument, channels=tuple(replace(channel, noise=noise.get(channel.gas, channel.noise)) for channel in instrument.channels)
@@ -83,6 +86,12 @@ def estimate(
     else:
         ratio = _regressed(record, instrument) if method == "regression" else _areas(record, instrument, passes)
     return _told(record, passes, ratio, method, carbon, tuple(limits_percent), [*problems, *ratio.problems])
+
+
+def _telling(record: Record, instrument: SnifferSpec) -> list[str]:
+    """Return SO2, and the gases of the record that its channel responds to."""
+    so2 = instrument.known("so2")
+    return ["so2", *(gas for gas in used_gases(record) if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0))]
 
 
 def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]) -> None:
@@ -129,8 +138,36 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
 
     errors = common_errors(alignment.instrument, used_gases(record), anew)
     common = {**errors.parts, "response": math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation)}
-    problems = stranger(found.misfit, found.residual_energy, errors.residual_energy, len(record.time))
+    strange = stranger(found.misfit, found.residual_energy, errors.residual_energy, len(record.time))
+    problems = (*_out_of_time(record, instrument, found.misfit), *strange)
     return _Ratio(ratio=found.slope, noise=found.noise, misfit=found.misfit, common=common, alignment=alignment, problems=problems)
+
+
+def _out_of_time(record: Record, instrument: SnifferSpec, misfit: float) -> tuple[str, ...]:
+    """Return the problem of SO2 and CO2 that do not fit in time, as where two loggers have two clocks.
+
+    Far from the true delay the slope is near 0 and changes little: an error that small steps of the delay do not show. So the
+    delay is sought over its whole range, as if it were not stated; where noise alone explains the residuals it is not needed.
+    """
+    so2 = instrument.known("so2")
+    if math.isinf(so2.delay_sd_s) or not misfit > 0.0 or noise_alone(misfit, len(record.time)):
+        return ()
+    free = align(record, instrument.with_channel(replace(so2, delay_sd_s=math.inf)))
+    # A clean fuel leaves what NO and NO2 were not corrected for, which may follow CO2 of another pass a little better than its own.
+    if not regress(make_signals(record, free.instrument)).misfit - 1.0 < (1.0 - EXPLAINED_LEAST) * (misfit - 1.0):
+        return ()
+
+    def anew(moved: SnifferSpec) -> tuple[float, Array]:
+        return _delay(align(record, moved, start=free.instrument).instrument), np.zeros(1)
+
+    parts = common_errors(free.instrument, used_gases(record), anew).parts
+    deviation = math.hypot(so2.delay_sd_s, free.delay_sd_s, *parts.values())
+    return late(_delay(instrument), _delay(free.instrument), deviation)
+
+
+def _delay(instrument: SnifferSpec) -> float:
+    """Return the delay of SO2 after CO2 [s]."""
+    return instrument.known("so2").delay_s - instrument.known("co2").delay_s
 
 
 def _areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _Ratio:
@@ -194,6 +231,7 @@ def _told(
         deviation=total,
         agreement=groups.agreement,
         limit=min(limits),
+        responses_stated=all(instrument.known("so2").cross.get(gas) for gas in instrument.known("so2").cross_sd),
     )
     low, high = interval(fsc, total)
     return FscEstimate(
@@ -217,7 +255,7 @@ def _told(
         agreement=groups.agreement,
         so2_t90_s=instrument.known("so2").t90_s,
         so2_t90_sd_s=ratio.alignment.t90_sd_s,
-        delay_s=instrument.known("so2").delay_s - instrument.known("co2").delay_s,
+        delay_s=_delay(instrument),
         delay_sd_s=ratio.alignment.delay_sd_s,
         signals=samples,
     )

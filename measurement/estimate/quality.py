@@ -20,7 +20,7 @@ AGREEMENT_LEAST = 0.01
 """Least probability that passes of one fuel differ as much, for class A."""
 
 NOISE_USUAL = 1.0
-"""Noise of an SO2 channel of which none is stated [ppb]: the presets have 0.3 to 7.5 ppb."""
+"""Noise of a channel of SO2, NO or NO2 of which none is stated [ppb]: the presets have 0.3 to 7.5 ppb."""
 
 QUIET_SHARE = 0.01
 """Readings that scatter by less than this share of their noise are in another unit, or their sensor is dead.
@@ -46,6 +46,7 @@ def judged_quality(
     deviation: float,
     agreement: float,
     limit: float,
+    responses_stated: bool,
 ) -> tuple[Quality, tuple[str, ...]]:
     """Return the quality class and why it is not A.
 
@@ -56,6 +57,7 @@ def judged_quality(
     fsc, deviation : result and its standard uncertainty [% m/m]
     agreement : probability that passes differ as much
     limit : lowest limit [% m/m]
+    responses_stated : whether it is known what the SO2 channel makes of NO and NO2
     """
     rejected = list(problems)
     if passes and not math.isfinite(fsc):
@@ -77,7 +79,8 @@ def judged_quality(
     if snr < SNR_GOOD:
         reasons.append(f"CO2 signal to noise is {snr:.1f}; class A needs {SNR_GOOD:g}")
     if deviation > UNCERTAINTY_GOOD * limit:
-        reasons.append(f"standard uncertainty is {deviation:.3f} %; class A needs {UNCERTAINTY_GOOD * limit:.3f} %")
+        why = "" if responses_stated else ", as the response of SO2 to NO and NO2 is not stated (cross)"
+        reasons.append(f"standard uncertainty is {deviation:.3f} %{why}; class A needs {UNCERTAINTY_GOOD * limit:.3f} %")
     if passes < PASSES_GOOD:
         reasons.append(f"{passes} {'pass' if passes == 1 else 'passes'} through the plume; class A needs {PASSES_GOOD}")
     if math.isfinite(agreement) and agreement < AGREEMENT_LEAST:
@@ -86,12 +89,12 @@ def judged_quality(
 
 
 def quiet(scatter: float, channel: Channel) -> tuple[str, ...]:
-    """Return the problem of SO2 that scatters less than its sensor can, if it does: a clean fuel has no SO2, but as much noise.
+    """Return the problem of a gas that scatters less than its sensor can, if it does: in clean air there is as much noise.
 
     Parameters
     ----------
     scatter : standard deviation of the readings that they show themselves [ppb]
-    channel : of SO2, as the analyst knows it; rounding to a step that is larger than its noise may hide that
+    channel : of SO2, NO or NO2, as the analyst knows it; rounding to a step that is larger than its noise may hide that
     """
     stated = not math.isnan(channel.noise)
     noise = channel.noise if stated else NOISE_USUAL
@@ -99,7 +102,10 @@ def quiet(scatter: float, channel: Channel) -> tuple[str, ...]:
         return ()
     told = f"scatters by {scatter:.2g} ppb from reading to reading" if scatter > 0.0 else "reads the same throughout"
     expected = f"its noise is {noise:g} ppb" if stated else f"the noise of such sensors is about {noise:g} ppb"
-    return (f"SO2 {told}, and {expected}: it is in another unit (of ppm, give a [scale] of so2 = 1000.0), or its sensor is dead",)
+    return (
+        f"{channel.gas.upper()} {told}, and {expected}: it is in another unit (of ppm, give a [scale] of {channel.gas} = 1000.0),"
+        " or its sensor is dead",
+    )
 
 
 def stranger(misfit: float, residual_energy: float, instrument_energy: float, samples: int) -> tuple[str, ...]:
@@ -114,10 +120,31 @@ def stranger(misfit: float, residual_energy: float, instrument_energy: float, sa
     if not misfit > 0.0 or residual_energy == 0.0:
         return ()
     unexplained = 1.0 / (1.0 / misfit + STRANGE_SIGMA**2 * instrument_energy / residual_energy)
-    # The mean square of white noise over so many samples has a relative standard deviation of sqrt(2/samples).
-    if unexplained <= 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / samples):
+    if noise_alone(unexplained, samples):
         return ()
     return (
         f"residuals are {math.sqrt(misfit):.1f} times the noise, more than the stated uncertainty of the instrument explains:"
         " check its response, delay, noise and other gases",
+    )
+
+
+def noise_alone(misfit: float, samples: int) -> bool:
+    """Return whether the noise of so many samples explains a misfit."""
+    # The mean square of white noise over so many samples has a relative standard deviation of sqrt(2/samples).
+    return misfit <= 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / samples)
+
+
+def late(stated: float, shown: float, deviation: float) -> tuple[str, ...]:
+    """Return the problem of a delay of SO2 after CO2 that is not the stated one, if it is not.
+
+    Parameters
+    ----------
+    stated, shown : by the instrument's figures, and as the readings fit best [s]
+    deviation : standard deviation of the difference [s]
+    """
+    if not abs(shown - stated) > STRANGE_SIGMA * deviation:
+        return ()
+    return (
+        f"SO2 fits best {shown - stated:+.1f} s from its stated delay after CO2, with a standard deviation of {deviation:.1f} s:"
+        " check t90 and delay of both, and that their columns were logged by one clock",
     )

@@ -33,6 +33,9 @@ _SHORTEST = 8
 _SATURATED_MAX, _MISSING_MAX = 0.0, 0.1
 """Shares of saturated and of missing samples from which on there is no verdict."""
 
+_CUT_LEAST, _CUT_OVER, _CUT_STEPS = 8, 3.0, 5
+"""Readings at the largest one, and how often as many as at any of the next steps below it, that show where readings are cut off."""
+
 _SAME = 1e-9
 """Readings that differ by less, relative to the largest, are the same."""
 
@@ -193,6 +196,16 @@ def _resolution(values: Array) -> float:
     return float(changes.min()) if len(changes) else 0.0
 
 
+def _cut(values: Array) -> int:
+    """Return how many readings are cut off at the largest: noise and plumes end in fewer and fewer, and not in a heap."""
+    known, step = values[np.isfinite(values)], _resolution(values)
+    if not step:
+        return 0
+    below = np.round((known.max() - known) / step)
+    heap, *near = (int(np.sum(below == steps)) for steps in range(_CUT_STEPS + 1))
+    return heap if heap >= _CUT_LEAST and heap > _CUT_OVER * max(near) else 0
+
+
 def _scatter(segments: Sequence[Array], step: float) -> float:
     """Return the standard deviation of readings in these steps that their second differences show.
 
@@ -240,6 +253,10 @@ def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferS
         full = float(np.mean(column >= channel.range_high - 0.5 * channel.resolution)) if math.isfinite(channel.range_high) else 0.0
         if full > _SATURATED_MAX:
             problems.append(f"{name} is saturated at {channel.range_high:g} {unit} in {100.0 * full:.1f} % of the readings")
+        elif cut := _cut(column):
+            problems.append(
+                f"{name} reads {np.nanmax(column):g} {unit}, and never more, {cut} times, and hardly ever just less: it is cut off"
+            )
         floor = lowest_reading(gas, values, instrument)
         if (least := float(np.nanmin(column))) < floor:
             problems.append(f"{name} reads {least:g} {unit}, which its noise and zero do not explain (from {floor:.0f} {unit})")

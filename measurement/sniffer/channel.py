@@ -15,7 +15,7 @@ class Channel:
 
     It reads ``gain (c + sum of cross k c_k) (1 + pressure_effect dp) + zero``, delayed, through its lag, with white noise and a
     random walk, rounded and cut at its range. An ending ``_sd`` is the standard deviation with which
-    the analyst knows a property; infinite where it is not known at all, and then it is estimated from the record.
+    the analyst knows a property; infinite for t90 and delay of SO2 that are not known at all: they are estimated from the record.
 
     Attributes
     ----------
@@ -58,8 +58,10 @@ class Channel:
         time_constants(self.t90_s, self.second_pole)
         for name in ("t90_sd", "delay_s", "delay_sd_s", "random_walk", "resolution", "gain_sd", "zero_sd"):
             value = getattr(self, name)
-            if not value >= 0.0 or (math.isinf(value) and name not in ("t90_sd", "delay_sd_s")):
-                raise MeasurementError(f"{name} of {self.gas} is {value:g}; it must be 0 or more and finite")
+            estimated = self.gas == "so2" and name in ("t90_sd", "delay_sd_s")
+            if not value >= 0.0 or (math.isinf(value) and not estimated):
+                only = "; t90 and delay of SO2 alone can be estimated from a record" if math.isinf(value) else ""
+                raise MeasurementError(f"{name} of {self.gas} is {value:g}; it must be 0 or more and finite{only}")
         if self.noise < 0.0 or math.isinf(self.noise):
             raise MeasurementError(f"noise of {self.gas} is {self.noise:g} {UNITS[self.gas]}; it must be 0 or more")
         if not 0.1 <= self.gain <= 10.0:

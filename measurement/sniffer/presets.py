@@ -14,7 +14,7 @@ from measurement.sniffer.spec import SnifferSpec
 
 _FOLDER = "presets"
 
-_UNKNOWN = {
+_UNKNOWN: dict[str, dict[str, Any]] = {
     "so2": {
         "t90_s": 20.0,
         "t90_sd": math.inf,
@@ -23,12 +23,20 @@ _UNKNOWN = {
         "noise": math.nan,
         "gain_sd": 0.05,
         "zero_sd": 10.0,
+        "cross": {},
+        "cross_sd": {"no": 0.02, "no2": 0.8},
     },
     "co2": {"t90_s": 3.0, "t90_sd": 0.5, "delay_s": 0.0, "delay_sd_s": 0.0, "noise": math.nan, "gain_sd": 0.03},
     "no": {"t90_s": 20.0, "t90_sd": 0.3, "delay_s": 0.0, "delay_sd_s": 2.0, "noise": math.nan, "gain_sd": 0.1, "zero_sd": 10.0},
     "no2": {"t90_s": 30.0, "t90_sd": 0.3, "delay_s": 0.0, "delay_sd_s": 2.0, "noise": math.nan, "gain_sd": 0.1, "zero_sd": 10.0},
 }
-"""What is taken of a channel where its table says nothing (assumptions): times of SO2 are then estimated from the record."""
+"""What is taken of a channel where its table says nothing (assumptions): times of SO2 are then estimated from the record.
+
+Of the presets' SO2 channels the response to NO is 0 to 3 %, and that to NO2 0, -16 % with a filter, and -160 % without one.
+"""
+
+_CROSS_KNOWN = 0.2
+"""Relative standard deviation of a response to another gas that is given without one, as of the electrochemical preset's to NO2."""
 
 
 def sensor_presets() -> tuple[str, ...]:
@@ -53,7 +61,8 @@ def sensor_preset(name: str) -> SnifferSpec:
 def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
     """Return a sniffer from a table with ``title``, ``rate_hz``, ``source`` and a table per gas in ``channels``.
 
-    Keys of a channel are the fields of ``Channel`` without its gas. Those that are left out are taken as not known.
+    Keys of a channel are the fields of ``Channel`` without its gas. Those that are left out are taken as not known. Where there
+    is a ``cross`` the channel responds to no other gases than those.
 
     Raises
     ------
@@ -92,6 +101,8 @@ def _channel(gas: str, table: Any, name: str) -> Channel:
             given[key] = {other: _number(share, key, where) for other, share in value.items()}
         else:
             given[key] = _number(value, key, where)
+    if "cross" in table and "cross_sd" not in table:
+        given |= {"cross_sd": {other: _CROSS_KNOWN * abs(share) for other, share in given["cross"].items()}}
     return Channel(gas=gas, **given)
 
 

@@ -157,7 +157,7 @@ def test_gases_that_are_not_measured_widen_the_interval():
 
 @pytest.mark.parametrize(("emitted", "wider"), [(1.5, True), (0.25, False)])
 def test_without_a_stated_response_nox_tells_only_how_much_of_it_there_is(emitted, wider):
-    # The response is 0 with a standard deviation of 0.01: readings of NO correct nothing, and what they may have done is in
+    # The response is 0 with a standard deviation of 0.02: readings of NO correct nothing, and what they may have done is in
     # proportion to them. 1.5 times the 20.7 ppb/ppm of this ship are more than 18 +- 7.5, which are taken where NO is not measured,
     # and a quarter of them is less.
     spec = sensor_preset("unspecified")
@@ -167,6 +167,6 @@ def test_without_a_stated_response_nox_tells_only_how_much_of_it_there_is(emitte
     seen, unseen = estimate(measured, spec), estimate(blind, spec)
     assert seen.fsc_percent == pytest.approx(unseen.fsc_percent, rel=1e-3)
     # The gain, response and noise of the NO cell are not those that are assumed: 20 %.
-    assert seen.common_percent["no"] == pytest.approx(fsc_factor() * 0.01 * 20.7 * emitted, rel=0.2)
-    assert unseen.common_percent["no"] == pytest.approx(fsc_factor() * 0.01 * math.hypot(18.0, 7.5), rel=0.01)
+    assert seen.common_percent["no"] == pytest.approx(fsc_factor() * 0.02 * 20.7 * emitted, rel=0.2)
+    assert unseen.common_percent["no"] == pytest.approx(fsc_factor() * 0.02 * math.hypot(18.0, 7.5), rel=0.01)
     assert (seen.total_percent > unseen.total_percent) == wider

@@ -51,6 +51,7 @@ def test_an_interval_is_not_empty_and_not_negative():
 
 GOOD = {
     "problems": (), "snr": 50.0, "passes": 10, "fsc": 0.1, "deviation": 0.015, "agreement": 0.5, "limit": 0.1,
+    "responses_stated": True,
 }  # fmt: skip
 
 
@@ -60,6 +61,7 @@ GOOD = {
         ({}, "A", ""),
         ({"snr": 12.0}, "B", "CO2 signal to noise is 12.0; class A needs 20"),
         ({"deviation": 0.03}, "B", "standard uncertainty is 0.030 %; class A needs 0.020 %"),
+        ({"deviation": 0.03, "responses_stated": False}, "B", "as the response of SO2 to NO and NO2 is not stated (cross)"),
         ({"deviation": 36.0}, "C", "the standard uncertainty is 36 %, and no fuel has above 5 %: SO2 does not follow CO2"),
         ({"fsc": 250.0, "deviation": 0.02}, "C", "the result is 250.0 %, and no fuel has above 5 %: check the units of SO2"),
         ({"passes": 2}, "B", "2 passes through the plume; class A needs 3"),
@@ -154,5 +156,5 @@ def test_an_instrument_that_is_not_the_one_stated_is_noticed():
     assert estimate(readings, spec).quality != "C"
     mistaken = estimate(readings, changed(spec, "so2", t90_s=0.5))
     assert mistaken.quality == "C"
-    assert "more than the stated uncertainty of the instrument explains" in mistaken.quality_reasons[0]
+    assert "more than the stated uncertainty of the instrument explains" in mistaken.quality_reasons[-1]
     assert estimate(readings, sensor_preset("unspecified")).quality != "C"

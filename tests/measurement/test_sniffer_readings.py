@@ -92,6 +92,7 @@ def test_every_preset_has_the_figures_of_its_source():
         ({"gain": 0.0}, "gain of so2 is 0; it must be 0.1 to 10"),
         ({"delay_s": -1.0}, "delay_s of so2 is -1"),
         ({"gain_sd": math.inf}, "gain_sd of so2 is inf"),
+        ({"gas": "co2", "t90_sd": math.inf}, "t90_sd of co2 is inf; .* t90 and delay of SO2 alone can be estimated from a record"),
         ({"range_low": 5.0, "range_high": 5.0}, "range of so2 is 5 to 5"),
         ({"cross": {"so2": 0.1}}, "cross of so2 names 'so2'"),
         ({"cross": {"co": 0.1}}, "cross of so2 names 'co'"),
