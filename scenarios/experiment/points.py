@@ -1,7 +1,7 @@
 """The points of an experiment: which flights there are, by sweep, cases, comparisons and random variables."""
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from common.registry import is_file_part
@@ -63,8 +63,8 @@ def points_of(scenario: Scenario) -> list[Point]:
 def _grid(scenario: Scenario) -> Iterator[Point]:
     sweep = scenario.sweep.root
     for vehicle in _vehicles(scenario):
-        for values in itertools.product(*(dict.fromkeys(map(_hashable, given)) for given in sweep.values())):
-            at = {key: value[1] for key, value in zip(sweep, values, strict=True)}
+        for values in itertools.product(*map(_different, sweep.values())):
+            at = dict(zip(sweep, values, strict=True))
             nu = scenario.sweep.nu[list(sweep["nu"]).index(at["nu"])] if "nu" in at else None
             labels = [_label(key, value) for key, value in at.items()] + ([vehicle] if scenario.fidelity == "both" else [])
             changed = with_values(scenario, {_key(key): value for key, value in at.items()} | {"fidelity": vehicle})
@@ -72,9 +72,9 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
             yield Point(label="_".join(labels), variant=STUDY, scenario=changed, nu=nu, inputs=inputs, flights=scenario.flights)
 
 
-def _hashable(value: object) -> tuple[str, object]:
-    """Return a value with its text, by which equal ones are found: lists and tables may be swept, too."""
-    return repr(value), value
+def _different(values: Sequence[object]) -> Iterable[object]:
+    """Return values each once, told apart by their text: lists and tables may be swept, too."""
+    return {repr(value): value for value in values}.values()
 
 
 def _cases(scenario: Scenario) -> Iterator[Point]:
