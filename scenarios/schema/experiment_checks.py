@@ -1,5 +1,6 @@
 """Whether the parts of an experiment go together: what is sampled, and what a search and subset simulation need."""
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from scenarios.schema.sections.experiment import FLIGHTS_MAX
@@ -20,6 +21,14 @@ ONE_POINT = {
     "patrol": "give each value a run of its own",
 }
 """Studies of one point, and why."""
+
+
+_WITHOUT_EFFECT = ("criteria.", "statistics.", "search.", "subset.", "arena.", "patrol.", "comparison.")
+"""Sections on which no flight depends: to sweep them would count the same flights several times."""
+
+
+_SWEPT_BESIDE_SECTIONS = ("flight_seed", "fidelity")
+"""Keys outside of sections that may be swept, or are refused elsewhere."""
 
 
 def check_one_point(scenario: "Scenario") -> None:
@@ -71,3 +80,19 @@ def check_draws(scenario: "Scenario") -> None:
                 f"'{key}' varies from flight to flight; autopilot and margins are worked out once for it: give each value a run"
                 " of its own"
             )
+    for key in scenario.sweep.root:
+        _check_swept(key, known=type(scenario).model_fields)
+
+
+def _check_swept(key: str, known: Collection[str]) -> None:
+    """Refuse to sweep a key that is the same for all flights; an unknown one, and the vehicle, have messages of their own."""
+    if key == "seed":
+        raise ValueError(
+            "sweep has 'seed', from which flights of one run take their seeds: every point would fly the same; sweep"
+            " flight_seed instead, or set flights to the number of flights"
+        )
+    if key.startswith(_WITHOUT_EFFECT) or (key in known and key not in _SWEPT_BESIDE_SECTIONS):
+        raise ValueError(
+            f"sweep has '{key}', which sets nothing of a flight: the same flights would be flown and counted for each value; sweep"
+            " keys that flights depend on, as wind.speed_mps, and give each value of this one a run of its own"
+        )

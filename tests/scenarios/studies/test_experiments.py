@@ -6,6 +6,8 @@ import pandas as pd
 import pytest
 
 from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.errors import InputError
+from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
@@ -88,11 +90,38 @@ def test_a_sweep_over_two_keys_flies_each_combination(tmp_path):
         assert row["min_distance_m"] >= row["keepout_radius_m"]
 
 
+def test_lists_are_swept_as_numbers_are_and_equal_ones_flown_once():
+    study = load_study("sweep_nu", ["sweep.start.distance_m=[[400, 500], [600, 700], [400, 500]]", "sweep.nu=[0.5]", *KINEMATIC])
+    starts = [point.scenario.start.distance_m for point in Experiment("sweep_nu", study).points]
+    assert starts == [(400.0, 500.0), (600.0, 700.0)]
+
+
 def test_a_value_that_cannot_be_swept_is_refused(tmp_path):
     with pytest.raises(ValueError, match=r"'guidance\.airspeed_mps' varies from flight to flight"):
         load_study("sweep_nu", ["sweep.guidance.airspeed_mps=[18, 19]"])
     with pytest.raises(ValueError, match=r"unknown key 'wind\.sped_mps'; did you mean 'wind\.speed_mps'"):
         flown(tmp_path / "run", "sweep_nu", *KINEMATIC, "sweep.wind.sped_mps=[0, 5]")
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("sweep.seed=[1, 2, 3]", r"sweep has 'seed'.*sweep flight_seed instead, or set flights"),
+        ('sweep.title=["a", "b"]', r"sweep has 'title', which sets nothing of a flight"),
+        ("sweep.flights=[5, 10]", r"sweep has 'flights', which sets nothing of a flight"),
+        ("sweep.criteria.tracking_error_rms_m=[1.0, 2.0]", r"sweep has 'criteria\.tracking_error_rms_m', which sets nothing"),
+    ],
+)
+def test_keys_on_which_no_flight_depends_are_not_swept(override, words):
+    # Each value would fly the same flights once more, and a bound on a probability would count all of them.
+    with pytest.raises(InputError, match=words):
+        load_study("sweep_nu", [override])
+
+
+def test_seeds_of_flights_are_swept():
+    study = load_study("sweep_nu", ["sweep.flight_seed=[1, 2]", "sweep.nu=[0.5]", *KINEMATIC])
+    experiment = Experiment("sweep_nu", study)
+    assert [experiment.request(number).seed for number in range(experiment.flights)] == [1, 2]
 
 
 def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_path):
