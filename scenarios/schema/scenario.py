@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
 from scenarios.schema.experiment_checks import check_draws, check_one_point, check_search, check_subset
+from scenarios.schema.random_sample import is_random_sample
 from scenarios.schema.sections.equipment import (
     REPORTS_MAX,
     FaultConfig,
@@ -182,15 +183,8 @@ class Scenario(Section):
 
     @property
     def sampled_at_random(self) -> bool:
-        """Return whether its flights are a random sample: of the random variables, or of starts that differ in their seeds.
-
-        Those of a search and of subset simulation are not: each depends on what was flown before.
-        """
-        if self.study == "falsify" or self.method == "subset" or self.cases:
-            return False
-        start = self.start
-        given = start.place_m is not None or (start.range_m is not None and start.aspect_deg is not None)
-        return bool(self.draws) or (self.flight_seed is None and not (given and start.course_deg is not None))
+        """Return whether its flights are a random sample, from which a bound on a probability follows."""
+        return is_random_sample(self)
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scenario":

@@ -8,6 +8,8 @@ from scenarios.schema.load import load_study, with_values
 from scenarios.schema.scenario import Scenario
 
 WIND = {"key": "wind.speed_mps", "uniform": [0.0, 5.0]}
+FROM = {"key": "wind.from_deg", "choice": [0.0, 90.0, 180.0, 270.0]}
+SEEDS = {"key": "flight_seed", "choice": [1, 2]}
 START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
 
 
@@ -21,6 +23,23 @@ START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
         ({"flight_seed": 3, "flights": 100}, False),
         ({"flight_seed": 3, "draws": [WIND]}, True),
         ({"study": "monte_carlo", "draws": [WIND]}, True),
+        # One seed, and four winds in turn: fifty times the same four flights. At random by their weights they are a sample.
+        ({"flight_seed": 5, "flights": 200, "draws": [FROM]}, False),
+        ({"flight_seed": 5, "flights": 200, "draws": [FROM | {"weights": [1.0, 1.0, 2.0, 1.0]}]}, True),
+        ({"flight_seed": 5, "flights": 200, "draws": [FROM, WIND]}, True),
+        ({"flights": 200, "draws": [FROM]}, True),
+        # Seeds in turn, and each once; or each ten times.
+        ({"flights": 2, "draws": [SEEDS]}, True),
+        ({"flights": 20, "draws": [SEEDS]}, False),
+        ({"flights": 1, "sweep": {"flight_seed": [1, 2]}}, True),
+        ({"flights": 10, "sweep": {"flight_seed": [1, 2]}}, False),
+        # In calm air nothing but the start depends on the seed.
+        ({"start": START, "flights": 8, "draws": [FROM]}, False),
+        ({"start": START, "flights": 8, "draws": [FROM], "turbulence": {"level": "light"}}, True),
+        ({"start": START, "flights": 8, "draws": [FROM], "sensors": {"position_sigma_m": 1.0}}, True),
+        ({"start": {"range_m": 500.0, "aspect_deg": 180.0}, "flights": 8, "sweep": {"start.course_deg": [0.0, 90.0]}}, False),
+        # Sniffers that read the same flight.
+        ({"flights": 8, "sweep": {"payload.sensor": ["fast", "electrochemical"]}}, False),
         # Each level starts from the nearest flights of the one before.
         ({"study": "monte_carlo", "method": "subset", "draws": [WIND]}, False),
         ({"study": "falsify", "draws": [WIND]}, False),

@@ -1,0 +1,51 @@
+"""Whether flights of an experiment are a random sample, from which a bound on a probability follows."""
+
+import math
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+from scenarios.schema.sections.equipment import SensorsConfig
+
+if TYPE_CHECKING:
+    from scenarios.schema.scenario import Scenario
+
+_READ = ("payload.", "emission.")
+"""Sections that change what is read in a flight, and its path only where that follows the readings."""
+
+
+def is_random_sample(scenario: "Scenario") -> bool:
+    """Return whether flights are a random sample: of the random variables, or of what follows from seeds of their own.
+
+    Those of a search and of subset simulation are not: each depends on what was flown before. Nor are copies of a flight,
+    which come where nothing random tells flights apart: values that are swept, or chosen in turn, come again and again.
+    """
+    if scenario.study == "falsify" or scenario.method == "subset" or scenario.cases:
+        return False
+    if not scenario.finds and any(key.startswith(_READ) for key in scenario.sweep.root):
+        # Points have the same seeds.
+        return False
+    in_turn = {draw.key: draw.choice for draw in scenario.draws if draw.choice is not None and draw.weights is None}
+    if len(in_turn) < len(scenario.draws):
+        return True
+    listed = {*scenario.sweep.root, *in_turn}
+    if "flight_seed" in listed:
+        different = math.prod(map(len, in_turn.values()))
+        return scenario.flights <= different and _depends_on_seed(scenario, listed)
+    return scenario.flight_seed is None and _depends_on_seed(scenario, listed)
+
+
+def _depends_on_seed(scenario: "Scenario", listed: Collection[str]) -> bool:
+    """Return whether every flight depends on its seed, by its start or by noise, beside the keys whose values are listed."""
+
+    def given(key: str) -> bool:
+        return f"start.{key}" in listed or getattr(scenario.start, key) is not None
+
+    def varies(section: str) -> bool:
+        return any(key.startswith(section) for key in listed)
+
+    placed = given("place_m") or (given("range_m") and given("aspect_deg"))
+    if not (placed and given("course_deg")):
+        return True
+    shaken = scenario.fidelity == "six_dof" and not scenario.turbulence.calm and not varies("turbulence.")
+    errs = scenario.sensors != SensorsConfig() and not varies("sensors.")
+    return shaken or errs or not (scenario.reports.exact or varies("reports."))
