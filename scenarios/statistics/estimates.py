@@ -60,7 +60,7 @@ def study_statistics(
     look_number : number of the look at which the study stopped, from 1; intervals are widened for the looks before it
         (``scenarios.statistics.stopping``). None for a study that is evaluated only at its end
     """
-    level = confidence if look_number is None else confidence_at(look_number, confidence)
+    level = interval_confidence(confidence, look_number)
     found = count_violations(rows)
     figures = study_figures(rows)
     drawn = inputs.set_index("flight_id").reindex(rows["flight_id"]).drop(columns="trial", errors="ignore")
@@ -71,10 +71,7 @@ def study_statistics(
         "flights": {"done": found.flights, "measured": found.measured, "unknown": named(found)},
         "outcomes": counted(rows["outcome"]),
         "modes_at_end": counted(rows["mode_at_end"]),
-        "violation": {
-            "measured": share(found.events, found.measured, level),
-            "pessimistic": share(found.events_at_most, found.flights, level),
-        },
+        "violation": {"measured": share(found.events, found.measured, level), "pessimistic": pessimistic_share(found, level)},
         "figures": {name: _figure(values, level) for name, values in figures.items()},
         "sensitivity": {
             name: asdict(sensitivity_indices(drawn, figures[name], confidence=confidence, seed=seed)) for name in DRIVEN
@@ -82,6 +79,16 @@ def study_statistics(
     }
     plain: Json = without_nan(statistics)
     return plain
+
+
+def interval_confidence(confidence: float, look_number: int | None) -> float:
+    """Return the confidence of each interval, by that of the study and its look, as of ``study_statistics``."""
+    return confidence if look_number is None else confidence_at(look_number, confidence)
+
+
+def pessimistic_share(found: Violations, level: float) -> Json:
+    """Return the share of flights with a keep-out violation as ``share`` does, if every unknown flight had one."""
+    return share(found.events_at_most, found.flights, level)
 
 
 def study_figures(rows: pd.DataFrame) -> dict[str, Array]:

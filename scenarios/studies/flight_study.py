@@ -244,6 +244,10 @@ class FlightStudy:
         """Write its tables."""
         write_tables(run, journal, self.tables)
 
+    def bound_line(self, counts: FlightCounts, _journal: Journal) -> str:
+        """Return the line on keep-out violations and the bound on their probability, of flights that are a random sample."""
+        return counts.bound_line()
+
     def summary(self, journal: Journal) -> StudySummary:
         """Return the result so far."""
         whole = FlightCounts(planned=self.planned)
@@ -256,8 +260,8 @@ class FlightStudy:
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
         lines += whole.sulphur_lines()
-        if whole.flown and all(self._sampled_at_random().values()):
-            lines.append(whole.bound_line())
+        if whole.flown > whole.without_area and all(self._sampled_at_random().values()):
+            lines.append(self.bound_line(whole, journal))
         lines += [whole.exit_line(), *whole.not_met_lines("    "), *whole.warnings()]
         return StudySummary(
             done=whole.done,

@@ -34,6 +34,7 @@ class FlightCounts:
     passed : number of flights that did what exit status 0 requires of them
     outcomes : number of flights by their outcome
     required : number of flights by what exit status 0 requires of them
+    violating : number of flights with a keep-out violation
     keepout_violations : number of keep-out violations
     shapes : number of flights by the shape of their keep-out area, which distances are measured from
     nearest : closest approach to the vessel, infinite if no flight is done [m]
@@ -53,6 +54,7 @@ class FlightCounts:
     passed: int = 0
     outcomes: Counter[str] = field(default_factory=Counter)
     required: Counter[str] = field(default_factory=Counter)
+    violating: int = 0
     keepout_violations: int = 0
     shapes: Counter[str] = field(default_factory=Counter)
     nearest: float = math.inf
@@ -80,6 +82,7 @@ class FlightCounts:
         self.outcomes[row["outcome"]] += 1
         self.required[required] += 1
         self.passed += kept_out if required == "keep_out" else bool(row["criteria_met"])
+        self.violating += row.get("keepout_violations", 0) > 0
         self.keepout_violations += int(row.get("keepout_violations", 0))
         if "keepout_shape" in row:
             self.shapes[row["keepout_shape"]] += 1
@@ -129,20 +132,31 @@ class FlightCounts:
         return [f"fuel sulphur {row['fsc_percent']:.3f} %, 95 % interval {low:.3f} to {high:.3f} %: {words}"]
 
     def bound_line(self) -> str:
-        """Return how many flights are not known to have kept out, with the bound on the probability of that if it says anything.
+        """Return in how many flights the keep-out area was violated, with the bound on the probability of that.
 
         It is one if flights are a random sample, and not those of a search.
         """
-        bound, confidence = (percent(p).replace("\N{NO-BREAK SPACE}", " ") for p in (self._bound, CONFIDENCE))
-        hours = self.duration / SECONDS_PER_HOUR
-        flights = f"{self.flown - self.kept_out} of {self.flown} flights ({hours:.3g} h simulated) are not known to have kept out"
-        if self._bound > TELLING:
-            return f"{flights}; they are too few to bound a probability"
-        return f"{flights}: at most {bound} of flights sampled as these were, at {confidence} confidence"
+        flights = self.flown - self.without_area
+        upper = upper_bound(flights - self.kept_out, flights)
+        return self.violation_line(self.violating, flights - self.kept_out - self.violating, flights, upper, CONFIDENCE)
 
-    @property
-    def _bound(self) -> float:
-        return upper_bound(self.flown - self.kept_out, self.flown)
+    def violation_line(self, violating: int, unknown: int, flights: int, upper: float, confidence: float) -> str:
+        """Return what is known of keep-out violations, and the bound on their probability if that says anything.
+
+        Parameters
+        ----------
+        violating, unknown : number of flights with a violation, and of those of which nobody knows
+        flights : number of all these flights
+        upper, confidence : bound on the probability, in which unknown flights count as violations [-]
+        """
+        hours = self.duration / SECONDS_PER_HOUR
+        known = f"in {violating} of {flights} flights" if violating else f"none known in {flights} flight{'s' * (flights != 1)}"
+        more = f", unknown in {unknown}, which count{'s' * (unknown == 1)} as violated" if unknown else ""
+        line = f"keep-out violations: {known} ({hours:.3g} h simulated){more}"
+        if upper > TELLING:
+            return f"{line}; too few flights to bound their probability"
+        bound, sure = (percent(p).replace("\N{NO-BREAK SPACE}", " ") for p in (upper, confidence))
+        return f"{line}; at most {bound} of flights sampled as these were, at {sure} confidence"
 
     def exit_line(self) -> str:
         """Return the exit status of a run that is done, and how many flights did what status 0 requires of each."""

@@ -11,11 +11,13 @@ from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.sampling import Points
 from scenarios.schema.scenario import Scenario
-from scenarios.statistics.estimates import COLUMNS, study_statistics
+from scenarios.statistics.estimates import COLUMNS, interval_confidence, pessimistic_share, study_statistics
 from scenarios.statistics.stopping import looks, tight_enough
+from scenarios.statistics.violations import count_violations
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.rows import frame
 from scenarios.studies.study import study
+from scenarios.studies.summary import FlightCounts
 
 
 class MonteCarloStudy(FlightStudy):
@@ -84,9 +86,21 @@ class MonteCarloStudy(FlightStudy):
             frame(journal.rows(DRAWS), self.tables[DRAWS]),
             confidence=self._scenario.statistics.confidence,
             seed=self._scenario.seed,
-            look_number=self._looks if self._scenario.statistics.stops else None,
+            look_number=self._look_number,
         )
         run.write_json(run.statistics, statistics)
+
+    @property
+    def _look_number(self) -> int | None:
+        """Number of the look that intervals are of, the first where none was taken yet; None of a study without any."""
+        return max(1, self._looks) if self._scenario.statistics.stops else None
+
+    def bound_line(self, counts: FlightCounts, journal: Journal) -> str:
+        """Return the line on keep-out violations with the bound of ``statistics.json``."""
+        confidence = self._scenario.statistics.confidence
+        found = count_violations(frame(journal.rows(SUMMARY), COLUMNS))
+        upper = pessimistic_share(found, interval_confidence(confidence, self._look_number))["upper"]
+        return counts.violation_line(found.events, found.events_at_most - found.events, found.flights, upper, confidence)
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return what the flights have come to, and whether the study stopped by itself."""

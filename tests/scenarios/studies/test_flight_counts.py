@@ -63,8 +63,20 @@ def test_a_bound_follows_from_the_flights_that_were_flown():
     counts = FlightCounts.of([row(i, min_distance_m=201.0) for i in range(64)], planned=200)
     # The rule of three: 1 - 0.05^(1/64) = 4.57 %.
     assert counts.bound_line() == (
-        "0 of 64 flights (32 h simulated) are not known to have kept out: at most 4.57 % of flights sampled as these were,"
+        "keep-out violations: none known in 64 flights (32 h simulated); at most 4.57 % of flights sampled as these were,"
         " at 95 % confidence"
+    )
+
+
+def test_the_bound_counts_flights_that_are_not_known_to_their_end_as_violations_and_says_so():
+    rows = [row(i, min_distance_m=201.0) for i in range(97)]
+    rows += [row(97, met=False, keepout_violations=2, kept_out=False), row(98, "diverged", met=False, kept_out=False)]
+    # Flights about a point have nothing to keep out of.
+    rows += [{"flight_id": "f99", "outcome": "completed", "message": "", "criteria_met": True, "duration_s": 100.0}]
+    # 2 of 99: 1, 99 and 4,851 ways to none, one and two make 0.05 at p = 6.22 %.
+    assert FlightCounts.of(rows, planned=100).bound_line() == (
+        "keep-out violations: in 1 of 99 flights (49.5 h simulated), unknown in 1, which counts as violated; at most 6.22 % of"
+        " flights sampled as these were, at 95 % confidence"
     )
 
 
@@ -83,10 +95,10 @@ def test_of_many_flights_that_are_not_met_the_first_are_named_and_the_rest_count
 
 
 def test_a_handful_of_flights_bounds_no_probability():
-    row = {"outcome": "completed", "kept_out": True, "criteria_met": True, "duration_s": 1800.0}
+    row = {"outcome": "completed", "kept_out": True, "keepout_violations": 0, "criteria_met": True, "duration_s": 1800.0}
     line = FlightCounts.of([row] * 4, planned=4).bound_line()
     # With none of four, 1 - 0.05^(1/4) = 0.53 is above a half; with none of five 0.45 is not.
-    assert line == "0 of 4 flights (2 h simulated) are not known to have kept out; they are too few to bound a probability"
+    assert line == "keep-out violations: none known in 4 flights (2 h simulated); too few flights to bound their probability"
     assert "at most 45.1 %" in FlightCounts.of([row] * 5, planned=5).bound_line()
 
 

@@ -11,6 +11,7 @@ from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
+from tests.scenarios.losing_executor import losing
 
 SHORT = [
     "fidelity=kinematic",
@@ -32,6 +33,10 @@ SHORT = [
 def run(out, *overrides, factory=InProcessExecutor, resume=False, progress=lambda *_: None):
     scenario = load_study("monte_carlo", [*SHORT, *overrides])
     return run_study(scenario, "monte_carlo", out, executor_factory=factory, resume=resume, progress=progress)
+
+
+def bound_of(out):
+    return json.loads((out / "statistics.json").read_text(encoding="utf-8"))["violation"]["pessimistic"]["upper"]
 
 
 def tables(out):
@@ -73,6 +78,15 @@ def test_statistics_are_written_and_bound_the_probability_of_an_entry(whole):
     assert measured["upper"] == pytest.approx(1.0 - 0.05 ** (1.0 / 40.0), rel=1e-9)
 
 
+def test_the_console_says_the_bound_of_the_statistics_in_which_a_lost_flight_counts_as_a_violation(whole, tmp_path):
+    result = run(tmp_path / "run", "flights=40", factory=losing(7))
+    upper = bound_of(tmp_path / "run")
+    # 1 of 40 at 95 %: the larger root of 40 p (1 - p)^39 + (1 - p)^40 = 0.05.
+    assert 40.0 * upper * (1.0 - upper) ** 39 + (1.0 - upper) ** 40 == pytest.approx(0.05, rel=1e-9)
+    (line,) = [line for line in result.summary.lines if line.startswith("keep-out violations: ")]
+    assert "none known in 40 flights (0.0325 h simulated), unknown in 1, which counts as violated; at most 11.3 % of" in line
+
+
 @pytest.fixture
 def frequent_looks(monkeypatch):
     """Look after 8, 16, 32 flights and so on: 256 would take too long here."""
@@ -88,6 +102,9 @@ def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_en
     manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
     assert manifest["flights_planned"] == 32
     assert json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))["look_number"] == 3
+    # The bound of the third look: 1 - (0.05/12)^(1/32) = 15.7 %, and not 8.94 %.
+    assert bound_of(tmp_path / "run") == pytest.approx(1.0 - (0.05 / 12.0) ** (1.0 / 32.0), rel=1e-9)
+    assert any("; at most 15.7 % of flights sampled as these were, at 95 % confidence" in line for line in result.summary.lines)
     # Once it has stopped there is nothing to go on with.
     flown = []
     again = run(tmp_path / "run", "flights=100", "statistics.violation_upper=0.2", resume=True, progress=lambda *p: flown.append(p))
