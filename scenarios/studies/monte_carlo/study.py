@@ -51,14 +51,18 @@ class MonteCarloStudy(FlightStudy):
         return Task(number=number, point=self._points.at(self._experiment.index(number)))
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Fly up to one look after the other, until one shows what was asked for; then the comparisons."""
+        """Fly up to one look after the other, until one shows what was asked for; then the comparisons.
+
+        A run that is resumed does not stop before what it has flown already: a lost flight, on which it went on, may be flown now.
+        """
         first, study = 0, self.planned
         stops = self._scenario.statistics.stops
+        flown = max((number for number, _ in journal.numbered(SUMMARY, below=study)), default=-1) if stops else -1
         for flights in looks(self.planned) if stops else [self.planned]:
             self._looks += 1
             fly(self.task(number) for number in range(first, flights))
             first = flights
-            if stops and self._tight(journal, flights):
+            if stops and flights > flown and self._tight(journal, flights):
                 self._stopped = flights < self.planned
                 self.flights = dict.fromkeys(self.flights, flights)
                 break

@@ -112,6 +112,18 @@ def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_en
     assert [p for p in flown if p[0] == "flying"] == [("flying", 32, 100)]
 
 
+def test_a_run_that_is_resumed_stops_at_no_look_before_what_it_has_flown(frequent_looks, tmp_path):
+    # One of 8 that is lost is at most 0.53 at the first look, none 0.37; one of 16 is at most 0.36 at the second.
+    asked = ("flights=100", "statistics.violation_upper=0.45")
+    assert run(tmp_path / "run", *asked, factory=losing(3)).summary.done == 16
+    again = run(tmp_path / "run", *asked, resume=True)
+    assert again.all_met
+    assert again.planned == again.summary.done == 16
+    assert again.summary.lines[-1].startswith("stopped after 16 of 100 flights")
+    assert json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))["look_number"] == 2
+    assert bound_of(tmp_path / "run") == pytest.approx(1.0 - (0.05 / 6.0) ** (1.0 / 16.0), rel=1e-9)
+
+
 def test_a_study_that_never_knows_enough_flies_all_that_was_planned(frequent_looks, tmp_path):
     result = run(tmp_path / "run", "flights=20", "statistics.violation_upper=0.001")
     assert result.summary.done == 20
