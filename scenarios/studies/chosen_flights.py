@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
+from common.run_layout import SUMMARY
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Progress
@@ -43,6 +44,14 @@ class ChosenFlightsStudy(FlightStudy):
     def task(self, number: int) -> Task:
         """Return the task of a flight, at the point that was chosen for it."""
         return self._tasks[number]
+
+    def depended_on(self, journal: Journal, *, below: int) -> bool:
+        """Return whether flights after those that are chosen so far, of numbers below ``below``, are in the journal.
+
+        They were chosen by these. So a lost one among these is tried again only as long as there are none: otherwise a run that
+        is resumed would choose others.
+        """
+        return next(journal.numbered(SUMMARY, first=len(self._tasks), below=below), None) is not None
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
         """Write nothing: how well sulphur is measured is not told from flights that each follow from others."""

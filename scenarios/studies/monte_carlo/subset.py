@@ -81,8 +81,7 @@ class SubsetStudy(ChosenFlightsStudy):
         """Return how far from the keep-out area flights at these points stay at their closest [m]; infinite if not measured."""
         first = len(self._tasks)
         self._tasks += [Task(number=first + i, point=point) for i, point in enumerate(points)]
-        # What is flown after a wave depends on it. So a lost flight is tried again only as long as nothing does.
-        if next(journal.numbered(SUMMARY, first=len(self._tasks)), None) is None:
+        if not self.depended_on(journal, below=self._scenario.subset.flights_max):
             fly(self._tasks[first:])
         values = np.full(len(points), np.inf)
         for number, row in journal.numbered(SUMMARY, first=first, below=len(self._tasks)):

@@ -21,6 +21,7 @@ from scenarios.schema.load import load_study
 from scenarios.studies.falsification import study as falsification
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
+from tests.scenarios.losing_executor import losing
 
 POPULATION, GENERATIONS, KEPT, CONFIRMATIONS = 12, 7, 3, 2
 
@@ -205,6 +206,33 @@ def test_the_search_goes_the_same_way_whatever_the_number_of_processes_and_where
         assert len(pd.read_csv(out / "summary.csv")) == after
     assert run(search, out, resume=True).all_met
     same_tables(found, out)
+
+
+def test_a_search_is_resumed_after_a_lost_flight_on_which_others_depend(search, tmp_path):
+    out = tmp_path / "run"
+
+    def interrupt(_doing, done, _):
+        if done == 3 * POPULATION:
+            raise KeyboardInterrupt
+
+    # The eighth flight of the first turn: what the third turn proposes depends on it.
+    assert run(search, out, factory=losing(7), progress=interrupt).interrupted
+    result = run(search, out, resume=True)
+    searched = tables(out)[0].set_index("flight_id")
+    assert "short_00007" not in searched.index[searched["min_distance_m"].notna()]
+    assert result.summary.done == result.planned
+    assert not result.all_met
+    # A search that was not interrupted goes the same way.
+    run(search, tmp_path / "whole", factory=losing(7))
+    same_tables(tmp_path / "whole", out)
+
+
+def test_a_lost_flight_on_which_no_other_depends_is_tried_again(search, found, tmp_path):
+    last = len(tables(found)[0]) - 1
+    run(search, tmp_path / "run", factory=losing(last), progress=lambda *_: None)
+    assert run(search, tmp_path / "run", resume=True).all_met
+    same = [pd.read_csv(out / "summary.csv").drop(columns="wall_time_s") for out in (found, tmp_path / "run")]
+    pd.testing.assert_frame_equal(*(rows[: last + 1] for rows in same), check_exact=True)
 
 
 def clock(monkeypatch):
