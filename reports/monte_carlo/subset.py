@@ -71,6 +71,8 @@ def probability_in_words(statistics: Record) -> str:
             f" probability in a flight is at most {percent(found['upper'])}, if chains find the way to it. Their nearest flights"
             f" stayed {nearest} m beyond r_min; the more these differ, the less the chains have seen."
         )
+    if outside := sum(simulation["levels"][0]["outside"] for simulation in statistics["simulations"]):
+        words += f" For the first levels {outside:,} points outside of the declared speed ratios were sampled again."
     if unknown := found["first_levels_unknown"]:
         words += (
             f" Of the flights of the first levels {unknown:,} {'is' if unknown == 1 else 'are'} of unknown end; with each of them"

@@ -59,15 +59,14 @@ def sampled_flight(trial: str, scenario: Scenario, number: int, point: Sequence[
     InputError : a sampled key does not exist or is out of range, or no sample has a speed ratio within ``scenario.speed_ratio``
     """
     sequence = np.random.SeedSequence([scenario.seed, zlib.crc32(trial.encode()), number])
-    low, high = scenario.speed_ratio
     inputs, given = point[: len(scenario.draws)], point[len(scenario.draws) :]
     for values in _tried(scenario.draws, np.random.default_rng(sequence), number, inputs):
         flight = with_values(scenario, values)
-        least, most = speed_ratios(flight)
-        if low <= least and most <= high:
+        if has_speed_ratio(flight):
             own = int(sequence.generate_state(1)[0]) if flight.flight_seed is None else flight.flight_seed
             noise = Noise.at(given) if given and flight.flight_seed is None else Noise(own)
             return SampledFlight(scenario=flight, noise=noise, values=values)
+    (low, high), (least, most) = scenario.speed_ratio, speed_ratios(flight)
     raise InputError(
         f"trial '{trial}': {_TRIES} samples had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
         f" {most:.3f}: widen speed_ratio, or sample other winds and vessel speeds"
@@ -78,6 +77,12 @@ def speed_ratios(flight: Scenario) -> tuple[float, float]:
     """Return a flight's least and greatest speed ratio [-]."""
     wind, speed = apparent_wind(flight, vessel_of(flight)), flight.guidance.airspeed_mps
     return wind.least / speed, wind.greatest / speed
+
+
+def has_speed_ratio(flight: Scenario) -> bool:
+    """Return whether a flight's speed ratios lie within those that are declared: otherwise it is sampled again."""
+    (low, high), (least, most) = flight.speed_ratio, speed_ratios(flight)
+    return low <= least and most <= high
 
 
 def value_at(draw: DrawConfig, share: float) -> object:

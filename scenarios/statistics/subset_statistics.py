@@ -44,7 +44,7 @@ def subset_statistics(
                 "repeats": len(simulations),
                 "events": every.events,
                 "pessimistic": {
-                    "upper": _pessimistic(simulations, found, plain.events_at_most - plain.events, plain.flights, confidence)
+                    "upper": pessimistic_upper(simulations, found, plain.events_at_most - plain.events, plain.flights, confidence)
                 },
                 "first_levels": share(plain.events, plain.measured, confidence),
                 "first_levels_unknown": plain.events_at_most - plain.events,
@@ -58,7 +58,9 @@ def subset_statistics(
     return content
 
 
-def _pessimistic(simulations: Sequence[Simulation], found: RareProbability, unknown: int, flights: int, confidence: float) -> float:
+def pessimistic_upper(
+    simulations: Sequence[Simulation], found: RareProbability, unknown: int, flights: int, confidence: float
+) -> float:
     """Return the bound if flights of unknown end were violations; what may go wrong is shared equally between the two."""
     if not unknown:
         return found.upper

@@ -7,18 +7,21 @@ import numpy as np
 import pandas as pd
 
 from common.run_layout import SUMMARY
+from gnc.errors import InfeasibleError
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Task
-from scenarios.experiment.declared import beyond_declared
-from scenarios.experiment.draws import value_at, values_at
+from scenarios.errors import InputError
+from scenarios.experiment.draws import has_speed_ratio, value_at, values_at
+from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
 from scenarios.statistics.estimates import COLUMNS
 from scenarios.statistics.subset_estimates import RareProbability, input_shifts, near_event, rare_probability
 from scenarios.statistics.subset_levels import Array, Simulation
 from scenarios.statistics.subset_simulation import Point, Simulating, SubsetSimulation
-from scenarios.statistics.subset_statistics import subset_statistics
+from scenarios.statistics.subset_statistics import pessimistic_upper, subset_statistics
+from scenarios.statistics.violations import count_violations
 from scenarios.studies.chosen_flights import ChosenFlightsStudy, clearance
 from scenarios.studies.rows import frame
 
@@ -65,11 +68,22 @@ class SubsetStudy(ChosenFlightsStudy):
             flights=settings.flights_per_level,
             conditional_probability=settings.conditional_probability,
             levels_max=settings.levels_max,
-            allowed=lambda inputs: not beyond_declared(scenario, inputs.tolist()),
+            allowed=self._allowed,
             seeded=self._seeded,
         )
         seeds = np.random.SeedSequence(scenario.seed).spawn(settings.repeats)
         return {repeat: simulation.run(np.random.default_rng(seed)) for repeat, seed in enumerate(seeds)}
+
+    def _allowed(self, inputs: Array) -> bool:
+        """Return whether the plain study would fly at these inputs, and not sample again.
+
+        It flies where values contradict each other, too, and where the vessel does more than is declared: if that cannot be
+        planned, the flight has no measurement and its end is unknown.
+        """
+        try:
+            return has_speed_ratio(with_values(self._scenario, values_at(self._scenario.draws, inputs.tolist())))
+        except (InputError, InfeasibleError):
+            return True
 
     def _seeded(self, inputs: Array) -> bool:
         """Return whether a flight depends on its seed: turbulence, and what exhaust and payload read, cannot be blended."""
@@ -107,7 +121,23 @@ class SubsetStudy(ChosenFlightsStudy):
         if not self._simulations:
             return found
         probability = rare_probability(self._simulations, self._statistics.confidence)
-        return replace(found, lines=[*found.lines, self._line(probability)])
+        return replace(found, lines=[*found.lines, *self._first_lines(journal, probability), self._line(probability)])
+
+    def _first_lines(self, journal: Journal, found: RareProbability) -> list[str]:
+        """Return what of the first levels, which are a plain sample, was sampled again, and what is not known to its end."""
+        first = [simulation.levels[0] for simulation in self._simulations]
+        flights, outside = sum(len(level.values) for level in first), sum(level.outside for level in first)
+        lines = []
+        if outside:
+            lines.append(f"{outside} of {flights + outside} points of the first levels were beyond speed_ratio and sampled again")
+        plain = count_violations(frame(journal.rows(SUMMARY, below=flights), COLUMNS))
+        if unknown := plain.events_at_most - plain.events:
+            upper = pessimistic_upper(self._simulations, found, unknown, flights, self._statistics.confidence)
+            lines.append(
+                f"of {flights} flights of the first levels {unknown} {'is' if unknown == 1 else 'are'} of unknown end; if each"
+                f" were a violation, the probability below would be at most {upper:.2g}"
+            )
+        return lines
 
     def _line(self, found: RareProbability) -> str:
         sure, repeats = f"{100.0 * self._statistics.confidence:g} % confidence", len(self._simulations)

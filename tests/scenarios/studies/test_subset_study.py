@@ -140,6 +140,48 @@ def test_no_point_outside_the_declared_speed_ratios_is_flown(whole):
     assert nu.max() <= 0.5
 
 
+def test_points_outside_of_the_speed_ratios_are_counted_on_the_console(whole):
+    result, out = whole
+    outside = sum(simulation["levels"][0]["outside"] for simulation in statistics_of(out)["simulations"])
+    # Of vessels at 4 to 10 m/s, between 0.21 and 0.51 of 19.42 m/s, a third.
+    assert 40 <= outside <= 120
+    line = f"{outside} of {150 + outside} points of the first levels were beyond speed_ratio and sampled again"
+    assert line in result.summary.lines
+
+
+TURNING = [
+    "subset.levels_max=1",
+    "vessel.manoeuvres=[{at_s=1.0, turn_deg=5.0, turn_rate_deg_s=5.0}, {at_s=1.5, turn_deg=5.0, turn_rate_deg_s=5.0}]",
+]
+
+
+def test_flights_are_those_of_the_plain_study_also_beyond_what_is_declared_of_the_vessel(rare, tmp_path):
+    # At 5 deg/s, from 2.5 degrees on, the second turn begins before the end of the first; and 0.05 s, a step, are allowed for.
+    draw = 'draws=[{key="vessel.manoeuvres.0.turn_deg", uniform=[0.5, 5.0]}, {key="start.range_m", uniform=[215.0, 350.0]}]'
+    scenario = load_study(str(rare), [*TURNING, draw])
+    # At 8 m/s and 5 deg/s it accelerates by 0.7 m/s2.
+    gentle = study_of(load_study(str(rare), [*TURNING, draw, "following.vessel_acceleration_mps2=0.1"]), "short")
+    assert beyond_declared(gentle.trials["short"], [0.1, 0.5]) > 1.0
+    assert gentle._allowed(np.array([0.1, 0.5]))
+    result = run_study(scenario, "short", tmp_path / "run", executor_factory=InProcessExecutor)
+    rows = pd.read_csv(tmp_path / "run" / "summary.csv").merge(pd.read_csv(tmp_path / "run" / "draws.csv"), on="flight_id")
+    overlap = rows["vessel.manoeuvres.0.turn_deg"] > 2.75
+    assert len(rows) == 150
+    assert set(rows["outcome"][overlap]) == {"infeasible"}
+    assert rows["min_distance_m"][~overlap].notna().all()
+    found = statistics_of(tmp_path / "run")
+    assert [simulation["levels"][0]["outside"] for simulation in found["simulations"]] == [0, 0, 0]
+    unknown = found["violation"]["first_levels_unknown"]
+    assert unknown == rows["min_distance_m"].isna().sum()
+    # Half of 150, within 4 standard deviations of 6.1.
+    assert 50 <= unknown <= 100
+    upper = found["violation"]["pessimistic"]["upper"]
+    assert any(
+        line.startswith(f"of 150 flights of the first levels {unknown} are of unknown end") and f"at most {upper:.2g}" in line
+        for line in result.summary.lines
+    )
+
+
 def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_where_it_was_interrupted(rare, whole, tmp_path):
     def interrupt(doing, done, _):
         if done == 170:
