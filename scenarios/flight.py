@@ -140,7 +140,10 @@ class FlightWork:
 
     def lost(self, task: Task, reason: str) -> Result:
         """Return the result of a flight whose process was lost."""
-        return replace(self._result(task, self._named(task) | unflown(Outcome.FAILED, reason)), lost=True)
+        row = self._named(task)
+        # What the study says of a flight is known without it.
+        tables = {DRAWS: [row | dict(task.labels)]} if task.labels else {}
+        return replace(self._result(task, row | unflown(Outcome.FAILED, reason), tables), lost=True)
 
     def plan(self, request: FlightRequest) -> FlightPlan:
         """Return the plan of a flight.

@@ -17,12 +17,15 @@ _POINTS_MAX = 4000
 _LISTED_MAX = 12
 """Violations that are listed by name, at most."""
 
+_CONFIRMATION = "confirmation"
+"""What stands for the method of flights that repeat one of the worst."""
+
 _IN_WORDS = {
     "corners": "corner sampling",
     "differential_evolution": "differential evolution",
     "local": "local climb",
     "cma": "CMA-ES",
-    "confirmation": "repeated with fresh noise",
+    _CONFIRMATION: "repeated with fresh noise",
 }
 
 
@@ -31,7 +34,7 @@ def falsification_sections(run: RunData) -> list[Section]:
     config = next(iter(run.manifest["trials"].values()))
     search = run.manifest.get("search")
     flights = _searched(run)
-    if config.get("study") != "falsify" or search is None or not len(flights):
+    if config.get("study") != "falsify" or search is None or not (flights["confirms"] == "").any():
         return []
     blocks: list[Block] = [
         Text(_in_words(config, search, flights)),
@@ -62,8 +65,7 @@ def method_name(name: str) -> str:
 def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFrame) -> str:
     settings = config["search"]
     searched = flights[flights["confirms"] == ""]
-    distance = clearance(flights)
-    least, inside = float(np.min(distance)), int(violated(flights).sum())
+    least, inside = float(np.min(clearance(searched))), int(violated(searched).sum())
     found = (
         f"The closest that it found stayed {least:.1f} m outside the keep-out area."
         if least >= 0.0
@@ -75,8 +77,11 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
         if settings["time_s"] is None
         else f"turns of {settings['population']} points for {settings['time_s']:g} s"
     )
-    beyond = search["proposed"] - len(searched)
-    left_out = f"; {beyond:,} more points were not flown, as they lie beyond what the scenario declares" if beyond > 0 else ""
+    # Of points within what is declared some may have no flight: they cannot be planned, or their process was lost.
+    within = sum(of["flights"] for name, of in search["methods"].items() if name != _CONFIRMATION)
+    left_out = f"; {within - len(searched):,} more were not flown or not measured" if within > len(searched) else ""
+    if (beyond := search["proposed"] - within) > 0:
+        left_out += f"; {beyond:,} more points were not flown, as they lie beyond what the scenario declares"
     return (
         f"A search over {len(config['draws'])} inputs within their declared ranges by {methods}: {budget}, {len(searched):,}"
         f" flights{left_out}. {found} A search finds the worst flight within its budget and proves no bound."

@@ -38,9 +38,19 @@ class SearchedFlight:
     clearance: float
     violates: bool
 
+    @property
+    def measured(self) -> bool:
+        """Return whether its clearance is known: it is of no flight that could not be planned, or was lost."""
+        return self.clearance < UNFLOWN
+
     def entry(self) -> dict[str, Any]:
         """Return its entry in the manifest."""
         return {"flight_id": self.flight_id, "method": self.method, "clearance_m": self.clearance}
+
+
+def nearest(flights: Sequence[SearchedFlight]) -> SearchedFlight | None:
+    """Return the flight that came closest, or none where none was measured."""
+    return min((flight for flight in flights if flight.measured), key=lambda flight: flight.clearance, default=None)
 
 
 def searched_flights(journal: Journal) -> list[SearchedFlight]:
@@ -60,7 +70,8 @@ def searched_flights(journal: Journal) -> list[SearchedFlight]:
 
 def worst_flights(flights: Sequence[SearchedFlight], space: Space, journal: Journal, kept: int) -> list[SearchedFlight]:
     """Return the flights of a search that came closest, no two of them alike; the rest by clearance where too few differ."""
-    order = sorted((flight for flight in flights if not flight.confirms), key=lambda flight: (flight.clearance, flight.number))
+    searched = [flight for flight in flights if flight.measured and not flight.confirms]
+    order = sorted(searched, key=lambda flight: (flight.clearance, flight.number))
     points: dict[int, np.ndarray] = {}
     chosen: list[SearchedFlight] = []
     for flight in order:
@@ -88,7 +99,7 @@ def _of_method(flights: Sequence[SearchedFlight]) -> dict[str, Any]:
     return {
         "flights": len(flights),
         "violations": sum(flight.violates for flight in flights),
-        "worst_clearance_m": min(flight.clearance for flight in flights),
+        "worst_clearance_m": _least(flights),
     }
 
 
@@ -96,19 +107,27 @@ def _confirmed(repeats: Sequence[SearchedFlight]) -> dict[str, Any]:
     return {
         "confirmations": len(repeats),
         "confirmations_violating": sum(flight.violates for flight in repeats),
-        "confirmations_nearest_m": min((flight.clearance for flight in repeats), default=None),
+        "confirmations_nearest_m": _least(repeats),
     }
+
+
+def _least(flights: Sequence[SearchedFlight]) -> float | None:
+    return found.clearance if (found := nearest(flights)) else None
+
+
+def _outside(least: float | None) -> str:
+    return "none measured" if least is None else f"nearest {least:.2f} m outside of r_min"
 
 
 def search_lines(found: dict[str, Any]) -> Iterator[str]:
     """Yield what a search has found in lines of text, from its entry in the manifest."""
     for name, of in found["methods"].items():
-        nearest = f"nearest {of['worst_clearance_m']:.2f} m outside of r_min"
-        yield f"  {name}: {of['flights']} flights, {of['violations']} violated, {nearest}"
+        flights = f"{of['flights']} flight{'s' * (of['flights'] != 1)}"
+        yield f"  {name or 'no method'}: {flights}, {of['violations']} violated, {_outside(of['worst_clearance_m'])}"
     for rank, flight in enumerate(found["worst"][:1], start=1):
         repeats = (
-            f"; with fresh noise {flight['confirmations_violating']} of {flight['confirmations']} violated, nearest"
-            f" {flight['confirmations_nearest_m']:.2f} m outside of r_min"
+            f"; with fresh noise {flight['confirmations_violating']} of {flight['confirmations']} violated,"
+            f" {_outside(flight['confirmations_nearest_m'])}"
             if flight["confirmations"]
             else ""
         )

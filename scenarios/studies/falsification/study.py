@@ -24,6 +24,7 @@ from scenarios.studies.falsification.results import (
     CONFIRMATION,
     UNFLOWN,
     SearchedFlight,
+    nearest,
     search_lines,
     search_manifest,
     searched_flights,
@@ -176,8 +177,9 @@ class FalsificationStudy(ChosenFlightsStudy):
             return found
         worst = worst_flights(flights, self._space, journal, self._search.kept)
         search = search_manifest(flights, worst) | {"proposed": self._proposed}
-        least = min(flights, key=lambda flight: flight.clearance)
-        manifest = {"search": search, "worst_flight": least.flight_id, "worst_clearance_m": least.clearance}
+        manifest: dict[str, object] = {"search": search}
+        if least := nearest(flights):
+            manifest |= {"worst_flight": least.flight_id, "worst_clearance_m": least.clearance}
         return replace(found, lines=[*found.lines, *search_lines(search)], manifest=found.manifest | manifest)
 
 

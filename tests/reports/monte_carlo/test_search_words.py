@@ -1,6 +1,8 @@
 """What a report says of the methods of a search."""
 
-from reports.monte_carlo.falsification import _methods
+import pandas as pd
+
+from reports.monte_carlo.falsification import _in_words, _methods
 
 
 def test_only_methods_that_had_a_turn_are_said_to_have_searched():
@@ -9,3 +11,21 @@ def test_only_methods_that_had_a_turn_are_said_to_have_searched():
         "corner sampling, local climb (differential evolution, CMA-ES had no turn within the budget)"
     )
     assert _methods(asked, set(asked)) == "corner sampling, differential evolution, local climb, CMA-ES"
+
+
+def in_words(proposed):
+    """Return what is said of 40 flights that were measured, 2 with a violation, 3 repeats with one, and 8 without measurement."""
+    rows = [(190.0, 1, "")] * 2 + [(250.0, 0, "")] * 38 + [(180.0, 1, "short_00000")] * 3
+    flights = pd.DataFrame(rows, columns=["min_distance_m", "keepout_violations", "confirms"])
+    flights = flights.assign(keepout_radius_m=200.0, search_method="corners")
+    config = {"search": {"methods": ["corners"], "generations": 2, "population": 16, "time_s": None}, "draws": [{}] * 4}
+    methods = {"corners": {"flights": 48}, "confirmation": {"flights": 3}}
+    return _in_words(config, {"proposed": proposed, "methods": methods}, flights)
+
+
+def test_repeats_are_no_violations_of_the_search_and_flights_without_a_measurement_not_beyond_what_is_declared():
+    words = in_words(48)
+    assert "3 turns of 16 points, 40 flights; 8 more were not flown or not measured. 2 of the flights violated" in words
+    assert "the deepest by 10.0 m" in words
+    assert "beyond what the scenario declares" not in words
+    assert "; 2 more points were not flown, as they lie beyond what the scenario declares. 2 of" in in_words(50)

@@ -19,6 +19,7 @@ from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.schema.load import load_study
 from scenarios.studies.falsification import study as falsification
+from scenarios.studies.falsification.results import UNFLOWN, SearchedFlight, search_lines, search_manifest
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from tests.scenarios.losing_executor import losing
@@ -222,9 +223,19 @@ def test_a_search_is_resumed_after_a_lost_flight_on_which_others_depend(search, 
     assert "short_00007" not in searched.index[searched["min_distance_m"].notna()]
     assert result.summary.done == result.planned
     assert not result.all_met
+    # It stays its method's, and is not the nearest of any.
+    assert searched.loc["short_00007", "search_method"] == "corners"
+    assert not any("1000000" in line or line.startswith("  :") for line in result.summary.lines)
     # A search that was not interrupted goes the same way.
     run(search, tmp_path / "whole", factory=losing(7))
     same_tables(tmp_path / "whole", out)
+
+
+def test_a_method_of_one_flight_without_a_measurement_has_no_nearest():
+    lost = SearchedFlight(number=0, flight_id="a", method="corners", confirms="", clearance=UNFLOWN, violates=False)
+    said = search_manifest([lost], [])
+    assert said["methods"]["corners"] == {"flights": 1, "violations": 0, "worst_clearance_m": None}
+    assert list(search_lines(said)) == ["  corners: 1 flight, 0 violated, none measured"]
 
 
 def test_a_lost_flight_on_which_no_other_depends_is_tried_again(search, found, tmp_path):
