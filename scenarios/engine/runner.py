@@ -171,9 +171,10 @@ class _Execution:
         self, study: Study, run: RunDirectory, journal: Journal, before: Mapping[str, Any], progress: Progress, command: str
     ) -> None:
         self._study, self._run, self._journal, self._before, self._progress = study, run, journal, before, progress
-        # A run that is resumed is as old as its first flight.
+        # A run that is resumed is as old as its first flight, and has taken as long as all of its sessions.
         began = before.get("begun_utc") or f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
         first = {"command": before.get("command") or command, "begun_utc": began}
+        self._wall_time = float(before.get("wall_time_s", 0.0))
         self._manifest = study.initial_manifest() | first
         self._begun = False
 
@@ -198,7 +199,7 @@ class _Execution:
         if changed:
             closing = {
                 "state": _INTERRUPTED if interrupted else _COMPLETE,
-                "wall_time_s": time.perf_counter() - began,
+                "wall_time_s": self._wall_time + time.perf_counter() - began,
                 "peak_memory_mib": round(peak_memory() / 2**20, 1),
                 # What was deleted and is not made again is still missed.
                 FILES: sorted({*run.files(), *run.gone}),
@@ -223,7 +224,10 @@ class _Execution:
         if not self._begun:
             self._begun = True
             remove_reports(self._run.path)
-            self._run.write_json(self._run.manifest, self._manifest | {"state": "running", FILES: self._before.get(FILES, [])})
+            # What a session takes that is killed nobody knows; what those before it took is kept.
+            took = {"wall_time_s": self._wall_time} if self._wall_time else {}
+            running = {"state": "running", **took, FILES: self._before.get(FILES, [])}
+            self._run.write_json(self._run.manifest, self._manifest | running)
 
     def _is_as_before(self) -> bool:
         """Return whether the run was complete, nothing was added, and nothing is missing."""

@@ -1,6 +1,7 @@
 """What a resumed run rewrites, removes and begins anew."""
 
 import functools
+import json
 import multiprocessing
 import os
 import time
@@ -52,6 +53,16 @@ def test_a_run_that_goes_on_has_no_report_of_how_it_was_before(marks, out):
         (out / name).touch()
     assert fly(study, out, resume=True).all_met
     assert not [name for name in ("report.html", "report.pdf", "export") if (out / name).exists()]
+
+
+def test_the_duration_of_a_run_is_that_of_all_its_sessions(marks, out):
+    study = SquareStudy(Squares(marks=marks))
+    fly(study, out, progress=interrupt_at(3))
+    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+    # As if the first session had taken an hour.
+    (out / "manifest.json").write_text(json.dumps(manifest | {"wall_time_s": 3600.0}), encoding="utf-8")
+    assert fly(study, out, resume=True).all_met
+    assert 3600.0 < json.loads((out / "manifest.json").read_text(encoding="utf-8"))["wall_time_s"] < 3700.0
 
 
 @pytest.mark.parametrize("resume", [False, True])
