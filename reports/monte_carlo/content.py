@@ -5,6 +5,7 @@ from typing import Any
 from common.intervals import percent
 from reports.document.blocks import Block, Heading, Section, Text
 from reports.monte_carlo.driver_charts import driver_charts, scatter_charts
+from reports.monte_carlo.names import documented_units
 from reports.monte_carlo.spread_charts import spread_charts
 from reports.monte_carlo.subset import subset_sections
 from reports.monte_carlo.tables import ending_table, left_out_rows, quantile_table, violation_table
@@ -17,7 +18,7 @@ def monte_carlo_sections(run: RunData) -> list[Section]:
     if statistics is None:
         return []
     if statistics.get("method") == "subset":
-        return subset_sections(statistics)
+        return subset_sections(statistics, documented_units(run.manifest))
     return [
         Section(anchor="study", title="Probability of a keep-out violation", nav_title="Probability", blocks=_shown(statistics)),
         Section(anchor="spread", title="Distributions", nav_title="Distributions", blocks=_spread(run, statistics)),

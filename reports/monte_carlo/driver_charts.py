@@ -10,7 +10,7 @@ import pandas as pd
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.document.panels import Group, beyond_label, capped, level, strips
-from reports.monte_carlo.names import CLEARANCE, FIGURES, input_label, input_name
+from reports.monte_carlo.names import CLEARANCE, FIGURES, Units, documented_units, input_label, input_name
 from reports.run.columns import Array, clearance, violated
 from reports.run.run_data import RunData
 
@@ -96,7 +96,8 @@ def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     caption = "Closest approach of each flight beyond r_min, over the inputs with the largest δ."
     if len(shown) < len(measured):
         caption += f" {len(shown):,} of {len(measured):,} flights are shown, the {NEAREST} nearest among them."
-    figures = [_scatter(sampled[key], near, groups) for key in keys if pd.api.types.is_numeric_dtype(sampled[key])]
+    units = documented_units(run.manifest)
+    figures = [_scatter(sampled[key], near, groups, units) for key in keys if pd.api.types.is_numeric_dtype(sampled[key])]
     # Words beside an axis are wide: below each other, not beside, these panels have room for them.
     words = [_strips(sampled[key], near, groups) for key in keys if not pd.api.types.is_numeric_dtype(sampled[key])]
     charts = [
@@ -106,13 +107,13 @@ def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     return [chart for chart in charts if chart.panels]
 
 
-def _scatter(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> Panel:
+def _scatter(values: "pd.Series[Any]", near: Array, groups: Sequence[Group], units: Units) -> Panel:
     x = values.to_numpy(dtype=np.float64)
     lines, top = capped(x, near, groups, float("nan"), unit="m")
     bottom = min(0.0, float(near.min()))
     lines.append(level(x, 0.0, "r_min"))
     y_range = (bottom - 0.05 * (top - bottom), top)
-    return Panel(x_label=input_label(str(values.name)), y_label=CLEARANCE, lines=lines, y_range=y_range)
+    return Panel(x_label=input_label(str(values.name), units), y_label=CLEARANCE, lines=lines, y_range=y_range)
 
 
 def _strips(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> Panel:

@@ -1,15 +1,22 @@
 """What the figures and the inputs of a Monte Carlo study are called, and how they are written."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
 
 from reports.document.tables import minus
 
 _UNITS = {
-    "_per_hour": "1/h", "_per_m2": "1/m2", "_per_m": "1/m", "_per_s": "1/s", "_deg_s": "deg/s", "_rad_s": "rad/s", "_mps2": "m/s2",
-    "_mps": "m/s", "_deg": "deg", "_hz": "Hz", "_m": "m", "_s": "s",
+    "_per_hour": "1/h", "_per_m2": "1/m2", "_per_m_s": "1/(m s)", "_per_m": "1/m", "_per_s": "1/s", "_deg_s": "deg/s",
+    "_rad_s": "rad/s", "_mps2": "m/s2", "_mps": "m/s", "_deg": "deg", "_rad": "rad", "_percent": "%", "_hz": "Hz", "_c": "degC",
+    "_m": "m", "_s": "s",
 }  # fmt: skip
-"""Units by the suffix of a key that names them; the first that fits."""
+"""Units by the suffix of a key that names them, of keys that no parameter documents; the first that fits."""
+
+Units = Mapping[str, str]
+"""Units of inputs by their keys."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,11 +70,17 @@ def input_name(key: str) -> str:
     return bare.replace(".", " ").replace("_", " ").replace("keepout", "keep-out").capitalize()
 
 
-def input_unit(key: str) -> str:
-    """Return the unit that a key names."""
-    return next((unit for suffix, unit in _UNITS.items() if key.endswith(suffix)), "-")
+def documented_units(manifest: Mapping[str, Any]) -> Units:
+    """Return the units that the parameters of a run's trials have, by the manifest."""
+    listed = (parameter for of in manifest.get("trial_parameters", {}).values() for parameter in of)
+    return {parameter["key"]: parameter["unit"] for parameter in listed if parameter.get("unit")}
 
 
-def input_label(key: str) -> str:
+def input_unit(key: str, units: Units = MappingProxyType({})) -> str:
+    """Return the unit of an input: the documented one, or that which its key names; an entry of a list has no other."""
+    return units.get(key) or next((unit for suffix, unit in _UNITS.items() if key.endswith(suffix)), "-")
+
+
+def input_label(key: str, units: Units = MappingProxyType({})) -> str:
     """Return what an axis says of an input."""
-    return f"{input_name(key)} [{input_unit(key)}]"
+    return f"{input_name(key)} [{input_unit(key, units)}]"

@@ -4,7 +4,7 @@ from typing import Any
 
 from common.intervals import percent
 from reports.document.blocks import Block, Section, Table, Text
-from reports.monte_carlo.names import input_name, input_unit
+from reports.monte_carlo.names import Units, input_name, input_unit
 from reports.monte_carlo.subset_charts import curve_chart, distance_chart, input_charts
 from reports.monte_carlo.tables import Record, ending_table
 
@@ -12,7 +12,7 @@ FEW_RENEWALS = 0.05
 """Fraction of accepted renewals below which the seed decides: intervals were too narrow in tests from there on."""
 
 
-def subset_sections(statistics: Record) -> list[Section]:
+def subset_sections(statistics: Record, units: Units) -> list[Section]:
     """Return the sections of a study by subset simulation."""
     return [
         Section(
@@ -27,7 +27,7 @@ def subset_sections(statistics: Record) -> list[Section]:
             ],
         ),
         Section(anchor="levels", title="Levels of the subset simulations", nav_title="Levels", blocks=_levels(statistics)),
-        Section(anchor="drivers", title=_near(statistics), nav_title="Inputs", blocks=_inputs(statistics)),
+        Section(anchor="drivers", title=_near(statistics), nav_title="Inputs", blocks=_inputs(statistics, units)),
     ]
 
 
@@ -186,19 +186,19 @@ def _near(statistics: Record) -> str:
     return "Inputs of flights with a violation" if statistics["violation"]["reached"] else "Inputs of the nearest flights"
 
 
-def _inputs(statistics: Record) -> list[Block]:
+def _inputs(statistics: Record, units: Units) -> list[Block]:
     which = "with a violation" if statistics["violation"]["reached"] else "of the last level"
     text = (
         f"How the inputs of flights {which} are distributed, against how they are declared: the distance is the largest difference"
         " of the two cumulative distributions (Kolmogorov), 0 for an input that does not matter, 1 for one that decides alone. The"
         f" noise floor, {statistics['noise_floor']:.2f}, is the largest distance of some inputs without any effect that moved too."
     )
-    return [Text(text), *distance_chart(statistics), input_table(statistics), *input_charts(statistics)]
+    return [Text(text), *distance_chart(statistics), input_table(statistics, units), *input_charts(statistics, units)]
 
 
-def input_table(statistics: Record) -> Table:
+def input_table(statistics: Record, units: Units) -> Table:
     """Return the inputs with their distances, and how their values differ."""
-    rows = [[_named(entry), f"{entry['distance']:.2f}", *_values(entry)] for entry in statistics["inputs"]]
+    rows = [[_named(entry, units), f"{entry['distance']:.2f}", *_values(entry)] for entry in statistics["inputs"]]
     return Table(
         caption="Inputs by how much their values near a violation differ from the others.",
         head=["Input", "Distance [-]", "As declared", "Near the event"],
@@ -208,8 +208,8 @@ def input_table(statistics: Record) -> Table:
     )
 
 
-def _named(entry: Record) -> str:
-    unit = input_unit(entry["key"])
+def _named(entry: Record, units: Units) -> str:
+    unit = input_unit(entry["key"], units)
     return input_name(entry["key"]) + (f" [{unit}]" if entry["edges"] else "")
 
 

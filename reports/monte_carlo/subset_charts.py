@@ -7,7 +7,7 @@ import numpy as np
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.monte_carlo.driver_charts import INPUTS_MAX, bar_line
-from reports.monte_carlo.names import FIGURES, input_label, input_name
+from reports.monte_carlo.names import FIGURES, Units, input_label, input_name
 from reports.run.columns import Array
 
 SHOWN = 4
@@ -73,18 +73,18 @@ def distance_chart(statistics: dict[str, Any]) -> list[Chart]:
     return [Chart(name="rare-inputs", caption=caption, panels=[panel], panel_height=0.12 + 0.025 * len(inputs))]
 
 
-def input_charts(statistics: dict[str, Any]) -> list[Chart]:
+def input_charts(statistics: dict[str, Any], units: Units) -> list[Chart]:
     """Return how the inputs with the largest distances are distributed, declared and near the event; words are in the table."""
     numbers = [entry for entry in statistics["inputs"] if entry["edges"]][:SHOWN]
     if not numbers:
         return []
     near = "flights with a violation" if statistics["violation"]["reached"] else "flights of the last level"
-    panels = [_distribution(entry, near) for entry in numbers]
+    panels = [_distribution(entry, near, units) for entry in numbers]
     caption = f"Inputs with the largest distances: fraction in each class, of {near} and as declared."
     return [Chart(name="rare-distributions", caption=caption, panels=panels, columns=min(2, len(panels)), panel_height=0.3)]
 
 
-def _distribution(entry: dict[str, Any], near: str) -> Panel:
+def _distribution(entry: dict[str, Any], near: str, units: Units) -> Panel:
     edges = np.repeat(np.array(entry["edges"]), 2)
     outlines = {
         which: np.concatenate([[0.0], np.repeat(100.0 * np.array(entry[which]), 2), [0.0]]) for which in ("declared", "near")
@@ -94,7 +94,7 @@ def _distribution(entry: dict[str, Any], near: str) -> Panel:
         Line(x=edges, y=outlines["near"], label=near, colour="plum", fill=True),
     ]
     most = 100.0 * max(*entry["declared"], *entry["near"])
-    return Panel(x_label=input_label(entry["key"]), y_label="Fraction [%]", lines=lines, y_range=(0.0, 1.08 * most))
+    return Panel(x_label=input_label(entry["key"], units), y_label="Fraction [%]", lines=lines, y_range=(0.0, 1.08 * most))
 
 
 def _column(entries: list[dict[str, Any]], name: str) -> Array:

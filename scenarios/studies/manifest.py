@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel
@@ -17,7 +17,7 @@ from common.run_layout import FORMAT, LOGO
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.schema.documented_parts import DIMENSIONLESS, line, split_unit
+from scenarios.schema.documented_parts import DIMENSIONLESS, documented_part_keys, line, split_unit
 from scenarios.schema.effect import unused
 from scenarios.schema.load import AnyStudy
 from scenarios.schema.parts import names_file, names_folder, part_names
@@ -126,7 +126,7 @@ def config_hash(*scenarios: BaseModel, files: Mapping[str, str] | None = None, n
 
 def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
     """Return every key of the scenario's sections that acts, with value, default if any, meaning and unit."""
-    listed = []
+    listed: list[dict[str, Any]] = []
     for section_name in type(scenario).model_fields:
         section = getattr(scenario, section_name)
         if not isinstance(section, BaseModel) or section_name in ("comparison", "sweep", "report"):
@@ -145,7 +145,30 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
             if not (isinstance(scenario, Scenario) and unused(scenario, parameter["key"])):
                 listed.append(parameter)
         listed += [
-            {"key": f"{section_name}.{key}", "value": value, "unit": "", "meaning": "Of a part that the section names"}
+            {"key": f"{section_name}.{key}", "value": value, **_of_part(f"{section_name}.{key}")}
             for key, value in (section.model_extra or {}).items()
         ]
-    return listed
+    return [*listed, *_varied_of_parts(scenario, {of["key"] for of in listed})]
+
+
+def _varied_of_parts(scenario: BaseModel, listed: Collection[str]) -> list[dict[str, Any]]:
+    """Return the keys of parts that are swept or sampled and set nowhere else, with their defaults as values."""
+    if not isinstance(scenario, Scenario):
+        return []
+    varied = dict.fromkeys([*scenario.sweep.root, *(draw.key for draw in scenario.draws)])
+    if all(key in listed or key == "nu" for key in varied):
+        return []
+    of_parts = {of.key: of for of in documented_part_keys()}
+    return [
+        {"key": key, "value": of_parts[key].default, "default": of_parts[key].default, **_of_part(key)}
+        for key in varied
+        if key in of_parts and key not in listed
+    ]
+
+
+def _of_part(key: str) -> dict[str, str]:
+    """Return unit and meaning of a key that a part brings; of one of a user's own, which documents it elsewhere, neither."""
+    known = next((of for of in documented_part_keys() if of.key == key), None)
+    if known is None:
+        return {"unit": "", "meaning": "Of a part that the section names"}
+    return {"unit": known.unit.replace(DIMENSIONLESS, ""), "meaning": known.meaning}

@@ -13,13 +13,14 @@ from reports.document.blocks import Table, Text
 from reports.document.chart import Chart
 from reports.document.tables import minus
 from reports.monte_carlo.content import bound_in_words, monte_carlo_sections
-from reports.monte_carlo.driver_charts import NEAREST, SCATTER_MAX, thinned
-from reports.monte_carlo.names import input_label, input_name
+from reports.monte_carlo.driver_charts import NEAREST, SCATTER_MAX, scatter_charts, thinned
+from reports.monte_carlo.names import documented_units, input_label, input_name, input_unit
 from reports.monte_carlo.spread_charts import cumulative
 from reports.monte_carlo.tables import percent
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import RunData, read_run
+from scenarios.schema.documented import documented_keys
 from scenarios.schema.load import load_study
 from scenarios.statistics.estimates import study_statistics
 from scenarios.studies.manifest import initial_manifest, parameters
@@ -218,6 +219,31 @@ def test_inputs_are_called_by_their_keys_without_the_unit_which_the_axis_has():
     assert input_label("following.vessel_acceleration_mps2") == "Following vessel acceleration [m/s2]"
     assert input_label("reports.missing") == "Reports missing [-]"
     assert input_name("turbulence.level") == "Turbulence level"
+
+
+def test_keys_that_name_their_unit_have_the_one_that_is_documented():
+    # Those of a search or an arena are no inputs of flights; "%" is written for "% m/m"; two keys of a plume name none.
+    keys = [of for of in documented_keys() if of.unit and not of.key.startswith(("draws.", "arena."))]
+    other = {of.key for of in keys if input_unit(of.key) != of.unit}
+    assert len(keys) > 150
+    assert other == {"plume.age_max", "plume.parcel_interval", "payload.limit_percent"}
+    assert input_label("wind.temperature_c") == "Wind temperature [degC]"
+
+
+def test_units_are_those_of_the_parameters_of_a_run_parts_of_its_scenario_among_them():
+    study = load_study("sea_wind", ["plume.model=fluctuating", 'draws=[{key="plume.age_max", uniform=[100.0, 300.0]}]'])
+    units = documented_units({"trial_parameters": {"study": json.loads(json.dumps(parameters(study)))}})
+    assert input_label("plume.age_max", units) == "Plume age max [s]"
+    assert input_label("vessel.manoeuvres.0.turn_deg", units) == "Vessel manoeuvre 1 turn [deg]"
+
+
+def test_a_scatter_has_the_documented_unit_of_its_input(run):
+    inputs = run.draws.rename(columns={"wind.speed_mps": "plume.age_max"})
+    drawn = run_of(run.summary, inputs)
+    of = [{"key": "plume.age_max", "unit": "s"}]
+    drawn = replace(drawn, manifest=drawn.manifest | {"trial_parameters": {"study": of}})
+    labels = [panel.x_label for chart in scatter_charts(drawn, drawn.statistics) for panel in chart.panels]
+    assert "Plume age max [s]" in labels
 
 
 def test_statistics_and_inputs_are_read_from_the_run_directory(run, tmp_path):

@@ -41,7 +41,7 @@ def unreached():
 
 
 def blocks_of(statistics, kind):
-    return [block for section in subset_sections(statistics) for block in section.blocks if isinstance(block, kind)]
+    return [block for section in subset_sections(statistics, {}) for block in section.blocks if isinstance(block, kind)]
 
 
 def test_the_probability_is_said_with_its_interval_and_how_it_was_made(reached):
@@ -72,7 +72,7 @@ def test_where_nothing_was_reached_only_an_upper_bound_is_claimed(unreached):
     assert words.startswith("None of 3 independent subset simulations reached a keep-out violation.")
     assert f"at most {percent(unreached['violation']['upper'])}" in words
     assert "m beyond r_min" in words
-    assert "Inputs of the nearest flights" in [section.title for section in subset_sections(unreached)]
+    assert "Inputs of the nearest flights" in [section.title for section in subset_sections(unreached, {})]
 
 
 def test_tiny_probabilities_are_powers_of_ten():
