@@ -16,6 +16,8 @@ FOUND_WITHIN = 300.0
 def passes(across: Array) -> Iterator[slice]:
     """Yield the samples of each pass: from half-way since the last change of sides to half-way to the next.
 
+    A last change at once after the one before it makes no pass: it has no sample of its own.
+
     Parameters
     ----------
     across : distance from the plume's axis, positive on one side, not a number where there is no plume, shape (n,) [m]
@@ -26,4 +28,4 @@ def passes(across: Array) -> Iterator[slice]:
     middle = (change[:-1] + change[1:]) // 2 + 1
     begins = [max(0, 2 * change[0] - middle[0]) if len(middle) else 0, *middle]
     ends = [*middle, min(len(across), 2 * change[-1] - middle[-1]) if len(middle) else len(across)]
-    yield from (slice(int(begin), int(end)) for begin, end in zip(begins, ends, strict=True))
+    yield from (slice(int(begin), int(end)) for begin, end in zip(begins, ends, strict=True) if end > begin)
