@@ -21,6 +21,20 @@ def probability(share: float) -> str:
     return "more than 99.9 %" if share > 0.999 else "less than 0.1 %" if share < 0.001 else f"{100.0 * share:.1f} %"
 
 
+def content_words(fsc_percent: float, low_percent: float, high_percent: float, unit: str = "%") -> str:
+    """Return a sulphur content with its 95 % interval; of one below 0 that the interval begins at 0, and why.
+
+    Parameters
+    ----------
+    fsc_percent, low_percent, high_percent : the estimate, and the interval that its verdict rests on [% m/m]
+    unit : of the content
+    """
+    content, interval = f"{fsc_percent:z.3f}", f"95 % interval {low_percent:z.3f} to {high_percent:z.3f} %"
+    if float(content) < 0.0:
+        return f"{content} {unit}, which is below 0; {interval}, cut at 0 because no fuel has less"
+    return f"{content} {unit}, {interval}"
+
+
 def verdict_words(verdict: str, limit_percent: float, probability_above: float, quality: Quality | str = "A") -> str:
     """Return a verdict with its limit and probability; that there is none of a record of quality C.
 

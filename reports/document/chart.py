@@ -26,7 +26,7 @@ class Line:
     label : for the legend; the same label in several panels is one entry, and an empty one none
     colour : a key of ``palette.COLOURS``
     style : how it is drawn
-    error : half-height of error bars, shape (n,), or none
+    error : half-height of error bars, shape (n,), or their lengths below and above, shape (2, n); or none
     fill : tint what the curve encloses
     opacity : of the tint
     values : of each point, shape (n,), shown by its colour on the chart's scale; or none. Points without a number are not shown

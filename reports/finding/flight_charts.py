@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from measurement.estimate.verdict import COVERAGE
 from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.palette import Meaning
-from reports.finding.search_view import ESTIMATED, TWO_SIDED, Ellipse, SearchView
+from reports.finding.search_view import ESTIMATED, Ellipse, SearchView
 from reports.run.columns import column
 
 _POINTS_MAX = 1500
@@ -23,7 +24,7 @@ def height_chart(view: SearchView, name: str) -> Chart:
     rows = view.history.iloc[::step]
     time, height, deviation = (column(rows, of) for of in ("time_s", ESTIMATED, "axis_height_deviation_m"))
     known = np.isfinite(height)
-    time, height, reach = time[known], height[known], TWO_SIDED * deviation[known]
+    time, height, reach = time[known], height[known], COVERAGE * deviation[known]
     lines = [
         Line(x=np.append(time, time[::-1]), y=np.append(height - reach, (height + reach)[::-1]), label="believed, 95 %",
              colour="black", style="thin", fill=True),

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from measurement.estimate.verdict import COVERAGE
 from measurement.plume.passes import FOUND_WITHIN
 from reports.document.blocks import Block, Heading, Section, Text
 from reports.document.tables import number
@@ -93,7 +94,7 @@ def _told(row: "pd.Series[Any]") -> str:
     time, error = float(row.get("time_to_find_s", np.nan)), float(row.get(_LATE, np.nan))
     words = [f"Found {time:.0f} s after the orbit was reached" if np.isfinite(time) else "The plume was not found"]
     if np.isfinite(error):
-        believed = f"believed {number(error, '{:+.1f} m')} off, ± {1.96 * row['axis_height_deviation_3min_m']:.1f} m (95 %)"
+        believed = f"believed {number(error, '{:+.1f} m')} off, ± {COVERAGE * row['axis_height_deviation_3min_m']:.1f} m (95 %)"
         words.append(f"after 3 minutes its height of {row['axis_height_3min_m']:.1f} m was {believed}")
     if np.isfinite(hits := float(row.get("hit_rate_found", np.nan))):
         words.append(f"{100.0 * hits:.0f} % of the passes since then hit it")

@@ -19,9 +19,6 @@ from reports.run.time_history import about_the_plume
 ESTIMATED = "axis_height_estimated_m"
 """Column of the time history that a flight has if it searched."""
 
-TWO_SIDED = 1.96
-"""Standard deviations of a 95 % interval [-]."""
-
 _MODES = {
     "searching": "orange", "lost again": "plum", "sensor failed": "black", "departing": "green", "holding off": "grey",
 }  # fmt: skip

@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from common.intervals import percent, upper_bound
+from measurement.estimate.verdict import COVERAGE
 from measurement.plume.passes import FOUND_WITHIN
 from reports.document.blocks import Table
 from reports.document.tables import number
-from reports.finding.search_view import TWO_SIDED
 from reports.finding.variants import Variant
 from reports.run.columns import Array, column
 
@@ -52,7 +52,7 @@ def height_table(variants: list[Variant]) -> Table | None:
         known = np.isfinite(error) & np.isfinite(deviation)
         if not known.any():
             continue
-        flights, held = int(np.count_nonzero(known)), int(np.count_nonzero(np.abs(error) <= TWO_SIDED * deviation))
+        flights, held = int(np.count_nonzero(known)), int(np.count_nonzero(np.abs(error) <= COVERAGE * deviation))
         # Two one-sided bounds of 97.5 % each (Clopper and Pearson).
         low, high = 1.0 - upper_bound(flights - held, flights, 0.975), upper_bound(held, flights, 0.975)
         rows.append([

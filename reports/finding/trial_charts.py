@@ -3,11 +3,11 @@
 import numpy as np
 import pandas as pd
 
+from measurement.estimate.verdict import COVERAGE
 from measurement.plume.passes import FOUND_WITHIN, HIT, passes
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.document.panels import histogram
-from reports.finding.search_view import TWO_SIDED
 from reports.finding.variants import Variant
 from reports.run.columns import Array, column
 from reports.run.trials import Trial
@@ -114,7 +114,7 @@ def _error_panel(variants: list[Variant]) -> Panel | None:
             most = max(most, 1.05 * float(np.max(deviation[known])))
     ends = np.array([0.0, most])
     interval = [
-        Line(x=ends, y=side * TWO_SIDED * ends, label="95 % interval", colour=Meaning.LIMIT, style="dash") for side in (1.0, -1.0)
+        Line(x=ends, y=side * COVERAGE * ends, label="95 % interval", colour=Meaning.LIMIT, style="dash") for side in (1.0, -1.0)
     ]
     return (
         Panel(x_label="Stated standard deviation [m]", y_label="Height believed minus true [m]", lines=[*lines, *interval])

@@ -50,7 +50,9 @@ def over_time_chart(record: Record) -> Chart | None:
     lines += [level(time, limit, f"limit {limit_words(limit)}") for limit in limits if limit < top]
     if record.get("true_percent") is not None:
         lines.append(level(time, value(record, "true_percent"), "a perfect instrument", "black"))
-    panel = Panel(x_label="Time since the start [s]", y_label=_FSC, lines=lines, y_range=(0.0, top), x_range=(0.0, float(time[-1])))
+    # An estimate may be below 0, though its interval is cut there.
+    y_range = (1.25 * min(0.0, float(np.min(found))), top)
+    panel = Panel(x_label="Time since the start [s]", y_label=_FSC, lines=lines, y_range=y_range, x_range=(0.0, float(time[-1])))
     caption = "Fuel sulphur content from all readings up to a time, with its 95 % interval."
     return Chart(name="fsc-over-time", caption=caption, panels=[panel], panel_height=0.21)
 

@@ -21,6 +21,9 @@ _POINTS_MAX = 4000
 
 _AXES = {"crossing_interval_mean_s": "Crossing interval [s]", "crossing_distance_mean_m": "Crossing distance [m]"}
 
+_BARS_MAX = 60
+"""Flights of a sensor up to which their 95 % intervals are drawn as error bars."""
+
 _WIDE = 10.0
 """Largest sulphur content over the smallest from which on axes are logarithmic; of a fuel without any they are not."""
 
@@ -37,7 +40,8 @@ def error_chart(rows: pd.DataFrame) -> Chart:
             expected, found = column(group, "fsc_expected_percent"), column(group, f"{prefix}_percent")
             # Flights of one fuel stand beside each other, in the order of their numbers.
             shown = expected * (1.0 + 0.1 * (np.linspace(-0.5, 0.5, len(group)) if len(group) > 1 else 0.0))
-            error = 1.96 * column(group, f"{prefix}_uncertainty_percent") if len(group) <= 60 else None
+            low, high = (column(group, f"{prefix}_{end}_percent") for end in ("low", "high"))
+            error = np.maximum([found - low, high - found], 0.0) if len(group) <= _BARS_MAX else None
             lines.append(Line(x=shown, y=found, label=str(sensor), colour=series_colour(number), style="points", error=error))
         ends = np.array([0.8, 1.25]) * [float(rows["fsc_expected_percent"].min()), float(rows["fsc_expected_percent"].max())]
         lines.append(Line(x=ends, y=ends, label="perfect", colour="black", style="dash"))

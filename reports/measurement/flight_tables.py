@@ -1,5 +1,7 @@
 """Tables of flights that measured the fuel: their results, and how the method does."""
 
+from typing import Any
+
 import pandas as pd
 
 from common.intervals import percent
@@ -15,11 +17,16 @@ _BEST = 3
 _METHODS = {"regression": "equalise and regress", "areas": "areas of passes"}
 
 
+def interval_words(row: "pd.Series[Any]") -> str:
+    """Return the ends of the 95 % interval of a flight's sulphur content [% m/m]."""
+    return f"{number(row['fsc_low_percent'], '{:.3f}')} to {number(row['fsc_high_percent'], '{:.3f}')}"
+
+
 def flight_table(rows: pd.DataFrame) -> Table:
     """Return a row per flight: result, uncertainty, verdict."""
     return Table(
         caption="The flights, a row each: result, uncertainty and verdict.",
-        head=["Flight", "Sensor", "Fuel [%]", "Perfect [%]", "Measured [%]", "± 95 % [%]", "Quality", "P(above)", "Verdict"],
+        head=["Flight", "Sensor", "Fuel [%]", "Perfect [%]", "Measured [%]", "95 % interval [%]", "Quality", "P(above)", "Verdict"],
         rows=[
             [
                 str(row["flight_id"]),
@@ -27,14 +34,14 @@ def flight_table(rows: pd.DataFrame) -> Table:
                 number(row["fsc_fuel_percent"], "{:.3f}"),
                 number(row["fsc_expected_percent"], "{:.3f}"),
                 number(row["fsc_percent"], "{:.3f}"),
-                number(1.96 * row["fsc_uncertainty_percent"], "{:.3f}"),
+                interval_words(row),
                 str(row["sulphur_quality"]),
                 number(row["probability_above"], "{:.3f}"),
                 str(row["sulphur_verdict"]),
             ]
             for _, row in rows.iterrows()
         ],
-        widths=[2.2, 1.4, 0.8, 0.9, 1.0, 1.0, 0.7, 0.8, 0.8],
+        widths=[2.2, 1.3, 0.8, 0.9, 1.0, 1.5, 0.7, 0.8, 0.8],
         left_columns=2,
         breakable=True,
     )

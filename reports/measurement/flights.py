@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from common.intervals import percent
-from measurement.estimate.words import counted_verdicts, probability, verdict_words
+from measurement.estimate.words import content_words, counted_verdicts, probability, verdict_words
 from measurement.gases import limit_words
 from reports.document.blocks import Block, Card, Heading, Section, Text, UndecidedCard
 from reports.document.chart import Chart
@@ -14,7 +14,7 @@ from reports.document.tables import number
 from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
 from reports.measurement.data import Record
 from reports.measurement.flight_charts import error_chart, operating_curve, sulphur_track_chart, trajectory_chart
-from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table
+from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table, interval_words
 from reports.measurement.tables import over_time_table, result_table
 from reports.run.columns import column
 from reports.run.run_data import RunData
@@ -44,7 +44,8 @@ def sulphur_cards(run: RunData) -> list[Card]:
     if len(measured) == 1:
         row = measured.iloc[0]
         return [
-            Card("Sulphur in the fuel, with its 95 % interval", _content(row)),
+            Card("Sulphur in the fuel", number(row["fsc_percent"], "{:z.3f} %")),
+            Card("95 % interval of it", f"{interval_words(row)} %"),
             _verdict_card(row),
         ]
     bias, inside = _bias_and_coverage(measured)
@@ -81,7 +82,7 @@ def sulphur_headline(run: RunData) -> str:
         return f"No fuel sulphur content from {_flights(len(sniffed))} with a sniffer"
     if len(measured) == 1:
         row = measured.iloc[0]
-        return f"Fuel sulphur {_content(row)} (95 % interval): {_verdict_words(row)}"
+        return f"Fuel sulphur {_content(row)}: {_verdict_words(row)}"
     called_so = counted_verdicts(zip(measured["sulphur_verdict"], measured["sulphur_quality"], strict=True))
     bias, inside = _bias_and_coverage(measured)
     of = "" if len(measured) == len(sniffed) else f" of {len(sniffed):,}"
@@ -96,7 +97,7 @@ def _flights(count: int) -> str:
 
 
 def _content(row: "pd.Series[Any]") -> str:
-    return f"{row['fsc_percent']:.3f} ± {1.96 * row['fsc_uncertainty_percent']:.3f} %"
+    return content_words(float(row["fsc_percent"]), float(row["fsc_low_percent"]), float(row["fsc_high_percent"]))
 
 
 def _bias_and_coverage(measured: pd.DataFrame) -> tuple[float, float]:
@@ -173,7 +174,7 @@ def _verdict_words(row: "pd.Series[Any]") -> str:
 
 def _told(row: "pd.Series[Any]") -> str:
     """Return result and verdict in words, with probability and limit."""
-    verdict = f"The fuel holds {_content(row)} sulphur (95 % interval): {_verdict_words(row)}."
+    verdict = f"The fuel's sulphur content is {_content(row)}: {_verdict_words(row)}."
     return (
         f"{verdict} Quality {row['sulphur_quality']}"
         + (f": {row['sulphur_reason']}." if row["sulphur_reason"] and pd.notna(row["sulphur_reason"]) else ".")

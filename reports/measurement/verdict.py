@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from measurement.estimate.words import probability, verdict_words
+from measurement.estimate.words import content_words, probability, verdict_words
 from measurement.gases import FUEL_SULPHUR_MOST, limit_words
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import number
@@ -41,10 +41,8 @@ def _result(record: Record) -> str:
     if not _known(found):
         return "No fuel sulphur content can be given."
     passes = "1 pass" if figures["passes"] == 1 else f"{figures['passes']} passes"
-    return (
-        f"Fuel sulphur content {value(found, 'fsc_percent'):.3f} % m/m, 95 % interval {_interval(found)}, from {passes} in"
-        f" {figures['duration_s']:.0f} s. Quality {found['quality']}."
-    )
+    content = content_words(value(found, "fsc_percent"), value(found, "low_percent"), value(found, "high_percent"), "% m/m")
+    return f"Fuel sulphur content {content}, from {passes} in {figures['duration_s']:.0f} s. Quality {found['quality']}."
 
 
 def _known(found: Record) -> bool:

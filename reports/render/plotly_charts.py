@@ -48,7 +48,8 @@ def _trace(line: Line, *, show: bool) -> Data:
     style = {key: dict(value) if isinstance(value, Mapping) else value for key, value in _MODES[line.style].items()}
     style["line" if "line" in style else "marker"]["color"] = COLOURS[line.colour]
     if line.error is not None:
-        style["error_y"] = {"type": "data", "array": _numbers(line.error), "thickness": 1}
+        below, above = map(_numbers, np.broadcast_to(line.error, (2, len(line.x))))
+        style["error_y"] = {"type": "data", "symmetric": False, "array": above, "arrayminus": below, "thickness": 1}
     if line.fill:
         style |= {"fill": "toself", "fillcolor": _tint(COLOURS[line.colour], line.opacity)}
     names = {"name": line.label, "legendgroup": line.label, "showlegend": show}

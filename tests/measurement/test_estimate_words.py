@@ -7,7 +7,7 @@ import pytest
 from logged_flights import run
 
 from measurement.estimate.verdict import judged
-from measurement.estimate.words import needed, verdict_words
+from measurement.estimate.words import content_words, needed, verdict_words
 from measurement.gases import limit_words
 
 
@@ -17,6 +17,10 @@ from measurement.gases import limit_words
 def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
     assert limit_words(limit) == words
     assert f"above the limit of {words}; probability above it: 99.0 %" in verdict_words("above", limit, 0.99)
+
+
+def test_a_content_that_rounds_to_0_has_no_sign():
+    assert content_words(-0.0004, 0.0, 0.0196) == "0.000 %, 95 % interval 0.000 to 0.020 %"
 
 
 @pytest.mark.parametrize("level", [420.0, None])

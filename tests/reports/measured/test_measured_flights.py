@@ -1,5 +1,6 @@
 """The report of flights with a sniffer: one as a client reads it, several as a method is judged."""
 
+import base64
 import re
 from types import SimpleNamespace
 
@@ -28,6 +29,10 @@ def flown(directory, *overrides):
     return content(read_run(directory))
 
 
+CONTENT = r"0\.\d{3} %, 95 % interval 0\.\d{3} to 0\.\d{3} %"
+"""A sulphur content with its interval, as page 1 and the section on it tell it."""
+
+
 @pytest.fixture(scope="module")
 def one(tmp_path_factory):
     return flown(tmp_path_factory.mktemp("one") / "run", "flight.after_settling_s=130")
@@ -48,11 +53,13 @@ def test_one_flight_is_told_with_result_probability_and_limit(one):
     assert {"sulphur-track", "fsc-over-time", "budget", "channels", "regression"} <= set(named_charts(one))
     assert_axes_read_quantity_and_unit(named_charts(one).values())
     told = next(block.text for block in section.blocks if isinstance(block, Text))
-    assert re.match(r"The fuel holds 0\.\d{3} ± 0\.\d{3} % sulphur \(95 % interval\): .* limit of 0\.10 %; prob", told)
+    assert re.match(rf"The fuel's sulphur content is {CONTENT}: .* limit of 0\.10 %; prob", told)
     assert "The fuel's own content is 0.100 %, of which a perfect instrument reads 0.097 %." in told
     name, value, *_ = one.verdict.figures[0]
     assert name.startswith("Sulphur in the fuel")
-    assert re.fullmatch(r"0\.\d{3} ± 0\.\d{3} %", value)
+    assert re.fullmatch(r"0\.\d{3} %", value)
+    assert one.verdict.figures[1][0] == "95 % interval of it"
+    assert re.fullmatch(r"0\.\d{3} to 0\.\d{3} %", one.verdict.figures[1][1])
     assert "sulphur" not in {section.anchor for section in one.sections}
 
 
@@ -78,7 +85,7 @@ def test_several_flights_are_judged_as_a_method(several):
 def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_area(one, several):
     plain = one.verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
     assert re.match(
-        r"Fuel sulphur 0\.\d{3} ± 0\.\d{3} % \(95 % interval\): .* limit of 0\.10 %; probability above it: [\d.]+ %\. No keep-out",
+        rf"Fuel sulphur {CONTENT}: .* limit of 0\.10 %; probability above it: [\d.]+ %\. No keep-out",
         plain,
     )
     assert re.match(
@@ -88,8 +95,8 @@ def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_are
 
 
 ROW = {
-    "fsc_percent": 0.5, "fsc_uncertainty_percent": 0.02, "sulphur_limit_percent": 0.1, "sulphur_verdict": "above",
-    "probability_above": 1.0, "sulphur_quality": "A", "sulphur_reason": "", "fsc_fuel_percent": 0.5, "fsc_expected_percent": 0.49,
+    "fsc_percent": 0.5, "fsc_low_percent": 0.461, "fsc_high_percent": 0.539, "sulphur_limit_percent": 0.1, "probability_above": 1.0,
+    "sulphur_verdict": "above", "sulphur_quality": "A", "sulphur_reason": "", "fsc_fuel_percent": 0.5, "fsc_expected_percent": 0.49,
     "min_distance_m": 250.0,
 }  # fmt: skip
 """Of a flight that measured the fuel, in the summary."""
@@ -106,7 +113,7 @@ ROW = {
 def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(called, judgement, tone):
     row = {**ROW, "fsc_percent": 0.1, "sulphur_verdict": called, "probability_above": 0.5}
     run = SimpleNamespace(summary=pd.DataFrame([row]))
-    card = flights.sulphur_cards(run)[1]
+    card = flights.sulphur_cards(run)[2]
     assert (card.judgement.replace("\N{NO-BREAK SPACE}", " "), card.tone) == (judgement, tone)
     assert flights.sulphur_below(run) == (called == "below")
     assert ("open for the limit" in flights.sulphur_headline(run)) == (called == "open")
@@ -119,19 +126,44 @@ def test_a_sniffer_without_a_result_is_said_on_page_1():
 
 def test_a_probability_is_never_told_as_certain():
     told = flights._told(pd.Series(ROW))
-    assert told.startswith("The fuel holds 0.500 ± 0.039 % sulphur (95 % interval): above the limit of 0.10 %; ")
+    assert told.startswith("The fuel's sulphur content is 0.500 %, 95 % interval 0.461 to 0.539 %: above the limit of 0.10 %; ")
     assert "probability above it: more than 99.9 %. Quality A." in told
-    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([ROW])))[1]
+    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([ROW])))[2]
     assert card[:2] == ("Verdict on 0.10 %, and probability of more", "above, more than 99.9 %")
+
+
+def test_a_content_below_0_is_told_with_the_interval_that_its_verdict_rests_on():
+    # The estimate is -0.025 ± 0.020 (1.96 σ: 0.039): the interval is cut at 0, and its upper end is that of 0.
+    row = {**ROW, "fsc_percent": -0.025, "fsc_low_percent": 0.0, "fsc_high_percent": 0.039, "sulphur_verdict": "below"}
+    run = SimpleNamespace(summary=pd.DataFrame([row]))
+    words = "-0.025 %, which is below 0; 95 % interval 0.000 to 0.039 %, cut at 0 because no fuel has less: below the limit"
+    assert words in flights.sulphur_headline(run)
+    assert words in flights._told(pd.Series(row))
+    assert flights.sulphur_cards(run)[1].value == "0.000 to 0.039 %"
+    table = flight_tables.flight_table(pd.DataFrame([{**row, "flight_id": "flight_1", "sensor": "fast"}]))
+    assert table.rows[0][table.head.index("95 % interval [%]")] == "0.000 to 0.039"
+
+
+def test_error_bars_are_the_intervals_and_not_symmetric_where_these_are_cut():
+    rows = pd.DataFrame({"sensor": ["fast"], "fsc_expected_percent": [0.01], "fsc_percent": [0.01], "areas_fsc_percent": [-0.01]})
+    for method, low, high in (("fsc", 0.0, 0.03), ("areas_fsc", 0.0, 0.02)):
+        rows = rows.assign(**{f"{method}_low_percent": low, f"{method}_high_percent": high})
+    chart = flight_charts.error_chart(rows)
+    bars = [panel.lines[0].error.ravel() for panel in chart.panels]
+    np.testing.assert_allclose(bars, [[0.01, 0.02], [0.0, 0.03]], atol=1e-12)
+    drawn = plotly_charts.draw(chart)["data"][0]["error_y"]
+    assert [np.frombuffer(base64.b64decode(drawn[end]["bdata"]), dtype="<f4")[0] for end in ("arrayminus", "array")] == (
+        pytest.approx([0.01, 0.02])
+    )
 
 
 def test_quality_c_gives_no_verdict_in_words_either():
     row = {**ROW, "sulphur_verdict": "open", "sulphur_quality": "C", "sulphur_reason": "SO2 is saturated"}
     told = flights._told(pd.Series(row))
-    assert told.startswith("The fuel holds 0.500 ± 0.039 % sulphur (95 % interval): no verdict on the limit of 0.10 %: quality C")
+    assert "95 % interval 0.461 to 0.539 %: no verdict on the limit of 0.10 %: quality C" in told
     assert "Quality C: SO2 is saturated." in told
     assert "open for" not in told
-    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([row])))[1]
+    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([row])))[2]
     assert card[1] == "no verdict: quality C"
 
 
@@ -139,7 +171,8 @@ def test_a_fuel_without_sulphur_beside_others_is_drawn():
     fuels = np.repeat([0.0, 0.1, 0.5, 2.0], 4)
     columns = ("fsc_percent", "areas_fsc_percent", "fsc_expected_percent", "crossing_interval_mean_s")
     rows = pd.DataFrame(dict.fromkeys(columns, fuels)).assign(sensor="fast")
-    rows = rows.assign(fsc_uncertainty_percent=0.01, areas_fsc_uncertainty_percent=0.01)
+    for method in ("fsc", "areas_fsc"):
+        rows = rows.assign(**{f"{method}_low_percent": np.maximum(0.0, fuels - 0.02), f"{method}_high_percent": fuels + 0.02})
     chart = flight_charts.error_chart(rows)
     assert {(panel.log_x, panel.log_y) for panel in chart.panels} == {(False, False)}
     entry = {"sensor": "fast", "flights": 4, "limit_percent": 0.1, "above": 0.0, "above_2min": 0.0, "above_interval": [0.0, 0.6]}
