@@ -199,6 +199,11 @@ class Scenario(Section):
             raise ValueError(
                 "guidance.command_limit is false; the aircraft cannot turn as fast as that: set fidelity to 'kinematic'"
             )
+        if not (self.guidance.command_limit or self.follows or self.circles) and self.guidance.approach:
+            raise ValueError(
+                "guidance.command_limit is false and guidance.approach true; the way to the orbit has turns at the limit:"
+                " set guidance.approach to false"
+            )
         if self.fidelity == "kinematic" and not self.turbulence.calm:
             raise ValueError(
                 "turbulence.level or turbulence.gusts is set with fidelity 'kinematic', which feels the steady wind alone:"

@@ -53,6 +53,9 @@ _NEAREST = 0.3
 _NOMINAL_RESPONSE = 0.5
 """Largest reading over strength before a pass has shown it [-]."""
 
+_RESPONSE_MIN = 1e-6
+"""Least reading over strength that counts [-]: far from every place that the axis may have a pass has none, and detects nothing."""
+
 
 class PlumeState(Enum):
     """What is known of the plume."""
@@ -233,7 +236,7 @@ class PlumeEstimator:
         """Take note of how a pass met the axis; return how likely its readings are."""
         prior, grid = self.prior, self.grid
         stronger = prior.apparent_wind / (self._wind * self._widened**2)
-        self._least = SIGNAL_TO_NOISE * prior.sensor.noise / (evidence.response * stronger)
+        self._least = SIGNAL_TO_NOISE * prior.sensor.noise / (max(evidence.response, _RESPONSE_MIN) * stronger)
         significant = evidence.significance > SIGNAL_TO_NOISE
         drawn_out = path.drawn_out(float(grid.places[evidence.at]) if significant else self.offset, self._wind)
         self._looks = 1.0 + 2.0 * self._widened * prior.sigma_y * drawn_out / (_LOOK * prior.meander_length)

@@ -45,6 +45,9 @@ to 2 and 0.69 at 2 to 4.
 _MIDDLE, _COARSE = _SPREADS // 2, 2
 """The expected spread among all, and cells of height that count as one where passes to come are weighed [-]."""
 
+_RANGE_MIN = 1e-3
+"""Least deviation of the funnel's height over that of the rise [-]: of a range without a width the difference below is 0 by 0."""
+
 _TINY = 1e-300
 """Least probability that is divided by [-]."""
 
@@ -115,7 +118,7 @@ class PlumeGrid:
         risen = math.sqrt(
             max(prior.height_deviation**2 - prior.source_deviation**2, (0.5 * (self.height[1] - self.height[0])) ** 2)
         )
-        off, half = self.height - prior.height, math.sqrt(3.0) * max(prior.source_deviation, _TINY)
+        off, half = self.height - prior.height, math.sqrt(3.0) * max(prior.source_deviation, _RANGE_MIN * risen)
         result: Array = (ndtr((off + half) / risen) - ndtr((off - half) / risen)) / half
         return result
 

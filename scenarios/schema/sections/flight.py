@@ -64,6 +64,15 @@ class FlightConfig(Section):
             )
         return self
 
+    @model_validator(mode="after")
+    def _long_enough(self) -> "FlightConfig":
+        if self.duration_max_s < (least := 1.0 / self.log_rate_hz):
+            raise ValueError(
+                f"duration_max_s is {self.duration_max_s:g} s; at log_rate_hz, {self.log_rate_hz:g} Hz, nothing is recorded in it:"
+                f" fly {least:g} s or longer"
+            )
+        return self
+
 
 class CriteriaConfig(Section):
     """What a flight must show, beside keeping out and completing its mission; ``false`` for what is not judged."""

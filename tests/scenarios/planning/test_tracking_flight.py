@@ -9,6 +9,7 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
 from innerloop.flight.turn_reversal import TurnReversalResponse
+from scenarios.errors import InputError
 from scenarios.planning.planner import plan_flight
 from scenarios.schema.load import load_study, with_values
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -56,10 +57,15 @@ def test_omega_max_is_the_coordinated_turn_at_the_bank_asked_for():
 
 
 def test_commands_may_be_left_uncut():
-    flight = plan("fidelity=kinematic", "guidance.command_limit=false")
+    flight = plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false")
     assert flight.guidance.tracking.heading_rate_max == math.inf
     # What they are judged by.
     assert flight.heading_rate_max == pytest.approx(9.80665 / 19.42, rel=1e-12)
+
+
+def test_an_orbit_that_is_joined_needs_commands_that_are_cut():
+    with pytest.raises(InputError, match=r"command_limit is false and guidance.approach true.*: set guidance.approach to false"):
+        plan("fidelity=kinematic", "guidance.command_limit=false")
 
 
 def test_preview_and_airspeed_trim_can_be_switched_off():

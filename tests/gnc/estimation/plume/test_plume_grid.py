@@ -37,6 +37,13 @@ def test_a_funnel_whose_height_has_a_range_is_as_likely_anywhere_in_it() -> None
     assert of_heights[np.abs(grid.height - PRIOR.height) > 26.0].sum() < 1e-3
 
 
+def test_a_funnel_whose_height_is_known_leaves_the_rise_alone() -> None:
+    # As likely as a normal distribution of the rise's 4 m, cut at three deviations.
+    grid = PlumeGrid(replace(PRIOR, height_deviation=4.0, source_deviation=0.0))
+    of_heights = grid.prior.sum(axis=(0, 2))
+    assert np.sqrt(of_heights @ (grid.height - PRIOR.height) ** 2) == pytest.approx(0.987 * 4.0, rel=0.005)
+
+
 @pytest.mark.parametrize("looks", [1, 3])
 def test_fading_is_that_of_centres_drawn_at_random(looks: int) -> None:
     altitude, i = 70.0, len(GRID.height) // 2

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from exhaust_cases import SENSOR
+from exhaust_cases import PRIOR, SENSOR
 
+from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState
 from gnc.estimation.plume.pass_reader import PassReader
 from gnc.estimation.plume.passes import PassCollector, Path
 
@@ -176,3 +177,17 @@ def test_the_way_along_the_plume_is_that_against_the_air() -> None:
     """At rest along the axis the plume goes by at the apparent wind: here 10 m/s, half as fast as the way across."""
     assert _path().drawn_out(0.0, 10.0) == pytest.approx(0.5)
     assert _path().drawn_out(0.0, 0.0) == pytest.approx(0.0)
+
+
+@pytest.mark.filterwarnings("error")
+def test_passes_far_from_every_place_of_the_axis_detect_nothing() -> None:
+    estimator = PlumeEstimator(PRIOR)
+    # A kilometre to the side, where the widest pulse of the outermost place is less than the smallest number.
+    for i in range(1200):
+        estimator.predict(0.1)
+        reading = 420.0 + 0.5 * math.sin(i) if i % 2 == 0 else math.nan
+        estimator.update(PRIOR.distance, 1000.0 + 60.0 * math.cos(0.035 * i), 65.0, reading)
+    assert estimator.passes > 2
+    assert estimator.detection(65.0) == 0.0
+    assert estimator.state is PlumeState.SEARCHING
+    assert estimator.height == pytest.approx(PRIOR.height, abs=1.0)
