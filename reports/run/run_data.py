@@ -8,7 +8,6 @@ from typing import Any
 import pandas as pd
 import pyarrow as pa
 
-from common.cells import from_cell
 from common.files import is_file
 from common.run_layout import (
     COMPARISON,
@@ -28,9 +27,7 @@ from common.run_layout import (
 )
 from reports.errors import ReportError
 from reports.run.files import refuse_running
-
-_NAMES = ("flight_id", "trial", "variant", "beside", "confirms")
-"""Columns of names, which stay text where they are all digits."""
+from reports.run.table_file import REMEDY, read_table
 
 WITHOUT_SUMMARY = ("design", "measurement")
 """Studies that have nothing to count."""
@@ -123,7 +120,7 @@ def read_run(path: Path) -> RunData:
 
     Raises
     ------
-    ReportError : it is not one, is of another version or damaged, holds nothing finished, or is being written
+    ReportError : it is not one, is of another version or damaged, holds nothing finished, lacks rows, or is being written
     """
     refuse_running(path)
     try:
@@ -139,20 +136,26 @@ def read_run(path: Path) -> RunData:
     if manifest.get("study") not in WITHOUT_SUMMARY and not (path / SUMMARY).is_file():
         raise ReportError(f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume")
     unread: set[str] = set()
-    try:
-        return RunData(
-            path=path,
-            manifest=manifest,
-            summary=_table(path / SUMMARY),
-            comparison=_table(path / COMPARISON),
-            crossings=_table(path / CROSSINGS, columns=["flight_id", "time_s", "distance_m"]),
-            innerloop=_record(path / DESIGN_RECORD, unread),
-            statistics=_record(path / STATISTICS, unread),
-            draws=_table(path / DRAWS),
-            unread=unread,
-        )
-    except (ValueError, OSError) as error:
-        raise ReportError(f"'{path}': a table cannot be read: {error}; run the scenario again") from None
+    return RunData(
+        path=path,
+        manifest=manifest,
+        summary=_whole(read_table(path / SUMMARY), path / SUMMARY, manifest),
+        comparison=read_table(path / COMPARISON),
+        crossings=read_table(path / CROSSINGS, columns=["flight_id", "time_s", "distance_m"]),
+        innerloop=_record(path / DESIGN_RECORD, unread),
+        statistics=_record(path / STATISTICS, unread),
+        draws=read_table(path / DRAWS),
+        unread=unread,
+    )
+
+
+def _whole(summary: pd.DataFrame, path: Path, manifest: dict[str, Any]) -> pd.DataFrame:
+    """Return the summary, unless it has fewer rows than the run had outcomes when it ended."""
+    outcomes = manifest.get("outcomes")
+    ended = sum(count for count in outcomes.values() if isinstance(count, int)) if isinstance(outcomes, dict) else 0
+    if len(summary) < ended:
+        raise ReportError(f"'{path}' has {len(summary):,} rows; by {MANIFEST} the run ended with {ended:,}: {REMEDY}")
+    return summary
 
 
 def _record(path: Path, unread: set[str]) -> dict[str, Any] | None:
@@ -163,19 +166,3 @@ def _record(path: Path, unread: set[str]) -> dict[str, Any] | None:
     except (ValueError, TypeError, OSError, RecursionError):
         unread.add(path.name)
         return None
-
-
-def _table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
-    if not path.is_file():
-        return pd.DataFrame(columns=columns or ["flight_id"])
-    frame = pd.read_csv(path, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(_NAMES, str))
-    for name in frame.select_dtypes(exclude=["number", "bool"]).columns:
-        frame[name] = frame[name].map(from_cell)
-    for name in ("criteria_met", "kept_out"):
-        if name in frame:
-            frame[name] = frame[name].astype(str) == "True"
-    for name in ("message", "outcome"):
-        if name in frame:
-            frame[name] = ["" if pd.isna(value) else str(value) for value in frame[name]]
-    # In one piece: pandas warns of a frame whose many columns were replaced one by one.
-    return frame.copy()

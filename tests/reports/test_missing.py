@@ -125,3 +125,24 @@ def test_an_export_into_a_link_is_refused(copy, tmp_path):
     (copy / "export").symlink_to(tmp_path / "elsewhere")
     assert_refused(run_command("reports.build", copy, "--export", "tracks_csv"), "is a link")
     assert list((tmp_path / "elsewhere").iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "words"),
+    [
+        ("summary.csv", lambda text: text[:1000], "' has 0 rows; by manifest.json the run ended with 2: "),
+        ("summary.csv", lambda text: text[: text[:-1].rindex("\n") + 1], "' has 1 rows; by manifest.json the run ended with 2: "),
+        ("summary.csv", lambda text: text[: text.rindex(",")], "' is cut off; "),
+        ("draws.csv", lambda text: text[: text.rindex(",")], "' is cut off; "),
+        ("summary.csv", lambda text: text.replace(",", ";"), "' is separated by semicolons; separate its columns by commas"),
+        ("summary.csv", lambda text: text[:0], "' cannot be read: No columns to parse from file; "),
+    ],
+)
+def test_a_table_that_was_cut_or_saved_otherwise_is_refused_with_its_name_and_the_remedy(copy, name, change, words):
+    table = copy / name
+    table.write_text(change(table.read_text(encoding="utf-8")), encoding="utf-8")
+    ended = run_command("reports.build", copy)
+    assert ended.status == 2
+    (line,) = ended.errors.splitlines()
+    assert f"'{table}{words}" in line
+    assert line.endswith("repeat the run's command with --resume, which writes the tables anew")

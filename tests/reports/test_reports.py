@@ -247,7 +247,7 @@ def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, rep
         (lambda path: with_study(path, "sea_trial"), "study is 'sea_trial', which has no report"),
         (lambda path: without(path, "trials"), "another version: its manifest.json has no 'trials'"),
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
-        (lambda path: (path / "summary.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),
+        (lambda path: (path / "summary.csv").write_text("x,y\n" + 9 * "1,2\n", encoding="utf-8"), "is damaged"),
         (lambda path: (path / "crossings.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),
     ],
 )

@@ -14,12 +14,10 @@ from measurement.estimate.record import check_units, lowest_reading
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
+from measurement.tables import other_separator
 
 EARTH_RADIUS_M = 6_371_000.0
 """Mean radius [m]: a track of a few kilometres is laid on a plane."""
-
-_OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
-"""Of tables that are not separated by commas, and what they are called."""
 
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
 """Columns of the true concentrations, which a simulated flight may have; they are shown, and take no part in the estimate."""
@@ -60,7 +58,9 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         raise MeasurementError(f"'{path}' has rows with more values than its head line has names; name every column") from None
     except OSError as error:
         raise MeasurementError(f"'{path}' cannot be read: {error.strerror}; give a CSV file") from None
-    except (UnicodeDecodeError, pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
+    except UnicodeDecodeError:
+        raise MeasurementError(f"'{path}' is not text in UTF-8; save it as CSV in UTF-8") from None
+    except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
         raise MeasurementError(
             f"'{path}' is not CSV: {str(error).splitlines()[0].strip()}; give a CSV file with a head line"
         ) from None
@@ -89,11 +89,8 @@ def _check_separator(path: Path) -> None:
     if not head.replace("\t", "").isprintable():
         # It may be compressed, which pandas reads.
         return
-    for separator, name in _OTHER_SEPARATORS.items():
-        if head.count(separator) > head.count(","):
-            raise MeasurementError(
-                f"'{path}' is separated by {name}; separate its columns by commas, and write decimals with a point, as in 108.2"
-            )
+    if words := other_separator(head):
+        raise MeasurementError(f"'{path}' {words}")
 
 
 def _missing(path: Path, what: str, key: str, name: str, table: pd.DataFrame) -> str:

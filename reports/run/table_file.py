@@ -1,0 +1,61 @@
+"""Tables of a run as read from disk: those that were cut or saved otherwise are refused."""
+
+import csv
+import os
+from pathlib import Path
+
+import pandas as pd
+
+from common.cells import from_cell
+from measurement.tables import other_separator
+from reports.errors import ReportError
+
+REMEDY = "repeat the run's command with --resume, which writes the tables anew"
+"""What is done about tables that were changed."""
+
+_NAMES = ("flight_id", "trial", "variant", "beside", "confirms")
+"""Columns of names, which stay text where they are all digits."""
+
+_LINE_MOST = 1_000_000
+"""Bytes of a row at most."""
+
+
+def read_table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
+    """Return a table of a run; one without rows, with ``columns``, if the run has none.
+
+    Raises
+    ------
+    ReportError : it cannot be read, is not separated by commas, or its last line is cut off
+    """
+    if not path.is_file():
+        return pd.DataFrame(columns=columns or ["flight_id"])
+    try:
+        with path.open(encoding="utf-8") as file:
+            head = file.readline()
+        if words := other_separator(head):
+            raise ReportError(f"'{path}' {words}; or {REMEDY}")
+        frame = pd.read_csv(path, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(_NAMES, str))
+    except ReportError:
+        raise
+    except (ValueError, OSError) as error:
+        raise ReportError(f"'{path}' cannot be read: {str(error).splitlines()[0]}; {REMEDY}") from None
+    if _last_row(path) < len(frame.columns):
+        raise ReportError(f"the last line of '{path}' is cut off; {REMEDY}")
+    for name in frame.select_dtypes(exclude=["number", "bool"]).columns:
+        frame[name] = frame[name].map(from_cell)
+    for name in ("criteria_met", "kept_out"):
+        if name in frame:
+            frame[name] = frame[name].astype(str) == "True"
+    for name in ("message", "outcome"):
+        if name in frame:
+            frame[name] = ["" if pd.isna(value) else str(value) for value in frame[name]]
+    # In one piece: pandas warns of a frame whose many columns were replaced one by one.
+    return frame.copy()
+
+
+def _last_row(path: Path) -> int:
+    """Return how many cells the last line has."""
+    with path.open("rb") as file:
+        file.seek(max(0, os.fstat(file.fileno()).st_size - _LINE_MOST))
+        line = file.read().rstrip(b"\r\n").rpartition(b"\n")[-1]
+    return len(next(csv.reader([line.decode("utf-8", errors="replace")]), []))
