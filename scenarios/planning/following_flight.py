@@ -201,17 +201,18 @@ def _check_declared(scenario: Scenario, vessel: VesselTruth, limits: VesselLimit
     if known or not scenario.guidance.keepout_guard or isinstance(vessel, SteadyVessel):
         return
     acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
+    other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""
     if acceleration > f.vessel_acceleration_mps2:
         raise InfeasibleError(
             f"the vessel accelerates by {acceleration:.3g} m/s2, changes of speed and course together; declared are at most"
             f" following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on which the keep-out guard relies: declare"
-            " more, or manoeuvre more gently (vessel.manoeuvres)"
+            f" more, or {other or 'manoeuvre more gently (vessel.manoeuvres)'}"
         )
     if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
         raise InfeasibleError(
             f"the vessel moves at up to {speed:.3g} m/s over the ground; it is declared to stay within"
             f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
-            " sail more slowly"
+            f" {other or 'sail more slowly'}"
         )
     if isinstance(vessel, AisVessel):
         _check_reports(vessel, limits)

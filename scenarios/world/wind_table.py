@@ -13,6 +13,7 @@ import numpy.typing as npt
 from aircraft.atmosphere.wind import WindField, over_the_sea
 from common.physics.wind import wind_velocity
 from common.times import utc_text
+from measurement.tables import other_separator
 from scenarios.errors import InputError
 from scenarios.schema.sections.world import WindConfig
 from scenarios.world.ais.rows import number_of, seconds_of
@@ -124,6 +125,8 @@ def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, 
     if not any(heads):
         columns = ",".join(COLUMNS[:1] + COLUMNS[2:])
         raise InputError(f"wind.table: {path}: the file is empty; give a table with the columns {columns}")
+    if words := other_separator(",".join(heads)):
+        raise InputError(f"wind.table: {path} {words}")
     if not set(COLUMNS[2:]) <= set(heads) or not set(COLUMNS[:2]) & set(heads):
         raise InputError(f"wind.table: {path}, line 1: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)},"
                          " of which time_utc or height_m may be missing: rename the columns to these")  # fmt: skip

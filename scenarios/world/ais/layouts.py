@@ -9,6 +9,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
+from measurement.tables import other_separator
 from scenarios.errors import InputError
 from scenarios.world.ais.nmea import nmea_rows
 from scenarios.world.ais.rows import AisRow, number_of, seconds_of
@@ -36,16 +37,23 @@ class Layout:
     name : of the layout
     columns : heads of time, identity, latitude, longitude, speed [kt] and course [deg], in lower case
     seconds : time since 1970 of what the first of them holds [s]
+    time : how that is written
     """
 
     name: str
     columns: tuple[str, ...]
     seconds: Callable[[str], float]
+    time: str = "2026-06-01T10:00:00Z"
 
 
 LAYOUTS = (
     Layout("plain", ("time_utc", "mmsi", "lat_deg", "lon_deg", "sog_kn", "cog_deg"), seconds_of),
-    Layout("Danish Maritime Authority", ("timestamp", "mmsi", "latitude", "longitude", "sog", "cog"), _danish_time),
+    Layout(
+        "Danish Maritime Authority",
+        ("timestamp", "mmsi", "latitude", "longitude", "sog", "cog"),
+        _danish_time,
+        "01/06/2026 10:00:00",
+    ),
     Layout("Marine Cadastre up to 2024", ("basedatetime", "mmsi", "lat", "lon", "sog", "cog"), seconds_of),
     Layout("Marine Cadastre from 2025", ("base_date_time", "mmsi", "latitude", "longitude", "sog", "cog"), seconds_of),
 )
@@ -92,6 +100,8 @@ def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterat
     heads = [name.strip().removeprefix("#").strip().lower() for name in next(csv.reader([head]))]
     layout = next((layout for layout in LAYOUTS if set(layout.columns) <= set(heads)), None)
     if layout is None:
+        if words := other_separator(head):
+            raise InputError(f"{path} {words}")
         plain = ",".join(LAYOUTS[0].columns)
         raise InputError(
             f"{path}, line 1: the header is {head.strip()[:_SHOWN]!r}; known are those of the Danish Maritime Authority and of"
@@ -112,7 +122,8 @@ def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterat
             seconds = layout.seconds(time)
         except ValueError:
             raise InputError(
-                f"{path}, line {number}: {time[:40]!r} is no time of the layout {layout.name}; correct it, or delete the line"
+                f"{path}, line {number}: {time[:40]!r} is no time of the layout {layout.name}, as in {layout.time}; correct it, or"
+                " delete the line"
             ) from None
         yield int(identity), AisRow(number, seconds, *map(number_of, others))
 

@@ -15,6 +15,7 @@ from common.physics.units import METRES_PER_SECOND_PER_KNOT
 from scenarios.errors import InputError
 from scenarios.world.ais.layouts import rows_of
 from scenarios.world.ais.rows import AisRow
+from scenarios.world.ais.units import check_units
 
 Array = npt.NDArray[np.float64]
 
@@ -76,7 +77,8 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
 
     Raises
     ------
-    InputError : the file cannot be read, its layout is unknown, or fewer than two rows of the vessel are of use
+    InputError : the file cannot be read, its layout is unknown, fewer than two rows of the vessel are of use, or its units are
+        others
     """
     path = Path(path)
     identity, rows = rows_of(path, mmsi)
@@ -98,7 +100,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
             f" {remedy}"
         )
     columns = np.array(kept).T
-    return AisReports(
+    reports = AisReports(
         path=path,
         mmsi=identity,
         line=columns[0],
@@ -110,6 +112,8 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         rows=len(rows),
         dropped=dict(dropped),
     )
+    check_units(path, reports.time, reports.latitude, reports.longitude, reports.speed, reports.course)
+    return reports
 
 
 def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:

@@ -59,8 +59,14 @@ def test_its_row_says_where_and_when_and_how_fast_the_ship_was(hour):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"vessel_acceleration_mps2": 0.03}, ["accelerates by", "following.vessel_acceleration_mps2 = 0.03", "declare more"]),
-        ({"vessel_speed_max_mps": 5.0}, ["moves at up to", "following.vessel_speed_max_mps = 5"]),
+        (
+            {"vessel_acceleration_mps2": 0.03},
+            ["accelerates by", "following.vessel_acceleration_mps2 = 0.03", "declare more, or fly another time of its file"],
+        ),
+        (
+            {"vessel_speed_max_mps": 5.0},
+            ["moves at up to", "following.vessel_speed_max_mps = 5", "more, or fly another time of its file (place.utc)"],
+        ),
     ],
 )
 def test_a_ship_that_does_more_than_is_declared_is_a_row_with_that_reason(changes, words):

@@ -119,7 +119,11 @@ def test_a_vessel_at_rest_needs_no_course(read):
         (table(*reversed(rows())), None, ["1 of 3 rows", "2 out of order (first in line 2)", "sort the file by time"]),
         (table(), None, ["no row with a report"]),
         (table(*rows(), "2026-06-01T10:00:05Z,7,57.0,11.3,12.0,20.5"), None, ["2 vessels", "name one: vessel.mmsi"]),
-        (table(*rows(), "yesterday,219999001,57.0,11.3,12.0,20.5"), None, ["line 5", "'yesterday' is no time of the layout plain"]),
+        (
+            table(*rows(), "04.05.2026 08:00:00,219999001,57.0,11.3,12.0,20.5"), None,
+            ["line 5", "'04.05.2026 08:00:00' is no time of the layout plain, as in 2026-06-01T10:00:00Z; correct it"],
+        ),
+        (table(*rows()).replace(",", ";"), None, ["is separated by semicolons; separate its columns by commas"]),
         (
             table(*(f"2026-06-01T10:00:{s:02d}Z,1,91.0,11.3,12.0,20.5" for s in range(4))), None,
             ["0 of 4 rows of MMSI 1 used", "4 without a possible position (first in line 2)", "correct the rows"],
@@ -133,6 +137,40 @@ def test_a_file_of_no_use_is_refused_in_one_line(read, text, mmsi, words):
     assert "\n" not in str(refusal.value)
     for word in ["ais.csv", *words]:
         assert word in str(refusal.value)
+
+
+def sailed(*, knots=1.0, degrees=1.0, turned=0.0, swapped=False):
+    """Return a table of a vessel that goes north-east at 12 kn, 6.17 m/s, with speeds and courses in units of these sizes."""
+    # A degree of latitude at 57 N is 111,362 m, one of longitude 60,772 m (WGS 84).
+    step = 12.0 * METRES_PER_SECOND_PER_KNOT * 10.0 * math.sqrt(0.5)
+    lines = []
+    for i in range(30):
+        place = f"{57.0 + i * step / 111362.0:.6f}", f"{11.3 + i * step / 60772.0:.6f}"
+        first, second = reversed(place) if swapped else place
+        time = f"2026-06-01T10:{i // 6:02d}:{10 * (i % 6):02d}Z"
+        lines.append(f"{time},219999001,{first},{second},{12.0 / knots:.3f},{45.0 / degrees + turned:.3f}")
+    return table(*lines)
+
+
+def test_a_file_in_its_own_units_is_read(read):
+    assert len(read(sailed()).time) == 30
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        # A metre per second is 1/0.5144 kn; a kilometre per hour 1/1.852 kn.
+        (sailed(knots=1.0 / 0.514444), "reported speeds are 0.51 of those between places, in the median; they must be in knots"),
+        (sailed(knots=1.0 / 1.852), "reported speeds are 1.85 of those between places"),
+        (sailed(degrees=math.degrees(1.0)), "reported courses are 44 deg off those between places, in the median; they must be"),
+        (sailed(turned=180.0), "reported courses are 180 deg off"),
+        (sailed(swapped=True), "latitude and longitude are swapped"),
+    ],
+)
+def test_a_file_in_other_units_is_refused_with_the_unit_it_must_have(read, made, words):
+    with pytest.raises(InputError, match=words) as refusal:
+        read(made)
+    assert "\n" not in str(refusal.value)
 
 
 def test_a_file_that_cannot_be_read_is_refused(tmp_path):
