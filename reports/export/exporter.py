@@ -4,6 +4,7 @@ import importlib.util
 from pathlib import Path
 from typing import Protocol
 
+from common.extras import install_words
 from common.registry import Registry
 from reports.errors import ReportError
 from reports.run.run_data import RunData
@@ -42,7 +43,7 @@ def need_packages(exporter: str, *packages: str) -> None:
     """
     if any(importlib.util.find_spec(package) is None for package in packages):
         needed = f"the package{'s' * (len(packages) > 1)} {' and '.join(packages)}"
-        raise ReportError(f"{exporter} needs {needed}; install the extra: pip install 'plume-flight-study[export]'")
+        raise ReportError(f"{exporter} needs {needed}; install the extra: {install_words('export')}")
 
 
 EXPORTERS: Registry[type[Exporter]] = Registry("exporter", folder="reports.export", methods=("write",))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 
+from common.extras import install_words
 from scenarios.engine.executor import Executor
 from scenarios.engine.local_executor import LocalExecutor
 from scenarios.engine.task import Limits, Work
@@ -37,9 +38,7 @@ class ExecutorFactory:
         if self.scheduler is not None and self.executor != DASK:
             raise InputError(f"--scheduler is {self.scheduler} with --executor {self.executor}; add --executor dask")
         if self.executor == DASK and find_spec("distributed") is None:
-            raise InputError(
-                "--executor is dask, which is not installed; install it with: pip install -c constraints.txt -e '.[dask]'"
-            )
+            raise InputError(f"--executor is dask, which is not installed; install the extra: {install_words('dask')}")
 
     def __call__(self, work: Work) -> Executor:
         """Return an executor for some work."""

@@ -4,14 +4,14 @@ Importing this package makes the environment known. Gymnasium has no entry point
 what it has when it is imported, by the user or by ``gymnasium.make("scenarios.gym:PlumeCrossing-v0")``.
 """
 
+from common.extras import install_words
+
 try:
     from gymnasium.envs.registration import register, registry
 except ModuleNotFoundError as error:
     if (error.name or "").partition(".")[0] != "gymnasium":
         raise
-    raise ImportError(
-        "scenarios.gym needs gymnasium; install the extra: pip install 'plume-flight-study[gym]'", name="gymnasium"
-    ) from None
+    raise ImportError(f"scenarios.gym needs gymnasium; install the extra: {install_words('gym')}", name="gymnasium") from None
 
 ENVIRONMENT = "PlumeCrossing-v0"
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from common.extras import install_words
 from scenarios.errors import InputError
 
 Array = npt.NDArray[np.float64]
@@ -32,7 +33,7 @@ def read_netcdf(path: Path, latitude_deg: float, longitude_deg: float) -> tuple[
         import xarray
     except ImportError:
         raise InputError(
-            f"wind.table: {path}: netCDF needs xarray and h5netcdf; install the extra: pip install 'plume-flight-study[weather]'"
+            f"wind.table: {path}: netCDF needs xarray and h5netcdf; install the extra: {install_words('weather')}"
         ) from None
     try:
         with xarray.open_dataset(path) as data:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from common.extras import install_words
 from scenarios.errors import InputError
 from scenarios.world.ais.rows import AisRow, seconds_of
 
@@ -28,7 +29,7 @@ def nmea_rows(lines: Iterable[str], path: Path) -> Iterator[tuple[int, AisRow]]:
     try:
         import pyais
     except ImportError:
-        raise InputError(f"{path}: NMEA sentences need pyais; install the extra: pip install 'plume-flight-study[ais]'") from None
+        raise InputError(f"{path}: NMEA sentences need pyais; install the extra: {install_words('ais')}") from None
     for number, line in enumerate(lines, start=1):
         head, mark, sentence = line.strip().partition("!")
         if not mark:

@@ -166,7 +166,7 @@ def test_one_flight_can_be_chosen_and_another_name_is_refused(run_path):
 @pytest.mark.parametrize(("name", "package"), [("mcap", "mcap"), ("netcdf", "xarray"), ("netcdf", "h5netcdf")])
 def test_a_package_that_is_missing_is_one_line_with_the_extra(run_path, monkeypatch, name, package):
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(ReportError, match=r"install the extra: pip install 'plume-flight-study\[export\]'"):
+    with pytest.raises(ReportError, match=r"install the extra: in the clone, pip install -c constraints.txt -e '\.\[export\]'"):
         export_run(run_path, name)
     # What comes before it in a list is not written either.
     assert_refused(run_command("reports.build", run_path, "--export", f"kmz,{name}"), "install the extra")

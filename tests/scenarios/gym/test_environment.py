@@ -264,6 +264,6 @@ def test_every_entry_of_the_observation_is_documented_with_its_unit():
 def test_without_its_extra_the_package_names_it_in_a_line():
     code = "import sys; sys.modules['gymnasium'] = None; import scenarios.gym"
     ended = subprocess.run([sys.executable, "-c", code], cwd=PROJECT, capture_output=True, text=True, check=False)
-    needed = "scenarios.gym needs gymnasium; install the extra: pip install 'plume-flight-study[gym]'"
+    needed = "scenarios.gym needs gymnasium; install the extra: in the clone, pip install -c constraints.txt -e '.[gym]'"
     assert ended.stderr.splitlines()[-1] == f"ImportError: {needed}"
     assert "During handling" not in ended.stderr
