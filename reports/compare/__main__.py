@@ -42,10 +42,11 @@ def compare_runs(paths: list[Path], out: Path | None) -> list[Path]:
 
     runs = read_runs(paths)
     directory = out or paths[0].resolve().parent / "-".join(["compare", *(run.name[:_NAME_MAX] for run in runs)])
-    _make(directory)
     with damage_named(*paths):
         compared = compare(runs)
         report = comparison_content(runs, compared)
+    # Of runs that cannot be compared nothing is left behind.
+    _make(directory)
     _print(runs, compared)
     return [
         written(directory / TABLE, partial(write_differences, compared)),

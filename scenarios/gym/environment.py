@@ -33,6 +33,9 @@ from scenarios.simulation.release import failable, release
 
 _SEEDS = 2**32
 
+_FLIGHT_ID = "flight_id"
+"""Option of a reset."""
+
 _TRIES = 100
 """Flights that are sampled at random for an episode, at most, until one has a solution."""
 
@@ -146,10 +149,13 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
 
         Raises
         ------
-        InputError : the scenario has no flight of this name, or it cannot be flown; or none of many at random can be; one line
+        InputError : an option is none, the scenario has no flight of this name, or it cannot be flown; or none of many at random
+            can be; one line
         """
         super().reset(seed=seed)
-        name = (options or {}).get("flight_id")
+        if unknown := [str(key) for key in options or {} if key != _FLIGHT_ID]:
+            raise InputError(f"unknown option '{unknown[0]}' of reset; the only one is '{_FLIGHT_ID}', the name of a flight")
+        name = (options or {}).get(_FLIGHT_ID)
         if name is None:
             self._episode = self._begun_at_random()
         elif name in self._numbers:

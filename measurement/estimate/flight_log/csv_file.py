@@ -45,7 +45,8 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     Raises
     ------
     MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has words in it or readings lower
-        than those of no gas, is separated by something else than commas, or has rows with more values than its head line has names
+        than those of no gas, has times that do not increase, is separated by something else than
+        commas, or has rows with more values than its head line has names
     """
     try:
         _check_separator(path)
@@ -70,6 +71,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     if table.empty:
         raise MeasurementError(f"'{path}' has a head line and 0 readings; it needs a row per reading")
     time = _time(table, config.columns["time"], path)
+    _check_increasing(time, path)
     values = np.full((len(table), len(GASES)), np.nan)
     for i, gas in enumerate(GASES):
         name = config.columns[gas]
@@ -91,6 +93,15 @@ def _check_separator(path: Path) -> None:
         return
     if words := other_separator(head):
         raise MeasurementError(f"'{path}' {words}")
+
+
+def _check_increasing(time: Array, path: Path) -> None:
+    if (late := np.flatnonzero(np.diff(time) <= 0.0)).size:
+        at = int(late[0])
+        raise MeasurementError(
+            f"'{path}': times do not increase: {time[at]:.15g} s in row {at + 2} is followed by {time[at + 1]:.15g} s; sort the"
+            " rows by time and drop repeats"
+        )
 
 
 def _missing(path: Path, what: str, key: str, name: str, table: pd.DataFrame) -> str:

@@ -58,7 +58,9 @@ def test_runs_of_other_seeds_have_no_flight_in_common(copies):
     summary = copies[1] / "summary.csv"
     rows = pd.read_csv(summary)
     rows.assign(seed=rows["seed"] + 77).to_csv(summary, index=False)
+    before = set(copies[0].parent.iterdir())
     assert_refused(compared(*copies), "no flight in common", "3 agree in name but not in seed", "--seed")
+    assert set(copies[0].parent.iterdir()) == before
 
 
 def test_fewer_than_two_runs_and_the_same_twice_are_refused(first):

@@ -191,6 +191,11 @@ def test_flights_with_other_limits_are_flown_within_their_own():
         assert env.unwrapped._episode.loop.vehicle.motion()[4] == pytest.approx(limit, rel=1e-3)
 
 
+def test_an_option_of_a_reset_that_there_is_not_is_refused(kinematic):
+    with pytest.raises(InputError, match="unknown option 'flightid' of reset; the only one is 'flight_id'"):
+        kinematic.reset(options={"flightid": "nu_0.30"})
+
+
 def test_the_space_holds_the_limits_that_flights_at_random_may_have():
     draws = [{"key": "guidance.bank_deg", "uniform": [20.0, 40.0]}, {"key": "vessel.speed_mps", "uniform": [5.0, 8.0]}]
     keys = {"fidelity": "kinematic", "flights": 3, "draws": draws, "comparison.variants": []}
