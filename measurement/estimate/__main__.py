@@ -14,6 +14,9 @@ from measurement.estimate.flight_log.words import summary
 BAD_INPUT = 2
 """Exit status of input that cannot be used."""
 
+_CONSOLE = "plume-flight"
+"""The project's command, one of whose sub-commands this is."""
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Estimate, print, write; return the exit status."""
@@ -45,7 +48,7 @@ def main(arguments: list[str] | None = None) -> int:
         analysis = analyse(
             flight.readings, config.instrument, method=config.method, carbon=config.carbon, limits_percent=config.limits_percent
         )
-        write_run(directory, flight, analysis, given.flight, given.config)
+        write_run(directory, flight, analysis, given.flight, given.config, _command(arguments))
     except MeasurementError as error:
         line = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in str(error))
         print(f"error: {line}", file=sys.stderr)
@@ -54,6 +57,12 @@ def main(arguments: list[str] | None = None) -> int:
         print(line)
     print(f"files: {directory}" if given.no_report else build_report(directory))
     return 0
+
+
+def _command(arguments: list[str] | None) -> list[str]:
+    """Return the program and its arguments: those of the console command where that hands on to this one."""
+    console = Path(sys.argv[0]).stem == _CONSOLE
+    return sys.argv if arguments is None or console else ["", *arguments]
 
 
 if __name__ == "__main__":

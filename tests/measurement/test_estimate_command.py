@@ -148,6 +148,10 @@ def test_configurations_with_mistakes_are_refused_in_one_line(logged, capsys, co
         ("time_s,so2_ppb,co2_ppm\n1,2,420\n", "the record has 1 samples; it needs at least 8"),
         ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,4\n" for t in range(99)), "CO2 has a median of 4 ppm"),
         ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,420,7\n" for t in range(9)), "more values than its head line has names"),
+        (
+            "time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,420\n" for t in (1, 2, 48, 39, 50)),
+            "flight.csv': times do not increase: 48 s in row 4 is followed by 39 s; sort the rows by time and drop repeats",
+        ),
         ("time_s;so2_ppb;co2_ppm\n1.0;2.0;420.0\n", "is separated by semicolons; separate its columns by commas, and write"),
         ("time_s;so2_ppb;co2_ppm\n1,0;2,0;420,0\n", "is separated by semicolons; separate its columns by commas, and write"),
         ("time_s\tso2_ppb\tco2_ppm\n1\t2\t420\n", "is separated by tabs; separate its columns by commas"),
@@ -162,6 +166,27 @@ def test_files_with_mistakes_are_refused_in_one_line(logged, capsys, content, me
     assert told.count("\n") == 1
     assert message in told
     assert told.count(str(logged)) <= 1
+
+
+@pytest.mark.parametrize("console", [True, False])
+def test_command_and_revision_are_recorded_as_those_of_flights(logged, monkeypatch, tmp_path, console):
+    shared = pytest.importorskip("common.provenance", reason="measurement stands alone here")
+    arguments = [str(logged), "--out", "m", "--no-report"]
+    monkeypatch.chdir(tmp_path)
+    if console:
+        monkeypatch.setattr("sys.argv", ["/anywhere/bin/plume-flight", "estimate", *arguments])
+    assert main(arguments) == 0
+    manifest = json.loads((tmp_path / "m" / "manifest.json").read_text(encoding="utf-8"))
+    program = "plume-flight estimate" if console else "python -m measurement.estimate"
+    # As of a flight's run: without the folders of this machine.
+    assert manifest["command"] == f"{program} flight.csv --out m --no-report"
+    assert manifest["git_revision"] == shared.provenance()["git_revision"]
+
+
+def test_a_file_in_utf_16_is_to_be_saved_in_utf_8(logged, capsys):
+    logged.write_text("time_s,so2_ppb,co2_ppm\n1,2,420\n", encoding="utf-16")
+    assert run(logged) == 2
+    assert capsys.readouterr().err == f"error: '{logged}' is not text in UTF-8; save it as CSV in UTF-8\n"
 
 
 def test_co2_without_its_background_is_told_as_that(logged, capsys):

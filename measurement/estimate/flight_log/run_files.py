@@ -1,6 +1,7 @@
 """The directory that an analysis leaves, of which reports are built."""
 
 import hashlib
+import importlib
 import importlib.metadata
 import importlib.util
 import json
@@ -10,7 +11,7 @@ import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -61,6 +62,9 @@ _TIME_DIGITS = 15
 
 _PACKAGES = ("numpy", "scipy", "pandas")
 
+_MODULE = "measurement.estimate"
+"""What is run as a module."""
+
 
 def refuse_another_run(directory: Path) -> None:
     """Refuse a directory that holds a run of another kind: its manifest would be lost. An older estimate may be replaced.
@@ -79,8 +83,17 @@ def refuse_another_run(directory: Path) -> None:
         raise MeasurementError(f"output directory '{directory}' holds another run; choose another --out")
 
 
-def write_run(directory: Path, flight: LoggedFlight, analysis: Analysis, source: Path, config: Path | None) -> None:
+def write_run(
+    directory: Path, flight: LoggedFlight, analysis: Analysis, source: Path, config: Path | None, given: Sequence[str]
+) -> None:
     """Write manifest, estimate and samples of an analysis; reports and exports of an older one are removed.
+
+    Parameters
+    ----------
+    directory : where to
+    flight, analysis : what was read, and made of it
+    source, config : files of the flight and of the configuration
+    given : the command, as ``sys.argv``: the program, and its arguments
 
     Raises
     ------
@@ -95,7 +108,7 @@ def write_run(directory: Path, flight: LoggedFlight, analysis: Analysis, source:
         # A log's time may be seconds since 1970 or 1980, of which six digits are weeks.
         table["time_s"] = [f"{time:.{_TIME_DIGITS}g}" for time in table["time_s"]]
         _whole(directory / SAMPLES, lambda part: table.to_csv(part, index=False, float_format="%.6g"))
-        _write_json(directory / MANIFEST, _manifest(analysis, source, config))
+        _write_json(directory / MANIFEST, _manifest(analysis, source, config, given))
     except OSError as error:
         raise MeasurementError(f"'{directory}' cannot be written: {error.strerror}; give another --out") from None
 
@@ -130,9 +143,8 @@ def build_report(directory: Path) -> str:
     return outcome.stdout.strip()
 
 
-def _manifest(analysis: Analysis, source: Path, config: Path | None) -> dict[str, Any]:
-    configured = f" --config {shlex.quote(config.name)}" if config else ""
-    command = f"python -m measurement.estimate {shlex.quote(source.name)}{configured}"
+def _manifest(analysis: Analysis, source: Path, config: Path | None, given: Sequence[str]) -> dict[str, Any]:
+    command, revision = _told(given)
     digest = hashlib.sha256(source.read_bytes() + (config.read_bytes() if config else b"")).hexdigest()[:_HASH_LETTERS]
     return {
         "format": FORMAT,
@@ -145,13 +157,21 @@ def _manifest(analysis: Analysis, source: Path, config: Path | None) -> dict[str
         "overrides": [],
         "config": {"description": f"Logged flight {source.name}, measured with: {analysis.instrument.title}."},
         "config_hash": digest,
-        "git_revision": "not recorded",
+        "git_revision": revision,
         "python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}",
         "cores": os.cpu_count(),
         "packages": {name: importlib.metadata.version(name) for name in _PACKAGES},
         "files": [ESTIMATE, SAMPLES],
     }
+
+
+def _told(given: Sequence[str]) -> tuple[str, str]:
+    """Return command and revision of the source as the project's other runs record them; without these, the arguments alone."""
+    if importlib.util.find_spec("common") is None:
+        return shlex.join(["python", "-m", _MODULE, *(Path(argument).name or argument for argument in given[1:])]), "not recorded"
+    shared = importlib.import_module("common.provenance")
+    return str(shared.command_line(_MODULE, given)), str(shared.provenance()["git_revision"])
 
 
 def _write_json(path: Path, value: dict[str, Any]) -> None:
