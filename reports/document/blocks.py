@@ -144,6 +144,15 @@ class UndecidedCard(Card):
         return "open"
 
 
+class FuelCard(Card):
+    """A verdict on a fuel's limit, which is no criterion of the flight that measured it."""
+
+    @property
+    def judgement(self) -> str:
+        """Return on which side of the limit the fuel is."""
+        return f"{'✓ below' if self.met else '✗ above'} the limit of {self.limit}"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
     """The answer, and the figures it rests on.

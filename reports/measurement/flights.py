@@ -8,7 +8,7 @@ import pandas as pd
 from common.intervals import percent
 from measurement.estimate.words import content_words, counted_verdicts, probability, verdict_words
 from measurement.gases import limit_words
-from reports.document.blocks import Block, Card, Heading, Section, Text, UndecidedCard
+from reports.document.blocks import Block, Card, FuelCard, Heading, Section, Text, UndecidedCard
 from reports.document.chart import Chart
 from reports.document.tables import number
 from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
@@ -57,11 +57,13 @@ def sulphur_cards(run: RunData) -> list[Card]:
 
 def _verdict_card(row: "pd.Series[Any]") -> Card:
     limit, called = limit_words(float(row["sulphur_limit_percent"])), str(row["sulphur_verdict"])
-    kind = UndecidedCard if called == "open" else Card
     words = f"{called}, {probability(float(row['probability_above']))}"
     if row["sulphur_quality"] == "C":
         words = "no verdict: quality C"
-    return kind(f"Verdict on {limit}, and probability of more", words, f"≤ {limit}", {"above": False, "below": True}.get(called))
+    title = f"Verdict on {limit}, and probability of more"
+    if called == "open":
+        return UndecidedCard(title, words, f"≤ {limit}")
+    return FuelCard(title, words, limit, called == "below")
 
 
 def sulphur_below(run: RunData) -> bool:

@@ -105,8 +105,8 @@ ROW = {
 @pytest.mark.parametrize(
     ("called", "judgement", "tone"),
     [
-        ("above", "✗ not met, required ≤ 0.10 %", "missed"),
-        ("below", "✓ met, required ≤ 0.10 %", "met"),
+        ("above", "✗ above the limit of 0.10 %", "missed"),
+        ("below", "✓ below the limit of 0.10 %", "met"),
         ("open", "? open, required ≤ 0.10 %", "open"),
     ],
 )
