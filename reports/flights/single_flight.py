@@ -15,8 +15,8 @@ from reports.flights.tracks import track_chart
 from reports.run.columns import NOTICEABLE, Array, column
 from reports.run.time_history import tracking_error
 
-_NEAR, _FAR = 0.95, 1.6
-"""Distances that the time history shows, over r_min [-]."""
+_NEAR, _FAR, _USUAL = 0.95, 1.6, 1.2
+"""Distances that the time history shows: nearest and farthest over r_min, and farthest over the median after settling [-]."""
 
 _ERROR_MIN = 0.1
 """Floor of the tracking error's logarithmic axis [m]."""
@@ -52,9 +52,8 @@ class _Histories:
         columns = 2 if len(panels) <= _TWO_COLUMNS else 3
         return Chart(
             name="histories",
-            caption=f"{flight_name(trial, self._view.row)}: time histories. Distance is {trial.measured_from}, dashed r_min; of"
-            f" more than {_FAR:g} r_min it is off the panel. Dashed in the panel of the heading rate: ω_max."
-            + (" Tinted: the keep-out guard changed commands." if bands else ""),
+            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()} Dashed in the panel of the"
+            " heading rate: ω_max." + (" Tinted: the keep-out guard changed commands." if bands else ""),
             panels=panels,
             columns=columns,
             share_x=True,
@@ -76,8 +75,7 @@ class _Histories:
     def _distance_panel(self) -> Panel | None:
         if not self._view.vessel:
             return None
-        nearest = float(np.nanmin(self._view.distance))
-        low, high = min(_NEAR * self._view.radius, nearest - 2.0), max(_FAR * self._view.radius, 1.1 * nearest)
+        low, high = self._distance_range()
         upright = {"fault": self._view.row.get("fault_time_s"), "manoeuvre ends": self._view.row.get("manoeuvre_end_s")}
         marks = [
             Line(x=np.array([time, time]), y=np.array([low, high]), label=label, colour="black", style="dot")
@@ -87,6 +85,21 @@ class _Histories:
         lines = [self._line(self._view.distance), self._level(self._view.radius, "limit", Meaning.LIMIT), *marks]
         lines += self._view.marks(lambda samples: (column(samples, "time_s"), self._view.distance_of(samples)))
         return Panel(x_label=_TIME, y_label="Distance [m]", lines=lines, y_range=(low, high))
+
+    def _distance_words(self) -> str:
+        """Return what the panel of the distance shows; nothing without a ship."""
+        if not self._view.vessel:
+            return ""
+        far = self._distance_range()[1]
+        return f" Distance is {self._view.trial.measured_from}, dashed r_min; of more than {far:.0f} m it is off the panel."
+
+    def _distance_range(self) -> tuple[float, float]:
+        """Return the least and the largest distance that are shown [m]: about r_min, and what the flight has on its orbit."""
+        radius, distance = self._view.radius, self._view.distance
+        nearest = float(np.nanmin(distance))
+        settled = distance[self._view.time >= float(self._view.row.get("settling_time_s", math.nan))]
+        usual = float(np.nanmedian(settled)) if np.isfinite(settled).any() else nearest
+        return min(_NEAR * radius, nearest - 2.0), max(_FAR * radius, 1.1 * nearest, _USUAL * usual)
 
     def _tracking_panel(self) -> Panel:
         error = np.maximum(tracking_error(self._view.samples), _ERROR_MIN)

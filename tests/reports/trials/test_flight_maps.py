@@ -51,6 +51,16 @@ def test_stretches_of_the_guard_are_marked_in_the_track_and_over_time(flight):
     assert bands == [(GUARD, time[4], time[8]), (GUARD, time[16], time[20]), (GUARD_LOST, time[8], time[12])]
 
 
+def test_the_panel_of_the_distance_shows_the_orbit_also_where_that_is_far_off_the_keep_out_area(flight):
+    view = flight_view(*flight)
+    settled = view.distance[view.time >= view.row["settling_time_s"]]
+    # As of an area half as large beside the same orbit: 1.6 r_min lies below it.
+    view.radius = 0.4 * float(np.median(settled))
+    (panel,) = [panel for panel in flight_charts(view)[1].panels if panel.y_label == "Distance [m]"]
+    assert np.quantile(settled, 0.6) < panel.y_range[1]
+    assert panel.y_range[1] == pytest.approx(1.2 * np.median(settled))
+
+
 def test_many_stretches_become_few_that_hold_them_all(flight):
     view = guarded_view(flight, np.tile([0, 1, 1, 0, 0], 60))
     bands = view.bands()
