@@ -117,10 +117,11 @@ class Registry(Generic[Part]):
 
     def _known(self) -> dict[str, Part]:
         if not self._complete:
-            self._complete = True
             package = importlib.import_module(self._folder)
             for module in pkgutil.iter_modules(package.__path__):
                 importlib.import_module(f"{self._folder}.{module.name}")
+            # Not before: a module that does not load is to be tried, and to fail, at every call.
+            self._complete = True
         return self._parts
 
     def _entry_points(self) -> dict[str, importlib.metadata.EntryPoint]:
