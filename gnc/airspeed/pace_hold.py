@@ -63,20 +63,6 @@ def design_speed_hold(*, bandwidth: float, speed: float, look_ahead: float, airs
     return SpeedHold(min(speed / look_ahead, _CRITICAL * bandwidth), airspeed_min, airspeed_max)
 
 
-def airspeed_to_hold(hold: SpeedHold, *, along: float, reference_speed: float, speed: float, airspeed: float) -> float:
-    """Return the airspeed to command [m/s].
-
-    Parameters
-    ----------
-    hold : the law's parameters
-    along : how far the reference is ahead, along its course [m]
-    reference_speed : V_r [m/s]
-    speed : horizontal, over the mean air [m/s]
-    airspeed : as measured, against the gusty air [m/s]
-    """
-    return hold.within(airspeed + reference_speed + hold.gain * along - speed)
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PaceHold:
     """Keeps pace with the reference by the speed over the mean air.
@@ -97,15 +83,15 @@ class PaceHold:
         return self.hold.within(self.speed + self.hold.gain * along)
 
     def airspeed(self, pace: float, own: OwnMotion, guarding: bool, /) -> float:
-        """Return the airspeed to command for a pace [m/s].
+        """Return the airspeed to command for a pace [m/s]: the measured one, and what the speed over the mean air lacks.
 
         Parameters
         ----------
         pace : [m/s]
-        own : the vehicle's motion
+        own : the vehicle's motion: its speed over the mean air, its airspeed against the gusty air
         guarding : whether the keep-out guard turns the vehicle away, or did so of late
         """
-        command = airspeed_to_hold(self.hold, along=0.0, reference_speed=pace, speed=own.speed, airspeed=own.airspeed)
+        command = self.hold.within(own.airspeed + pace - own.speed)
         return self.turn_speed if guarding and command > self.turn_speed else command
 
 

@@ -5,29 +5,33 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.airspeed.pace_hold import PaceHold, SpeedHold, air_turn, airspeed_to_hold, design_speed_hold
+from gnc.airspeed.pace_hold import PaceHold, SpeedHold, air_turn, design_speed_hold
 from gnc.errors import InfeasibleError
 
 HOLD = SpeedHold(gain=0.3, airspeed_min=15.0, airspeed_max=25.0)
+LAW = PaceHold(speed=19.0, hold=HOLD)
 X8 = {"bandwidth": 1.3, "speed": 19.42, "look_ahead": 60.0, "airspeed_min": 15.0, "airspeed_max": 25.0}
+
+
+def commanded(along, *, speed, airspeed):
+    """The airspeed that the guidance commands as long as the guard lets the vehicle be."""
+    return LAW.airspeed(LAW.pace(along), SimpleNamespace(speed=speed, airspeed=airspeed), False)
 
 
 def test_on_the_reference_at_its_speed_the_airspeed_that_is_flown_is_asked_for():
     # Nothing is amiss, whatever the gust: 2 m/s from ahead make 21 m/s out of 19.
     for gust in (-2.0, 0.0, 2.0):
-        airspeed = airspeed_to_hold(HOLD, along=0.0, reference_speed=19.0, speed=19.0, airspeed=19.0 + gust)
-        assert airspeed == 19.0 + gust
+        assert commanded(0.0, speed=19.0, airspeed=19.0 + gust) == 19.0 + gust
 
 
 @given(st.floats(-100.0, 100.0), st.floats(5.0, 40.0), st.floats(5.0, 40.0))
 def test_the_airspeed_asked_for_is_one_the_vehicle_can_fly(along, speed, airspeed):
-    asked = airspeed_to_hold(HOLD, along=along, reference_speed=19.0, speed=speed, airspeed=airspeed)
-    assert HOLD.airspeed_min <= asked <= HOLD.airspeed_max
+    assert HOLD.airspeed_min <= commanded(along, speed=speed, airspeed=airspeed) <= HOLD.airspeed_max
 
 
 def test_a_reference_ahead_and_a_lack_of_speed_ask_for_more():
     # 19 m/s, 0.3 m/s for each of the 2 m, and the 0.5 m/s that are lacking.
-    assert airspeed_to_hold(HOLD, along=2.0, reference_speed=19.0, speed=18.5, airspeed=19.0) == pytest.approx(20.1, abs=1e-12)
+    assert commanded(2.0, speed=18.5, airspeed=19.0) == pytest.approx(20.1, abs=1e-12)
 
 
 def test_the_gain_is_the_rate_of_the_steering_law_where_the_airspeed_is_quick_enough():
@@ -53,17 +57,14 @@ def test_the_same_acceleration_turns_both_motions():
     assert air_turn(air_turn(0.4, speed=20.0, airspeed=16.0), speed=16.0, airspeed=20.0) == pytest.approx(0.4, rel=1e-12)
 
 
-@pytest.mark.parametrize("along", [2.0, 0.0, -3.0])
-def test_the_pace_is_held_over_the_mean_air(along):
-    own = SimpleNamespace(speed=18.5, airspeed=20.0)
-    held = airspeed_to_hold(HOLD, along=along, reference_speed=19.0, speed=18.5, airspeed=20.0)
-    law = PaceHold(speed=19.0, hold=HOLD)
-    assert law.airspeed(law.pace(along), own, False) == pytest.approx(held, rel=1e-14)
+@pytest.mark.parametrize(("along", "expected"), [(2.0, 21.1), (0.0, 20.5), (-3.0, 19.6)])
+def test_the_pace_is_held_over_the_mean_air(along, expected):
+    # 19 m/s and 0.3 m/s for each metre ahead, over the mean air, to which a gust of 1.5 m/s adds.
+    assert commanded(along, speed=18.5, airspeed=20.0) == pytest.approx(expected, rel=1e-14)
 
 
 def test_no_pace_is_asked_for_that_the_vehicle_cannot_fly():
-    law = PaceHold(speed=19.0, hold=HOLD)
-    assert (law.pace(-1000.0), law.pace(1000.0)) == (HOLD.airspeed_min, HOLD.airspeed_max)
+    assert (LAW.pace(-1000.0), LAW.pace(1000.0)) == (HOLD.airspeed_min, HOLD.airspeed_max)
 
 
 def test_while_the_guard_turns_away_the_vehicle_does_not_become_too_fast_for_its_turn():

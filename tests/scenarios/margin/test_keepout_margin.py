@@ -2,13 +2,14 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from aircraft.fleet.x8 import X8
 from common.physics.units import METRES_PER_FOOT
-from gnc.airspeed.pace_hold import SpeedHold, air_turn, airspeed_to_hold, design_speed_hold
+from gnc.airspeed.pace_hold import PaceHold, SpeedHold, air_turn, design_speed_hold
 from gnc.reference.oscillation import Oscillation
 from gnc.tracker import Tracker
 from innerloop.analysis.gust_response import GUSTS
@@ -152,6 +153,7 @@ def fly_in_turbulence(root, start, flight, hold, seed):
     aircraft.fdm.write("atmosphere/turb-type", 4)
     aircraft.fdm.write(f"{milspec}/windspeed_at_20ft_AGL-fps", 10.0 * LIGHT.vertical / METRES_PER_FOOT)
     aircraft.fdm.write(f"{milspec}/severity", 3)
+    law = PaceHold(speed=reference.speed, hold=hold)
     errors = []
     for _ in range(round(300.0 / flight.time_step)):
         north, east, v_north, v_east, rate = vehicle.motion()
@@ -163,7 +165,7 @@ def fly_in_turbulence(root, start, flight, hold, seed):
         command = tracker.step(north, east, course, speed, air_turn(rate, speed=airspeed, airspeed=speed))
         vehicle.advance(
             air_turn(command, speed=speed, airspeed=airspeed),
-            airspeed_to_hold(hold, along=along, reference_speed=reference.speed, speed=speed, airspeed=airspeed),
+            law.airspeed(law.pace(along), SimpleNamespace(speed=speed, airspeed=airspeed), False),
         )
     return np.array(errors[600:])  # 30 s: three of the slowest gusts' times, to grow from smooth air
 
