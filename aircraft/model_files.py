@@ -19,6 +19,13 @@ _OWN = ("", "Engines", "Systems", "systems")
 """Folders of a model in which JSBSim looks for files, in order."""
 
 
+def stock_root() -> Path:
+    """Return JSBSim's own root directory."""
+    import jsbsim
+
+    return Path(jsbsim.get_default_root_dir())
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModelFiles:
     """The files of one model.

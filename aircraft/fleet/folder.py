@@ -5,8 +5,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from aircraft.errors import AircraftError
 from aircraft.fleet.model_spec import spec_of_model
 from aircraft.fleet.settings import ModelSettings, read_settings
-from aircraft.fleet.stock import stock_root
-from aircraft.model_files import SHARED, ModelFiles, read_xml
+from aircraft.model_files import SHARED, ModelFiles, read_xml, stock_root
 from aircraft.spec import NAME, AircraftSpec
 from common.files import is_path
 from common.spelling import did_you_mean

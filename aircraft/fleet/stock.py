@@ -1,17 +1,8 @@
 """Aircraft that come with JSBSim."""
 
-from pathlib import Path
-
-import jsbsim
-
 from aircraft.fleet.model_spec import spec_of_model
-from aircraft.model_files import ModelFiles
+from aircraft.model_files import ModelFiles, stock_root
 from aircraft.spec import AircraftSpec
-
-
-def stock_root() -> Path:
-    """Return JSBSim's own root directory."""
-    return Path(jsbsim.get_default_root_dir())
 
 
 def stock_names() -> list[str]:

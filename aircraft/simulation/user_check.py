@@ -9,9 +9,10 @@ import tempfile
 from pathlib import Path
 
 from aircraft.errors import AircraftError
+from aircraft.model_files import stock_root
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.model_copy import copy_model
-from aircraft.spec import AircraftSpec
+from aircraft.spec import MODELS, AircraftSpec
 
 _STEPS = 3
 """Time steps in which every function of a model is computed."""
@@ -27,13 +28,15 @@ _TRACEBACK = "Traceback (most recent call last):"
 
 
 def check_user_aircraft(spec: AircraftSpec) -> None:
-    """See that JSBSim loads and runs an aircraft of a folder, and that it has the properties of its spec; others are known to.
+    """See that JSBSim loads and runs an aircraft, and that it has the properties of its spec.
+
+    Models of the project and of JSBSim are known to: only those whose files stand elsewhere are looked at, however they are named.
 
     Raises
     ------
     AircraftError : JSBSim refuses the model, or there is no such property, or it takes no writes
     """
-    if spec.folder is None:
+    if all(map(_supplied, (spec.files.folder, *spec.files.roots))):
         return
     project = str(Path(__file__).parents[2])
     paths = os.pathsep.join([project, *filter(None, [os.environ.get("PYTHONPATH")])])
@@ -60,6 +63,11 @@ def check_user_aircraft(spec: AircraftSpec) -> None:
     raise AircraftError(
         f"aircraft '{spec.name}': JSBSim ends the whole process with its model: {reason}; correct {spec.files.file}"
     )
+
+
+def _supplied(folder: Path) -> bool:
+    """Return whether a folder is of the project's own models or of JSBSim's."""
+    return any(folder.resolve().is_relative_to(root.resolve()) for root in (MODELS, stock_root()))
 
 
 def _raised(lines: list[str]) -> str:
