@@ -3,6 +3,7 @@
 import bisect
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,9 +14,17 @@ from common.physics.units import RAD_S_PER_RPM
 MODELS = Path(__file__).parent / "models"
 """The JSBSim root of the project's own aircraft."""
 
-
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
 """What an aircraft and its model may be called: the name becomes part of file names and of XML."""
+
+_ACTUATOR_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.\-]*")
+"""What an actuator may be called: the name becomes part of a JSBSim property."""
+
+SETTLE_TIMES = 0.1, 120.0
+"""Range of the time in which servos and engines come to rest [s]."""
+
+_AIRSPEED_MAX, _BANKS_DEG = 400.0, (5.0, 60.0)
+"""Fastest airspeed of an envelope [m/s], and range of its bank [deg]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,6 +133,22 @@ class Envelope:
     notes: tuple[str, ...] = ()
 
     @property
+    def fault(self) -> str:
+        """Return why no autopilot can be designed for these airspeeds, or this bank, and the remedy; empty if one can."""
+        if not 0.0 < self.airspeed_min < self.airspeed < self.airspeed_max <= _AIRSPEED_MAX:
+            return (
+                f"airspeed is {self.airspeed:g} m/s; it must lie between airspeed_min, {self.airspeed_min:g}, and airspeed_max,"
+                f" {self.airspeed_max:g} m/s, and these above 0 and up to {_AIRSPEED_MAX:g}: choose others"
+            )
+        least, most = _BANKS_DEG
+        if not math.radians(least) <= self.bank <= math.radians(most):
+            return (
+                f"bank is {math.degrees(self.bank):g} deg ({self.bank:g} rad); it must lie between {least:g} and {most:g} deg:"
+                " give radians in Python, degrees in a file of settings"
+            )
+        return ""
+
+    @property
     def bank_max(self) -> float:
         """Return the largest bank that the autopilot commands [rad]."""
         return self.bank + BANK_RESERVE
@@ -199,12 +224,12 @@ class AircraftSpec:
         raise AircraftError(f"aircraft '{self.name}' has no input '{name}'; it has {', '.join(i.name for i in self.inputs)}")
 
     def check(self) -> None:
-        """See that the name is one, that inputs are those that the autopilot flies with, and that driven states follow one each.
+        """See that an autopilot can be designed for what the spec says.
 
         Raises
         ------
         AircraftError : the name has other letters than ``NAME``; an input is missing, unknown, or there twice; a driven state
-            follows no input, or one that has a state
+            follows no input, or one that has a state; a range, an actuator, the settle time or the envelope cannot be
         """
         if not NAME.fullmatch(self.name):
             raise AircraftError(f"'{self.name}' is no name of an aircraft; use letters, digits, '_', '-' and '.': correct its spec")
@@ -221,6 +246,28 @@ class AircraftSpec:
                 raise AircraftError(
                     f"aircraft '{self.name}': driven state '{state.name}' follows input '{state.input}', {why}; correct its spec"
                 )
+        if reason := next(filter(None, self._faults()), ""):
+            raise AircraftError(f"aircraft '{self.name}': {reason}; correct its spec")
+
+    def _faults(self) -> Iterator[str]:
+        """Yield what is wrong with ranges, actuators, the settle time and the envelope; perhaps an empty text."""
+        for control in self.inputs:
+            if not control.commands:
+                yield f"input '{control.name}' has no commands; name the JSBSim properties that take it"
+            lower, upper = control.lower, control.upper
+            if not -math.inf < lower < upper < math.inf:
+                yield f"input '{control.name}' ranges from {lower:g} to {upper:g}; lower must be below upper, and both finite"
+        taken = [actuator.name for actuator in self.own_actuators]
+        for i, actuator in enumerate(self.own_actuators):
+            if not _ACTUATOR_NAME.fullmatch(actuator.name) or actuator.name in taken[:i]:
+                yield f"'{actuator.name}' is no name of an actuator, or taken; use letters, digits, '_', '-' and '.'"
+            if not actuator.commands:
+                yield f"actuator '{actuator.name}' has no commands; name the JSBSim properties that command it"
+        least, most = SETTLE_TIMES
+        if not least <= self.settle_time <= most:
+            yield f"settle_time is {self.settle_time:g} s; it must lie between {least:g} and {most:g} s"
+        if self.envelope is not None:
+            yield self.envelope.fault
 
 
 def surface(name: str) -> ControlInput:

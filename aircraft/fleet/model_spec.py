@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ET
 from aircraft.errors import AircraftError
 from aircraft.fleet.settings import ModelSettings
 from aircraft.model_files import ModelFiles, read_model, read_xml
-from aircraft.spec import AircraftSpec, ControlInput, Envelope, numbered, surface, throttle
+from aircraft.spec import AircraftSpec, ControlInput, numbered, surface, throttle
 
 _SURFACES = ("elevator", "aileron", "rudder")
 _RUNNING_ENGINES = ("piston_engine", "turbine_engine", "turboprop_engine")
@@ -61,7 +61,7 @@ def spec_of_model(files: ModelFiles, *, name: str, source: str, settings: ModelS
         folder=None if files.folder == root / "aircraft" / files.model else files.folder,
         other_roots=tuple(others),
         inputs=inputs,
-        envelope=_envelope(said),
+        envelope=None if said.envelope is None else said.envelope.envelope,
         configuration=tuple((usual | said.properties).items()),
         engine_flags=tuple(
             f"propulsion/engine{numbered(i)}/set-running" for i, kind in enumerate(engines) if kind in _RUNNING_ENGINES
@@ -99,18 +99,6 @@ def _inputs(engines: int, said: ModelSettings) -> tuple[ControlInput, ...]:
         elif commands:
             found.append(ControlInput(name=name, commands=commands, lower=control.lower, upper=control.upper))
     return tuple(found)
-
-
-def _envelope(said: ModelSettings) -> Envelope | None:
-    given = said.envelope
-    if given is None:
-        return None
-    return Envelope(
-        airspeed_min=given.airspeed_min_mps,
-        airspeed_max=given.airspeed_max_mps,
-        airspeed=given.airspeed_mps,
-        bank=math.radians(given.bank_deg),
-    )
 
 
 def _lifts(thruster: ET.Element) -> bool:

@@ -1,5 +1,6 @@
 """What a file beside a JSBSim model, NAME.toml, may say of the aircraft. What it leaves out is found."""
 
+import math
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -7,11 +8,11 @@ from typing import Annotated, Any, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from aircraft.errors import AircraftError
+from aircraft.spec import SETTLE_TIMES, Envelope
 from common.spelling import did_you_mean
 
 _Property = Annotated[str, Field(pattern=r"^[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*$")]
 _Commands = tuple[_Property, ...]
-_Airspeed = Annotated[float, Field(gt=0.0, le=400.0)]
 
 
 class _Table(BaseModel):
@@ -21,22 +22,29 @@ class _Table(BaseModel):
 class EnvelopeSettings(_Table):
     """Where the autopilot may fly the aircraft."""
 
-    airspeed_min_mps: _Airspeed
+    airspeed_min_mps: float
     """Slowest commanded true airspeed [m/s]."""
-    airspeed_max_mps: _Airspeed
+    airspeed_max_mps: float
     """Fastest commanded true airspeed [m/s]."""
-    airspeed_mps: _Airspeed
+    airspeed_mps: float
     """Default airspeed of a study [m/s]."""
-    bank_deg: Annotated[float, Field(ge=5.0, le=60.0)]
+    bank_deg: float
     """Bank of the steepest turn that the guidance may demand [deg]."""
 
+    @property
+    def envelope(self) -> Envelope:
+        """Return the envelope of an aircraft's spec, in its units."""
+        return Envelope(
+            airspeed_min=self.airspeed_min_mps,
+            airspeed_max=self.airspeed_max_mps,
+            airspeed=self.airspeed_mps,
+            bank=math.radians(self.bank_deg),
+        )
+
     @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        if not self.airspeed_min_mps < self.airspeed_mps < self.airspeed_max_mps:
-            raise ValueError(
-                f"airspeed_mps is {self.airspeed_mps:g}; it must lie between airspeed_min_mps, {self.airspeed_min_mps:g},"
-                f" and airspeed_max_mps, {self.airspeed_max_mps:g}"
-            )
+    def _flyable(self) -> Self:
+        if fault := self.envelope.fault:
+            raise ValueError(f"envelope: {fault}")
         return self
 
 
@@ -53,7 +61,7 @@ class ModelSettings(_Table):
     """The same of the rudder; fcs/rudder-cmd-norm if not given, and false for an aircraft that has none."""
     throttle: Annotated[_Commands, Field(min_length=1)] | None = None
     """JSBSim properties that take the throttle command, 0 to 1; that of each engine if not given."""
-    settle_time_s: Annotated[float, Field(ge=0.1, le=120.0)] | None = None
+    settle_time_s: Annotated[float, Field(ge=SETTLE_TIMES[0], le=SETTLE_TIMES[1])] | None = None
     """Time in which servos and engines come to rest while the aircraft is held; 20 s if not given [s]."""
     envelope: EnvelopeSettings | None = None
     """Airspeeds and bank; found by trimming if not given."""

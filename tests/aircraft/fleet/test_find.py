@@ -12,7 +12,7 @@ from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import aircraft_names, find_spec
 from aircraft.fleet.stock import stock_names
 from aircraft.fleet.x8 import X8
-from aircraft.spec import DrivenState, servo_position, surface, throttle
+from aircraft.spec import Actuator, DrivenState, servo_position, surface, throttle
 
 STOCK = Path(jsbsim.get_default_root_dir()) / "aircraft"
 
@@ -128,6 +128,20 @@ MAY = "; it needs elevator, aileron, throttle, may have rudder, and no others: c
             {"driven_states": (*X8.driven_states, DrivenState(name="rpm", position="a/b", input="throttle"))},
             ": driven state 'rpm' follows input 'throttle', as another one does; correct its spec",
         ),
+        ({"inputs": (replace(THREE[0], commands=()), *THREE[1:])}, "input 'elevator' has no commands; name the JSBSim properties"),
+        ({"inputs": (replace(THREE[0], lower=1.0, upper=-1.0), *THREE[1:])}, "input 'elevator' ranges from 1 to -1; lower must be"),
+        (
+            {"own_actuators": (Actuator(name="left elevon", commands=("a/b",)),)},
+            "'left elevon' is no name of an actuator, or taken",
+        ),
+        ({"own_actuators": (*X8.own_actuators, X8.own_actuators[0])}, "'left_elevon' is no name of an actuator, or taken; use let"),
+        ({"own_actuators": (Actuator(name="flap", commands=()),)}, "actuator 'flap' has no commands; name the JSBSim properties"),
+        ({"settle_time": -1.0}, "settle_time is -1 s; it must lie between 0.1 and 120 s; correct its spec"),
+        ({"envelope": replace(X8.envelope, airspeed_max=15.0)}, "airspeed is 19.42 m/s; it must lie between airspeed_min, 15, and"),
+        ({"envelope": replace(X8.envelope, airspeed_min=25.0, airspeed_max=15.0)}, "airspeed_min, 25, and airspeed_max, 15 m/s"),
+        ({"envelope": replace(X8.envelope, airspeed_min=-1.0)}, "airspeed_min, -1, and airspeed_max, 25 m/s, and these above 0"),
+        ({"envelope": replace(X8.envelope, bank=0.0)}, "bank is 0 deg (0 rad); it must lie between 5 and 60 deg: give radians"),
+        ({"envelope": replace(X8.envelope, bank=45.0)}, "bank is 2578.31 deg (45 rad); it must lie between 5 and 60 deg"),
         ({"name": "A&B/C"}, "'A&B/C' is no name of an aircraft; use letters, digits, '_', '-' and '.': correct its spec"),
     ],
 )

@@ -152,12 +152,14 @@ def test_settings_say_title_commands_properties_and_envelope(heavy):
         ("[envelope]\nairspeed_mps = 45", "key 'envelope.airspeed_min_mps' is missing"),
         (
             "[envelope]\nairspeed_min_mps=50\nairspeed_mps=45\nairspeed_max_mps=55\nbank_deg=30",
-            "airspeed_mps is 45; it must lie between",
+            r"envelope: airspeed is 45 m/s; it must lie between airspeed_min, 50, and airspeed_max, 55 m/s",
         ),
         (
             "[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=55\nbank_deg=30\nairspeed=45",
             "unknown key 'envelope.airspeed'",
         ),
+        ("[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=500\nbank_deg=30", r"above 0 and up to 400"),
+        ("[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=55\nbank_deg=70", r"bank is 70 deg \(1\.22173 rad\)"),
         ("title = ", r"heavy\.toml: not valid TOML"),
     ],
 )
