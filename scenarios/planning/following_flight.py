@@ -31,7 +31,7 @@ from scenarios.planning.guidance import (
 from scenarios.planning.limits import PLAN_PERIOD, omega_max
 from scenarios.planning.plume.axis import axis_height, plume_axis
 from scenarios.planning.plume.distance import additional_distance
-from scenarios.planning.reference import orbits, oscillation_at
+from scenarios.planning.reference import orbits, oscillation_at, swing_of
 from scenarios.planning.standoff import standoff_parameters, vessel_circle
 from scenarios.planning.start import check_start, sampled_start
 from scenarios.schema.scenario import Scenario
@@ -152,8 +152,10 @@ def _following(
     scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, axis: AxisParameters, further: float
 ) -> tuple[tuple[float, ...], FollowingParameters]:
     """Return the periods of the orbit over nu [s], and how the plume is followed, farther off than need be by a distance [m]."""
+    # Before its orbits: a shape that cannot be steered says so, whatever else it cannot do beside a fast vessel.
+    swing = swing_of(scenario.guidance, scenario.reference)
     periods, widths = orbits(scenario.guidance, scenario.reference, scenario.following.speed_ratio_max)
-    return periods, following_parameters(scenario, setup, margin, widths, axis, additional_distance=further)
+    return periods, following_parameters(scenario, setup, margin, widths, axis, swing=swing, additional_distance=further)
 
 
 def _guidance(

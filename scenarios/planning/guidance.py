@@ -11,12 +11,13 @@ from gnc.mission.plume_axis import AxisParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.parameters import GuardParameters
 from gnc.reference.moving_centre import CentreParameters
+from gnc.reference.reference import Swing
 from gnc.tracker import TrackingParameters
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
 from scenarios.planning.limits import PLAN_PERIOD, omega_max
-from scenarios.planning.reference import shape_of, swing_of
+from scenarios.planning.reference import shape_of
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.faults import SATELLITES
@@ -139,6 +140,7 @@ def following_parameters(
     widths: Sequence[tuple[float, float]],
     axis: AxisParameters,
     *,
+    swing: Swing,
     additional_distance: float,
 ) -> FollowingParameters:
     """Return how the plume of a moving vessel is followed.
@@ -149,6 +151,7 @@ def following_parameters(
     margin : of the keep-out area
     widths : half-widths of the orbit along and across its course, at equal steps of nu from 0 [m]
     axis : how the plume's axis is known
+    swing : courses of the reference, by its shape
     additional_distance : from the vessel, beyond what keeps out [m]
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports
@@ -167,7 +170,7 @@ def following_parameters(
     return FollowingParameters(
         centre=centre,
         reference_heading_rate=(1.0 - g.reserve) * fastest,
-        swing=swing_of(g, scenario.reference),
+        swing=swing,
         joining_share=shape_of(scenario.reference).joining_share,
         speed_ratio_max=f.speed_ratio_max,
         approach=approach_parameters(scenario, setup, radius + margin.total),

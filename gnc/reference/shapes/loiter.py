@@ -62,7 +62,7 @@ class Loiter:
     @property
     def crossing_interval(self) -> float:
         """Time between crossings of the plume, half a turn [s]."""
-        return self.straight + self._ramp + (math.pi - self._turned) / self.amplitude
+        return self.straight + self._ramp + (math.pi - self.turned) / self.amplitude
 
     @property
     def period(self) -> float:
@@ -103,7 +103,9 @@ class Loiter:
         time = abs(math.remainder(phase, _TURN)) / self.omega_0 - self.straight
         if time >= self._ramp:
             return self.amplitude
-        return STANDARD_GRAVITY / self.speed * math.tan(self.least_bank + self.roll_rate * max(time, 0.0))
+        # A roll rate that is infinite is none of a number times 0 s.
+        bank = self.least_bank + (self.roll_rate * time if time > 0.0 else 0.0)
+        return STANDARD_GRAVITY / self.speed * math.tan(bank)
 
     def sidebands(self, orders: npt.NDArray[np.int64]) -> Array:
         """Return |c_n|^2 of the Fourier series of exp(i course) [-]."""
@@ -115,7 +117,7 @@ class Loiter:
         if self._ramp:
             times = self.straight + 0.5 * self._ramp * (1.0 + _NODES)
             rolled = 0.5 * self._ramp * float(_WEIGHTS @ np.cos([self._half(time) for time in times.tolist()]))
-        return self.straight + rolled - math.sin(self._turned) / self.amplitude
+        return self.straight + rolled - math.sin(self.turned) / self.amplitude
 
     @property
     def _rolling(self) -> float:
@@ -131,8 +133,8 @@ class Loiter:
         return (self._bank - self.least_bank) / self.roll_rate
 
     @property
-    def _turned(self) -> float:
-        """Course that is turned through meanwhile [rad]."""
+    def turned(self) -> float:
+        """Course that is turned through while bank rises to its largest value [rad]."""
         return self._rolling * math.log(math.cos(self.least_bank) / math.cos(self._bank))
 
     def _half(self, time: float) -> float:
@@ -142,7 +144,7 @@ class Loiter:
             return 0.0
         if time < self._ramp:
             return self._rolling * math.log(math.cos(self.least_bank) / math.cos(self.least_bank + self.roll_rate * time))
-        return self._turned + self.amplitude * (time - self._ramp)
+        return self.turned + self.amplitude * (time - self._ramp)
 
 
 @reference_shape("loiter")
@@ -161,7 +163,13 @@ class LoiterShape(OscillatingShape):
     def design(
         self, *, nu: float, speed: float, heading_rate_max: float, reserve: float, vessel_heading_rate: float, roll_rate_max: float
     ) -> Loiter:
-        """Return the fastest loiter that the vehicle can follow; parameters are those of ``ReferenceShape``."""
+        """Return the fastest loiter that the vehicle can follow; parameters are those of ``ReferenceShape``.
+
+        Raises
+        ------
+        InfeasibleError : as ``available_heading_rate``; or the vessel is so fast that the loiter stays on one side of its plume, or
+            the vehicle rolls so slowly that it has turned by more than half a turn before it has reached its bank
+        """
         available = available_heading_rate(
             nu=nu,
             speed=speed,
@@ -180,13 +188,13 @@ class LoiterShape(OscillatingShape):
         level = turn(0.0, 0.0)
         missing = nu * level.crossing_interval - level.forward()
         if missing >= 0.0:
-            return turn(0.0, missing / (1.0 - nu))
+            return _checked(turn(0.0, missing / (1.0 - nu)))
 
         def excess(least_bank: float) -> float:
             rolled = turn(least_bank, 0.0)
             return rolled.forward() - nu * rolled.crossing_interval
 
-        return turn(float(brentq(excess, 0.0, bank, xtol=1e-14)), 0.0)
+        return _checked(turn(float(brentq(excess, 0.0, bank, xtol=1e-14)), 0.0))
 
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:  # noqa: ARG002 - of the Protocol
         """Raise an InfeasibleError: beside a faster vessel it would have to become an oscillation."""
@@ -194,6 +202,22 @@ class LoiterShape(OscillatingShape):
             "reference.shape is 'loiter', which cannot be steered in wind or beside a vessel that manoeuvres: fly it in still air"
             " beside a steady vessel (guidance.mission=track), or set reference.shape to 'fastest'"
         )
+
+
+def _checked(loiter: Loiter) -> Loiter:
+    """Return a loiter that goes round as it should, or raise an InfeasibleError."""
+    if loiter.turned >= math.pi:
+        raise InfeasibleError(
+            f"reference.shape is 'loiter', which turns by {math.degrees(loiter.turned):.0f} deg while the vehicle rolls to its bank"
+            f" at {math.degrees(loiter.roll_rate):g} deg/s; that must stay below 180 deg: raise guidance.roll_rate_max_deg_s, or"
+            " set reference.shape to 'fastest'"
+        )
+    if loiter.straight >= 0.5 * loiter.crossing_interval:
+        raise InfeasibleError(
+            f"reference.shape is 'loiter', which beside a vessel of speed ratio nu = {loiter.nu:g} flies straight for half of its"
+            " time or more, and stays on one side of the plume; that happens above about 0.5: set reference.shape to 'fastest'"
+        )
+    return loiter
 
 
 @functools.lru_cache(maxsize=128)

@@ -22,7 +22,7 @@ def design(nu, *, heading_rate=HEADING_RATE, roll_rate=ROLL_RATE):
     )
 
 
-ratios = st.floats(0.0, 0.9)
+ratios = st.floats(0.0, 0.499)  # beside faster vessels there is none at an infinite roll rate
 
 
 @given(nu=ratios, heading_rate=st.floats(0.1, 0.9), roll_rate=st.floats(0.2, 5.0))
@@ -53,7 +53,7 @@ def test_no_roll_rate_makes_it_faster_than_the_bound_for_paths_that_go_round(nu)
     assert bound * (1.0 - 1e-12) <= intervals[1] <= intervals[2] * (1.0 + 1e-12)
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.05, 0.25, 0.6])
+@pytest.mark.parametrize("nu", [0.0, 0.05, 0.25, 0.5])
 def test_a_point_that_turns_so_flies_the_orbit_and_meets_the_plume_every_half_turn(nu):
     orbit = design(nu)
 
@@ -103,6 +103,35 @@ def test_the_slower_one_meets_it_at_phase_0_and_becomes_it_there(share):
     way = orbit.nu * SPEED * (steps + 200) * TIME_STEP
     # Within the step in which it changes, it goes on at one of two heading rates: 0.1 rad/s for 0.05 s at 19 m/s.
     assert (slow.north, slow.east) == pytest.approx((way + float(along), float(right)), abs=0.02)
+
+
+def test_at_an_infinite_roll_rate_it_flies_straight_on_and_turns_at_once():
+    orbit = design(0.3, roll_rate=math.inf)
+    straight = orbit.omega_0 * orbit.straight
+    phases = (0.0, 0.99 * straight, 1.01 * straight, -0.99 * straight, -1.01 * straight)
+    assert [orbit.heading_rate(phase) for phase in phases] == [0.0, 0.0, orbit.amplitude, 0.0, orbit.amplitude]
+
+
+@pytest.mark.parametrize(("nu", "roll_rate"), [(0.54, ROLL_RATE), (0.499, math.inf)])
+def test_up_to_about_half_the_speed_it_crosses_the_plume_and_beside_faster_vessels_it_is_refused(nu, roll_rate):
+    orbit = design(nu, roll_rate=roll_rate)
+    # Within two thousandths of the limit it just reaches both sides: at phase 0 the left, half a period later the right.
+    left, right = orbit.offset(np.array([0.0, 0.5]) * orbit.period)[1]
+    assert left <= 0.0 < right
+    assert orbit.straight == pytest.approx(0.5 * orbit.crossing_interval, rel=0.05)
+    # The straight leg takes nu of the time at an infinite roll rate; at 40 deg/s half of it at 0.546.
+    for faster in (nu + 0.01, 0.6, 0.9):
+        with pytest.raises(InfeasibleError, match=r"stays on one side of the plume.*: set reference\.shape to 'fastest'"):
+            design(faster, roll_rate=roll_rate)
+
+
+@pytest.mark.parametrize("nu", [0.05, 0.1, 0.4])
+def test_a_vehicle_that_turns_by_half_a_turn_while_it_rolls_is_refused(nu):
+    # At 1 deg/s g/(V 0.0175 rad/s) log(1/cos 45 deg) is 10 rad from level flight; at 5 deg/s 2.0 rad.
+    with pytest.raises(InfeasibleError, match=r"while the vehicle rolls to its bank at 1 deg/s; that must stay below 180 deg"):
+        design(nu, roll_rate=math.radians(1.0))
+    orbit = design(nu, roll_rate=math.radians(5.0))
+    assert orbit.course(math.pi) == pytest.approx(math.pi, rel=1e-12)
 
 
 def test_it_cannot_be_steered():
