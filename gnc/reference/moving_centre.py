@@ -52,7 +52,8 @@ class CentreParameters:
     speed_ratio_max : up to which the half-widths reach [-]
     along, across : |d_x|max and |d_y|max of the orbit, equation (12), at equal steps of nu from 0 [m]
     plume_heading : chi_P from the vessel's bow, or None where the plume trails behind the vessel's motion through the air [rad]
-    apparent_wind_min : below this the plume's direction counts as unknown [m/s]
+    vessel_course : at the start, where the bow of a vessel at rest points; only with a plume heading [rad]
+    apparent_wind_min : below this the plume's direction counts as unknown, and so does the vessel's course over the ground [m/s]
     speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
     """
 
@@ -61,6 +62,7 @@ class CentreParameters:
     along: tuple[float, ...]
     across: tuple[float, ...]
     plume_heading: float | None
+    vessel_course: float
     apparent_wind_min: float
     speed: float
     heading_rate_max: float
@@ -128,11 +130,13 @@ class MovingCentre:
                 turn = (air_north * acceleration_east - air_east * acceleration_north) / through_air**2
         else:
             over_ground = math.hypot(vessel_north, vessel_east)
-            if over_ground >= p.apparent_wind_min or not self._started:
+            if over_ground >= p.apparent_wind_min:
                 demanded = math.atan2(vessel_east, vessel_north) + p.plume_heading + bearing
                 turn = (vessel_north * acceleration_east - vessel_east * acceleration_north) / max(
                     over_ground, _VESSEL_SPEED_MIN
                 ) ** 2
+            elif not self._started:
+                demanded = p.vessel_course + p.plume_heading + bearing
         if not self._started:
             self._started, self.axis = True, demanded
             self.distance = self._target(air_north, air_east) + additional_range

@@ -9,7 +9,6 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.reachable_set import VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
-from gnc.mission.plume_axis import AxisParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuardParameters, GuidanceParameters, ReportedVessel
@@ -99,7 +98,7 @@ def following_flight(
     else:
         nearest, orbit = radius + margin.total + oscillation.half_widths()[0], oscillation
         further = additional_distance(scenario, vessel, nearest, wind.at_start)
-        periods, mission = _following(scenario, setup, margin, plume_axis(scenario, vessel, setup.altitude_reach), further)
+        periods, mission = _following(scenario, setup, margin, vessel, further)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, mean_wind(scenario, vessel), generators.world)
@@ -149,13 +148,22 @@ def following_flight(
 
 
 def _following(
-    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, axis: AxisParameters, further: float
+    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, vessel: VesselTruth, further: float
 ) -> tuple[tuple[float, ...], FollowingParameters]:
     """Return the periods of the orbit over nu [s], and how the plume is followed, farther off than need be by a distance [m]."""
     # Before its orbits: a shape that cannot be steered says so, whatever else it cannot do beside a fast vessel.
     swing = swing_of(scenario.guidance, scenario.reference)
     periods, widths = orbits(scenario.guidance, scenario.reference, scenario.following.speed_ratio_max)
-    return periods, following_parameters(scenario, setup, margin, widths, axis, swing=swing, additional_distance=further)
+    return periods, following_parameters(
+        scenario,
+        setup,
+        margin,
+        widths,
+        plume_axis(scenario, vessel, setup.altitude_reach),
+        swing=swing,
+        vessel_course=vessel.course(0.0),
+        additional_distance=further,
+    )
 
 
 def _guidance(

@@ -141,6 +141,7 @@ def following_parameters(
     axis: AxisParameters,
     *,
     swing: Swing,
+    vessel_course: float,
     additional_distance: float,
 ) -> FollowingParameters:
     """Return how the plume of a moving vessel is followed.
@@ -152,6 +153,7 @@ def following_parameters(
     widths : half-widths of the orbit along and across its course, at equal steps of nu from 0 [m]
     axis : how the plume's axis is known
     swing : courses of the reference, by its shape
+    vessel_course : at the start [rad]
     additional_distance : from the vessel, beyond what keeps out [m]
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports
@@ -163,6 +165,7 @@ def following_parameters(
         along=tuple(along for along, _ in widths),
         across=tuple(across for _, across in widths),
         plume_heading=None if scenario.plume_by_wind else math.radians(scenario.plume.heading_deg),
+        vessel_course=vessel_course,
         apparent_wind_min=f.apparent_wind_min_mps,
         speed=g.airspeed_mps,
         heading_rate_max=fastest,

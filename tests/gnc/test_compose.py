@@ -56,6 +56,7 @@ def following(*, guard=GUARD, climb=0.0):
         along=tuple(along for along, _ in widths),
         across=tuple(across for _, across in widths),
         plume_heading=None,
+        vessel_course=0.0,
         apparent_wind_min=1.0,
         speed=SPEED,
         heading_rate_max=HEADING_RATE_MAX,

@@ -19,6 +19,7 @@ def situation(*, wind=(0.0, 0.0), vessel=(8.0, 0.0)):
         along=(10.0,) * 3,
         across=(20.0,) * 3,
         plume_heading=None,
+        vessel_course=0.0,
         apparent_wind_min=1.0,
         speed=SPEED,
         heading_rate_max=0.5,

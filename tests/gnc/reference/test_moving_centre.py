@@ -13,7 +13,7 @@ DISTANCE_MIN = 203.0
 TIME_STEP = 0.5
 
 
-def make(plume_heading=None):
+def make(plume_heading=None, vessel_course=0.0):
     widths = [half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0))) for nu in np.linspace(0.0, RATIO_MAX, 49)]
     return MovingCentre(
         CentreParameters(
@@ -22,6 +22,7 @@ def make(plume_heading=None):
             along=tuple(along for along, _ in widths),
             across=tuple(across for _, across in widths),
             plume_heading=plume_heading,
+            vessel_course=vessel_course,
             apparent_wind_min=1.0,
             speed=SPEED,
             heading_rate_max=0.505,
@@ -78,6 +79,19 @@ def test_a_given_plume_keeps_its_bearing_from_the_bow():
     # Course east, plume 150 degrees to the right of the bow; the wind does not matter. Rounding.
     assert math.remainder(centre.axis - math.radians(240.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
     assert centre.plume_known
+
+
+@pytest.mark.parametrize("velocity", [(0.0, 0.0), (0.2, 0.1)])
+def test_beside_a_vessel_too_slow_to_have_a_course_a_given_plume_is_where_her_bow_says(velocity):
+    centre = make(plume_heading=math.pi, vessel_course=math.radians(90.0))
+    for _ in range(20):
+        # Bow east, plume astern; what little she drifts about does not matter, nor does a wind.
+        move(centre, velocity, wind=(5.0, -5.0))
+        assert math.remainder(centre.axis - math.radians(270.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
+    # Under way she has one: north-east.
+    for _ in range(400):
+        move(centre, (4.0, 4.0))
+    assert math.remainder(centre.axis - math.radians(225.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-3)
 
 
 def test_the_plume_trails_behind_the_motion_through_the_air():
