@@ -1,9 +1,11 @@
 """Airspeed by the along-track error: V_r, and a bounded share of how far the reference is ahead."""
 
+import math
 from dataclasses import dataclass
 
 from gnc.estimation.own_motion import OwnMotion
 from gnc.numeric import limited
+from gnc.vectors import clip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -15,15 +17,20 @@ class AlongTrackTrim:
     speed : V_r [m/s]
     gain : commanded airspeed per along-track error [1/s]; 0 for V_r at all times
     change_max : largest change of the commanded airspeed [m/s]
+    airspeed_min, airspeed_max : between which airspeed is trimmed [m/s]
     """
 
     speed: float
     gain: float
     change_max: float
+    airspeed_min: float = 0.0
+    airspeed_max: float = math.inf
 
     def pace(self, along: float, /) -> float:
         """Return the pace that brings the vehicle beside a reference that is so far ahead along its course [m/s]."""
-        return self.speed + limited(self.gain * along, self.change_max) if self.gain else self.speed
+        if not self.gain:
+            return self.speed
+        return clip(self.speed + limited(self.gain * along, self.change_max), self.airspeed_min, self.airspeed_max)
 
     def airspeed(self, pace: float, _own: OwnMotion, _guarding: bool, /) -> float:
         """Return the airspeed to command for a pace: in still air they are the same [m/s]."""

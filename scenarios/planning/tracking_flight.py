@@ -131,6 +131,8 @@ def _guidance(
         speed=g.airspeed_mps,
         gain=g.airspeed_gain_per_s if g.airspeed_trim else 0.0,
         change_max=g.airspeed_trim_max_mps,
+        airspeed_min=setup.airspeed_min,
+        airspeed_max=setup.airspeed_max,
     )
     return GuidanceParameters(
         speed=g.airspeed_mps,

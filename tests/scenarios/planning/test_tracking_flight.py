@@ -56,6 +56,11 @@ def test_omega_max_is_the_coordinated_turn_at_the_bank_asked_for():
     assert given.heading_rate_max == given.guidance.tracking.heading_rate_max == 0.503
 
 
+def test_the_airspeed_is_trimmed_within_what_the_vehicle_flies():
+    law = plan("guidance.airspeed_trim_max_mps=30").guidance.airspeed_law
+    assert (law.pace(-1000.0), law.pace(1000.0)) == (SETUP.airspeed_min, SETUP.airspeed_max)
+
+
 def test_commands_may_be_left_uncut():
     flight = plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false")
     assert flight.guidance.tracking.heading_rate_max == math.inf
