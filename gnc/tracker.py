@@ -132,9 +132,10 @@ class Tracker(Generic[AnyReference]):
             raise call_error(self._law, error) from None
         try:
             inside = -limit <= demand <= limit
-        except TypeError:
+        except (TypeError, ValueError):
             inside = False
-        command = demand if inside else within_limit(demand, limit, self._law, (to_north, to_east, then_course, speed))
+        # Of an array of one number it is an array, too.
+        command = demand if inside is True else within_limit(demand, limit, self._law, (to_north, to_east, then_course, speed))
         self.heading_rate_demand, self.heading_rate_command = demand, command
         self.saturated = command != demand
         ahead.step()

@@ -3,7 +3,10 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from numbers import Real
 from typing import Any, Protocol
+
+import numpy as np
 
 from common.registry import Registry
 from gnc.errors import LawError
@@ -117,12 +120,16 @@ def within_limit(demand: Any, limit: float, law: str, given: Sequence[float]) ->
     ------
     LawError : it returned what is no number, asked with numbers
     """
-    try:
-        if -limit <= demand <= limit or not math.isnan(demand) or not all(map(math.isfinite, given)):
-            return limited(demand, limit)
-    except TypeError:
-        pass
-    raise LawError(f"steering law '{law}' returned {demand}: {_MUST}")
+    if _is_number(demand) and (-limit <= demand <= limit or not math.isnan(demand) or not all(map(math.isfinite, given))):
+        return limited(demand, limit)
+    raise LawError(f"steering law '{law}' returned {' '.join(str(demand).split())}: {_MUST}")
+
+
+def _is_number(demand: Any) -> bool:
+    """Return whether a demand is a real number, or an array of no dimensions with one in it, as ``numpy.where`` makes it."""
+    if isinstance(demand, np.ndarray) and demand.ndim == 0:
+        demand = demand[()]
+    return isinstance(demand, float | Real)
 
 
 def call_error(law: str, error: TypeError) -> Exception:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import numpy as np
 import pytest
 from flight_cases import ASTERN, fly
 
@@ -42,6 +43,24 @@ class Word(Answers):
 
 
 @dataclass(frozen=True)
+class ArrayOfOne(Answers):
+    answer: object = (0.1,)
+
+    def begin(self, *_):
+        return _Begun(np.array(self.answer), self.after)
+
+
+@dataclass(frozen=True)
+class ArrayOfTwo(ArrayOfOne):
+    answer: object = ((0.1,), (0.2,))
+
+
+@dataclass(frozen=True)
+class ComplexNumber(Answers):
+    answer: object = np.complex128(0.1)
+
+
+@dataclass(frozen=True)
 class TooFew:
     def heading_rate(self, _):
         return 0.0
@@ -63,6 +82,9 @@ MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has
         (NotANumber, ("steering law 'NotANumber' returned nan: ", MUST)),
         (Nothing, ("steering law 'Nothing' returned None: ", MUST)),
         (Word, ("steering law 'Word' returned left: ", MUST)),
+        (ArrayOfOne, ("steering law 'ArrayOfOne' returned [0.1]: ", MUST)),
+        (ArrayOfTwo, ("steering law 'ArrayOfTwo' returned [[0.1] [0.2]]: ", MUST)),
+        (ComplexNumber, ("steering law 'ComplexNumber' returned (0.1+0j): ", MUST)),
         (TooFew, ("steering law 'TooFew' cannot be called (", "takes 2 positional arguments but 6 were given", MUST)),
         # An error inside the law is told where it is.
         (Wrong, ("TypeError: ", "(test_laws_without_an_answer.py:")),
@@ -77,3 +99,26 @@ def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mis
     for word in words:
         assert word in flown.row["message"]
     assert "tracker.py" not in flown.row["message"]
+
+
+NUMBERS = {"float": 0.1, "scalar": np.float64(0.1), "array": np.array(0.1), "where": np.where(True, 0.1, 0.2)}
+
+
+@dataclass(frozen=True)
+class Steady:
+    kind: str = "float"
+
+    def heading_rate(self, *_):
+        return NUMBERS[self.kind]
+
+
+@pytest.mark.parametrize("mission", ["track", "standoff"])
+@pytest.mark.parametrize("kind", ["scalar", "array", "where"])
+def test_a_law_may_return_a_number_of_numpy(mission, kind):
+    guidance = {"law": "own", "mission": mission, "keepout_guard": False}
+    with STEERING_LAWS.lent("own", Steady):
+        rows = [
+            fly(guidance=guidance | {"kind": given}, start=ASTERN, flight={"duration_max_s": 20.0}).row for given in (kind, "float")
+        ]
+    assert rows[0]["outcome"] == "not_settled"
+    assert rows[0]["min_distance_m"] == rows[1]["min_distance_m"]
