@@ -7,6 +7,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import jv
 
+# The study of flights, scenarios/studies/flight_study.py, looks for it here.
+from common.physics.coordinated_turn import bank_for_heading_rate as bank_for_heading_rate  # noqa: PLC0414
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.reference.bessel import eta_for_speed_ratio
@@ -149,13 +151,3 @@ def available_heading_rate(
             f" {(1.0 - reserve) * heading_rate_max:g} rad/s: raise omega_max or lower the reserve"
         )
     return available
-
-
-def heading_rate_for_bank(bank: float, speed: float) -> float:
-    """Return the heading rate [rad/s] of a coordinated turn at ``bank`` [rad] and ``speed`` [m/s]."""
-    return STANDARD_GRAVITY * math.tan(bank) / speed
-
-
-def bank_for_heading_rate(heading_rate: float, speed: float) -> float:
-    """Return the bank [rad] of a coordinated turn at ``heading_rate`` [rad/s] and ``speed`` [m/s]."""
-    return math.atan(heading_rate * speed / STANDARD_GRAVITY)

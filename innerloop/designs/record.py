@@ -11,7 +11,7 @@ from aircraft.dynamics.equilibrium import Trim, TrimOutcome
 from aircraft.dynamics.trim import search_trim
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.spec import AircraftSpec, Envelope
-from common.physics.units import STANDARD_GRAVITY
+from common.physics.coordinated_turn import heading_rate_for_bank
 from innerloop.analysis.checks import NOMINAL, REQUIRED, Check, Margin
 from innerloop.analysis.linear_model_check import verify_model
 from innerloop.analysis.margins import BREAK_NAMES, Loops
@@ -108,7 +108,7 @@ def reversal_record(spec: AircraftSpec, root: Path, start: Trim, bank: float, sl
 
 def step_sizes(schedule: Schedule) -> dict[str, float]:
     """Return the steps that are predicted and flown [rad/s, m/s, m]: half a study's turn, half the clipped errors."""
-    turn = STANDARD_GRAVITY * math.tan(schedule.envelope.bank) / schedule.level(schedule.middle).airspeed
+    turn = heading_rate_for_bank(schedule.envelope.bank, schedule.level(schedule.middle).airspeed)
     room = 0.25 * (schedule.envelope.airspeed_max - schedule.envelope.airspeed_min)
     sizes = {
         "heading_rate": 0.5 * turn,

@@ -20,8 +20,9 @@ from scipy.signal import lfilter
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.fdm import TIME_STEP
+from common.physics.coordinated_turn import heading_rate_for_bank
 from common.physics.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
-from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from common.physics.units import METRES_PER_FOOT
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.properties import HEADING_RATE
@@ -84,7 +85,7 @@ class ReversalSearch:
 
 def reversals_of_a_design(bank: float, airspeed: float) -> int:
     """Return how many reversals are flown for the record of a design, by its bank [rad] and airspeed [m/s]."""
-    quarter = 0.5 * math.pi * airspeed / (STANDARD_GRAVITY * math.tan(bank))
+    quarter = 0.5 * math.pi / heading_rate_for_bank(bank, airspeed)
     return min(max(round(0.5 * _SEARCHED_FOR / quarter), _SEARCHED[0]), _SEARCHED[1])
 
 
@@ -113,7 +114,7 @@ def search_reversals(
     slow_lag : by which it is behind slow commands [s]
     reversals, seed : how many are flown, and of their random numbers
     """
-    rate = STANDARD_GRAVITY * math.tan(bank) / start.airspeed
+    rate = heading_rate_for_bank(bank, start.airspeed)
     generator = np.random.default_rng(seed)
     flights = [_Flight(each, start, response, slow_lag) for each in aircraft]
     duration = (0.5 * math.pi + float(_LEANING[-1])) / rate + response.delay + response.lag

@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from common.physics.coordinated_turn import heading_rate_for_bank
+from common.physics.units import METRES_PER_FOOT
 from innerloop.analysis.closed_loop import closed_loop
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE
@@ -110,7 +111,7 @@ def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> floa
     Half the heading rate of a turn at ``bank`` [rad] is the sinusoid's amplitude, and its frequency is that heading
     rate itself, near which those of the guidance lie.
     """
-    frequency = STANDARD_GRAVITY * math.tan(bank) / start.airspeed
+    frequency = heading_rate_for_bank(bank, start.airspeed)
     amplitude = 0.5 * frequency
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     node = aircraft.fdm.node(HEADING_RATE)

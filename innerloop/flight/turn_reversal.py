@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.errors import AircraftError
 from aircraft.simulation.fdm import TIME_STEP
-from common.physics.units import STANDARD_GRAVITY
+from common.physics.coordinated_turn import heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE
 
@@ -53,7 +53,7 @@ def measure_turn_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: floa
     ------
     AircraftError : it does not follow the reversal
     """
-    rate = STANDARD_GRAVITY * math.tan(bank) / start.airspeed
+    rate = heading_rate_for_bank(bank, start.airspeed)
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     node = aircraft.fdm.node(HEADING_RATE)
     aircraft.command_heading_rate(-rate)

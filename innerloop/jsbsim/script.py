@@ -19,7 +19,7 @@ from aircraft.simulation.properties import (
     initial_conditions,
 )
 from aircraft.spec import Envelope
-from common.physics.units import STANDARD_GRAVITY
+from common.physics.coordinated_turn import heading_rate_for_bank
 from innerloop.jsbsim.properties import (
     AIRSPEED_COMMAND,
     ALTITUDE_COMMAND,
@@ -97,7 +97,7 @@ def demonstration(
     AircraftError : the heading rate is not positive
     """
     if heading_rate is None:
-        heading_rate = 0.25 * STANDARD_GRAVITY * math.tan(envelope.bank_max) / start.airspeed
+        heading_rate = 0.25 * heading_rate_for_bank(envelope.bank_max, start.airspeed)
     if not heading_rate > 0.0:
         raise AircraftError(f"heading rate of the turns is {heading_rate} rad/s; it must be above 0, for the first is to the right")
     if altitude_step is None:

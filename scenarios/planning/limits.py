@@ -3,7 +3,7 @@
 import math
 
 from aircraft.spec import Envelope
-from gnc.reference.oscillation import bank_for_heading_rate, heading_rate_for_bank
+from common.physics.coordinated_turn import bank_for_heading_rate, heading_rate_for_bank
 from scenarios.errors import InputError
 from scenarios.schema.sections.guidance import GuidanceConfig
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from aircraft.spec import Envelope
-from gnc.reference.oscillation import heading_rate_for_bank
+from common.physics.coordinated_turn import heading_rate_for_bank
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig

@@ -3,7 +3,7 @@
 import math
 
 from aircraft.atmosphere.wind import CALM, WindField
-from gnc.reference.oscillation import bank_for_heading_rate
+from common.physics.coordinated_turn import bank_for_heading_rate
 from gnc.unicycle import lagged_move, unicycle_move
 from scenarios.errors import InputError
 from scenarios.vehicles.vehicle import SAMPLE_COLUMNS

@@ -7,12 +7,13 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from common.physics.coordinated_turn import heading_rate_for_bank
 from common.physics.units import STANDARD_GRAVITY
 from gnc.laws.delta import RelativeState, look_ahead, relative_state
 from gnc.laws.lyapunov import lyapunov_law
 from gnc.reference.bessel import eta_for_speed_ratio, mean_speed_ratio
 from gnc.reference.orbit import f_x, half_widths, offset
-from gnc.reference.oscillation import design_oscillation, heading_rate_for_bank
+from gnc.reference.oscillation import design_oscillation
 from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
 
 SPEED = 19.42

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
+from common.physics.coordinated_turn import bank_for_heading_rate
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.reference.oscillating import OscillatingShape
@@ -125,7 +126,7 @@ class Loiter:
 
     @property
     def _bank(self) -> float:
-        return math.atan(self.amplitude * self.speed / STANDARD_GRAVITY)
+        return bank_for_heading_rate(self.amplitude, self.speed)
 
     @property
     def _ramp(self) -> float:
@@ -178,7 +179,7 @@ class LoiterShape(OscillatingShape):
             vessel_heading_rate=vessel_heading_rate,
             roll_rate_max=roll_rate_max,
         )
-        bank = math.atan(available * speed / STANDARD_GRAVITY)
+        bank = bank_for_heading_rate(available, speed)
 
         def turn(least_bank: float, straight: float) -> Loiter:
             return Loiter(

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from common.physics.coordinated_turn import bank_for_heading_rate
 from gnc.errors import InfeasibleError
-from gnc.reference.oscillation import bank_for_heading_rate
 from gnc.reference.placement import PlumeAxis
 from scenarios.planning.limits import omega_max
 from scenarios.planning.reference import oscillation_at, placed_distance

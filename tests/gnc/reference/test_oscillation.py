@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.reference.bessel import eta_for_speed_ratio
-from gnc.reference.oscillation import bank_for_heading_rate, design_oscillation, heading_rate_for_bank
+from gnc.reference.oscillation import design_oscillation
 
 ROLL_RATE_MAX = math.radians(40.0)
 
@@ -114,21 +114,7 @@ def test_rates_and_speeds_that_are_not_above_zero_are_refused(name, value):
     assert f"{name} is {value:g}" in str(refusal.value)
 
 
-def test_a_coordinated_turn_balances_gravity():
-    # tan(bank) = V omega/g in a coordinated turn; at 45 degrees omega = g/V. Tolerances are roundings.
-    assert heading_rate_for_bank(math.radians(45.0), 20.0) == pytest.approx(9.80665 / 20.0, rel=1e-15)
-    rate = heading_rate_for_bank(math.radians(30.0), 15.0)
-    assert math.atan(15.0 * rate / 9.80665) == pytest.approx(math.radians(30.0), rel=1e-14)
-
-
 def test_the_design_takes_its_inputs_by_name():
     # House style 5: keyword-only, so that a speed is not taken for a rate.
     with pytest.raises(TypeError):
         design_oscillation(0.5, SPEED, HEADING_RATE_MAX)
-
-
-@pytest.mark.parametrize("bank_deg", [0.0, 20.0, 45.0, 60.0])
-def test_bank_and_heading_rate_of_a_coordinated_turn_are_each_others_inverse(bank_deg):
-    bank = math.radians(bank_deg)
-    # tan and atan, each to a rounding.
-    assert bank_for_heading_rate(heading_rate_for_bank(bank, 19.42), 19.42) == pytest.approx(bank, abs=1e-15)
