@@ -98,7 +98,8 @@ class PlumeEstimator:
     sigma_y, sigma_z, meander_z : spreads of the plume at one moment, and its meander in height, at the last pass [m]
     state : whether the plume is searched for, found, or lost again
     signal_to_noise : peak of the readings over their noise, of the best pass so far [-]
-    found_at : time since the start at which the plume was found first [s]; not a number before
+    found_at : time since the start at which the plume was found first [s]; not a number before; by it benchmarks/plume judges
+        searches
     innovation : mean normalised innovation squared of the passes, 1 where the filter is consistent [-]
     passes : number of passes so far [-]
     """
@@ -283,7 +284,7 @@ class PlumeEstimator:
 
     @property
     def height_interval(self) -> tuple[float, float]:
-        """2.5 % and 97.5 % quantiles of the height [m]."""
+        """2.5 % and 97.5 % quantiles of the height [m]: what tests and benchmarks/plume hold against the truth."""
         step = self._heights[1] - self._heights[0]
         below = np.concatenate([[0.0], np.cumsum(self._of_heights)])
         edges = np.concatenate([[self._heights[0] - 0.5 * step], self._heights + 0.5 * step])

@@ -7,7 +7,6 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from common.physics.units import STANDARD_GRAVITY
 from gnc.laws.path.adapter import PathLaw, PathMotion, path_motion, turn_rate
 from gnc.laws.steering_law import NO_CIRCLE, ON_CIRCLE, Surroundings, steering_law
 from gnc.numeric import wrap
@@ -142,12 +141,6 @@ def decided(angle: float, last: float, *, bearing: float, yaw: float) -> float:
     """
     behind = abs(angle) > 0.9 * math.pi and abs(last) > 0.9 * math.pi and abs(wrap(bearing - yaw)) > math.radians(120.0)
     return last if behind and angle * last < 0.0 else angle
-
-
-def roll_command(acceleration: float, pitch: float = 0.0) -> int:
-    """Return the roll for a lateral acceleration [m/s2] at a pitch [rad], in whole hundredths of a degree."""
-    roll = math.degrees(math.atan(acceleration / (STANDARD_GRAVITY * math.cos(clip(pitch, -math.pi / 3.0, math.pi / 3.0)))))
-    return int(100.0 * clip(roll, -90.0, 90.0))
 
 
 def _angle_to(direction: Vector, velocity: Vector) -> float:

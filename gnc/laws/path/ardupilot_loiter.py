@@ -7,7 +7,6 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from common.physics.units import STANDARD_GRAVITY
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
 from gnc.laws.path.ardupilot_l1 import ONE_OVER_PI, decided
 from gnc.laws.steering_law import CIRCLES_ALONE, ON_OSCILLATION, steering_law
@@ -94,23 +93,6 @@ def update_loiter(
     if outside > 0.0 and side * capture < side * circle:
         return Loiter(capture, circling=False, last_angle=angle)
     return Loiter(circle, circling=True, last_angle=angle)
-
-
-def loiter_radius(radius: float, *, true_over_equivalent_airspeed: float, bank_limit: float = 0.0, airspeed: float = 0.0) -> float:
-    """Return the radius that is flown instead of ``radius`` [m], at the air density and within a bank limit.
-
-    Parameters
-    ----------
-    radius : at sea level [m]
-    true_over_equivalent_airspeed : EAS2TAS [-]
-    bank_limit : at sea level; 0 for none [rad]
-    airspeed : target airspeed; 0 where there is none [m/s]
-    """
-    scale = true_over_equivalent_airspeed**2
-    if bank_limit == 0.0 or airspeed == 0.0:
-        return radius * scale
-    smallest = airspeed * airspeed / (STANDARD_GRAVITY * math.tan(bank_limit))
-    return radius * scale if smallest > radius else max(smallest * scale, radius)
 
 
 @steering_law("ardupilot_loiter")
