@@ -125,6 +125,30 @@ def test_a_key_that_the_law_does_not_have_or_cannot_use_is_refused(tmp_path, ove
     assert "unknown key 'guidance.lead_s'" in refusal(str(tmp_path / "own.toml"), tmp_path / "run", "guidance={lead_s=1}")
 
 
+NEEDY = """
+from dataclasses import dataclass, field
+
+@dataclass(frozen=True, kw_only=True)
+class Needy:
+    lead_s: float
+    def heading_rate(self, *_): return 0.0
+
+@dataclass(frozen=True, kw_only=True)
+class Listed:
+    leads: list = field(default_factory=lambda: [0.5])
+    def heading_rate(self, *_): return self.leads[0]
+"""
+
+
+def test_a_field_of_a_law_without_a_default_is_refused_and_one_that_makes_its_default_has_it(tmp_path):
+    (tmp_path / "needy.py").write_text(NEEDY, encoding="utf-8")
+    path = write_scenario(tmp_path, "")
+    for key in ("guidance.law", "following.margin_law"):
+        message = refusal(path, tmp_path / "run", f"{key}={tmp_path}/needy.py:Needy")
+        assert "has no default for its field 'lead_s'; give it one" in message
+    assert load_study(path, [f"guidance.law={tmp_path}/needy.py:Listed"]).guidance.law_keys == {"leads": [0.5]}
+
+
 def test_a_file_is_relative_to_the_scenario_file_and_in_an_override_to_the_current_directory(tmp_path, monkeypatch):
     write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\n')
     elsewhere = tmp_path / "elsewhere"

@@ -1,7 +1,7 @@
 """What a scenario file may say of the guidance: the reference, the steering law, following a vessel that is not known exactly."""
 
 import math
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, field_validator, model_validator
@@ -15,9 +15,9 @@ Share = Annotated[float, Field(gt=0.0, le=1.0)]
 
 
 def known_law(law: str) -> str:
-    """Return the name of a steering law, or raise a ValueError where there is none."""
+    """Return the name of a steering law, or raise a ValueError where there is none, or none with default parameters."""
     try:
-        STEERING_LAWS.get(law)
+        _law_keys(law)
     except PluginError as error:
         raise ValueError(str(error)) from None
     return law
@@ -93,7 +93,7 @@ class GuidanceConfig(Section):
     """Turn away from the keep-out area, of which the paper's law knows nothing."""
     approach: bool = True
     """Go round the vessel to the orbit and join it where it is nearest; the paper tracks its reference from the first step on."""
-    rate_hz: Annotated[float, Field(ge=1.0, le=120.0)] = 20.0
+    rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 20.0
     """Guidance rate [Hz]; must divide the 120 Hz of the simulation."""
 
     @field_validator("law")
@@ -106,10 +106,7 @@ class GuidanceConfig(Section):
         if self.tuning == "bounded" and self.law != "cascade":
             raise ValueError(f"tuning is 'bounded' with law '{self.law}', which has no bound; set law to 'cascade'")
         check_divides("rate_hz", self.rate_hz, 120.0)
-        try:
-            keys = self.law_keys
-        except PluginError as error:
-            raise ValueError(f"law: {error}") from None
+        keys = self.law_keys
         for name, value in (self.model_extra or {}).items():
             if name not in keys:
                 meant = nearest(name, [*type(self).model_fields, *keys])
@@ -150,9 +147,16 @@ def law_refusal(law: str, task: str) -> str:
 def _law_keys(law: str) -> dict[str, Any]:
     dataclass: Any = STEERING_LAWS.get(law)
     try:
-        return {of.name: of.default for of in fields(dataclass) if of.init}
+        of_dataclass = [of for of in fields(dataclass) if of.init]
     except TypeError:
         raise PluginError(f"steering law '{law}' is not a dataclass; its fields are the keys of [guidance]") from None
+    keys = {of.name: of.default if of.default_factory is MISSING else of.default_factory() for of in of_dataclass}
+    if without := [name for name, default in keys.items() if default is MISSING]:
+        raise PluginError(
+            f"steering law '{law}' has no default for its field '{without[0]}'; give it one, for its fields are keys of [guidance]"
+            " that a scenario may leave out"
+        )
+    return keys
 
 
 class FollowingConfig(Section):

@@ -41,6 +41,8 @@ def test_overrides_set_any_key(override, value):
         ("keepout.radius_m.x=1", ["keepout.radius_m.x", "not a section"]),
         ("guidance.law=magic", ["guidance.law", "'magic'", "cascade"]),
         ("guidance.rate_hz=50", ["rate_hz is 50 Hz", "must divide 120 Hz", "e.g. 40"]),
+        # Nothing could be logged at so low a rate: flight.log_rate_hz divides it, and is at least 5.
+        ("guidance.rate_hz=4", ["guidance.rate_hz", "value is 4", "greater than or equal to 5"]),
         ("flight.log_rate_hz=7", ["log_rate_hz is 7 Hz", "must divide 20 Hz"]),
         ("start.distance_m=[800, 400]", ["distance_m", "first value must not exceed its second"]),
         ("sweep.nu=[]", ["sweep: nu has no values", "at least one"]),
