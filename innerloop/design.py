@@ -16,6 +16,9 @@ from common.run_layout import DESIGN_RECORD, MANIFEST, MODEL
 if TYPE_CHECKING:
     from innerloop.designs.designed import Designed, Record
 
+_FLIES = {True: "flies", False: "-", None: "?"}
+"""What the list says of an aircraft that flies, that cannot, and that was not designed before."""
+
 
 def command(
     aircraft: Annotated[
@@ -39,7 +42,10 @@ def command(
         typer.Option(metavar="DIR", help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to take AIRCRAFT from."),
     ] = None,
     list_aircraft: Annotated[
-        bool, typer.Option("--list", help="List every known aircraft, or those of --aircraft-dir: whether each flies, or why not.")
+        bool, typer.Option("--list", help="List every known aircraft, or those of --aircraft-dir: which fly, as far as is known.")
+    ] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="With --list: design those not designed before, to know of each: minutes.")
     ] = False,
 ) -> None:
     """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a JSBSim root that flies it."""
@@ -48,8 +54,10 @@ def command(
     from reports.errors import ReportError
 
     try:
+        if check and not list_aircraft:
+            raise AircraftError("--check is for --list, and designs every aircraft listed; leave it out, or add --list")
         if list_aircraft:
-            _list(altitude, aircraft_dir)
+            _list(altitude, aircraft_dir, check=check)
             return
         name = aircraft if aircraft_dir is None else folder_path(aircraft_dir, aircraft)
         if name is None:
@@ -61,24 +69,27 @@ def command(
         raise typer.Exit(refuse(f"'{error.filename}' cannot be written: {error.strerror}; choose another --out")) from None
 
 
-def _list(altitude: float, directory: Path | None) -> None:
+def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
     """Print a line for every aircraft, as soon as it is known."""
     from aircraft.fleet.find import aircraft_names
     from aircraft.fleet.folder import folder_names, folder_path
-    from innerloop.designs.listing import discover
+    from innerloop.designs.listing import discover, look_up
 
     names = aircraft_names() if directory is None else [folder_path(directory, name) for name in folder_names(directory)]
     width = max(18, 1 + max(map(len, names)))
-    print("designing every aircraft whose design is not cached; this takes some minutes the first time", file=sys.stderr)
-    count = 0
+    if check:
+        print("designing every aircraft that was not designed before: some minutes the first time", file=sys.stderr)
+    known = discover(names, altitude, os.cpu_count() or 1) if check else (look_up(name, altitude) for name in names)
+    flying = waiting = 0
     try:
-        for found in discover(names, altitude, os.cpu_count() or 1):
-            count += found.flies
-            print(f"{'flies' if found.flies else '-':6}{found.name:{width}}{found.text}", flush=True)
+        for found in known:
+            flying, waiting = flying + (found.flies is True), waiting + (found.flies is None)
+            print(f"{_FLIES[found.flies]:6}{found.name:{width}}{found.text}", flush=True)
     except KeyboardInterrupt:
         print("interrupted; finished designs are cached, and the next --list continues from there", file=sys.stderr)
         raise typer.Exit(INTERRUPTED) from None
-    print(f"{count} can be flown", file=sys.stderr)
+    more = f"; {waiting} were not designed before: --list --check designs them, which takes minutes" if waiting else ""
+    print(f"{flying} can be flown{more}", file=sys.stderr)
 
 
 def _design(

@@ -7,8 +7,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import jv
 
-# The study of flights, scenarios/studies/flight_study.py, looks for it here.
-from common.physics.coordinated_turn import bank_for_heading_rate as bank_for_heading_rate  # noqa: PLC0414
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.reference.bessel import eta_for_speed_ratio

@@ -68,6 +68,11 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
     return _at(spec, found.made)
 
 
+def is_cached(spec: AircraftSpec, altitude: float) -> bool:
+    """Return whether ``designed`` has its answer in the cache, a design or a refusal; parameters are its own."""
+    return _cached(design_key(spec, altitude)) is not None
+
+
 def _at(spec: AircraftSpec, found: Designed) -> Designed:
     """Return a design whose model is where that of ``spec`` is: the same files may have been elsewhere when it was made."""
     schedule = found.design.schedule

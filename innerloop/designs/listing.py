@@ -1,4 +1,4 @@
-"""Which of all known aircraft can be flown, and why the others cannot: found by designing every one of them."""
+"""Which of all known aircraft can be flown, and why the others cannot: from their designs, cached or made for it."""
 
 import math
 import multiprocessing
@@ -11,7 +11,7 @@ from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
 from common.interrupt import follow_parent
 from innerloop.analysis.checks import NOMINAL
-from innerloop.designs.cache import designed
+from innerloop.designs.cache import designed, is_cached
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,14 +21,25 @@ class Discovered:
     Attributes
     ----------
     name, title : what the user types, and what the model calls itself
-    flies : whether an autopilot could be designed
+    flies : whether an autopilot could be designed; None where none was tried before
     text : envelope and margins, or the reason why it cannot be flown
     """
 
     name: str
     title: str
-    flies: bool
+    flies: bool | None
     text: str
+
+
+def look_up(name: str, altitude: float) -> Discovered:
+    """Return whether one aircraft flies at ``altitude`` [m] as far as that is known without designing its autopilot."""
+    try:
+        spec = find_spec(name)
+        known = is_cached(spec, altitude)
+    except AircraftError:
+        # Its reason needs no design.
+        return examine(name, altitude)
+    return examine(name, altitude) if known else Discovered(name=name, title=spec.title, flies=None, text="not designed before")
 
 
 def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Discovered]:

@@ -2,9 +2,10 @@
 
 from typing import Any
 
+from measurement.estimate.verdict import BELOW, OPEN
 from measurement.estimate.words import content_words, probability, verdict_words
 from measurement.gases import FUEL_SULPHUR_MOST, limit_words
-from reports.document.blocks import Card, Verdict
+from reports.document.blocks import Card, FuelCard, Verdict
 from reports.document.tables import number
 from reports.measurement.data import Record, value
 
@@ -58,17 +59,17 @@ def _short(share: float) -> str:
     return probability(share).replace("more than", ">").replace("less than", "<")
 
 
+def _chance(verdict: Record, quality: str) -> Card:
+    """Return the tile of a limit: how probable it is that the fuel is above it, and the verdict if there is one."""
+    limit, side = limit_words(float(verdict["limit_percent"])), verdict["verdict"]
+    told = "no verdict" if quality == "C" else _short(value(verdict, "probability_above"))
+    name = f"Probability above {limit}"
+    return Card(name, told) if side == OPEN else FuelCard(name, told, limit, side == BELOW)
+
+
 def _figures(record: Record) -> list[Card]:
     found = record["estimate"]
-    chances = [
-        Card(
-            f"Probability above {limit_words(float(verdict['limit_percent']))}",
-            "no verdict" if found["quality"] == "C" else _short(value(verdict, "probability_above")),
-            "" if verdict["verdict"] == "open" else "below the limit",
-            {"above": False, "below": True}.get(verdict["verdict"]),
-        )
-        for verdict in found["verdicts"]
-    ]
+    chances = [_chance(verdict, found["quality"]) for verdict in found["verdicts"]]
     times = [
         Card(f"Time to a verdict on {limit_words(float(limit))}", "open" if seconds is None else f"{float(seconds):.0f} s")
         for limit, seconds in record["time_to_verdict_s"].items()

@@ -9,6 +9,7 @@ import numpy as np
 
 from aircraft.errors import AircraftError
 from common.intervals import CONFIDENCE
+from common.physics.coordinated_turn import bank_for_heading_rate
 from common.run_layout import (
     COMPARISON,
     CROSSINGS,
@@ -20,7 +21,6 @@ from common.run_layout import (
     time_history_path,
 )
 from gnc.mission.mode import Mode
-from gnc.reference.oscillation import bank_for_heading_rate
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables

@@ -9,7 +9,7 @@ from typing import Any, Self
 from common.intervals import CONFIDENCE, TELLING, percent, upper_bound
 from common.physics.units import SECONDS_PER_HOUR
 from common.run_layout import SUMMARY
-from measurement.estimate.words import counted_verdicts, verdict_words
+from measurement.estimate.words import content_words, counted_verdicts, verdict_words
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
 
@@ -129,7 +129,7 @@ class FlightCounts:
             row["sulphur_verdict"], row["sulphur_limit_percent"], row["probability_above"], row["sulphur_quality"]
         )
         low, high = row["fsc_low_percent"], row["fsc_high_percent"]
-        return [f"fuel sulphur {row['fsc_percent']:.3f} %, 95 % interval {low:.3f} to {high:.3f} %: {words}"]
+        return [f"fuel sulphur {content_words(row['fsc_percent'], low, high)}: {words}"]
 
     def bound_line(self) -> str:
         """Return in how many flights the keep-out area was violated, with the bound on the probability of that.

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from measurement.estimate.flight_log.analysis import Analysis
 from measurement.estimate.result import FscEstimate
 from measurement.estimate.verdict import OPEN
-from measurement.estimate.words import needed, verdict_words
+from measurement.estimate.words import content_words, needed, verdict_words
 from measurement.gases import FUEL_SULPHUR_MOST
 
 ERRORS = {
@@ -43,9 +43,7 @@ def result(found: FscEstimate) -> str:
     """Return the result in words, with its 95 % interval."""
     if not found.total_percent <= FUEL_SULPHUR_MOST:
         return "fuel sulphur content: none can be given"
-    return (
-        f"fuel sulphur content {found.fsc_percent:.3f} % m/m, 95 % interval {found.low_percent:.3f} to {found.high_percent:.3f} %"
-    )
+    return f"fuel sulphur content {content_words(found.fsc_percent, found.low_percent, found.high_percent, '% m/m')}"
 
 
 def by_size(found: FscEstimate) -> list[tuple[str, float]]:

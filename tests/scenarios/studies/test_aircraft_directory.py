@@ -86,6 +86,13 @@ def test_the_directory_is_designed_for_and_listed(flown, heavy, tmp_path):
     listed = run_command("innerloop.design", "--list", *place)
     (line,) = listed.out.splitlines()
     assert line.startswith(f"flies {heavy} ")
+    assert "1 can be flown" in listed.errors
+    assert run_command("innerloop.design", "--list", "--check", *place).out == listed.out
+    # At another height nothing is designed for a list.
+    elsewhere = run_command("innerloop.design", "--list", *place[:2], "--altitude", 777)
+    assert elsewhere.out.split(maxsplit=2) == ["?", str(heavy), "not designed before\n"]
+    assert "0 can be flown; 1 were not designed before: --list --check designs them" in elsewhere.errors
+    assert_refused(run_command("innerloop.design", "--check", *place), "--check is for --list")
 
 
 def test_a_scenario_file_names_it_relative_to_itself_and_the_command_line_to_where_it_is(heavy, monkeypatch):
