@@ -144,7 +144,8 @@ def late(stated: float, shown: float, deviation: float) -> tuple[str, ...]:
     """
     if not abs(shown - stated) > STRANGE_SIGMA * deviation:
         return ()
+    side = "later" if shown > stated else "earlier"
     return (
-        f"SO2 fits best {shown - stated:+.1f} s from its stated delay after CO2, with a standard deviation of {deviation:.1f} s:"
-        " check t90 and delay of both, and that their columns were logged by one clock",
+        f"SO2 fits CO2 best {abs(shown - stated):.1f} s {side} than by the stated delays, with a standard deviation of"
+        f" {deviation:.1f} s: check t90 and delay of both, and that their columns were logged by one clock",
     )

@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from measurement.estimate.passes import SNR_LEAST
 from measurement.gases import limit_words
 from reports.document.blocks import Table
 from reports.document.tables import number
@@ -58,9 +59,11 @@ def over_time_table(record: Record) -> Table | None:
         "Quality",
         *(f"Limit {limit_words(float(v))}" for v in limits),
     ]
-    return Table(
-        caption="What was known after so much time.", head=head, rows=rows, widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)]
+    caption = (
+        f"What was known after so much time. A pass is a peak of CO2 of {SNR_LEAST:g} times its noise: where smoke meanders, not"
+        " every crossing of the plume's axis meets it."
     )
+    return Table(caption=caption, head=head, rows=rows, widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)])
 
 
 def record_table(record: Record) -> Table:
