@@ -1,9 +1,6 @@
 """The search for the worst flight, kinematic and short, the flights that it repeats and the files that it keeps."""
 
-import itertools
-import json
 import shutil
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -18,49 +15,20 @@ from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.schema.load import load_study
-from scenarios.studies.falsification import study as falsification
-from scenarios.studies.falsification.results import UNFLOWN, SearchedFlight, search_lines, search_manifest
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
-from tests.scenarios.losing_executor import losing
-
-POPULATION, GENERATIONS, KEPT, CONFIRMATIONS = 12, 7, 3, 2
-
-METHODS = ("corners", "differential_evolution", "local", "cma")
-
-SEARCH = f"""
-study = "falsify"
-title = "short"
-fidelity = "kinematic"
-histories = 0
-[search]
-population = {POPULATION}
-generations = {GENERATIONS}
-kept = {KEPT}
-confirmations = {CONFIRMATIONS}
-[[draws]]
-key = "start.range_m"
-uniform = [400.0, 1200.0]
-[[draws]]
-key = "start.course_deg"
-uniform = [-180.0, 180.0]
-[[draws]]
-key = "wind.from_deg"
-uniform = [0.0, 360.0]
-[wind]
-speed_mps = 3.0
-[guidance]
-rate_hz = 5.0
-[reports]
-interval_s = [1.0, 2.0]
-[flight]
-crossings = 0
-duration_max_s = 4.0
-log_rate_hz = 5.0
-[criteria]
-required = "keep_out"
-settles = false
-"""
+from tests.scenarios.short_search import (
+    CONFIRMATIONS,
+    GENERATIONS,
+    KEPT,
+    METHODS,
+    POPULATION,
+    SEARCH,
+    manifest,
+    run,
+    same_tables,
+    tables,
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -70,27 +38,11 @@ def search(tmp_path_factory):
     return path
 
 
-def run(search, out, *overrides, factory=InProcessExecutor, resume=False, progress=lambda *_: None):
-    scenario = load_study(str(search), overrides)
-    return run_study(scenario, "short", out, executor_factory=factory, resume=resume, progress=progress, overrides=overrides)
-
-
 @pytest.fixture(scope="module")
 def found(search, tmp_path_factory):
     out = tmp_path_factory.mktemp("falsify") / "run"
     assert run(search, out, factory=ExecutorFactory(jobs=2)).all_met
     return out
-
-
-def manifest(out):
-    return json.loads((out / "manifest.json").read_text(encoding="utf-8"))
-
-
-def tables(out):
-    """Return a run's flights of the search, and those that repeat the worst, each with its row of inputs."""
-    rows = pd.read_csv(out / "summary.csv").merge(pd.read_csv(out / "draws.csv"), on="flight_id", validate="one_to_one")
-    repeated = rows["confirms"].notna()
-    return rows[~repeated], rows[repeated]
 
 
 def distances(out):
@@ -184,15 +136,6 @@ def test_flights_of_a_search_are_replayed_identically(found, tmp_path):
         assert result.summary.manifest == {"identical": True}, result.summary.lines
 
 
-def same_tables(one, other):
-    for name in ("summary.csv", "draws.csv"):
-        rows = [pd.read_csv(run / name).drop(columns="wall_time_s", errors="ignore") for run in (one, other)]
-        pd.testing.assert_frame_equal(*rows, check_exact=True)
-    assert {p.name: p.read_bytes() for p in (one / "worst").iterdir()} == {
-        p.name: p.read_bytes() for p in (other / "worst").iterdir()
-    }
-
-
 def test_the_search_goes_the_same_way_whatever_the_number_of_processes_and_where_it_was_interrupted(search, found, tmp_path):
     out = tmp_path / "run"
     # In the second turn of a method, in the last one, and among the flights that repeat the worst.
@@ -207,49 +150,6 @@ def test_the_search_goes_the_same_way_whatever_the_number_of_processes_and_where
         assert len(pd.read_csv(out / "summary.csv")) == after
     assert run(search, out, resume=True).all_met
     same_tables(found, out)
-
-
-def test_a_search_is_resumed_after_a_lost_flight_on_which_others_depend(search, tmp_path):
-    out = tmp_path / "run"
-
-    def interrupt(_doing, done, _):
-        if done == 3 * POPULATION:
-            raise KeyboardInterrupt
-
-    # The eighth flight of the first turn: what the third turn proposes depends on it.
-    assert run(search, out, factory=losing(7), progress=interrupt).interrupted
-    result = run(search, out, resume=True)
-    searched = tables(out)[0].set_index("flight_id")
-    assert "short_00007" not in searched.index[searched["min_distance_m"].notna()]
-    assert result.summary.done == result.planned
-    assert not result.all_met
-    # It stays its method's, and is not the nearest of any.
-    assert searched.loc["short_00007", "search_method"] == "corners"
-    assert not any("1000000" in line or line.startswith("  :") for line in result.summary.lines)
-    # A search that was not interrupted goes the same way.
-    run(search, tmp_path / "whole", factory=losing(7))
-    same_tables(tmp_path / "whole", out)
-
-
-def test_a_method_of_one_flight_without_a_measurement_has_no_nearest():
-    lost = SearchedFlight(number=0, flight_id="a", method="corners", confirms="", clearance=UNFLOWN, violates=False)
-    said = search_manifest([lost], [])
-    assert said["methods"]["corners"] == {"flights": 1, "violations": 0, "worst_clearance_m": None}
-    assert list(search_lines(said)) == ["  corners: 1 flight, 0 violated, none measured"]
-
-
-def test_a_lost_flight_on_which_no_other_depends_is_tried_again(search, found, tmp_path):
-    last = len(tables(found)[0]) - 1
-    run(search, tmp_path / "run", factory=losing(last), progress=lambda *_: None)
-    assert run(search, tmp_path / "run", resume=True).all_met
-    same = [pd.read_csv(out / "summary.csv").drop(columns="wall_time_s") for out in (found, tmp_path / "run")]
-    pd.testing.assert_frame_equal(*(rows[: last + 1] for rows in same), check_exact=True)
-
-
-def clock(monkeypatch):
-    """Have the search's time advance by a second whenever it is looked at."""
-    ticks = itertools.count()
-    monkeypatch.setattr(falsification, "time", SimpleNamespace(monotonic=lambda: float(next(ticks))))
 
 
 OWN_METHOD = """
@@ -277,25 +177,6 @@ def test_a_method_of_ones_own_takes_its_turns(search, tmp_path):
     assert searched[searched["search_method"] == name]["start.range_m"].between(400.0 + 0.4 * 800.0, 400.0 + 0.6 * 800.0).all()
     assert not len(repeats)
     assert list(manifest(out)["plugins"]) == [name]
-
-
-def test_a_search_by_time_ends_after_it_and_a_resumed_one_continues_for_as_long(search, tmp_path, monkeypatch):
-    clock(monkeypatch)
-    out = tmp_path / "run"
-    assert run(search, out, "search.time_s=4").all_met
-    before, repeats = tables(out)
-    assert len(repeats) == KEPT * CONFIRMATIONS
-    clock(monkeypatch)
-    assert run(search, out, "search.time_s=4", resume=True).all_met
-    after, repeats_after = tables(out)
-    assert len(after) > len(before)
-    first = after.iloc[: len(before)].drop(columns="wall_time_s")
-    pd.testing.assert_frame_equal(first, before.drop(columns="wall_time_s"), check_exact=True)
-    worst = {entry["flight_id"] for entry in manifest(out)["search"]["worst"]}
-    # What the first run repeated stays in the tables, also where it is not among the worst any more.
-    assert set(repeats_after["confirms"]) == worst | set(repeats["confirms"])
-    assert manifest(out)["flights_planned"] == len(after) + len(repeats_after)
-    assert len(list((out / "worst").iterdir())) == KEPT
 
 
 @pytest.mark.usefixtures("sketched")
