@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -124,11 +125,7 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
         raise MeasurementError(
             f"time of sample {int(np.argmin(np.isfinite(time)))} is not a number; give a time [s] for every sample"
         )
-    if (late := np.flatnonzero(np.diff(time) <= 0.0)).size:
-        at = int(late[0])
-        raise MeasurementError(
-            f"times do not increase: {time[at]:.15g} s is followed by {time[at + 1]:.15g} s; sort the record and drop repeats"
-        )
+    check_increasing(time)
     step = float(np.median(np.diff(time)))
     if not _STEP_LEAST <= step <= _STEP_MOST:
         raise MeasurementError(
@@ -165,6 +162,24 @@ def _used(values: Array, instrument: SnifferSpec) -> list[str]:
                 f"the record has no {gas.upper()} readings, or '{instrument.name}' no such channel; {why} them: add them"
             )
     return used
+
+
+def check_increasing(time: Array, path: Path | None = None) -> None:
+    """Refuse times that do not increase, shape (m,); of a file it is told where, by rows of which the head line is the first.
+
+    Raises
+    ------
+    MeasurementError : they do not
+    """
+    late = np.flatnonzero(np.diff(time) <= 0.0)
+    if not late.size:
+        return
+    at = int(late[0])
+    where, row, what = ("", "", "record") if path is None else (f"'{path}': ", f" in row {at + 2}", "rows by time")
+    raise MeasurementError(
+        f"{where}times do not increase: {time[at]:.15g} s{row} is followed by {time[at + 1]:.15g} s; sort the {what} and drop"
+        " repeats"
+    )
 
 
 def check_units(gas: str, values: Array) -> None:

@@ -17,7 +17,7 @@ from common.run_layout import FORMAT, LOGO
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.schema.documented_parts import DIMENSIONLESS, documented_part_keys, line, split_unit
+from scenarios.schema.documented_parts import DIMENSIONLESS, DocumentedKey, documented_part_keys, line, split_unit
 from scenarios.schema.effect import unused
 from scenarios.schema.load import AnyStudy
 from scenarios.schema.parts import names_file, names_folder, part_names
@@ -156,19 +156,16 @@ def _varied_of_parts(scenario: BaseModel, listed: Collection[str]) -> list[dict[
     if not isinstance(scenario, Scenario):
         return []
     varied = dict.fromkeys([*scenario.sweep.root, *(draw.key for draw in scenario.draws)])
-    if all(key in listed or key == "nu" for key in varied):
-        return []
-    of_parts = {of.key: of for of in documented_part_keys()}
-    return [
-        {"key": key, "value": of_parts[key].default, "default": of_parts[key].default, **_of_part(key)}
-        for key in varied
-        if key in of_parts and key not in listed
-    ]
+    found = ((key, _documented(key)) for key in varied if key != "nu" and key not in listed)
+    return [{"key": key, "value": of.default, "default": of.default, **_of_part(key)} for key, of in found if of]
 
 
 def _of_part(key: str) -> dict[str, str]:
     """Return unit and meaning of a key that a part brings; of one of a user's own, which documents it elsewhere, neither."""
-    known = next((of for of in documented_part_keys() if of.key == key), None)
-    if known is None:
-        return {"unit": "", "meaning": "Of a part that the section names"}
-    return {"unit": known.unit.replace(DIMENSIONLESS, ""), "meaning": known.meaning}
+    if known := _documented(key):
+        return {"unit": known.unit.replace(DIMENSIONLESS, ""), "meaning": known.meaning}
+    return {"unit": "", "meaning": "Of a part that the section names"}
+
+
+def _documented(key: str) -> DocumentedKey | None:
+    return next((of for of in documented_part_keys() if of.key == key), None)

@@ -10,7 +10,7 @@ import pandas as pd
 
 from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.config import LogConfig
-from measurement.estimate.record import check_units, lowest_reading
+from measurement.estimate.record import check_increasing, check_units, lowest_reading
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
@@ -71,7 +71,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     if table.empty:
         raise MeasurementError(f"'{path}' has a head line and 0 readings; it needs a row per reading")
     time = _time(table, config.columns["time"], path)
-    _check_increasing(time, path)
+    check_increasing(time, path)
     values = np.full((len(table), len(GASES)), np.nan)
     for i, gas in enumerate(GASES):
         name = config.columns[gas]
@@ -93,15 +93,6 @@ def _check_separator(path: Path) -> None:
         return
     if words := other_separator(head):
         raise MeasurementError(f"'{path}' {words}")
-
-
-def _check_increasing(time: Array, path: Path) -> None:
-    if (late := np.flatnonzero(np.diff(time) <= 0.0)).size:
-        at = int(late[0])
-        raise MeasurementError(
-            f"'{path}': times do not increase: {time[at]:.15g} s in row {at + 2} is followed by {time[at + 1]:.15g} s; sort the"
-            " rows by time and drop repeats"
-        )
 
 
 def _missing(path: Path, what: str, key: str, name: str, table: pd.DataFrame) -> str:

@@ -4,19 +4,11 @@ import itertools
 from types import SimpleNamespace
 
 import pandas as pd
-import pytest
 
 from scenarios.studies.falsification import study as falsification
 from scenarios.studies.falsification.results import UNFLOWN, SearchedFlight, search_lines, search_manifest
 from tests.scenarios.losing_executor import losing
-from tests.scenarios.short_search import CONFIRMATIONS, KEPT, POPULATION, SEARCH, manifest, run, same_tables, tables
-
-
-@pytest.fixture(scope="module")
-def search(tmp_path_factory):
-    path = tmp_path_factory.mktemp("search") / "short.toml"
-    path.write_text(SEARCH, encoding="utf-8")
-    return path
+from tests.scenarios.short_search import CONFIRMATIONS, KEPT, POPULATION, manifest, run, same_tables, tables
 
 
 def clock(monkeypatch):

@@ -23,19 +23,11 @@ from tests.scenarios.short_search import (
     KEPT,
     METHODS,
     POPULATION,
-    SEARCH,
     manifest,
     run,
     same_tables,
     tables,
 )  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def search(tmp_path_factory):
-    path = tmp_path_factory.mktemp("search") / "short.toml"
-    path.write_text(SEARCH, encoding="utf-8")
-    return path
 
 
 @pytest.fixture(scope="module")
