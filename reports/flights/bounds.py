@@ -3,32 +3,35 @@
 import pandas as pd
 
 from common.intervals import CONFIDENCE, TELLING, upper_bound
-from reports.run.columns import count, kept_out
+from reports.run.columns import count, kept_out, measured
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
 
-def violation_bound(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> tuple[float, float] | None:
+def violation_bound(run: RunData, trials: list[Trial]) -> tuple[float, float] | None:
     """Return the bound on the probability of a keep-out violation and its confidence; none where flights are no random sample.
 
-    A Monte Carlo study has its own, which allows for how often it was evaluated.
+    A Monte Carlo study has its own, which allows for how often it was evaluated. Any other counts a flight that could not be
+    flown, or not be measured to its end, as a violation, as that one does.
     """
     if run.statistics is not None:
         return _telling(run.statistics["violation"]["pessimistic"]["upper"], run.statistics["confidence"])
-    return _telling(upper_bound(count(~kept_out(flown)), len(flown)), CONFIDENCE) if sampled(trials) and len(flown) else None
+    return _bound(run.summary) if sampled(trials) else None
 
 
 def trial_bound(trial: Trial) -> float | None:
     """Return that of one trial, with the confidence of all bounds."""
-    flown = trial.flown
-    known = trial.sampled_at_random and len(flown)
-    found = _telling(upper_bound(count(~kept_out(flown)), len(flown)), CONFIDENCE) if known else None
+    found = _bound(trial.rows) if trial.sampled_at_random else None
     return found[0] if found else None
 
 
 def sampled(trials: list[Trial]) -> bool:
     """Return whether the flights of all trials are a random sample."""
     return all(trial.sampled_at_random for trial in trials)
+
+
+def _bound(rows: pd.DataFrame) -> tuple[float, float] | None:
+    return _telling(upper_bound(count(~kept_out(rows)), len(rows)), CONFIDENCE) if len(measured(rows)) else None
 
 
 def _telling(bound: float, confidence: float) -> tuple[float, float] | None:

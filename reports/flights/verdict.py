@@ -65,7 +65,7 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
         headline=". ".join(headlines if holds else headlines[::-1]),
         detail=_detail(run, trials, flown, planned),
         failures=[*(line for trial in trials for line in _not_met(trial)), *_noteworthy(flown)],
-        figures=[*sulphur_cards(run), *_bound_figure(run, trials, flown), *_figures(trials, flown, planned)],
+        figures=[*sulphur_cards(run), *_bound_figure(run, trials), *_figures(trials, flown, planned)],
     )
 
 
@@ -73,7 +73,7 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
     if not len(flown):
         return "Nothing was flown"
     rows, flights = run.summary, f"{len(flown):,} flight{'s' if len(flown) > 1 else ''}"
-    led, bound = _subset(run), violation_bound(run, trials, flown)
+    led, bound = _subset(run), violation_bound(run, trials)
     violations, inside = total(flown, "keepout_violations"), count(violated(flown))
     if violations and led is None:
         return f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
@@ -109,7 +109,7 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
         f" {count(met(rows)):,} met every criterion.",
         *([_closest(trials, flown)] if len(flown) else []),
     ]
-    led, bound = _subset(run), violation_bound(run, trials, flown)
+    led, bound = _subset(run), violation_bound(run, trials)
     if bound and led is not None:
         sentences.append(
             f"The simulation's bound, {percent(bound[1])} confidence, is on flights whose inputs are distributed as the scenario"
@@ -193,8 +193,8 @@ def _noteworthy(flown: pd.DataFrame) -> list[str]:
     return lines
 
 
-def _bound_figure(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> list[Card]:
-    bound = violation_bound(run, trials, flown)
+def _bound_figure(run: RunData, trials: list[Trial]) -> list[Card]:
+    bound = violation_bound(run, trials)
     if bound is None:
         return []
     name = f"Probability of a keep-out violation in a flight, at most, with {percent(bound[1])} confidence"

@@ -137,6 +137,16 @@ def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
     assert "No bound on a probability follows from these flights" in chosen.detail
 
 
+def test_a_flight_that_could_not_be_flown_counts_as_a_violation_in_the_bound(run):
+    rows = with_values(run, 1, **NOT_FLOWN).summary
+    others = [run.summary.assign(flight_id=[f"{name}_{i}" for name in run.summary["flight_id"]]) for i in range(3)]
+    sixteen = replace(run, summary=pd.concat([rows, *others], ignore_index=True), manifest=run.manifest | {"flights_planned": 16})
+    headline = content(sixteen).verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
+    # Clopper and Pearson, one of sixteen: (1 - p)^16 + 16 p (1 - p)^15 = 0.05; none of fifteen would be 18.1 %.
+    assert "at most 26.4 % of such flights at 95 % confidence" in headline
+    assert headline.endswith("of 16, 1 could not be flown")
+
+
 def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
     # None of four, 1 - 0.05^(1/4): 52.7 %; none of the two of a trial: 77.6 %.
     report = content(run)
