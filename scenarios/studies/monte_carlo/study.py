@@ -31,7 +31,7 @@ class MonteCarloStudy(FlightStudy):
 
     Raises
     ------
-    InputError : as of ``FlightStudy``; or a study of several points that is to stop by itself
+    InputError : as of ``FlightStudy``; a study of several points that is to stop by itself, or flights that are no random sample
     """
 
     def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
@@ -42,6 +42,11 @@ class MonteCarloStudy(FlightStudy):
             raise InputError(
                 "statistics stops the study, which has several points (sweep, cases, fidelity); leave out"
                 " statistics.violation_upper and statistics.distance_quantile_width_m, or give each point a run of its own"
+            )
+        if scenario.flights > 1 and not (scenario.several_points or scenario.sampled_at_random):
+            raise InputError(
+                f"flights is {scenario.flights}, and nothing random tells them apart: seeds, start and choices are given, so some"
+                " are copies, from which no probability follows; leave out flight_seed, or set study to 'flights'"
             )
         self._points = Points(scenario.sampling, dimension=len(scenario.draws), flights=scenario.flights, seed=scenario.seed)
         self._looks, self._stopped = 0, False
