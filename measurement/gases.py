@@ -35,7 +35,7 @@ CARBON_PER_CO2 = _CARBON / MOLAR_MASS["co2"]
 EXPECTED_PPB_PER_PPM = {"no": (18.0, 7.5), "no2": (2.0, 1.2)}
 """Of a ship's NO and NO2 over its CO2 and its standard deviation, where they are not measured [ppb/ppm].
 
-Assumption: NOx tiers 0 to 3 of two- and four-stroke engines emit 4 to 27 ppb/ppm (measurement.md, section 2); 5 to 15 % of it is
+Assumption: NOx tiers 0 to 3 of two- and four-stroke engines emit 4 to 27 ppb/ppm; 5 to 15 % of it is
 NO2, and ozone adds some.
 """
 

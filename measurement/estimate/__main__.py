@@ -9,7 +9,7 @@ from measurement.estimate.flight_log.analysis import analyse
 from measurement.estimate.flight_log.config import LogConfig, read_config
 from measurement.estimate.flight_log.csv_file import read_flight
 from measurement.estimate.flight_log.run_files import build_report, refuse_another_run, write_run
-from measurement.estimate.flight_log.words import summary
+from measurement.estimate.flight_log.words import summary, unused
 
 BAD_INPUT = 2
 """Exit status of input that cannot be used."""
@@ -53,8 +53,7 @@ def main(arguments: list[str] | None = None) -> int:
         line = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in str(error))
         print(f"error: {line}", file=sys.stderr)
         return BAD_INPUT
-    for line in summary(analysis, given.flight.name):
-        print(line)
+    print(*summary(analysis, given.flight.name), *unused(flight.readings, config.instrument), sep="\n")
     print(f"files: {directory}" if given.no_report else build_report(directory))
     return 0
 

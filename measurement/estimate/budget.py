@@ -11,7 +11,7 @@ from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
 CARBON_SD = 0.015
-"""Relative standard deviation of a fuel's carbon content [-] (measurement.md, section 4.5)."""
+"""Relative standard deviation of a fuel's carbon content [-] (assumption)."""
 
 SULPHATE_SHARE = 0.0225
 """Of the sulphur leaves as sulphate, not as SO2 [-] (IMO GHG4, eq. 15); 0.01 to 0.19 are reported. Stated, not corrected."""

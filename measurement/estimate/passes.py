@@ -1,4 +1,4 @@
-"""Passes through the plume: peaks of CO2 above its background (measurement.md, section 4.2)."""
+"""Passes through the plume: peaks of CO2 above its background."""
 
 import itertools
 import math

@@ -1,4 +1,4 @@
-"""Quality of a record: A, B or C (measurement.md, section 4.6)."""
+"""Quality of a record: A, B or C."""
 
 import math
 from collections.abc import Sequence

@@ -162,11 +162,13 @@ class Flight:
         InputError : the run kept none of this flight
         """
         from scenarios.simulation.record import MEANINGS
+        from scenarios.simulation.time_history import INSTRUMENT_MEANINGS
 
         history = self.run._data.history(self.flight_id)
         if history is None:
             raise InputError(f"flight '{self.flight_id}' has no time history; raise histories, or fly it alone, with fly")
-        history.attrs["meanings"] = {name: MEANINGS[name] for name in history if name in MEANINGS}
+        meanings = MEANINGS | INSTRUMENT_MEANINGS
+        history.attrs["meanings"] = {name: meanings[name] for name in history if name in meanings}
         return _with_units(history)
 
     @functools.cached_property

@@ -70,7 +70,8 @@ class Scenario(Section):
     flight_seed: Seed | None = None
     """Of start, air and noise; each flight has its own, from seed, name and number, if it is not given [-]."""
     histories: Annotated[int, Field(ge=0, le=100_000)] = 200
-    """Number of time histories to be kept: an even sample; those of flights that failed a criterion are kept beside them [-]."""
+    """Number of time histories to be kept, an even sample [-]. Those of flights that did not do what is required of them are kept
+    beside them; of missions that were not completed, that of the first of each trial."""
     speed_ratio: Range = (0.0, 1e9)
     """Flights whose nu leaves this range, at the start or after a manoeuvre, are sampled again [-]."""
     method: Literal["plain", "subset"] = "plain"

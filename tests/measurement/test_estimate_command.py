@@ -36,6 +36,19 @@ def test_a_flight_is_estimated_printed_and_written(logged, capsys):
     assert sorted(path.name for path in out.iterdir()) == ["estimate.json", "manifest.json", "samples.csv"]
 
 
+def test_readings_that_no_channel_uses_are_said(logged, capsys):
+    own = "[instrument.channels.so2]\ncross = { no = 0.015, no2 = -0.16 }\n[instrument.channels.co2]\n[instrument.channels.no2]\n"
+    config = logged.parent / "own.toml"
+    config.write_text(own, encoding="utf-8")
+    assert main([str(logged), "--config", str(config), "--out", str(logged.parent / "out"), "--no-report"]) == 0
+    printed = capsys.readouterr().out
+    assert "NO is not used to correct SO2" in printed
+    assert "add a table channels.no\n" in printed
+    assert "NO2 is not used" not in printed
+    assert run(logged) == 0
+    assert "not used" not in capsys.readouterr().out
+
+
 def test_columns_units_and_places_are_mapped(logged, capsys):
     table = pd.read_csv(logged)
     renamed = pd.DataFrame({

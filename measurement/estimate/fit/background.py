@@ -9,7 +9,7 @@ from measurement.estimate.record import Record
 from measurement.sniffer.lag import Array
 
 STRAIGHT_MAX = 300.0
-"""Duration up to which a background is a straight line [s] (measurement.md, section 4.3)."""
+"""Duration up to which a background is a straight line [s]."""
 
 KNOT_INTERVAL = 120.0
 """Between the knots of the background of a longer record, which is linear between them [s]."""

@@ -1,4 +1,4 @@
-"""The slope of SO2 over CO2, for noise in both, and its standard deviation (measurement.md, section 4.3)."""
+"""The slope of SO2 over CO2, for noise in both, and its standard deviation."""
 
 import math
 from dataclasses import dataclass

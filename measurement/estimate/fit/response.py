@@ -24,7 +24,7 @@ def equalised(signal: Array, step: float, own: Poles, common: Poles) -> Array:
     """Return a signal as a channel with the common poles had read it.
 
     Each pole's filter is (1 + tau s)/(1 + T s), that is tau/T c + (1 - tau/T) lag_T(c), exact for a signal that is linear between
-    samples (measurement.md, section 4.3). It is at rest at the first sample; what that leaves out is in ``transients``.
+    samples. It is at rest at the first sample; what that leaves out is in ``transients``.
 
     Parameters
     ----------

@@ -3,11 +3,15 @@
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from measurement.estimate.flight_log.analysis import Analysis
 from measurement.estimate.result import FscEstimate
 from measurement.estimate.verdict import OPEN
 from measurement.estimate.words import content_words, needed, verdict_words
-from measurement.gases import FUEL_SULPHUR_MOST
+from measurement.gases import FUEL_SULPHUR_MOST, GASES
+from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import SnifferSpec
 
 ERRORS = {
     "calibration": "calibration of SO2 and CO2",
@@ -37,6 +41,15 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
         chance = verdict.probability_above
         words = verdict_words(verdict.verdict, verdict.limit_percent, chance, found.quality)
         yield f"{words}; {needed(chance)}" if verdict.verdict == OPEN and found.quality != "C" else words
+
+
+def unused(readings: Readings, instrument: SnifferSpec) -> Iterator[str]:
+    """Yield a line per gas that a flight has readings of, SO2 responds to, and the instrument has no channel for."""
+    so2 = instrument.known("so2")
+    for i, gas in enumerate(GASES):
+        known = instrument.channel(gas) or not np.isfinite(readings.values[:, i]).any()
+        if not known and (so2.cross.get(gas) or so2.cross_sd.get(gas)):
+            yield f"{gas.upper()} is not used to correct SO2: '{instrument.name}' has no channel for it; add a table channels.{gas}"
 
 
 def result(found: FscEstimate) -> str:

@@ -33,6 +33,6 @@ class PatrolConfig(Section):
     service_deviation_s: NonNegative = 40.0
     """Its standard deviation from ship to ship [s]."""
     oracle_share_min: Annotated[float, Field(ge=0.0, le=1.0)] = 0.8
-    """Criterion: verdicts of all patrols over those of an oracle that knows everything, at least [-]."""
+    """Criterion: correct verdicts of all patrols over those of an oracle that knows everything, at least [-]."""
     wrong_share_max: Annotated[float, Field(ge=0.0, le=1.0)] = 0.05
     """Criterion: wrong ones among all verdicts, at most [-]."""
