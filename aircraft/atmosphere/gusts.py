@@ -57,6 +57,10 @@ class Gust:
         return self.start + self.rise + self.hold + self.fall
 
 
+STEPS_BETWEEN = 2.0
+"""Time steps that JSBSim's only cosine gust needs from the end of one gust to the next [-]."""
+
+
 def in_order(gusts: Sequence[Gust], time_step: float) -> list[Gust]:
     """Return gusts as they follow each other.
 
@@ -67,7 +71,7 @@ def in_order(gusts: Sequence[Gust], time_step: float) -> list[Gust]:
     """
     ordered = sorted(gusts, key=lambda gust: gust.start)
     for first, second in itertools.pairwise(ordered):
-        if second.start < first.end + 2.0 * time_step:
+        if second.start < first.end + STEPS_BETWEEN * time_step:
             raise AircraftError(
                 f"gusts: one starts at {second.start:g} s, before the one from {first.start:g} to {first.end:g} s is over;"
                 " let them follow each other"

@@ -11,7 +11,7 @@ from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
 from gnc.mission.egress import Egress
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import AxisParameters, Situation
-from gnc.reference.mean_motion import mean_motion
+from gnc.reference.mean_motion import mean_motion, motion_course
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
 from gnc.reference.reference import Swing
 from gnc.reference.steered import SteeredReference
@@ -219,7 +219,7 @@ class PlumeFollowing:
         reference = SteeredReference(
             north=target.north - own.drift_north + centre.x,
             east=target.east - own.drift_east + centre.y,
-            mean_course=math.atan2(centre.velocity_east, centre.velocity_north),
+            mean_course=motion_course(centre),
             speed_ratio=min(centre.speed_ratio, p.speed_ratio_max),
             phase=0.0,
             speed=self._speed,

@@ -31,6 +31,13 @@ _SPEED_RATIO_MIN = 0.1
 """Speed ratio that a mean motion has at least where it is turned [-]: a smaller one would be turned to any course by a drift."""
 
 
+def motion_course(centre: MovingCentre) -> float:
+    """Return the course of a centre of oscillation [rad]; of one at rest that against the plume, across which its orbit lies."""
+    if centre.velocity_north == centre.velocity_east == 0.0:
+        return math.atan2(-math.sin(centre.axis), -math.cos(centre.axis))
+    return math.atan2(centre.velocity_east, centre.velocity_north)
+
+
 def mean_motion(
     centre: MovingCentre, off_north: float, off_east: float, speed: float, heading_rate_max: float
 ) -> tuple[float, float]:

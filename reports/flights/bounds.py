@@ -3,7 +3,7 @@
 import pandas as pd
 
 from common.intervals import CONFIDENCE, TELLING, upper_bound
-from reports.run.columns import count, kept_out, measured
+from reports.run.columns import completed, count, kept_out, measured
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
@@ -31,7 +31,9 @@ def sampled(trials: list[Trial]) -> bool:
 
 
 def _bound(rows: pd.DataFrame) -> tuple[float, float] | None:
-    return _telling(upper_bound(count(~kept_out(rows)), len(rows)), CONFIDENCE) if len(measured(rows)) else None
+    # A flight about a point, without a vessel, has nothing to keep out of.
+    beside = rows[~completed(rows) | rows["min_distance_m"].notna()]
+    return _telling(upper_bound(count(~kept_out(beside)), len(beside)), CONFIDENCE) if len(measured(rows)) else None
 
 
 def _telling(bound: float, confidence: float) -> tuple[float, float] | None:

@@ -134,9 +134,9 @@ class FlightCounts:
     def bound_line(self) -> str:
         """Return in how many flights the keep-out area was violated, with the bound on the probability of that.
 
-        It is one if flights are a random sample, and not those of a search.
+        It is one if flights are a random sample, and not those of a search. One that could not be flown counts as violated, too.
         """
-        flights = self.flown - self.without_area
+        flights = self.done - self.without_area
         upper = upper_bound(flights - self.kept_out, flights)
         return self.violation_line(self.violating, flights - self.kept_out - self.violating, flights, upper, CONFIDENCE)
 

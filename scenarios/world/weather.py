@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 
-from aircraft.atmosphere.gusts import Gust
+from aircraft.atmosphere.gusts import STEPS_BETWEEN, Gust
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
 from aircraft.atmosphere.wind import CALM, WindField, constant_wind, over_the_sea
+from aircraft.simulation.fdm import TIME_STEP
 from common.physics.wind import wind_velocity
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.world import WindConfig
@@ -15,6 +16,9 @@ from scenarios.world.place import Place
 from scenarios.world.wind_table import tabled_wind
 
 STILL_AIR = Weather(wind=CALM, turbulence=None, gusts=(), seed=0)
+
+_BETWEEN = (STEPS_BETWEEN + 1.0) * TIME_STEP
+"""Time from the end of one gust to the next, at least [s]."""
 
 
 def wind_ned(wind: WindConfig) -> tuple[float, float]:
@@ -41,11 +45,12 @@ def sampled_weather(scenario: Scenario, wind: WindField, generator: np.random.Ge
     """Return the air that the flight goes through, with some mean wind."""
     turbulence = scenario.turbulence
     rise = turbulence.gust_length_s
-    gusts = []
+    gusts: list[Gust] = []
     for i in range(turbulence.gusts):
-        # One gust in each equal part of the flight, so that none meets another.
+        # One gust in each equal part of the flight, and after the one before it: JSBSim takes one at a time.
         part = scenario.flight.duration_max_s / turbulence.gusts
         start = i * part + float(generator.uniform(0.0, max(0.0, part - 2.0 * rise)))
+        start = max(start, gusts[-1].end + _BETWEEN) if gusts else start
         towards = float(generator.uniform(-math.pi, math.pi))
         speed = float(generator.uniform(0.5, 1.0)) * turbulence.gust_speed_mps
         velocity = (speed * math.cos(towards), speed * math.sin(towards), 0.0)

@@ -1,5 +1,6 @@
 """The wind of one place from netCDF, such as ERA5 of the Copernicus Climate Data Store, read by xarray."""
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,9 @@ _PAIRS = ((10.0, "u10", "v10"), (100.0, "u100", "v100"))
 _TIMES = ("valid_time", "time")
 
 _PLACES = ("latitude", "longitude")
+
+_CLOSED = 1e-3
+"""What a grid that goes round the earth may lack to 360 deg after its last step [deg]: its longitudes may be single precision."""
 
 
 def read_netcdf(path: Path, latitude_deg: float, longitude_deg: float) -> tuple[tuple[float, ...], tuple[float, ...], Array]:
@@ -74,9 +78,7 @@ def _wind_at(
 
 def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) -> Any:
     """Return the data of one place, by bilinear interpolation."""
-    east = data["longitude"].values
-    # ERA5 counts longitudes from 0 to 360, others from -180 to 180.
-    longitude_deg = longitude_deg % 360.0 if east.max() > 180.0 else longitude_deg
+    data, longitude_deg = _round_the_earth(data, longitude_deg)
     for name, value in zip(_PLACES, (latitude_deg, longitude_deg), strict=True):
         low, high = float(data[name].min()), float(data[name].max())
         if not low <= value <= high:
@@ -87,3 +89,17 @@ def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) 
         data = data.sel({name: low}) if low == high else data.sortby(name)
     left = [name for name in _PLACES if name in data.dims]
     return data.interp({name: value for name, value in zip(_PLACES, (latitude_deg, longitude_deg), strict=True) if name in left})
+
+
+def _round_the_earth(data: Any, longitude_deg: float) -> tuple[Any, float]:
+    """Return the data, and a longitude as its grid counts it, such as from 0 to 360; a grid that goes round the earth is closed."""
+    east = np.sort(data["longitude"].values.astype(np.float64))
+    if east[0] <= longitude_deg <= east[-1]:
+        return data, longitude_deg
+    wrapped = float(east[0] + (longitude_deg - east[0]) % 360.0)
+    if wrapped <= east[-1]:
+        return data, wrapped
+    if len(east) < 2 or not math.isclose(2.0 * east[-1] - east[-2], east[0] + 360.0, abs_tol=_CLOSED):
+        return data, longitude_deg
+    columns = [*range(len(east)), 0]
+    return data.sortby("longitude").isel(longitude=columns).assign_coords(longitude=[*east, east[0] + 360.0]), wrapped

@@ -100,6 +100,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
             f" {remedy}"
         )
     columns = np.array(kept).T
+    directed = np.isfinite(columns[5]) & (columns[5] < 360.0)
     reports = AisReports(
         path=path,
         mmsi=identity,
@@ -107,8 +108,9 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         time=columns[1],
         latitude=np.radians(columns[2]),
         longitude=np.radians(columns[3]),
-        speed=METRES_PER_SECOND_PER_KNOT * columns[4],
-        course=np.radians(np.where(np.isfinite(columns[5]) & (columns[5] < 360.0), columns[5], 0.0)),
+        # A speed without a course is next to none, and has no direction.
+        speed=METRES_PER_SECOND_PER_KNOT * np.where(directed, columns[4], 0.0),
+        course=np.radians(np.where(directed, columns[5], 0.0)),
         rows=len(rows),
         dropped=dict(dropped),
     )

@@ -24,7 +24,7 @@ _AROUND = 600.0
 """Reports of this time before a flight and after it have a part in its smooth track [s]."""
 
 _HEARD_BEFORE = 60.0
-"""Reports of this time before a flight are known at its start [s]."""
+"""Reports of this time before a flight are known at its start [s], the last one before it in any case."""
 
 _AT_REST = 0.3
 """Speed below which a vessel keeps the course that it had [m/s]."""
@@ -56,7 +56,7 @@ class AisVessel(TabledVessel):
 
     def __init__(self, reports: AisReports, *, altitude: float, start: float, duration: float, margin: float) -> None:
         self.source = reports
-        near = (reports.time >= start - _AROUND) & (reports.time <= start + duration + _AROUND)
+        near = _around(reports.time, start, start + duration)
         since = reports.time[near] - start
         latitude, longitude = reports.latitude[near], reports.longitude[near]
         speed, course = reports.speed[near], reports.course[near]
@@ -65,10 +65,11 @@ class AisVessel(TabledVessel):
         latitude_there, longitude_there = first.to_geodetic(origin[0], origin[1])
         self.place = Place(latitude=float(latitude_there), longitude=float(longitude_there), altitude=altitude, utc=start)
         place, velocity = _in_frame(self.place.frame, latitude, longitude, speed, course)
+        heard = min(-_HEARD_BEFORE, float(since[since <= 0.0][-1]))
         self.reports = [
             VesselReport(float(t), float(p[0]), float(p[1]), float(v[0]), float(v[1]))
             for t, p, v in zip(since, place, velocity, strict=True)
-            if -_HEARD_BEFORE <= t <= duration
+            if heard <= t <= duration
         ]
         smooth = smooth_motion(since, place, velocity).derivative()(np.minimum(track_times(duration + margin), duration))
         super().__init__(smooth, _course_of(smooth), _manoeuvres_end(smooth))
@@ -129,9 +130,18 @@ def _read(path: Path, _stamp: tuple[int, int], mmsi: int | None) -> AisReports:
 
 
 def usual_intervals(vessel: AisVessel) -> tuple[float, float]:
-    """Return the shortest time between reports, and the longest but for one in twenty [s]."""
-    gaps = np.diff([report.time for report in vessel.reports])
+    """Return the shortest time between reports, and the longest but for one in twenty [s]: of the file where a flight has one."""
+    times = [report.time for report in vessel.reports]
+    gaps = np.diff(times if len(times) > 1 else vessel.source.time)
     return float(gaps.min()), float(np.quantile(gaps, 0.95))
+
+
+def _around(time: Array, begin: float, end: float) -> slice:
+    """Return which reports have a part in the track of a flight between two times [s]: the last before it and the first after it,
+    however long a gap they bound."""
+    first = min(np.searchsorted(time, begin - _AROUND), np.searchsorted(time, begin, "right") - 1)
+    last = max(np.searchsorted(time, end + _AROUND, "right"), np.searchsorted(time, end) + 1)
+    return slice(int(first), int(last))
 
 
 def _in_frame(frame: LocalFrame, latitude: Array, longitude: Array, speed: Array, course: Array) -> tuple[Array, Array]:

@@ -104,8 +104,10 @@ def test_a_place_that_is_out_of_reach_is_dropped_at_the_ends_as_well(read, at):
 
 
 def test_a_vessel_at_rest_needs_no_course(read):
-    found = read(table(*(f"2026-06-01T10:00:{s:02d}Z,1,57.0,11.3,0.1,360.0" for s in (0, 30))))
+    found = read(table(*(f"2026-06-01T10:00:{s:02d}Z,1,57.0,11.3,0.4,360.0" for s in (0, 30))))
     assert (len(found.time), found.dropped) == (2, {})
+    # With no course there is no direction of its 0.4 kn.
+    assert found.speed.tolist() == [0.0, 0.0]
 
 
 @pytest.mark.parametrize(

@@ -134,3 +134,31 @@ def test_smoothing_is_the_least_squares_solution_of_its_model():
     # Conditioned by gaps of up to 90 s: 1e-8 of the places.
     np.testing.assert_allclose(smooth(time), states[::3], rtol=0.0, atol=1e-4)
     np.testing.assert_allclose(smooth.derivative()(time), states[1::3], rtol=0.0, atol=1e-5)
+
+
+def thinned(path, rows, **changes):
+    """Return the settings of a vessel of which some rows of a made file are known."""
+    lines = (CATALOG / "ais" / "made_marine_cadastre.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    path.write_text("".join([lines[0], *(lines[1 + row] for row in rows)]), encoding="utf-8")
+    return VesselConfig(track=str(path), **changes)
+
+
+def test_the_last_report_before_a_flight_is_known_at_its_start_however_old_it_is(tmp_path):
+    config = thinned(tmp_path / "thin.csv", range(0, 60, 2))
+    # Reports each 119 s; the flight begins 70 s after one.
+    ship = ais_vessel(config, altitude=60.0, utc=datetime(2026, 6, 1, 10, 1, 10, tzinfo=UTC), duration=300.0, margin=5.0)
+    assert [round(report.time) for report in ship.reports] == [-70, 49, 168, 289]
+    # Where a flight has a single report, those of the file say how often they come.
+    short = ais_vessel(config, altitude=60.0, utc=datetime(2026, 6, 1, 10, 2, 30, tzinfo=UTC), duration=80.0, margin=5.0)
+    assert len(short.reports) == 1
+    assert usual_intervals(short) == pytest.approx((119.0, 120.0), abs=1.1)
+
+
+def test_a_long_gap_that_is_allowed_is_bridged_between_the_reports_at_both_of_its_ends(tmp_path):
+    # Reports up to 10:03:58, and from 10:25:59 on. A polynomial that goes on beyond the former is 56 km off at the end.
+    config = thinned(tmp_path / "gap.csv", [0, 2, 4, 26], gap_max_s=1500.0)
+    begin = {"altitude": 60.0, "utc": datetime(2026, 6, 1, 10, 0, 30, tzinfo=UTC), "margin": 5.0}
+    end = ais_vessel(config, duration=900.0, **begin).motion(900.0)
+    true = vessel("made_marine_cadastre.csv", utc=begin["utc"], duration=900.0).motion(900.0)
+    assert math.dist(end[:2], true[:2]) < 600.0
+    assert math.hypot(*end[2:]) == pytest.approx(math.hypot(*true[2:]), abs=0.5)

@@ -151,3 +151,11 @@ def test_a_vessel_at_rest_in_wind_can_be_flown_and_one_without_any_where_the_plu
     )  # fmt: skip
     # A minute is too short to have settled, and long enough to fly.
     assert (result.row["outcome"], result.row["keepout_violations"]) == ("not_settled", 0), result.row["message"]
+
+
+def test_a_given_plume_of_a_vessel_at_rest_is_crossed_where_it_is():
+    # With a reference that began on a course to the north its orbit stayed 107 m beside the plume.
+    given = {"direction": "given", "heading_deg": 180.0}
+    result = fly(vessel={"speed_mps": 0.0, "course_deg": 200.0}, plume=given, start=ASTERN, flight={"crossings": 6})
+    assert (result.row["outcome"], result.row["keepout_violations"]) == ("completed", 0), result.row["message"]
+    assert result.row["crossing_count"] == 6

@@ -78,6 +78,9 @@ def test_the_bound_counts_flights_that_are_not_known_to_their_end_as_violations_
         "keep-out violations: in 1 of 99 flights (49.5 h simulated), unknown in 1, which counts as violated; at most 6.22 % of"
         " flights sampled as these were, at 95 % confidence"
     )
+    # One that could not be flown is as little known: 3 of 100 are at most 7.57 %.
+    line = FlightCounts.of([*rows, row(100, "infeasible", met=False)], planned=101).bound_line()
+    assert "in 1 of 100 flights (49.5 h simulated), unknown in 2, which count as violated; at most 7.57 % of" in line
 
 
 @pytest.mark.parametrize(("unflown", "lines"), [({}, 0), ({"manoeuvres_unflown": 0}, 0), ({"manoeuvres_unflown": 2}, 1)])

@@ -5,6 +5,8 @@ import pytest
 from flight_cases import scenario
 from pydantic import ValidationError
 
+from aircraft.atmosphere.gusts import in_order
+from aircraft.simulation.fdm import TIME_STEP
 from scenarios.schema.sections.world import WindConfig
 from scenarios.world.place import given_place
 from scenarios.world.weather import sampled_weather, wind_ned, wind_of
@@ -54,3 +56,11 @@ def test_the_seed_determines_the_air():
     assert sampled(blown) == sampled(blown)
     assert sampled(blown, 10) != sampled(blown)
     assert sampled(blown).wind.now(100.0, 60.0) == wind_ned(blown.wind)
+
+
+def test_many_gusts_leave_each_other_the_time_that_jsbsim_needs():
+    # 100 gusts of 2.6 s in 300 s: sampled alone, two of them met in 83 of 1000 flights.
+    turbulence = {"gusts": 100, "gust_speed_mps": 1.0, "gust_length_s": 1.3}
+    given = scenario(fidelity="six_dof", turbulence=turbulence, flight={"duration_max_s": 300.0})
+    for seed in range(100):
+        assert len(in_order(sampled(given, seed).gusts, TIME_STEP)) == 100

@@ -12,6 +12,7 @@ from scenarios.schema.load import load_study
 from scenarios.schema.sections.world import WindConfig
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.world.place import Place
+from scenarios.world.wind_netcdf import read_netcdf
 from scenarios.world.wind_table import first_time, tabled_wind
 from scenarios.world.world import mean_wind, place_of, vessel_of
 
@@ -160,3 +161,38 @@ def test_netcdf_of_era5_is_interpolated_at_the_place(tmp_path):
     data[["u10"]].to_netcdf(tmp_path / "half.nc", engine="h5netcdf")
     with pytest.raises(InputError, match="needed are a time and u10 with v10"):
         wind(str(tmp_path / "half.nc"))
+
+
+def with_longitudes(path, longitudes, at):
+    """Write an hour's wind on a grid: towards the east at one m/s per degree east of a longitude."""
+    xarray = pytest.importorskip("xarray", reason="xarray is an extra")
+    pytest.importorskip("h5netcdf", reason="h5netcdf is an extra")
+    east = np.broadcast_to((longitudes - at + 180.0) % 360.0 - 180.0, (1, 2, len(longitudes)))
+    dims, hours = ("valid_time", "latitude", "longitude"), np.array(["2026-06-01T10:00"], dtype="datetime64[ns]")
+    data = xarray.Dataset(
+        {"u10": (dims, east), "v10": (dims, np.ones_like(east))},
+        coords={"valid_time": hours, "latitude": np.array([57.0, 58.0]), "longitude": longitudes},
+    )
+    data.to_netcdf(path, engine="h5netcdf")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("longitudes", "at"),
+    [
+        (np.arange(0.0, 360.0, 0.25), -0.1),
+        (np.arange(-180.0, 180.0, 0.25), 179.9),
+        (np.arange(350.0, 370.1, 0.25), 5.0),
+        (np.arange(-190.0, -169.9, 0.25), 175.0),
+        (np.arange(170.0, 190.1, 0.25), -175.0),
+    ],
+)
+def test_netcdf_has_the_wind_of_a_longitude_however_its_grid_counts_it(longitudes, at, tmp_path):
+    found = read_netcdf(with_longitudes(tmp_path / "era5.nc", longitudes, at), 57.2, at)[2]
+    assert found[0] == pytest.approx(np.array([[1.0, 0.0]]), abs=1e-9)
+
+
+@pytest.mark.parametrize("longitudes", [np.array([11.0, 12.0]), np.arange(0.0, 350.0, 0.25)])
+def test_netcdf_without_a_longitude_is_refused_by_it(longitudes, tmp_path):
+    with pytest.raises(InputError, match=r"longitudes go from .* deg, and the flight begins at -5\.000"):
+        read_netcdf(with_longitudes(tmp_path / "era5.nc", longitudes, -5.0), 57.2, -5.0)
