@@ -121,7 +121,7 @@ def _blocks(run: RunData, measured: pd.DataFrame) -> list[Block]:
     if len(measured) < _FEW or statistics is None:
         return [flight_table(measured)]
     trajectories = trajectory_chart(run, measured)
-    designed: list[Block] = [] if trajectories is None else [Heading("Trajectories"), trajectories, best_table(measured)]
+    designed: list[Block] = [] if trajectories is None else [Heading("Trajectories"), trajectories, best_table(run, measured)]
     curve = operating_curve(statistics)
     return [
         Text(
