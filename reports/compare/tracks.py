@@ -15,6 +15,7 @@ from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.palette import Meaning
 from reports.document.ship_map import ship_panel, ship_words
 from reports.run.columns import Array, column
+from reports.run.flight_config import Config, flight_config
 from reports.run.surroundings import Surroundings, surroundings
 from reports.run.time_history import about_the_plume, keepout_distance, thinned, tracking_error
 
@@ -101,9 +102,8 @@ def _chart(pairs: Pairs, place: int, why: str) -> Chart | None:
 
 def _about(flight: "_Flight") -> Surroundings:
     """Return what was about a flight at its closest approach."""
-    trial = flight.run.trial_of(str(flight.row["flight_id"]))
-    distance = keepout_distance(flight.history, trial.source_height, trial.shape)
-    return surroundings(trial.config, flight.row, flight.history, int(np.nanargmin(distance)))
+    nearest = int(np.nanargmin(keepout_distance(flight.history, flight.config)))
+    return surroundings(flight.config, flight.row, flight.history, nearest)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,6 +114,11 @@ class _Flight:
     row: "pd.Series[Any]"
     history: pd.DataFrame
     colour: str
+
+    @property
+    def config(self) -> Config:
+        """Return the configuration of the flight itself."""
+        return flight_config(self.run.data, self.row)
 
     def curve(self, x: Array, y: Array) -> Line:
         return Line(x=x, y=y, label=self.run.title, colour=self.colour)
@@ -149,10 +154,7 @@ def _over_the_ground(flown: list[_Flight]) -> Panel:
 
 def _distances(flown: list[_Flight]) -> Panel:
     radius = max(float(flight.row["keepout_radius_m"]) for flight in flown)
-    distances = []
-    for flight in flown:
-        trial = flight.run.trial_of(str(flight.row["flight_id"]))
-        distances.append(keepout_distance(flight.history, trial.source_height, trial.shape))
+    distances = [keepout_distance(flight.history, flight.config) for flight in flown]
     nearest = min(float(np.nanmin(distance)) for distance in distances)
     late = max(float(np.nanmax(distance[len(distance) // 2 :])) for distance in distances)
     end = max(float(flight.history["time_s"].iloc[-1]) for flight in flown)

@@ -43,12 +43,14 @@ def ship_panel(
     return on_map(panel, north=-about.axis, wind=(speed, towards - about.axis), shown=shown, aspect=aspect)
 
 
-def ship_words(about: Surroundings) -> str:
-    """Return what a map about the ship shows, for a caption."""
-    hull = about.hull
-    width = " Its width is two standard deviations of the mean smoke to either side." if about.plume.smoke else ""
-    moved = " Ship, north and wind are as they were at the closest approach." if about.changing else ""
+def ship_words(*about: Surroundings) -> str:
+    """Return what maps about the ship show, one or several side by side, for a caption."""
+    shapes = " or ".join(dict.fromkeys(of.shape for of in about))
+    hulls = " or ".join(f"{hull.title}, {hull.length:g} m by {hull.beam:g} m" for hull in dict.fromkeys(of.hull for of in about))
+    smoke, changing = any(of.plume.smoke for of in about), any(of.changing for of in about)
+    width = " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
+    moved = " Ship, north and wind are as they were at the closest approach." if changing else ""
     return (
-        f"Seen from the ship, with the axis of her plume up the page.{width} The keep-out {about.shape} is about her funnel; her"
-        f" hull is that of {hull.title}, {hull.length:g} m by {hull.beam:g} m, as the scenario gives none.{moved}"
+        f"Seen from the ship, with the axis of her plume up the page.{width} The keep-out {shapes} is about her funnel; her"
+        f" hull is that of {hulls}, as the scenario gives none.{moved}"
     )

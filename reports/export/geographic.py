@@ -12,6 +12,7 @@ from common.physics.geodesy import LocalFrame
 from common.times import utc_text
 from reports.errors import ReportError
 from reports.run.columns import Array, column
+from reports.run.flight_config import flight_config, source_height
 from reports.run.run_data import RunData
 
 PLUME_LENGTH = 1000.0
@@ -159,7 +160,7 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
     uav = _body(frame, north, east, altitude, of("velocity_north_mps"), of("velocity_east_mps"))
     turned = np.degrees(frame.true_north(np.radians(uav.latitude), np.radians(uav.longitude)))
     heading = column(history, "heading_rad") if "heading_rad" in history else of("course_rad")
-    source_height = _source_height(run, row, float(commanded[0]))
+    funnel = _source_height(run, row, float(commanded[0]))
     radius, axis = known("keepout_radius_m", math.nan), of("plume_axis_rad", math.nan)
     vessel = plume_end = None
     if math.isfinite(radius):
@@ -169,7 +170,7 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
         if np.isfinite(axis).all():
             up = math.radians(known("plume_elevation_deg", 0.0))
             level = PLUME_LENGTH * math.cos(up)
-            end_altitude = np.full(len(history), source_height + PLUME_LENGTH * math.sin(up))
+            end_altitude = np.full(len(history), funnel + PLUME_LENGTH * math.sin(up))
             plume_end = _body(frame, v_north + level * np.cos(axis), v_east + level * np.sin(axis), end_altitude, *moving)
     return GeographicFlight(
         flight_id=flight_id,
@@ -185,7 +186,7 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
         throttle=of("throttle"),
         vessel=vessel,
         plume_end=plume_end,
-        source_height=source_height,
+        source_height=funnel,
         keepout_radius=radius,
         crossings=run.crossings_of(flight_id),
     )
@@ -212,9 +213,6 @@ def _start(text: object) -> float:
 
 
 def _source_height(run: RunData, row: dict[str, object], default: float) -> float:
-    """Return the height of the funnel that the flight's trial was configured with [m]."""
-    trials = run.manifest.get("trials")
-    config = trials.get(row.get("trial")) if isinstance(trials, dict) else None
-    plume = config.get("plume") if isinstance(config, dict) else None
-    height = plume.get("source_height_m") if isinstance(plume, dict) else None
-    return float(height) if isinstance(height, int | float) else default
+    """Return the height of the funnel that the flight was configured with [m]."""
+    config = flight_config(run, row)
+    return source_height(config) if "plume" in config else default

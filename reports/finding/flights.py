@@ -14,7 +14,7 @@ from reports.finding.search_view import SearchView, search_view
 from reports.finding.tables import height_table, search_table
 from reports.finding.trial_charts import finding_charts
 from reports.finding.variants import variants_of
-from reports.run.columns import column
+from reports.run.columns import column, recorded_at
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
@@ -78,14 +78,14 @@ def _charts(view: SearchView, name: str) -> list[Block]:
 
 def _picked(run: RunData, rows: pd.DataFrame) -> list[tuple["pd.Series[Any]", str]]:
     """Return the flights to be shown, of those with a time history, and why each is: none twice."""
-    kept = rows[[run.has_history(str(flight_id)) for flight_id in rows["flight_id"]]]
-    errors = np.abs(column(kept, _LATE))
-    judged = kept[np.isfinite(errors)]
-    if not len(judged):
+    kept, judged = rows[run.with_history(rows)], rows[np.isfinite(column(rows, _LATE))]
+    errors, recorded = np.abs(column(judged, _LATE)), run.with_history(judged)
+    if not recorded.any():
         return [(kept.iloc[0], "the first with a time history")] if len(kept) else []
-    order = np.argsort(errors[np.isfinite(errors)], kind="stable")
-    typical, worst = int(order[(len(order) - 1) // 2]), int(order[-1])
-    picked = [(judged.iloc[typical], "the median error of the height after 3 minutes")]
+    # The median of all flights: among those with a time history is every one that failed.
+    typical, median = recorded_at(errors, recorded, (len(errors) - 1) // 2)
+    worst = int(np.argmax(np.where(recorded, errors, -1.0)))
+    picked = [(judged.iloc[typical], f"{'' if median else 'nearest to '}the median error of the height after 3 minutes")]
     return picked + ([(judged.iloc[worst], "the largest error of the height after 3 minutes")] if worst != typical else [])
 
 

@@ -1,7 +1,6 @@
 """One flight that searched for its plume: what was believed, and what was so, in the plume's cross-section."""
 
 import math
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from measurement.plume.passes import passes
 from measurement.sniffer.presets import sensor_preset
 from reports.document.chart import Band
 from reports.run.columns import Array, column
+from reports.run.flight_config import flight_config
 from reports.run.run_data import RunData
 from reports.run.surroundings import Surroundings, surroundings
 from reports.run.time_history import about_the_plume
@@ -40,7 +40,7 @@ class SearchView:
 
     def __init__(self, run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> None:
         self._run, self._row = run, row
-        self._config: Mapping[str, Any] = run.manifest["trials"][row["trial"]]
+        self._config = flight_config(run, row)
         self.history = history.iloc[int(np.argmax(np.isfinite(column(history, ESTIMATED)))) :]
         self.time = column(self.history, "time_s")
         across = column(self.history, "plume_across_m")

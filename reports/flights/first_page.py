@@ -10,7 +10,7 @@ from reports.document.chart import Chart
 from reports.document.tables import vehicle_flown
 from reports.flights.names import flight_name
 from reports.flights.tracks import track_picture
-from reports.run.columns import Array, clearance, column, total
+from reports.run.columns import Array, Mask, clearance, column, recorded_at, total
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
@@ -48,30 +48,38 @@ def _range(values: Array) -> str:
 
 
 def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
-    """Return the tracks of the flight that came closest and of the one with the median closest approach, if any has a record."""
-    flights = []
-    for trial in trials:
-        flown = trial.flown
-        recorded = flown[[trial.run.has_history(str(flight_id)) for flight_id in flown["flight_id"]]]
-        flights += [(float(distance), trial, recorded, i) for i, distance in enumerate(clearance(recorded))]
-    if not flights:
+    """Return the tracks of the flight that came closest and of the one with the median closest approach, if any has a record.
+
+    The median is that of all flights that were flown: of those with a record, among which is every flight that failed, it would be
+    another. Where the flight at the median has none, the one nearest to it takes its place.
+    """
+    flown = [(trial, trial.flown) for trial in trials]
+    recorded = np.concatenate([trial.run.with_history(rows) for trial, rows in flown])
+    if not recorded.any():
         return None
-    flights.sort(key=lambda flight: flight[0])
-    places = {"Closest": 0, "Typical": len(flights) // 2} if len(flights) > 1 else {"": 0}
-    several = len(trials) > 1
+    distances = np.concatenate([clearance(rows) for _, rows in flown])
+    closest = int(np.argmin(np.where(recorded, distances, np.inf)))
+    typical, median = recorded_at(distances, recorded, len(distances) // 2)
+    flights = [(trial, rows, i) for trial, rows in flown for i in range(len(rows))]
     shown, names = [], {}
-    for what, place in places.items():
-        _, trial, rows, i = flights[place]
+    for what, place in {"Closest": closest, **({"Typical": typical} if typical != closest else {})}.items():
+        trial, rows, i = flights[place]
         row = rows.iloc[i]
-        names[what] = f"{f'{trial.title}, ' * several}{flight_name(trial, row)}"
+        names[what] = f"{f'{trial.title}, ' * (len(trials) > 1)}{flight_name(trial, row)}"
         shown.append((trial, row, f"{float(row['min_distance_m']):.1f} m"))
-    # Longer names would touch above the panels.
-    long = any(len(name) > _NAME_MAX for name in names.values())
+    # Longer names would touch above the panels; a flight that is alone has none there.
+    long = len(shown) == 1 or any(len(name) > _NAME_MAX for name in names.values())
     shown = [
         (trial, row, f"{what}: {distance}" if long else f"{what}: {name}, {distance}")
         for (trial, row, distance), (what, name) in zip(shown, names.items(), strict=True)
     ]
-    of = "" if len(flights) == sum(len(trial.flown) for trial in trials) else " of those with a time history"
-    told = f" Closest: the flight with the closest approach{of}. Typical: the one whose closest approach is the median."
+    told = _told(recorded, median=median, several=len(shown) > 1)
     told += "".join(f" {what}: {name}." for what, name in names.items()) if long else ""
-    return track_picture(shown, told=told * (len(shown) > 1))
+    return track_picture(shown, told=told * (len(flights) > 1))
+
+
+def _told(recorded: Mask, *, median: bool, several: bool) -> str:
+    """Return which flights are shown, given which have a time history, and whether the typical one is at the median."""
+    of = "" if recorded.all() else " of those with a time history"
+    near = "the one whose closest approach is the median" if median else "of these the one nearest to the median of all flights"
+    return f" Closest: the flight with the closest approach{of}.{f' Typical: {near}.' * several}"

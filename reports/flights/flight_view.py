@@ -42,6 +42,7 @@ class FlightView:
     Attributes
     ----------
     trial, row : whose flight, and its figures
+    config : of the flight itself
     whole, samples : its time history, and those of its samples that are shown
     vessel : whether there is a ship
     distance : what the keep-out area is about, of the shown samples [m]
@@ -51,6 +52,7 @@ class FlightView:
 
     def __init__(self, trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame) -> None:
         self.trial, self.row, self.whole = trial, row, history
+        self.config = trial.flight_config(row)
         distance = self.distance_of(history)
         self.vessel = bool(np.isfinite(distance).any())
         nearest = int(np.nanargmin(distance)) if self.vessel else 0
@@ -71,7 +73,7 @@ class FlightView:
 
     def distance_of(self, samples: pd.DataFrame) -> Array:
         """Return the distance that the keep-out area is about [m]."""
-        return keepout_distance(samples, self.trial.source_height, self.trial.shape)
+        return keepout_distance(samples, self.config)
 
     def at_times(self, times: Array) -> pd.DataFrame:
         """Return where everything was at some times [s], between samples."""

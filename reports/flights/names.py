@@ -4,7 +4,7 @@ import json
 import math
 import re
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
 from numbers import Number
 from typing import Any
 
@@ -18,6 +18,9 @@ from reports.run.trials import Trial
 _SAME_RATIO = 0.005
 """Within which two speed ratios are written the same [-]."""
 
+_DIGITS_MAX = 17
+"""Digits that tell any two numbers apart."""
+
 _BARE = ("none", "yes", "no", "not set")
 """Values that say nothing without the name of their key."""
 
@@ -27,7 +30,7 @@ def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
     flight_id = str(row["flight_id"])
     counted = re.search(r"_(\d+)$", flight_id)
     if trial.swept:
-        first, *others = (_swept(key, value) for key, value in _values(trial, row).items())
+        first, *others = (_swept(key, value, _numbers(trial, key)) for key, value in _values(trial, row).items())
         words = [first, *(words[0].lower() + words[1:] for words in others)]
         # Of several flights at the same values each has its number.
         return ", ".join([*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])])
@@ -47,7 +50,7 @@ def swept_column(trial: Trial) -> tuple[str, Callable[["pd.Series[Any]"], str]]:
     if len(trial.swept) > 1 or _repeated(trial):
         return "Flight", partial(flight_name, trial)
     (key,) = trial.swept
-    return "ν" if key == "nu" else input_name(key), lambda row: _value(key, _values(trial, row)[key])
+    return "ν" if key == "nu" else input_name(key), lambda row: _value(key, _values(trial, row)[key], _numbers(trial, key))
 
 
 def swept_words(trial: Trial) -> dict[str, list[str]]:
@@ -87,22 +90,36 @@ def _ratio(trial: Trial, row: "pd.Series[Any]") -> float:
     return nearest if abs(nearest - over_ground) < _SAME_RATIO else float(row["nu"])
 
 
-def _swept(key: str, value: Any) -> str:
+def _swept(key: str, value: Any, among: tuple[float, ...] = ()) -> str:
+    """Return what the value of a key is called, told apart from others of the sweep."""
+    words = _value(key, value, among)
     if key == "nu":
-        return f"ν = {_value(key, value)}"
+        return f"ν = {words}"
     # Of words some say nothing by themselves.
-    return f"{input_name(key)} {_value(key, value)}" if _is_number(value) or _value(key, value) in _BARE else _value(key, value)
+    return f"{input_name(key)} {words}" if _is_number(value) or words in _BARE else words
 
 
-def _value(key: str, value: Any) -> str:
+def _value(key: str, value: Any, among: tuple[float, ...] = ()) -> str:
     if key == "nu":
-        return f"{value:.2f}"
+        return f"{value:.{_digits(among, 'f', 2)}f}"
     unit = input_unit(key)
     return (
-        f"{value:.4g}{'' if unit == '-' else f' {unit}'}"
+        f"{value:.{_digits(among, 'g', 4)}g}{'' if unit == '-' else f' {unit}'}"
         if _is_number(value)
         else parameter_value(value.item() if isinstance(value, np.generic) else value, key)
     )
+
+
+def _numbers(trial: Trial, key: str) -> tuple[float, ...]:
+    """Return the numbers that a key is swept over."""
+    return tuple(dict.fromkeys(float(value) for value in trial.swept[key] if _is_number(value)))
+
+
+@lru_cache
+def _digits(values: tuple[float, ...], kind: str, least: int) -> int:
+    """Return how many digits tell numbers apart, ``least`` of them at least: after the point ("f"), or significant ones ("g")."""
+    counts = range(least, _DIGITS_MAX)
+    return next((n for n in counts if len({f"{value:.{n}{kind}}" for value in values}) == len(values)), _DIGITS_MAX)
 
 
 def _is_number(value: Any) -> bool:

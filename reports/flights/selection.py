@@ -13,7 +13,7 @@ from reports.flights.flight_view import flight_view
 from reports.flights.names import flight_name, flown_elsewhere
 from reports.flights.single_flight import flight_charts
 from reports.replay.flight_scene import flight_scene
-from reports.run.columns import clearance, column, met, violated
+from reports.run.columns import clearance, column, met, recorded_at, violated
 from reports.run.trials import Trial
 
 PICKED_MAX = 12
@@ -23,6 +23,8 @@ SWEPT_MAX = 24
 """Flights of a sweep that are all shown one by one; of longer ones some are."""
 
 _VIOLATION, _FAILED = "deepest keep-out violation", "did not meet every criterion"
+
+_MEDIAN = "median of closest approaches"
 
 
 def flight_section(trials: list[Trial]) -> Section:
@@ -39,8 +41,8 @@ def flight_section(trials: list[Trial]) -> Section:
     else:
         flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked]
         text = (
-            "Of each trial the flights with the deepest keep-out violation and with a criterion that is not met, if there are such,"
-            " the closest approach, and the one whose closest approach is the median."
+            "Of each trial the flights with the deepest keep-out violation and with a criterion that is not met, if there are such;"
+            " of those with a time history the closest approach, and the one nearest to the median of all closest approaches."
             if len(flights) > 1
             else "The only flight; page 1 shows its track."
         )
@@ -98,18 +100,18 @@ def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     rows, flown = trial.rows, trial.flown
     inside, failed = rows[violated(rows)], rows[~met(rows) & ~violated(rows)]
     # Of the others, those that have a time history: they are chosen for their figures.
-    recorded = flown[[trial.run.has_history(str(flight_id)) for flight_id in flown["flight_id"]]]
-    order = np.argsort(clearance(recorded), kind="stable")
+    recorded, distances = trial.run.with_history(flown), clearance(flown)
     chosen = []
     if len(inside):
         chosen.append((inside.iloc[int(np.argmax(column(inside, "keepout_depth_m")))], _VIOLATION))
     if len(failed):
         # One to look at, if there is any.
-        shown = failed[[trial.run.has_history(str(flight_id)) for flight_id in failed["flight_id"]]]
+        shown = failed[trial.run.with_history(failed)]
         chosen.append(((shown if len(shown) else failed).iloc[0], _FAILED))
-    if len(recorded):
-        chosen.append((recorded.iloc[int(order[0])], "closest approach"))
-        chosen.append((recorded.iloc[int(order[len(order) // 2])], "median of closest approaches"))
+    if recorded.any():
+        chosen.append((flown.iloc[int(np.argmin(np.where(recorded, distances, np.inf)))], "closest approach"))
+        typical, median = recorded_at(distances, recorded, len(distances) // 2)
+        chosen.append((flown.iloc[typical], _MEDIAN if median else f"nearest to the {_MEDIAN}"))
     seen = set()
     for row, why in chosen:
         if row["flight_id"] not in seen:

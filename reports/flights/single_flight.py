@@ -13,7 +13,9 @@ from reports.flights.flight_view import FlightView
 from reports.flights.names import flight_name
 from reports.flights.tracks import track_chart
 from reports.run.columns import NOTICEABLE, Array, column
+from reports.run.flight_config import keepout_shape, source_height
 from reports.run.time_history import tracking_error
+from reports.run.trials import measured_from
 
 _NEAR, _FAR, _USUAL = 0.95, 1.6, 1.2
 """Distances that the time history shows: nearest and farthest over r_min, and farthest over the median after settling [-]."""
@@ -91,7 +93,8 @@ class _Histories:
         if not self._view.vessel:
             return ""
         far = self._distance_range()[1]
-        return f" Distance is {self._view.trial.measured_from}, dashed r_min; of more than {far:.0f} m it is off the panel."
+        where = measured_from(keepout_shape(self._view.config))
+        return f" Distance is {where}, dashed r_min; of more than {far:.0f} m it is off the panel."
 
     def _distance_range(self) -> tuple[float, float]:
         """Return the least and the largest distance that are shown [m]: about r_min, and what the flight has on its orbit."""
@@ -138,7 +141,7 @@ class _Histories:
 
     def _altitude_panel(self) -> Panel:
         """Return the altitude, with that of the funnel and, over a rising plume, of the centre of oscillation."""
-        row, funnel = self._view.row, self._view.trial.source_height
+        row, funnel = self._view.row, source_height(self._view.config)
         levels = {"funnel": (funnel, Meaning.SHIP)}
         rise = float(row.get("r_co_m", 0.0)) * math.sin(math.radians(float(row.get("plume_elevation_deg", 0.0))))
         if rise > 0.0:

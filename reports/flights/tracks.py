@@ -72,9 +72,9 @@ def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: st
     if len(found) == 1:
         chart = found[0][0].chart(_LARGE)
         return replace(chart, name=_PICTURE, caption=chart.caption + told)
-    drawn = [tracks.picture(title) for tracks, title in found]
-    panels = [panel for panel, _ in drawn]
-    return Chart(name=_PICTURE, caption=drawn[0][1] + told, panels=panels, columns=len(panels), panel_height=0.42)
+    panels = [tracks.picture(title) for tracks, title in found]
+    words = _words([tracks.about for tracks, _ in found])
+    return Chart(name=_PICTURE, caption=words + told, panels=panels, columns=len(panels), panel_height=0.42)
 
 
 class _Tracks:
@@ -84,31 +84,29 @@ class _Tracks:
         self.view = view
         nearest = int(view.whole.index.get_indexer(view.closest.index)[0])
         # What stands still in a panel is as it was at the closest approach.
-        self._about = surroundings(view.trial.config, view.row, view.whole, nearest) if view.vessel else None
+        self.about = surroundings(view.config, view.row, view.whole, nearest) if view.vessel else None
         self._step = next((s for s in _STEPS if view.ends[1] / s <= _MARKS_MAX), _STEPS[-1])
 
     def chart(self, aspect: float = _BESIDE) -> Chart:
         """Return where it went; of two panels beside each other each has an aspect."""
-        about = self._about
+        about = self.about
         if about is None:
-            return Chart(name="tracks", caption="Over the ground.", panels=[in_kilometres(self.ground())], panel_height=0.42)
+            return Chart(name="tracks", caption=_words([about]), panels=[in_kilometres(self.ground())], panel_height=0.42)
         near, ground = self._near(about, aspect), self.ground() if self._way() is not None else None
         panels = [self._whole(about, "The whole flight", aspect if near else _WIDE), *([near] if near else [])]
         over = " Below, over the ground, with ship, keep-out area and plume as they were at the closest approach." if ground else ""
         return Chart(
             name="tracks",
-            caption=ship_words(about) + over,
+            caption=_words([about]) + over,
             panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
             columns=len(panels),
             panel_height=0.35,
             last_height=0.19 if ground else 0.0,
         )
 
-    def picture(self, title: str) -> tuple[Panel, str]:
-        """Return the whole flight in one panel, and what it shows in words."""
-        about = self._about
-        panel = self.ground(title) if about is None else self._whole(about, title, _UPRIGHT)
-        return in_kilometres(panel), "Over the ground." if about is None else ship_words(about)
+    def picture(self, title: str) -> Panel:
+        """Return the whole flight in one panel."""
+        return in_kilometres(self.ground(title) if self.about is None else self._whole(self.about, title, _UPRIGHT))
 
     def _whole(self, about: Surroundings, title: str, aspect: float) -> Panel:
         """Return the whole flight, seen from the ship with her plume up the page."""
@@ -144,7 +142,7 @@ class _Tracks:
 
     def ground(self, title: str = "") -> Panel:
         """Return the flight over the ground: along the way of a ship that goes far, else with north up the page."""
-        view, about, way = self.view, self._about, self._way()
+        view, about, way = self.view, self.about, self._way()
         up = way or 0.0
 
         def place(samples: pd.DataFrame, prefix: str = "") -> tuple[Array, Array]:
@@ -200,6 +198,12 @@ class _Tracks:
         length = max(wide, _FLAT * (high + 2.0 * self.view.radius))
         top = max(float(np.nanmax(line.y)) for line in drawn)
         return marks_in_a_row(x, y, words, top + _ABOVE * length / _FLAT, length)
+
+
+def _words(about: Sequence[Surroundings | None]) -> str:
+    """Return what the tracks of flights are seen from, for a caption, given what was about each."""
+    beside = [of for of in about if of is not None]
+    return ship_words(*beside) if beside else "Over the ground."
 
 
 def _reference_of(samples: pd.DataFrame) -> pd.DataFrame:

@@ -29,8 +29,9 @@ from reports.run.columns import (
     total,
     violated,
 )
+from reports.run.flight_config import keepout_shape
 from reports.run.run_data import RunData
-from reports.run.trials import Trial
+from reports.run.trials import SHAPES, Trial, measured_from
 
 _NAMED_MAX = 3
 """Flights of a trial that failed a criterion and that the verdict names one by one."""
@@ -142,15 +143,15 @@ def _closest(trials: list[Trial], flown: pd.DataFrame) -> str:
     """Return how close the closest flight came, and to what: the shape of the keep-out area decides what a distance is."""
     closest = flown.iloc[int(np.argmin(clearance(flown)))]
     (trial,) = [trial for trial in trials if trial.key == closest["trial"]]
-    name = told_name(trial, closest)
+    name, shape = told_name(trial, closest), keepout_shape(trial.flight_config(closest))
     where = f" ({name})" if trial.swept else f", in {name}"
     words = (
         "Closest approach of any flight, from its first second:"
         f" {_distance(float(closest['min_distance_m']), float(closest['keepout_radius_m']))}"
-        f" {trial.measured_from}{where}"
+        f" {measured_from(shape)}{where}"
     )
     beside = closest.get("horizontal_distance_min_m", math.nan)
-    if trial.shape == "sphere" and beside < float(closest["min_distance_m"]) - 1.0:
+    if shape == "sphere" and beside < float(closest["min_distance_m"]) - 1.0:
         words += f"; {float(beside):.1f} m horizontally from the funnel"
     return f"{words}."
 
@@ -236,7 +237,8 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
 
 
 def _closest_figure(trials: list[Trial], nearest: "pd.Series[Any] | None") -> Card:
-    name = f"Closest approach, {trials[0].measured_from}" if len({trial.shape for trial in trials}) == 1 else "Closest approach"
+    shapes = {trial.shape for trial in trials}
+    name = f"Closest approach, {trials[0].measured_from}" if len(shapes) == 1 and shapes <= set(SHAPES) else "Closest approach"
     if nearest is None:
         return Card(name, "none")
     distance, radius = float(nearest["min_distance_m"]), float(nearest["keepout_radius_m"])

@@ -10,6 +10,7 @@ from common.files import is_file
 from common.run_layout import ESTIMATE, SAMPLES
 from reports.errors import ReportError
 from reports.run.columns import Array, column
+from reports.run.flight_config import flight_configs
 from reports.run.run_data import RunData
 
 Record = dict[str, Any]
@@ -79,6 +80,16 @@ WORDS = {
 def share_read(found: Array, expected: Array) -> Array:
     """Return what was found over what a perfect instrument reads [-]; not a number for a fuel without sulphur."""
     return found / np.where(expected > 0.0, expected, np.nan)
+
+
+def measured_minutes(run: RunData, rows: pd.DataFrame) -> Array:
+    """Return for how long each flight's readings were evaluated [min]: its last ``flight.measured_s``, or since it had settled."""
+    duration = column(rows, "duration_s")
+    windows = [config.get("flight", {}).get("measured_s") for config in flight_configs(run, rows)]
+    window = np.array([np.nan if seconds is None else float(seconds) for seconds in windows])
+    measured = np.where(np.isnan(window), duration - column(rows, "settling_time_s"), np.fmin(window, duration))
+    minutes: Array = measured / 60.0
+    return minutes
 
 
 def thinned(samples: pd.DataFrame, most: int) -> pd.DataFrame:

@@ -7,7 +7,7 @@ from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
 from reports.document.panels import level
 from reports.document.ship_map import ship_panel, ship_words
-from reports.measurement.data import Record, share_read
+from reports.measurement.data import Record, measured_minutes, share_read
 from reports.run.columns import column
 from reports.run.run_data import RunData
 from reports.run.surroundings import Surroundings
@@ -96,10 +96,9 @@ def trajectory_chart(run: RunData, rows: pd.DataFrame) -> Chart | None:
     """Return the error of a minute over crossing interval and distance, where these were varied on purpose; otherwise None."""
     if not {"guidance.bank_deg", "keepout.radius_m"} & set(map(str, run.draws)):
         return None
-    minutes = (column(rows, "duration_s") - column(rows, "settling_time_s")) / 60.0
     interval, distance = "crossing_interval_mean_s", "crossing_distance_mean_m"
     kept = ["sensor", interval, distance, "fsc_expected_percent", *(f"{of}_percent" for of in _METHODS)]
-    noise = {of: column(rows, f"{of}_noise_percent") * np.sqrt(minutes) for of in _METHODS}
+    noise = {of: column(rows, f"{of}_noise_percent") * np.sqrt(measured_minutes(run, rows)) for of in _METHODS}
     rows = pd.concat([rows[kept], pd.DataFrame(noise, index=rows.index)], axis=1)
     minute = "1σ in a minute [% m/m]"
     panels = [

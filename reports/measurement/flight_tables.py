@@ -7,7 +7,8 @@ import pandas as pd
 from common.intervals import percent
 from reports.document.blocks import Table
 from reports.document.tables import number
-from reports.measurement.data import Record, share_read
+from reports.measurement.data import Record, measured_minutes, share_read
+from reports.run.run_data import RunData
 
 _FSC = "% m/m"
 
@@ -119,10 +120,9 @@ def hit_table(rows: pd.DataFrame) -> Table:
     )
 
 
-def best_table(rows: pd.DataFrame) -> Table:
+def best_table(run: RunData, rows: pd.DataFrame) -> Table:
     """Return the trajectories that leave the least noise after a minute, for each sensor, and what each method reads on them."""
-    minutes = (rows["duration_s"] - rows["settling_time_s"]) / 60.0
-    noise = (rows["fsc_noise_percent"] * minutes**0.5).rename("minute")
+    noise = (rows["fsc_noise_percent"] * measured_minutes(run, rows) ** 0.5).rename("minute")
     ranked = pd.concat([rows, noise], axis=1).sort_values("minute")
     best = pd.concat([group.head(_BEST) for _, group in ranked.groupby("sensor")])
     return Table(

@@ -17,6 +17,7 @@ from reports.measurement.flight_charts import error_chart, operating_curve, sulp
 from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table, interval_words
 from reports.measurement.tables import over_time_table, result_table
 from reports.run.columns import column
+from reports.run.flight_config import flight_config
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
 
@@ -120,7 +121,7 @@ def _blocks(run: RunData, measured: pd.DataFrame) -> list[Block]:
     if len(measured) < _FEW or statistics is None:
         return [flight_table(measured)]
     trajectories = trajectory_chart(run, measured)
-    designed: list[Block] = [] if trajectories is None else [Heading("Trajectories"), trajectories, best_table(measured)]
+    designed: list[Block] = [] if trajectories is None else [Heading("Trajectories"), trajectories, best_table(run, measured)]
     curve = operating_curve(statistics)
     return [
         Text(
@@ -165,8 +166,7 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
 def _track(run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> Chart | None:
     """Return the track of a flight once it had settled; None where it never had."""
     settled = history[history["time_s"] >= row["settling_time_s"]]
-    config = run.manifest["trials"][row["trial"]]
-    return sulphur_track_chart(settled, surroundings(config, row, settled)) if len(settled) > 1 else None
+    return sulphur_track_chart(settled, surroundings(flight_config(run, row), row, settled)) if len(settled) > 1 else None
 
 
 def _verdict_words(row: "pd.Series[Any]") -> str:

@@ -10,6 +10,7 @@ from reports.monte_carlo.spread_charts import spread_charts
 from reports.monte_carlo.subset import subset_sections
 from reports.monte_carlo.tables import ending_table, left_out_rows, quantile_table, violation_table
 from reports.run.run_data import RunData
+from reports.run.trials import measured_from, shape_words
 
 
 def monte_carlo_sections(run: RunData) -> list[Section]:
@@ -64,8 +65,7 @@ def bound_in_words(statistics: dict[str, Any]) -> str:
 
 
 def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
-    cylinder = "keepout_shape" in run.summary and (run.summary["keepout_shape"] == "cylinder").any()
-    where = "horizontal, from the axis of the keep-out cylinder" if cylinder else "from the centre of the keep-out sphere"
+    where = measured_from(shape_words(run.summary) or "sphere")
     text = (
         f"Quantiles of the flights' figures, each with an interval in brackets that holds that of all such flights with"
         f" {percent(statistics['interval_confidence'])} confidence, whatever the distribution (from order statistics); a dash where"

@@ -12,6 +12,7 @@ from reports.document.palette import Meaning
 from reports.document.ship_map import ship_lines
 from reports.paper.flown import VEHICLES, Flown, find_flight, vehicle_name
 from reports.run.columns import Array, column
+from reports.run.flight_config import flight_config, keepout_shape
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
 from reports.run.time_history import keepout_distance
@@ -71,15 +72,13 @@ def sim_3_charts(run: RunData) -> list[Chart]:
     flights = run.summary[run.summary["flight_id"].astype(str).str.startswith("sim3_")]
     if flights["nu"].isna().any():
         return []
-    source_height = float(run.manifest["config"]["plume"]["source_height_m"])
-    shape = str(run.manifest["config"].get("keepout", {}).get("shape", "sphere"))
 
     def figure_8(flights: dict[str, Flown]) -> list[Line]:
         flown = flights["sim3"]
         times = run.crossings_of(str(flown.row["flight_id"]))["time_s"].to_numpy(dtype=np.float64)
         times = times[times <= flown.time[-1]]
         east, north = (np.interp(times, flown.time, flown.column(name)) for name in ("east_m", "north_m"))
-        about = surroundings(run.manifest["config"], flown.row, flown.history)
+        about = surroundings(flight_config(run, flown.row), flown.row, flown.history)
         place = (float(flown.column(name)[-1]) for name in ("vessel_east_m", "vessel_north_m"))
         return [
             *ship_lines(about, 0.0, *place),
@@ -92,9 +91,10 @@ def sim_3_charts(run: RunData) -> list[Chart]:
     def figure_9(flights: dict[str, Flown]) -> list[Line]:
         flown = flights["sim3"]
         crossings = run.crossings_of(str(flown.row["flight_id"]))
-        times, distance = crossings["time_s"].to_numpy(dtype=np.float64), keepout_distance(flown.history, source_height, shape)
+        config = flight_config(run, flown.row)
+        times, distance = crossings["time_s"].to_numpy(dtype=np.float64), keepout_distance(flown.history, config)
         # The table has those from the funnel's mouth, which are a sphere's.
-        crossed = column(crossings, "distance_m") if shape == "sphere" else np.interp(times, flown.time, distance)
+        crossed = column(crossings, "distance_m") if keepout_shape(config) == "sphere" else np.interp(times, flown.time, distance)
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
             Line(x=flown.time, y=distance, label="UAV", colour=Meaning.FLOWN),

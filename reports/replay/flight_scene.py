@@ -9,6 +9,7 @@ import pandas as pd
 from common.physics.wind import wind_velocity
 from reports.document.scene import Scene
 from reports.run.columns import Array, column
+from reports.run.flight_config import Config, keepout_shape, source_height
 from reports.run.plume_shape import PlumeShape, plume_shape
 from reports.run.ship import hull_of
 from reports.run.time_history import guard_stretches, vessel_heading
@@ -54,7 +55,7 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
         for prefix in ("", "reference_")
         for axis in ("north", "east")
     }
-    hull = hull_of(trial.config)
+    config = trial.flight_config(row)
     return Scene(
         start=float(time[0]),
         interval=interval,
@@ -66,7 +67,7 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
             "heading": angle("heading_rad", column(history, "course_rad")),
             "pitch": angle("pitch_rad", np.arctan2(column(history, "climb_rate_mps"), column(history, "airspeed_mps"))),
             "roll": at_times(column(history, "roll_rad"), angles=True),
-            "vessel_heading": at_times(vessel_heading(history, float(trial.setting("vessel.course_deg", 0.0)))),
+            "vessel_heading": at_times(vessel_heading(history, float(config.get("vessel", {}).get("course_deg", 0.0)))),
             "plume_axis": at_times(column(history, "plume_axis_rad"), angles=True),
         },
         guard=[
@@ -75,18 +76,18 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
         ],
         crossings=column(trial.run.crossings_of(str(row["flight_id"])).dropna(subset="time_s"), "time_s"),
         keepout_radius=float(row["keepout_radius_m"]),
-        keepout_shape=trial.shape,
-        source_height=trial.source_height,
-        hull=hull,
-        plume=_plume(trial, row, history),
+        keepout_shape=keepout_shape(config),
+        source_height=source_height(config),
+        hull=hull_of(config),
+        plume=_plume(config, row, history),
     )
 
 
-def _plume(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame) -> PlumeShape:
+def _plume(config: Config, row: "pd.Series[Any]", history: pd.DataFrame) -> PlumeShape:
     """Return the plume's shape, in the wind and at the vessel's speed that the flight began with."""
     north, east = (float(column(history, f"vessel_velocity_{axis}_mps")[0]) for axis in ("north", "east"))
     wind, origin = (float(np.nan_to_num(row.get(name, 0.0))) for name in ("wind_speed_mps", "wind_from_deg"))
     wind_north, wind_east = wind_velocity(wind, origin)
     apparent = math.hypot(wind_north - north, wind_east - east)
     length = _PLUME_LENGTH * float(row["keepout_radius_m"])
-    return plume_shape(trial.config, speed=math.hypot(north, east), wind=wind, apparent_wind=apparent, length=length)
+    return plume_shape(config, speed=math.hypot(north, east), wind=wind, apparent_wind=apparent, length=length)

@@ -77,6 +77,20 @@ def passed(rows: pd.DataFrame) -> Mask:
     return np.where(alone, kept_out(rows), met(rows))
 
 
+def recorded_at(values: Array, recorded: Mask, rank: int) -> tuple[int, bool]:
+    """Return which flight is at a rank, or else is nearest to it of those with a time history, and whether its value is that one.
+
+    Parameters
+    ----------
+    values : of the flights, by which they are ranked
+    recorded : which of them have a time history, one of them at least
+    rank : from 0 for the least value
+    """
+    place = int(np.argsort(values, kind="stable")[rank])
+    nearest = place if recorded[place] else int(np.argmin(np.where(recorded, np.abs(values - values[place]), np.inf)))
+    return nearest, bool(values[nearest] == values[place])
+
+
 def count(mask: Mask) -> int:
     """Return how many flights a mask holds."""
     return int(np.count_nonzero(mask))

@@ -1,9 +1,7 @@
 """How wide and how high the plume of a run is drawn."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any
 
 import numpy as np
 
@@ -15,6 +13,7 @@ from measurement.plume.air import MarineAir
 from measurement.plume.settings import PlumeSettings
 from measurement.plume.spread import STEP, spreads
 from reports.run.columns import Array
+from reports.run.flight_config import Config
 
 LINE_HALF_WIDTH = 4.0
 """Half-width of a plume that is an axis alone, which has none: enough to be seen [m]."""
@@ -30,8 +29,6 @@ _WIND_MIN = 1.0
 
 _ZERO_CELSIUS = 273.15
 """[K]"""
-
-Config = Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +58,7 @@ def plume_shape(config: Config, *, speed: float, wind: float, apparent_wind: flo
 
     Parameters
     ----------
-    config : of the flight's trial, as the manifest has it
+    config : of the flight itself
     speed : of the vessel over the ground [m/s]
     wind, apparent_wind : of the air over the ground, and past the funnel [m/s]
     length : along the sea [m]

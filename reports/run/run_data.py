@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pyarrow as pa
 
@@ -26,6 +27,7 @@ from common.run_layout import (
     trajectory_path,
 )
 from reports.errors import ReportError
+from reports.run.columns import Mask
 from reports.run.files import refuse_running
 from reports.run.table_file import REMEDY, read_table
 
@@ -76,6 +78,10 @@ class RunData:
     def has_history(self, flight_id: str) -> bool:
         """Return whether a flight has a time history."""
         return is_file_name(flight_id) and is_file(self.path / time_history_path(flight_id))
+
+    def with_history(self, rows: pd.DataFrame) -> Mask:
+        """Return which flights have a time history, given their rows."""
+        return np.array([self.has_history(str(flight_id)) for flight_id in rows["flight_id"]], dtype=np.bool_)
 
     def recorded(self) -> list[str]:
         """Return the names of the flights that have a time history, those of the study before those of its comparisons."""

@@ -35,5 +35,5 @@ ANY = Hull(title="a merchant ship", length=150.0, beam=23.0)
 
 
 def hull_of(config: Mapping[str, Any]) -> Hull:
-    """Return the hull of the ship of a trial, by its configuration."""
+    """Return the hull of a flight's ship, by its configuration."""
     return HULLS.get(str(config.get("emission", {}).get("ship")), ANY)

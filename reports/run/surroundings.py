@@ -1,7 +1,6 @@
 """What was about the aircraft at one moment of a flight: the ship, her plume, the keep-out area and the wind."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +9,7 @@ import pandas as pd
 
 from common.physics.wind import wind_towards
 from reports.run.columns import column
+from reports.run.flight_config import Config, keepout_shape
 from reports.run.plume_shape import PlumeShape, plume_shape
 from reports.run.ship import Hull, hull_of
 from reports.run.time_history import about_the_plume, vessel_heading
@@ -49,12 +49,12 @@ class Surroundings:
     changing: bool
 
 
-def surroundings(config: Mapping[str, Any], row: "pd.Series[Any]", history: pd.DataFrame, at: int = -1) -> Surroundings:
+def surroundings(config: Config, row: "pd.Series[Any]", history: pd.DataFrame, at: int = -1) -> Surroundings:
     """Return what was about the aircraft at the sample ``at`` of a flight with a ship.
 
     Parameters
     ----------
-    config : of the flight's trial, as the manifest has it
+    config : of the flight itself
     row : of the flight in the summary
     history : its time history
     """
@@ -72,7 +72,7 @@ def surroundings(config: Mapping[str, Any], row: "pd.Series[Any]", history: pd.D
         axis=float(axis[at]),
         plume=plume_shape(config, speed=math.hypot(north, east), wind=wind[0], apparent_wind=apparent, length=length),
         radius=radius,
-        shape=str(config.get("keepout", {}).get("shape", "sphere")),
+        shape=keepout_shape(config),
         wind=wind,
         changing=bool(np.ptp(np.unwrap(axis)) > _TURNED),
     )

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from reports.run.columns import Array, column
+from reports.run.flight_config import Config, keepout_shape, source_height
 
 _AT_REST = 0.01
 """Speed below which a vessel's heading is not that of its motion [m/s]."""
@@ -21,17 +22,19 @@ def tracking_error(history: pd.DataFrame) -> Array:
     return error
 
 
-def keepout_distance(history: pd.DataFrame, source_height: float, shape: str) -> Array:
+def keepout_distance(history: pd.DataFrame, config: Config) -> Array:
     """Return the distance that the keep-out area is about at every sample [m]; not a number without a vessel.
+
+    It is measured from the funnel's mouth, or horizontally from the axis of a cylinder.
 
     Parameters
     ----------
     history : of the flight
-    source_height : of the funnel's mouth, the centre of a sphere [m]
-    shape : "sphere", or "cylinder" for the horizontal distance from its axis
+    config : of the flight itself
     """
     north, east = (column(history, f"{axis}_m") - column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
-    up = np.zeros(len(history)) if shape == "cylinder" else column(history, "altitude_m") - source_height
+    level = keepout_shape(config) == "cylinder"
+    up = np.zeros(len(history)) if level else column(history, "altitude_m") - source_height(config)
     distance: Array = np.sqrt(north**2 + east**2 + up**2)
     return distance
 

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from reports.run.columns import Array, column, measured
+from reports.run.flight_config import Config, flight_config, keepout_shape
 from reports.run.run_data import RunData
 
 Parameters = dict[str, Any]
@@ -23,6 +24,12 @@ class Kind(Enum):
     APPROACH = "approach"
     GENERAL = "general"
 
+
+SHAPES = {
+    "sphere": "from the keep-out sphere's centre",
+    "cylinder": "horizontal, from the keep-out cylinder's axis",
+}
+"""Shapes of keep-out areas, and what a distance is measured from."""
 
 AS_IN_THE_STUDY = "as in the study"
 """What the study's own flights are called beside their comparisons."""
@@ -74,19 +81,18 @@ class Trial:
         return float(radii.max()) if len(radii) else float(self.setting("keepout.radius_m"))
 
     @property
-    def source_height(self) -> float:
-        """Height of the funnel, from where distances count [m]."""
-        return float(self.setting("plume.source_height_m"))
-
-    @property
     def shape(self) -> str:
-        """Shape of its keep-out area: "sphere" or "cylinder"."""
-        return str(self.setting("keepout.shape", "sphere"))
+        """Shape of the keep-out area in words: "sphere", "cylinder", or both where its flights differ in it."""
+        return shape_words(self.rows) or keepout_shape(self.config)
 
     @property
     def measured_from(self) -> str:
         """What a distance is measured from, in words: it says which shape the keep-out area has."""
-        return "horizontal, from the keep-out cylinder's axis" if self.shape == "cylinder" else "from the keep-out sphere's centre"
+        return measured_from(self.shape)
+
+    def flight_config(self, row: "pd.Series[Any]") -> Config:
+        """Return the configuration of one of its flights, given its row: the trial's own but for what that flight alone has."""
+        return flight_config(self.run, row, self.config)
 
     @property
     def sampled_at_random(self) -> bool:
@@ -148,6 +154,17 @@ class Trial:
             Kind.APPROACH: calm and self.criteria.get("settles", False) and not self.criteria.get("crossing_interval_error"),
         }
         return next((kind for kind, holds in kinds.items() if holds), Kind.GENERAL)
+
+
+def shape_words(rows: pd.DataFrame) -> str:
+    """Return the shapes of the keep-out areas of flights, as "sphere or cylinder"; no word where they are not known."""
+    known = set(rows["keepout_shape"].dropna()) if "keepout_shape" in rows else set()
+    return " or ".join(shape for shape in SHAPES if shape in known)
+
+
+def measured_from(shape: str) -> str:
+    """Return what a distance is measured from, given the shape of the keep-out area, or shapes, in words."""
+    return ", or ".join(words for name, words in SHAPES.items() if name in shape)
 
 
 def leaves(tree: Mapping[str, Any], before: str = "") -> dict[str, Any]:

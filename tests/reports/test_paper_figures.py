@@ -29,12 +29,12 @@ def sim_3(tmp_path_factory):
 
 @pytest.mark.parametrize("shape", ["sphere", "cylinder"])
 def test_figure_9_shows_the_distance_that_the_keep_out_area_is_about(sim_3, shape):
-    sim_3.manifest["config"]["keepout"]["shape"] = shape
+    sim_3 = replace(sim_3, summary=sim_3.summary.assign(keepout_shape=shape))
     figure_9 = sim_3_charts(sim_3)[1]
     _, flown, crossed = figure_9.panels[0].lines
     history = sim_3.history("sim3_kinematic")
-    height = sim_3.manifest["config"]["plume"]["source_height_m"]
-    expected = np.interp(flown.x, history["time_s"], keepout_distance(history, height, shape))
+    config = sim_3.manifest["config"] | {"keepout": {"shape": shape}}
+    expected = np.interp(flown.x, history["time_s"], keepout_distance(history, config))
     assert flown.y == pytest.approx(expected, abs=1e-9)
     # As the flight was flown it crossed at the height of the mouth, where both distances are one. Within 0.2 s it turns.
     table = sim_3.crossings_of("sim3_kinematic")["distance_m"].to_numpy()

@@ -182,7 +182,7 @@ def _closest_after(trial: Trial, row: "pd.Series[Any]") -> float | None:
     if history is None:
         return None
     after = history[history["time_s"] >= row["fault_time_s"]]
-    return float(keepout_distance(after, trial.source_height, trial.shape).min()) if len(after) else None
+    return float(keepout_distance(after, trial.flight_config(row)).min()) if len(after) else None
 
 
 def failed_blocks(trials: Sequence[Trial]) -> list[Block]:

@@ -1,12 +1,15 @@
 """Figures of a flight that searched for its plume, against its time history."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from report_parts import assert_axes_read_quantity_and_unit, blocks_of, flown, named_charts
 
 from reports.document.blocks import Text
+from reports.finding.flights import _picked
 from reports.finding.search_view import search_view
 from reports.registry import content
 from reports.run.run_data import read_run
@@ -82,3 +85,18 @@ def test_a_flight_that_is_told_nothing_of_a_search_has_no_such_section(tmp_path_
     run = read_run(flown(tmp_path_factory, "sulphur", (*QUICK, "following.plume=predicted", "flight.after_settling_s=20")))
     assert search_view(run, run.summary.iloc[0]) is None
     assert not {"searches", "finding"} & {section.anchor for section in content(run).sections}
+
+
+@pytest.mark.parametrize(
+    ("kept", "typical", "why"),
+    [([0, 3, 4], "3", "nearest to the median error"), ([2, 4], "2", "the median error"), ([4], "4", "nearest to the median error")],
+)
+def test_the_typical_search_is_at_the_median_of_all_errors_or_nearest_to_it(kept, typical, why):
+    # Of these the median is 3 m, whichever of the flights have a time history.
+    rows = pd.DataFrame({"flight_id": list("01234"), "axis_height_error_3min_m": [-1.0, 2.0, 3.0, 3.5, -9.0]})
+    run = SimpleNamespace(with_history=lambda rows: rows["flight_id"].isin([str(i) for i in kept]).to_numpy())
+    picked = _picked(run, rows)
+    assert picked[0][0]["flight_id"] == typical
+    assert picked[0][1].startswith(why)
+    # The largest error is that of the last flight, which is typical where it alone is left.
+    assert [row["flight_id"] for row, _ in picked[1:]] == ["4"] * (typical != "4")

@@ -13,6 +13,7 @@ from reports.document.blocks import CARDS_MAX, Card, Heading, Section, Table, Ve
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in, numbered
 from reports.flights.first_page import closest_and_typical
+from reports.flights.selection import picked_flights
 from reports.registry import content
 from reports.render import matplotlib_charts
 from reports.render.pdf import write_pdf
@@ -184,6 +185,44 @@ def test_a_run_without_time_histories_shows_its_first_figure(run_path, tmp_path)
     report = content(read_run(copy))
     assert report.picture is not None
     assert "Closest" not in [panel.title.split(":")[0] for panel in report.picture.panels]
+
+
+def without_histories(run_path, tmp_path, gone):
+    """Return the run without the time histories of flights, by their rank in closest approach, and all ranked."""
+    copy = shutil.copytree(run_path, tmp_path / "run")
+    ranked = read_run(copy).summary.sort_values("min_distance_m")
+    for rank in gone:
+        (copy / "flights" / f"{ranked['flight_id'].iloc[rank]}.parquet").unlink()
+    return read_run(copy), ranked["min_distance_m"].tolist()
+
+
+@pytest.mark.parametrize(("gone", "nearest"), [((), {2}), ((3, 4), {2}), ((2,), {1, 3}), ((0, 1, 2), {3})])
+def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(run_path, tmp_path, gone, nearest):
+    run, distances = without_histories(run_path, tmp_path, gone)
+    picture = closest_and_typical(read_trials(run))
+    typical = min(nearest, key=lambda rank: abs(distances[rank] - distances[2]))
+    closest = min(set(range(5)) - set(gone))
+    told = "Closest: the flight with the closest approach" + (" of those with a time history." if gone else ".")
+    assert told in picture.caption
+    if closest == typical:
+        # One flight is both: all its tracks are shown, and below them its name.
+        assert re.search(r" Closest: Flight \d\.$", picture.caption)
+        assert "Typical" not in picture.caption
+    else:
+        shown = [float(re.search(r"([\d.]+) m$", panel.title)[1]) for panel in picture.panels]
+        assert shown == [round(distances[rank], 1) for rank in (closest, typical)]
+        assert ("Typical: the one whose closest approach is the median." in picture.caption) == (2 not in gone)
+        assert ("Typical: of these the one nearest to the median of all flights." in picture.caption) == (2 in gone)
+
+
+def test_flights_shown_one_by_one_have_one_at_the_median_of_all_or_nearest_to_it(run_path, tmp_path):
+    for gone, why in (((3, 4), "median of closest approaches"), ((2,), "nearest to the median of closest approaches")):
+        run, distances = without_histories(run_path, tmp_path / str(len(gone)), gone)
+        # As of flights that met their criteria: one that did not is shown as such.
+        trial = read_trials(replace(run, summary=run.summary.assign(criteria_met=True)))[0]
+        found = {reason: float(row["min_distance_m"]) for _, row, reason in picked_flights([trial])}
+        left = [distance for rank, distance in enumerate(distances) if rank not in gone]
+        assert found[why] == min(left, key=lambda distance: abs(distance - distances[2]))
 
 
 def test_long_names_of_flights_stand_below_the_picture(run_path, monkeypatch):

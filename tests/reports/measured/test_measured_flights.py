@@ -167,6 +167,27 @@ def test_quality_c_gives_no_verdict_in_words_either():
     assert card[1] == "no verdict: quality C"
 
 
+@pytest.mark.parametrize(("own", "minutes"), [(None, [4.0, 9.0]), (60.0, [1.0, 1.0]), ("swept", [1.0, 2.25]), (600.0, [6.0, 10.0])])
+def test_noise_of_a_minute_follows_from_the_time_that_was_evaluated(own, minutes):
+    """Flights of 6 and 11 minutes settle after 2; the last ``flight.measured_s`` may be all that is evaluated [min]."""
+    rows = pd.DataFrame({
+        "flight_id": ["a", "b"], "trial": "t", "sensor": "fast", "duration_s": [360.0, 660.0], "settling_time_s": 120.0,
+        "fsc_noise_percent": 0.02, "areas_fsc_noise_percent": 0.03, "fsc_expected_percent": 0.1, "fsc_percent": 0.1,
+        "areas_fsc_percent": 0.1, "nu": 0.5, "crossing_interval_mean_s": 6.0, "crossing_distance_mean_m": 260.0,
+    })  # fmt: skip
+    swept = {"flight.measured_s": [60.0, 135.0]} if own == "swept" else {}
+    run = SimpleNamespace(
+        manifest={"trials": {"t": {"flight": {"measured_s": None if own == "swept" else own}}}},
+        draws=pd.DataFrame({"flight_id": ["a", "b"], "guidance.bank_deg": 30.0, **swept}),
+    )
+    table = flight_tables.best_table(run, rows)
+    found = sorted(float(row[table.head.index("1σ in a minute [% m/m]")]) for row in table.rows)
+    assert found == pytest.approx(sorted(0.02 * np.sqrt(minutes)), abs=5e-5)
+    regression, areas = (panel.lines[0].y for panel in flight_charts.trajectory_chart(run, rows).panels[:2])
+    assert regression == pytest.approx(0.02 * np.sqrt(minutes))
+    assert areas == pytest.approx(0.03 * np.sqrt(minutes))
+
+
 def test_a_fuel_without_sulphur_beside_others_is_drawn():
     fuels = np.repeat([0.0, 0.1, 0.5, 2.0], 4)
     columns = ("fsc_percent", "areas_fsc_percent", "fsc_expected_percent", "crossing_interval_mean_s")

@@ -170,10 +170,7 @@ def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
 
 def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run):
     assert " m from the keep-out sphere's centre, in " in content(run).verdict.detail
-    manifest = json.loads(json.dumps(run.manifest))
-    for trial in manifest["trials"].values():
-        trial["keepout"]["shape"] = "cylinder"
-    report = content(replace(run, manifest=manifest))
+    report = content(replace(run, summary=run.summary.assign(keepout_shape="cylinder")))
     assert " m horizontal, from the keep-out cylinder's axis, in " in report.verdict.detail
     # Beside the funnel, far above it: a sphere is narrower there.
     rising = content(with_values(run, 0, min_distance_m=200.5, horizontal_distance_min_m=80.2)).verdict.detail

@@ -4,11 +4,12 @@ import re
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from report_parts import blocks_of
 
 from reports.document.blocks import FlightPicker, Table
-from reports.flights.names import _swept, flight_name, flown_elsewhere
+from reports.flights.names import _swept, flight_name, flown_elsewhere, swept_column
 from reports.flights.trials.charts import trial_charts
 from reports.flights.trials.panels_over import LIMIT_LABEL
 from reports.registry import content
@@ -135,6 +136,30 @@ def test_where_the_flown_speed_ratio_is_not_the_swept_one_a_column_says_it(windy
     assert "flown at ν = 0.81" in picker.flights[1].title.replace("\N{NO-BREAK SPACE}", " ")
     assert picker.flights[3].title.endswith("(not flown)")
     assert not flown_elsewhere(trial)
+
+
+@pytest.mark.parametrize(
+    ("key", "values", "names"),
+    [
+        ("nu", [0.95, 0.953], ["ν = 0.950", "ν = 0.953"]),
+        ("nu", [0.2, 0.4], ["ν = 0.20", "ν = 0.40"]),
+        ("keepout.radius_m", [1000.1, 1000.2], ["Keep-out radius 1000.1 m", "Keep-out radius 1000.2 m"]),
+        ("keepout.radius_m", [150.0, 1000.2], ["Keep-out radius 150 m", "Keep-out radius 1000 m"]),
+    ],
+)
+def test_names_have_as_many_digits_as_tell_swept_values_apart(trial, key, values, names):
+    rows = trial.rows.iloc[: len(values)].reset_index(drop=True)
+    airspeed = float(trial.setting("guidance.airspeed_mps"))
+    if key == "nu":
+        rows = rows.assign(vessel_speed_mps=np.array(values) * airspeed)
+    draws = pd.DataFrame({"flight_id": rows["flight_id"], key: values})
+    config = trial.config | {"sweep": {key: values}, "flights": 1}
+    planned = {"trial_flights": {trial.key: len(values)}}
+    run = replace(trial.run, draws=draws, manifest=trial.run.manifest | planned)
+    own = replace(trial, run=run, config=config, rows=rows)
+    assert [flight_name(own, row) for _, row in own.rows.iterrows()] == names
+    cell = swept_column(own)[1]
+    assert [cell(row) for _, row in own.rows.iterrows()] == [name.split("= ")[-1].split("radius ")[-1] for name in names]
 
 
 def test_a_value_that_says_nothing_by_itself_has_the_name_of_its_key():

@@ -154,7 +154,7 @@ def test_the_level_of_the_funnel_is_drawn_where_the_flight_does_not_hide_it(run,
     trial = read_trials(run)[0]
     row = trial.rows.iloc[0]
     history = run.history(str(row["flight_id"]))
-    history = history.assign(altitude_m=trial.source_height + above)
+    history = history.assign(altitude_m=trial.config["plume"]["source_height_m"] + above)
     histories = flight_charts(FlightView(trial, row, history))[1]
     (height,) = [panel for panel in histories.panels if panel.y_label == "Height [m]"]
     assert ("funnel" in {line.label for line in height.lines}) == drawn

@@ -1,0 +1,180 @@
+"""Flights that differ in their keep-out area and in their funnel: each is drawn and measured with its own."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from report_parts import blocks_of
+
+from reports.compare.figures import differences
+from reports.compare.pairs import Pairs
+from reports.compare.runs import Run
+from reports.compare.tracks import most_changed
+from reports.document.blocks import FlightPicker
+from reports.export.geographic import recorded_flights
+from reports.flights.flight_view import flight_view
+from reports.flights.single_flight import flight_charts
+from reports.flights.trials.tables import fault_table
+from reports.registry import content
+from reports.replay.flight_scene import flight_scene
+from reports.run.flight_config import flight_config, flight_configs
+from reports.run.plume_shape import plume_shape
+from reports.run.run_data import RunData, read_run
+from reports.run.trials import read_trials
+from tests.in_process import run_command
+
+APART = """
+study = "sea"
+title = "Apart"
+description = "Flights for a test."
+fidelity = "kinematic"
+flights = 1
+flight = { crossings = 2, altitude_m = 100.0 }
+start.distance_m = [300.0, 400.0]
+plume.model = "fluctuating"
+emission.ship = "container"
+[sweep]
+"keepout.shape" = ["sphere", "cylinder"]
+"plume.source_height_m" = [20.0, 60.0]
+[[draws]]
+key = "emission.load"
+uniform = [0.2, 0.9]
+[comparison]
+variants = [{ name = "upright", set = { "keepout.shape" = "cylinder" } }]
+"""
+
+OWN = [("sphere", 20.0), ("sphere", 60.0), ("cylinder", 20.0), ("cylinder", 60.0)]
+"""Shape of the keep-out area and height of the funnel [m] of each flight."""
+
+
+@pytest.fixture(scope="module")
+def apart(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("apart")
+    (folder / "apart.toml").write_text(APART, encoding="utf-8")
+    run_command("scenarios.run", folder / "apart.toml", "--out", folder / "run", "--no-report", "--jobs", 1)
+    return read_run(folder / "run")
+
+
+@pytest.fixture(scope="module")
+def trial(apart):
+    return read_trials(apart)[0]
+
+
+def flights_of(trial):
+    return [row for _, row in trial.rows.iterrows()]
+
+
+def panel_of(view, label):
+    return next(panel for panel in flight_charts(view)[1].panels if panel.y_label.startswith(label))
+
+
+def test_the_time_history_of_a_flight_has_the_closest_approach_of_its_row_and_its_own_funnel(trial):
+    for row, (shape, height) in zip(flights_of(trial), OWN, strict=True):
+        view = flight_view(trial, row)
+        # Between samples, 0.1 s apart at 28 m/s at most, the summary interpolates. The shapes differ by 2 m and more.
+        assert np.nanmin(view.distance) == pytest.approx(row["min_distance_m"], abs=0.02)
+        caption = flight_charts(view)[1].caption
+        assert ("from the keep-out sphere's centre" in caption) == (shape == "sphere")
+        assert ("from the keep-out cylinder's axis" in caption) == (shape == "cylinder")
+        funnel = next(line for line in panel_of(view, "Height").lines if line.label == "funnel")
+        assert set(funnel.y) == {height}
+
+
+def test_replay_map_and_export_have_the_flights_own_keep_out_area_and_funnel(apart, trial):
+    rows = flights_of(trial)
+    scenes = [flight_scene(trial, row, apart.history(row["flight_id"])) for row in rows]
+    assert [(scene.keepout_shape, scene.source_height) for scene in scenes] == OWN
+    assert [scene.plume.height[0] for scene in scenes] == [height for _, height in OWN]
+    maps = [flight_charts(flight_view(trial, row))[0].caption for row in rows]
+    assert all(f"The keep-out {shape} is about" in caption for caption, (shape, _) in zip(maps, OWN, strict=True))
+    heights = {flight.flight_id: flight.source_height for flight in recorded_flights(apart)}
+    assert [heights[row["flight_id"]] for row in rows] == [height for _, height in OWN]
+
+
+def test_the_plume_that_is_drawn_is_that_of_the_sampled_load(apart, trial):
+    row = trial.rows.iloc[0]
+    load = float(apart.draws["emission.load"].iloc[0])
+    air = {"speed": 8.0, "wind": 8.0, "apparent_wind": 8.0, "length": 800.0}
+    own = trial.config | {"emission": trial.config["emission"] | {"load": load}}
+    own |= {"plume": trial.config["plume"] | {"source_height_m": 20.0}}
+    drawn, expected, base = (plume_shape(config, **air) for config in (trial.flight_config(row), own, trial.config))
+    assert drawn.height == pytest.approx(expected.height)
+    assert drawn.height[-1] - drawn.height[0] != pytest.approx(base.height[-1] - base.height[0], abs=0.1)
+
+
+def test_a_trial_of_both_shapes_says_so_and_page_1_says_which_the_closest_flight_has(apart, trial):
+    assert trial.shape == "sphere or cylinder"
+    assert trial.measured_from == "from the keep-out sphere's centre, or horizontal, from the keep-out cylinder's axis"
+    report = content(apart)
+    # Without height a distance is shorter.
+    assert " m horizontal, from the keep-out cylinder's axis (" in report.verdict.detail
+    assert "Closest approach" in [figure.name for figure in report.verdict.figures]
+    assert "The keep-out cylinder or sphere is about her funnel" in report.picture.caption
+    (picker,) = blocks_of(report, FlightPicker)
+    assert [flight.scene.keepout_shape for flight in picker.flights] == [shape for shape, _ in OWN]
+
+
+def test_the_closest_approach_after_a_fault_is_measured_as_the_flights_own_is(trial):
+    faulty = trial.rows.assign(fault="rudder", fault_time_s=0.0, end_distance_m=300.0)
+    for i, (_, row) in enumerate(faulty.iterrows()):
+        alone = type(trial)(run=trial.run, key=trial.key, name=trial.name, config=trial.config, rows=faulty.iloc[[i]])
+        table = fault_table(alone)
+        after = float(table.rows[0][table.head.index("Closest after the fault [m]")])
+        assert after == pytest.approx(row["min_distance_m"], abs=0.1)
+
+
+def test_two_runs_are_compared_by_the_distances_of_their_own_areas(apart):
+    runs = [Run(letter=letter, data=apart, trials=read_trials(apart)) for letter in "AB"]
+    sphere, cylinder = apart.summary.iloc[[0]], apart.summary.iloc[[2]]
+    pairs = Pairs(first=runs[0], other=runs[1], before=sphere, after=cylinder, same_name=0)
+    panel = next(panel for panel in most_changed(pairs, differences(pairs)).panels if panel.y_label == "Distance [m]")
+    nearest = [float(np.nanmin(line.y)) for line in panel.lines if line.label.startswith(("A:", "B:"))]
+    # Every fifth sample or so is shown; the shapes differ by 11 m.
+    assert nearest == pytest.approx([sphere["min_distance_m"].iloc[0], cylinder["min_distance_m"].iloc[0]], abs=1.0)
+
+
+def test_a_comparisons_flight_has_what_the_comparison_sets(apart):
+    configs = flight_configs(apart, apart.comparison)
+    assert [config["keepout"]["shape"] for config in configs] == ["cylinder"] * 4
+    assert [config["plume"]["source_height_m"] for config in configs] == [height for _, height in OWN]
+
+
+def made(trial, draws, **row):
+    """Return a run of one flight with a configuration of its trial and its row of ``draws.csv``, and the flight's row."""
+    rows = pd.DataFrame([{"flight_id": "a", "trial": "t", "variant": "study", "fidelity": "six_dof"} | row])
+    empty = pd.DataFrame({"flight_id": []})
+    run = RunData(
+        path=None, manifest={"trials": {"t": trial}}, summary=rows, comparison=empty, crossings=empty, innerloop=None,
+        statistics=None, draws=pd.DataFrame([{"flight_id": rows["flight_id"].iloc[0], **draws}]),
+    )  # fmt: skip
+    return run, rows.iloc[0]
+
+
+BASE = {"title": "T", "plume": {"source_height_m": 35.0}, "emission": {"load": 0.5}, "keepout": {"shape": "sphere"}}
+
+
+def test_lists_and_what_is_not_set_are_read_as_they_were_given_and_empty_cells_are_of_other_trials():
+    inputs = {"start.distance_m": "[400, 500]", "emission.load": "null", "plume.source_height_m": np.nan, "nu": 0.5}
+    config = flight_config(*made(BASE, inputs))
+    assert config["start"]["distance_m"] == [400, 500]
+    assert config["emission"]["load"] is None
+    assert config["plume"] == BASE["plume"]
+    assert "nu" not in config
+
+
+def test_what_is_sampled_holds_in_flights_of_a_comparison_and_what_is_swept_gives_way_to_it():
+    variants = [{"name": "high", "set": {"plume.source_height_m": 80.0, "emission.load": 0.1}}]
+    trial = BASE | {"comparison": {"variants": variants}, "draws": [{"key": "emission.load", "uniform": [0.2, 0.9]}]}
+    inputs = {"plume.source_height_m": 20.0, "emission.load": 0.7}
+    config = flight_config(*made(trial, inputs, variant="high"))
+    assert (config["plume"]["source_height_m"], config["emission"]["load"]) == (80.0, 0.7)
+    assert flight_config(*made(trial, inputs))["plume"]["source_height_m"] == 20.0
+
+
+@pytest.mark.parametrize(
+    ("flight_id", "fidelity", "height"),
+    [("low_six_dof", "six_dof", 20.0), ("t_low_kinematic_00003", "kinematic", 10.0), ("other_six_dof", "six_dof", 35.0)],
+)
+def test_a_flight_of_a_case_has_what_the_case_sets(flight_id, fidelity, height):
+    cases = [{"name": "low", "set": {"plume.source_height_m": 20.0}, "set_kinematic": {"plume.source_height_m": 10.0}}]
+    config = flight_config(*made(BASE | {"cases": cases}, {}, flight_id=flight_id, fidelity=fidelity))
+    assert config["plume"]["source_height_m"] == height
