@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from common.command_line import refuse, run_command
-from common.run_layout import EXPORT, REPORT_HTML, REPORT_PDF, is_file_name
+from common.run_layout import EXPORT, NAME_BYTES_MAX, REPORT_HTML, REPORT_PDF, is_file_name
 
 if TYPE_CHECKING:
     from reports.run.run_data import RunData
@@ -85,15 +85,21 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
         raise ReportError(f"'{directory}' is that of a run called {run_name!r}, which is no name of a file; do not use this run")
     if folder.is_symlink():
         raise ReportError(f"'{folder}' is a link; exports are written into '{directory}' alone: remove it")
-    parts = {f"{run_name}.{flight_id}" if flight_id else str(run_name): run}
+    parts = {_stem(str(run_name), flight_id) if flight_id else str(run_name): run}
     if getattr(exporter, "one_flight", False) and (recorded := run.recorded()):
-        parts = {f"{run_name}.{flight}": run.of_flight(flight) for flight in recorded}
+        parts = {_stem(str(run_name), flight): run.of_flight(flight) for flight in recorded}
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:
         raise ReportError(f"'{folder}' cannot be written: {error.strerror}; check permissions and space") from None
     with damage_named(directory):
         return [written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
+
+
+def _stem(run_name: str, flight_id: str) -> str:
+    """Return what the file of a flight is called: RUN.FLIGHT, or FLIGHT where that begins with the run's name or is long."""
+    both = f"{run_name}.{flight_id}"
+    return flight_id if flight_id.startswith(f"{run_name}_") or len(both.encode()) > NAME_BYTES_MAX else both
 
 
 def check_exporters(names: Sequence[str]) -> None:

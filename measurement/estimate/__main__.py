@@ -8,7 +8,7 @@ from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.analysis import analyse
 from measurement.estimate.flight_log.config import LogConfig, read_config
 from measurement.estimate.flight_log.csv_file import read_flight
-from measurement.estimate.flight_log.run_files import build_report, refuse_another_run, write_run
+from measurement.estimate.flight_log.run_files import build_report, refuse_another_log, refuse_another_run, write_run
 from measurement.estimate.flight_log.words import summary, unused
 
 BAD_INPUT = 2
@@ -45,6 +45,8 @@ def main(arguments: list[str] | None = None) -> int:
         refuse_another_run(directory)
         config = read_config(given.config) if given.config else LogConfig()
         flight = read_flight(given.flight, config)
+        if given.out is None:
+            refuse_another_log(directory, given.flight)
         analysis = analyse(
             flight.readings, config.instrument, method=config.method, carbon=config.carbon, limits_percent=config.limits_percent
         )

@@ -6,7 +6,7 @@ from reports.arena.figures import CROSSINGS, ERROR, PLUME_TIME, SULPHUR, Figure
 from reports.arena.tables import by_condition_table, condition_table, given_table, plume_table, refused_table, tracking_table
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Card, Findings, Heading, Section, Text, Verdict
-from reports.document.tables import parameter_table
+from reports.document.tables import outcome, parameter_table
 from reports.flights.content import flights_content
 from reports.flights.first_page import flights_in_words
 from reports.run.columns import count, lost, measured, total, violated
@@ -14,7 +14,8 @@ from reports.run.run_data import RunData
 
 _BOLD = (
     "In bold: the best mean, and those that the paired bootstrap over starts and air does not tell from it with 95 % confidence. In"
-    " brackets are 95 % intervals of the mean; of few flights they are too narrow rather than too wide."
+    " brackets are 95 % intervals of the mean; of few flights they are too narrow rather than too wide. A law that lacks flights"
+    " which another flew is not compared: it is never in bold, it stands last, and beside its mean is of how many flights that is."
 )
 
 _TRACKING = (
@@ -49,6 +50,9 @@ _GIVEN = (
     " does not use. The cost is the rms error of the end of a flight and what the heading rate in excess of the reference's counts"
     " as."
 )
+
+_NONE_BEST = "no law is called best, as each lacks flights"
+"""What is said of a task in which no law is compared."""
 
 
 def arena_content(run: RunData) -> Findings:
@@ -131,12 +135,8 @@ def _verdict(arena: Arena) -> Verdict:
     rows, flown = arena.run.summary, measured(arena.run.summary)
     planned = int(arena.run.manifest["flights_planned"])
     violations, gone = count(violated(flown)), count(lost(rows))
-    best = [(task, ranked[0]) for task in (True, False) if (ranked := arena.ranked(ERROR, arena.in_task(tracking=task)))]
-    headline = "; ".join(
-        f"{'tracking' if task else 'circling'}: {entrant.title} is best, {_mean(arena, entrant, ERROR)} m rms"
-        for task, entrant in best
-    )
-    failures = []
+    best = [(task, first) for task in (True, False) if (first := arena.best(ERROR, arena.in_task(tracking=task)))]
+    failures = _unflown(arena)
     if violations:
         laws = [entrant.title for entrant in arena.entrants if total(entrant.rows, "keepout_violations")]
         failures.append(f"keep-out violations in {violations} of {len(flown)} flights: of {', '.join(laws)}")
@@ -154,23 +154,49 @@ def _verdict(arena: Arena) -> Verdict:
         *(
             Card(f"Best on {figure.quantity.lower()}: {first.title}", f"{_mean(arena, first, figure)} {figure.unit}")
             for figure in (CROSSINGS, SULPHUR)
-            if arena.has(figure)
-            for first in arena.ranked(figure, arena.entrants)[:1]
+            if (first := arena.best(figure, arena.entrants))
         ),
-        Card("Keep-out violations", f"{total(flown, 'keepout_violations'):,}", "0", not violations),
-        Card("Aircraft lost", f"{gone:,}", "0", not gone),
+        Card("Keep-out violations", f"{total(flown, 'keepout_violations'):,}", "0", len(flown) > 0 and not violations),
+        Card("Aircraft lost", f"{gone:,}", "0", len(flown) > 0 and not gone),
         Card("Flights flown", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
         Card("Laws in a task", f"{len(arena.entrants)}"),
         Card("Conditions, and flights of each law in each", f"{len(arena.conditions)} × {arena.flights}"),
     ]
     return Verdict(
-        holds=not violations and not gone,
-        complete=len(rows) == planned,
-        headline=headline[:1].upper() + headline[1:],
+        holds=len(flown) > 0 and not violations and not gone,
+        complete=len(flown) == planned,
+        headline=_headline(arena, best) if len(flown) else "Nothing was flown",
         detail=f"Means over all conditions, over the end of each flight. {_alike(arena, best)}",
         failures=failures,
         figures=figures,
     )
+
+
+def _headline(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
+    """Return which law is best in each task, or that none can be called so."""
+    found = dict(best)
+    words = [
+        f"{'tracking' if task else 'circling'}: "
+        + (f"{found[task].title} is best, {_mean(arena, found[task], ERROR)} m rms" if task in found else _NONE_BEST)
+        for task in (True, False)
+        if arena.in_task(tracking=task)
+    ]
+    headline = "; ".join(words)
+    return headline[:1].upper() + headline[1:]
+
+
+def _unflown(arena: Arena) -> list[str]:
+    """Return a line for each law of which flights could not be flown: how many, and why the first of them could not."""
+    lines = []
+    for entrant in arena.entrants:
+        rows, lacking = entrant.rows, entrant.unflown
+        if len(lacking):
+            compared = arena.of(ERROR, entrant, arena.together).whole
+            apart = "" if compared or len(lacking) == len(rows) else ", and it is not compared"
+            reasons = list(dict.fromkeys(outcome(row) for _, row in lacking.iterrows()))
+            more = f"; and for {len(reasons) - 1} other reason{'s' * (len(reasons) > 2)}" if len(reasons) > 1 else ""
+            lines.append(f"{entrant.title}: {len(lacking)} of {len(rows)} flights could not be flown{apart}: {reasons[0]}{more}")
+    return lines
 
 
 def _alike(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:

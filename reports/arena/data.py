@@ -28,6 +28,8 @@ class Estimate:
     ----------
     mean, low, high : of the figure
     best, as_good : whether no other law's mean is better, and whether the flights do not tell the law from the best
+    whole : whether it is of every flight of which any law has the figure; otherwise it is not compared with the others
+    flights : number of flights that it is of
     """
 
     mean: float = math.nan
@@ -35,6 +37,8 @@ class Estimate:
     high: float = math.nan
     best: bool = False
     as_good: bool = False
+    whole: bool = False
+    flights: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,6 +75,11 @@ class Entrant:
     def tracks(self) -> bool:
         """Return whether it tracks the oscillating reference."""
         return self.task == TRACKING
+
+    @property
+    def unflown(self) -> pd.DataFrame:
+        """Return its flights that could not be flown."""
+        return self.rows[self.rows["min_distance_m"].isna()]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,13 +124,21 @@ class Arena:
         return [entrant for entrant in self.entrants if entrant.tracks == tracking]
 
     def ranked(self, figure: Figure, entrants: Iterable[Entrant]) -> list[Entrant]:
-        """Return entrants by the mean of a figure over all conditions, the best first and those without one last."""
+        """Return entrants by the mean of a figure over all conditions, the best first; last those not compared, or without one."""
 
-        def place(entrant: Entrant) -> tuple[bool, float]:
-            mean = self.of(figure, entrant, self.together).mean
-            return math.isnan(mean), -mean if figure.greater_first else mean
+        def place(entrant: Entrant) -> tuple[bool, bool, float]:
+            found = self.of(figure, entrant, self.together)
+            return math.isnan(found.mean), not found.whole, -found.mean if figure.greater_first else found.mean
 
         return sorted(entrants, key=place)
+
+    def best(self, figure: Figure, entrants: Iterable[Entrant]) -> Entrant | None:
+        """Return the entrant with the best mean of a figure over all conditions, of those that are compared; none without one."""
+        return next((first for first in self.ranked(figure, entrants)[:1] if self.of(figure, first, self.together).whole), None)
+
+    def flights_of(self, condition: str) -> int:
+        """Return how many flights of each entrant a mean is of, where all were flown."""
+        return self.flights * (len(self.conditions) if condition == ALL else 1)
 
 
 def read_arena(run: RunData) -> Arena | None:
@@ -170,4 +187,6 @@ def _of_case(flight: str, trial: str, case: str, fidelity: str) -> bool:
 
 def _estimate(entry: dict[str, Any]) -> Estimate:
     mean, low, high = (math.nan if entry[key] is None else float(entry[key]) for key in ("mean", "low", "high"))
-    return Estimate(mean, low, high, best=entry["best"], as_good=entry["as_good"])
+    # Records of earlier versions compare every law with every other.
+    whole = bool(entry.get("whole", entry["flights"] > 0))
+    return Estimate(mean, low, high, best=entry["best"], as_good=entry["as_good"], whole=whole, flights=entry["flights"])

@@ -79,7 +79,8 @@ def _table(
     for i, entrant in enumerate(entrants):
         found = [(figure, arena.of(figure, entrant, arena.together)) for figure in figures]
         ahead = [str(entrant.number), entrant.title, *(before[i] if before else [])]
-        rows.append([*ahead, *(_interval(estimate, figure) for figure, estimate in found), *extra[i]])
+        means = [_interval(estimate, figure) + few(arena, estimate, arena.together) for figure, estimate in found]
+        rows.append([*ahead, *means, *extra[i]])
         bold += [(i, len(ahead) + j) for j, (_, estimate) in enumerate(found) if estimate.as_good or estimate.best]
     left = 3 if before else 2
     return Table(
@@ -90,6 +91,12 @@ def _table(
 def _interval(estimate: Estimate, figure: Figure) -> str:
     mean, low, high = (figure.written(value) for value in (estimate.mean, estimate.low, estimate.high))
     return mean if math.isnan(estimate.mean) else f"{mean} ({low}\N{EN DASH}{high})"
+
+
+def few(arena: Arena, estimate: Estimate, condition: str) -> str:
+    """Return of how many flights a mean is, to stand beside it: nothing where it is of all, or there is none."""
+    planned = arena.flights_of(condition)
+    return f", {estimate.flights} of {planned}" if 0 < estimate.flights < planned else ""
 
 
 def by_condition_table(arena: Arena, figure: Figure, *, tracking: bool | None = None) -> Table:
@@ -106,7 +113,9 @@ def by_condition_table(arena: Arena, figure: Figure, *, tracking: bool | None = 
     rows, bold = [], []
     for i, entrant in enumerate(entrants):
         found = [arena.of(figure, entrant, condition) for condition in conditions]
-        rows.append([str(entrant.number), entrant.title, *(figure.written(estimate.mean) for estimate in found)])
+        few_of = [few(arena, estimate, condition) for estimate, condition in zip(found, conditions, strict=True)]
+        means = [figure.written(estimate.mean) + words for estimate, words in zip(found, few_of, strict=True)]
+        rows.append([str(entrant.number), entrant.title, *means])
         bold += [(i, 2 + j) for j, estimate in enumerate(found) if estimate.best or estimate.as_good]
     if figure is CROSSINGS and arena.limits:
         most = [figure.written(arena.limits.get(condition, math.nan)) for condition in conditions]

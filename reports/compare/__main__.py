@@ -1,5 +1,7 @@
 """Command line: ``python -m reports.compare RUN_A RUN_B [...]`` compares runs flight by flight."""
 
+import hashlib
+import os
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -14,8 +16,11 @@ if TYPE_CHECKING:
     from reports.compare.content import Compared
     from reports.compare.runs import Run
 
-_NAME_MAX = 40
-"""Letters of a run's name in that of the directory that is made beside it."""
+_NAME_MAX = 38
+"""Letters of a run's name in that of the directory that is made beside it: six of them fit into the name of a directory."""
+
+_HASH_LETTERS = 8
+"""Letters of the hash that tells runs apart whose names alone do not."""
 
 HTML, PDF, TABLE = "compare.html", "compare.pdf", "differences.csv"
 """What is written."""
@@ -41,7 +46,7 @@ def compare_runs(paths: list[Path], out: Path | None) -> list[Path]:
     from reports.run.files import damage_named, written
 
     runs = read_runs(paths)
-    directory = out or paths[0].resolve().parent / "-".join(["compare", *(run.name[:_NAME_MAX] for run in runs)])
+    directory = out or _beside([path.resolve() for path in paths])
     with damage_named(*paths):
         compared = compare(runs)
         report = comparison_content(runs, compared)
@@ -53,6 +58,14 @@ def compare_runs(paths: list[Path], out: Path | None) -> list[Path]:
         written(directory / HTML, partial(write_html, report)),
         written(directory / PDF, partial(write_pdf, report)),
     ]
+
+
+def _beside(paths: list[Path]) -> Path:
+    """Return the directory beside the first run that is named by all of them, of which no other runs have the same."""
+    names = [path.name[:_NAME_MAX] for path in paths]
+    if any(path != paths[0].parent / name for path, name in zip(paths, names, strict=True)):
+        names.append(hashlib.sha256(b"\n".join(map(os.fsencode, paths))).hexdigest()[:_HASH_LETTERS])
+    return paths[0].parent / "-".join(["compare", *names])
 
 
 def _make(directory: Path) -> None:

@@ -8,7 +8,7 @@ from reports.compare.configuration import configuration_table, software_table, t
 from reports.compare.figures import PAIRS_MIN, Difference, differences
 from reports.compare.pairs import Pairs, paired
 from reports.compare.runs import Run
-from reports.compare.tables import LISTED_MAX, changed_table, difference_table, side_by_side, signed
+from reports.compare.tables import LISTED_MAX, changed, changed_table, difference_table, side_by_side, signed
 from reports.compare.tracks import most_changed
 from reports.document.blocks import Block, Card, Content, Heading, Section, Text, Verdict
 from reports.document.chart import Chart
@@ -100,6 +100,8 @@ def _figures(runs: Sequence[Run]) -> list[Block]:
     text = "Of every flight of each run, whether or not another run has it too. Figures after settling are of flights that settled."
     if len({len(run.data.summary) for run in runs}) > 1:
         text += " There is no difference from a run with another number of flights; those of the paired flights are below."
+    else:
+        text += " There is no difference of a figure that another number of flights has; those of the paired flights are below."
     return [Text(text), side_by_side(runs)]
 
 
@@ -110,9 +112,9 @@ def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
         table = changed_table(pairs)
         blocks += [Text(_difference_sentences(compared)), difference_table(pairs, compared.found)]
         if table is not None:
-            changed = count(pairs.no_longer_met | pairs.newly_met)
-            first = f", of which the first {LISTED_MAX} are listed" if changed > LISTED_MAX else ""
-            blocks += [Heading(f"Flights whose criteria changed: {changed:,}{first}"), table]
+            number = count(changed(pairs))
+            first = f", of which the first {LISTED_MAX} are listed" if number > LISTED_MAX else ""
+            blocks += [Heading(f"Flights that met, kept out or completed in one run alone: {number:,}{first}"), table]
         blocks += pair_charts(pairs, compared.found)
         blocks += [tracks] if tracks is not None else []
     else:
@@ -153,7 +155,7 @@ def _difference_sentences(compared: Compared) -> str:
 
 def _verdict(runs: Sequence[Run], compared: Sequence[Compared]) -> Verdict:
     unsafe = [of for of in compared if _new(of.pairs)]
-    worse = sum(count(of.pairs.no_longer_met) for of in compared)
+    worse = sum(count(of.pairs.no_longer) for of in compared)
     return Verdict(
         holds=not unsafe,
         complete=worse == 0 and all(run.state == "complete" for run in runs),
@@ -172,15 +174,19 @@ def headline(compared: Sequence[Compared]) -> str:
     if not any(of.differing for of in compared):
         others = "" if all(of.identical for of in compared) else "; other flights have no partner"
         return f"No figure differs in {what}{others}"
-    worse, better = (sum(count(mask) for mask in masks) for masks in zip(*(_turned(of.pairs) for of in compared), strict=True))
+    turns = zip(*(_turned(of.pairs) for of in compared), strict=True)
+    worse, better, rest = (sum(count(mask) for mask in masks) for masks in turns)
+    s = "s" * (rest == 1)
+    others = f"; {rest:,} that met in neither run no longer keep{s} out or complete{s} the mission" if rest else ""
     if not worse and not better:
-        return f"No criterion changed in {what}; figures differ"
+        return f"No flight changed between met and not met in {what}{others or '; figures differ'}"
     turned = [f"{n:,} {words}{'s' * (n == 1)}" for n, words in ((worse, "no longer meet"), (better, "newly meet")) if n]
-    return f"Of {what}, {' and '.join(turned)} the criteria"
+    return f"Of {what}, {' and '.join(turned)} the criteria{others}"
 
 
-def _turned(pairs: Pairs) -> tuple[Mask, Mask]:
-    return pairs.no_longer_met, pairs.newly_met
+def _turned(pairs: Pairs) -> tuple[Mask, Mask, Mask]:
+    """Return the flights that are no longer met, those that newly are, and those that are worse without having been met."""
+    return pairs.no_longer_met, pairs.newly_met, pairs.no_longer & ~pairs.no_longer_met
 
 
 def _new(pairs: Pairs) -> int:
@@ -198,9 +204,10 @@ def _lines(compared: Compared) -> list[str]:
     if new := _new(pairs):
         what = "violate the keep-out area or lose the aircraft" if new > 1 else "violates the keep-out area or loses the aircraft"
         lines.append(f"{other}: {new:,} flight{'s' * (new > 1)} {what}, and not in {first}")
-    for mask, where in ((pairs.no_longer_met, first), (pairs.newly_met, other)):
+    turned = [*((words, mask, first) for words, mask in pairs.in_first_alone.items()), ("met", pairs.newly_met, other)]
+    for words, mask, where in turned:
         if count(mask):
-            lines.append(f"{other}: {count(mask):,} of {len(pairs):,} paired flights met in {where} alone")
+            lines.append(f"{other}: {count(mask):,} of {len(pairs):,} paired flights {words} in {where} alone")
     lines += [f"{run.letter}: the run is {run.state}" for run in (pairs.other,) if run.state != "complete"]
     return lines
 

@@ -1,6 +1,6 @@
 """Which flights of two runs are the same: of the same point or case, with the same number and the same seed."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,10 +9,17 @@ import pandas as pd
 
 from reports.compare.runs import Run
 from reports.errors import ReportError
-from reports.run.columns import Mask, met
+from reports.run.columns import Mask, completed, kept_out, met
 
 _NAMING = ("flight_id", "trial", "variant")
 """Columns of ``draws.csv`` that name a flight."""
+
+_STATES: Mapping[str, Callable[[pd.DataFrame], Mask]] = {
+    "met": met,
+    "known to keep out": kept_out,
+    "completed their mission": completed,
+}
+"""What a flight may be in one of two runs alone."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,6 +62,22 @@ class Pairs:
     def newly_met(self) -> Mask:
         """Flights that meet every criterion in the other run alone."""
         return ~met(self.before) & met(self.after)
+
+    @property
+    def in_first_alone(self) -> dict[str, Mask]:
+        """Flights that met every criterion, are known to keep out, or completed their mission in the first run alone."""
+        return {words: state(self.before) & ~state(self.after) for words, state in _STATES.items()}
+
+    @property
+    def in_other_alone(self) -> dict[str, Mask]:
+        """The same of the other run."""
+        return {words: state(self.after) & ~state(self.before) for words, state in _STATES.items()}
+
+    @property
+    def no_longer(self) -> Mask:
+        """Flights that are worse in the other run in any of these."""
+        worse: Mask = np.logical_or.reduce(list(self.in_first_alone.values()))
+        return worse
 
     def differing_inputs(self) -> dict[str, int]:
         """Return the keys that were sampled or swept in both runs with another value in some pairs, and in how many."""

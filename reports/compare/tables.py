@@ -54,7 +54,7 @@ _WHOLE = (
 
 
 def side_by_side(runs: Sequence[Run]) -> Table:
-    """Return the figures of each run, of all of its flights, and their differences from the first, where both have as many."""
+    """Return figures of each run, of all of its flights, and their differences from the first where as many flights have them."""
     tables = [run.data.summary for run in runs]
     sizes = [len(rows) for rows in tables]
     alike = [size == sizes[0] for size in sizes[1:]]
@@ -65,10 +65,14 @@ def side_by_side(runs: Sequence[Run]) -> Table:
         rows.append([words, *(f"{found:,} of {size:,}" for found, size in zip(counts, sizes, strict=True)), *changes])
     for whole in _WHOLE:
         figure = MEASURES[whole.measure].figure
-        values = [_taken(whole, table) for table in tables]
+        known = [_known(whole, table) for table in tables]
+        values = [float(whole.taken(of)) if len(of) else None for of in known]
         if any(value is not None for value in values):
             unit = "" if figure.unit == "-" else f" [{figure.unit}]"
-            changes = [_change(value, values[0], figure) if same else "–" for value, same in zip(values[1:], alike, strict=True)]
+            changes = [
+                _change(value, values[0], figure) if same and len(of) == len(known[0]) else "–"
+                for value, of, same in zip(values[1:], known[1:], alike, strict=True)
+            ]
             rows.append([f"{whole.words}{unit}", *(number(value, _pattern(figure.digits)) for value in values), *changes])
     letters = [run.letter for run in runs]
     return Table(
@@ -79,11 +83,11 @@ def side_by_side(runs: Sequence[Run]) -> Table:
     )
 
 
-def _taken(whole: _Whole, rows: pd.DataFrame) -> float | None:
+def _known(whole: _Whole, rows: pd.DataFrame) -> Array:
+    """Return the figure of the flights that have it."""
     measure = MEASURES[whole.measure]
-    values = measure.figure.scale * measure.values(rows)
-    known = values[np.isfinite(values)]
-    return float(whole.taken(known)) if len(known) else None
+    values: Array = measure.figure.scale * measure.values(rows)
+    return values[np.isfinite(values)]
 
 
 def _change(value: float | None, first: float | None, figure: Figure) -> str:
@@ -131,17 +135,36 @@ def difference_table(pairs: Pairs, found: dict[str, Difference]) -> Table:
     return Table(head=head, rows=rows, widths=[2.7, 0.6, 0.9, 0.8, 1.0, 1.5, 1.6, 0.9], bold=bold)
 
 
+def changed(pairs: Pairs) -> Mask:
+    """Return which flights met, kept out or completed in one run alone."""
+    either: Mask = np.logical_or.reduce([pairs.no_longer, *pairs.in_other_alone.values()])
+    return either
+
+
+def _in_one_alone(pairs: Pairs, i: int) -> str:
+    """Return what a flight is in one run alone: where it is met there, nothing else."""
+    found = [
+        f"{words} in {run.letter} alone"
+        for run, states in ((pairs.first, pairs.in_first_alone), (pairs.other, pairs.in_other_alone))
+        for words, mask in states.items()
+        if mask[i]
+    ]
+    met_alone = [words for words in found if words.startswith("met ")]
+    return ", ".join(met_alone or found)
+
+
 def changed_table(pairs: Pairs) -> Table | None:
-    """Return the flights whose criteria changed, those that are no longer met first; None if there are none."""
-    worse, better = pairs.no_longer_met, pairs.newly_met
-    places = [*np.flatnonzero(worse), *np.flatnonzero(better)]
+    """Return the flights that met, kept out or completed in one run alone, those that are no longer met first; None without any."""
+    worse, all_of_them = pairs.no_longer, changed(pairs)
+    order = (pairs.no_longer_met, worse & ~pairs.no_longer_met, all_of_them & ~worse)
+    places = [int(i) for mask in order for i in np.flatnonzero(mask)]
     if not places:
         return None
     first, other = pairs.first.letter, pairs.other.letter
     rows = [
         [
             pairs.names[i],
-            f"met in {first if worse[i] else other} alone",
+            _in_one_alone(pairs, i),
             ending(pairs.before.iloc[i]),
             ending(pairs.after.iloc[i]),
         ]

@@ -1,5 +1,7 @@
 """The report of patrols: how many ships were served, with what verdicts, and what an oracle would have done."""
 
+import math
+
 import numpy as np
 
 from reports.design.section import innerloop_section
@@ -52,37 +54,71 @@ def patrol_content(run: RunData) -> Findings:
 def _verdict(patrols: Patrols) -> Verdict:
     rows, config = patrols.run.summary, patrols.run.manifest["config"]["patrol"]
     planned = int(patrols.run.manifest["flights_planned"])
-    violations, wrong, oracle = (patrols.total(name) for name in ("keepout_violations", "wrong", "oracle_verdicts"))
-    correct, gone, out = patrols.total("correct"), count(lost(rows)), count(kept_out(rows))
-    enough, right = patrols.share >= config["oracle_share_min"], patrols.wrong_share <= config["wrong_share_max"]
-    per_hour = patrols.total("served") / patrols.hours if patrols.hours else 0.0
-    figures = [
-        Card(
-            "Correct verdicts, over the oracle's", f"{correct} of {oracle}", f"≥ {100.0 * config['oracle_share_min']:g} %", enough
-        ),
-        Card("Wrong verdicts", f"{wrong} of {patrols.total('verdicts')}", f"≤ {100.0 * config['wrong_share_max']:g} %", right),
-        Card("Keep-out violations", f"{violations}", "0", not violations),
-        Card("Ships served an hour", f"{per_hour:.1f}"),
-        Card("Closest approach to a ship that was served", _least(column(rows, "min_distance_m"))),
-        Card("Closest approach to any other ship", _least(column(rows, "others_distance_min_m"))),
-        Card("Ships served", f"{patrols.total('served')} of {patrols.total('ships')}"),
-        Card("Flights beside ships without a verdict", f"{patrols.total('open')}"),
-        Card(
-            "Patrols that kept out, with their aircraft", f"{count(met(rows))} of {len(rows)}", "all", count(met(rows)) == len(rows)
-        ),
-    ]
-    kept = not violations and out == len(rows) and not gone
+    served, violations, correct, oracle = (
+        patrols.total(name) for name in ("served", "keepout_violations", "correct", "oracle_verdicts")
+    )
+    enough, right = correct >= config["oracle_share_min"] * oracle, patrols.wrong_share <= config["wrong_share_max"]
+    kept = served > 0 and not violations and count(kept_out(rows)) == len(rows) and not count(lost(rows))
     return Verdict(
         holds=kept,
         complete=kept and enough and right and len(rows) == planned,
-        headline=f"{correct} correct verdicts, {100.0 * patrols.share:.0f} % of an oracle's, {wrong} wrong",
-        detail=f"{patrols.total('served')} of {patrols.total('ships')} ships were served in {patrols.hours:.1f} h,"
-        f" {per_hour:.1f} an hour; {violations} keep-out violations.",
+        headline=_headline(patrols),
+        detail=f"{served} of {patrols.total('ships')} ships were served in {patrols.hours:.1f} h,"
+        f" {_per_hour(patrols)} an hour; {violations} keep-out violation{'s' * (violations != 1)}.",
         failures=[f"{row['flight_id']}: {row['message']}" for _, row in rows.iterrows() if row["message"]],
-        figures=figures,
+        figures=_figures(patrols, enough=enough, right=right),
     )
 
 
+def _figures(patrols: Patrols, *, enough: bool, right: bool) -> list[Card]:
+    """Return what the verdict rests on. What nothing was flown or judged for has no criterion: nothing would meet it."""
+    rows, config = patrols.run.summary, patrols.run.manifest["config"]["patrol"]
+    served, verdicts, oracle = (patrols.total(name) for name in ("served", "verdicts", "oracle_verdicts"))
+    violations, kept = patrols.total("keepout_violations"), count(met(rows))
+    least, most = (f"{sign} {100.0 * config[key]:g} %" for sign, key in (("≥", "oracle_share_min"), ("≤", "wrong_share_max")))
+    return [
+        Card(
+            "Correct verdicts, over the oracle's",
+            f"{patrols.total('correct')} of {oracle}",
+            *((least, enough) if oracle else ()),
+        ),
+        Card("Wrong verdicts", f"{patrols.total('wrong')} of {verdicts}", *((most, right) if verdicts else ())),
+        Card("Keep-out violations", f"{violations}", "0", served > 0 and not violations),
+        Card("Ships served", f"{served} of {patrols.total('ships')}", "≥ 1", served > 0),
+        Card("Closest approach to a ship that was served", _least(column(rows, "min_distance_m"))),
+        _others(patrols),
+        Card("Ships served an hour", _per_hour(patrols)),
+        Card("Flights beside ships without a verdict", f"{patrols.total('open')}"),
+        Card(
+            "Patrols that kept out, with their aircraft",
+            f"{kept} of {len(rows)}",
+            *(("all", kept == len(rows)) if served else ()),
+        ),
+    ]
+
+
+def _per_hour(patrols: Patrols) -> str:
+    return f"{patrols.total('served') / patrols.hours if patrols.hours else 0.0:.1f}"
+
+
+def _headline(patrols: Patrols) -> str:
+    """Return how many verdicts there are, beside the oracle's."""
+    served, correct, wrong, oracle = (patrols.total(name) for name in ("served", "correct", "wrong", "oracle_verdicts"))
+    if not served:
+        return f"No ship was served, and an oracle has {oracle or 'no'} correct verdict{'s' * (oracle > 1)}"
+    share = f"{100.0 * correct / oracle:.0f} % of an oracle's" if oracle else "an oracle has none"
+    return f"{correct} correct verdicts, {share}, {wrong} wrong"
+
+
+def _others(patrols: Patrols) -> Card:
+    """Return how near any ship came that was not served just then, with the keep-out radius that holds for her, too."""
+    name, distances = "Closest approach to any other ship", column(patrols.run.summary, "others_distance_min_m")
+    if not np.isfinite(distances).any():
+        return Card(name, "–")
+    radius = float(patrols.run.manifest["config"]["keepout"]["radius_m"])
+    return Card(name, _least(distances), f"≥ {radius:g} m", bool(np.nanmin(distances) >= radius))
+
+
 def _least(distances: Array) -> str:
-    """Return the least of some distances [m], of those that are known."""
-    return f"{np.nanmin(distances):.0f} m" if np.isfinite(distances).any() else "–"
+    """Return the least of some distances [m], of those that are known, rounded down: none is shown larger than it was."""
+    return f"{math.floor(10.0 * np.nanmin(distances)) / 10.0:.1f} m" if np.isfinite(distances).any() else "–"

@@ -2,18 +2,17 @@
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from common.files import is_file
 from common.physics.units import SECONDS_PER_HOUR
 from common.physics.wind import wind_towards
 from common.run_layout import PHASES, SHIPS
 from reports.run.columns import Array, column
 from reports.run.run_data import RunData
+from reports.run.table_file import read_table
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,12 +74,6 @@ class Patrols:
         return float(np.nansum(column(self.run.summary, "duration_s"))) / SECONDS_PER_HOUR
 
     @property
-    def share(self) -> float:
-        """Return correct verdicts over the oracle's; 1 where that has none."""
-        oracle = self.total("oracle_verdicts")
-        return self.total("correct") / oracle if oracle else 1.0
-
-    @property
     def wrong_share(self) -> float:
         """Return wrong ones among all verdicts; 0 where there are none."""
         verdicts = self.total("verdicts")
@@ -89,7 +82,7 @@ class Patrols:
 
 def read_patrols(run: RunData) -> Patrols:
     """Return the patrols of a run."""
-    ships, phases = (_table(run.path / name) for name in (SHIPS, PHASES))
+    ships, phases = (read_table(run.path / name, columns=["patrol"]) for name in (SHIPS, PHASES))
     return Patrols(
         run=run,
         patrols=[
@@ -103,9 +96,3 @@ def read_patrols(run: RunData) -> Patrols:
         ],
         ships=ships,
     )
-
-
-def _table(path: Path) -> pd.DataFrame:
-    if not is_file(path):
-        return pd.DataFrame(columns=["patrol"])
-    return pd.read_csv(path, keep_default_na=False, na_values=[""])

@@ -3,7 +3,8 @@
 Every entrant flies the same starts and the same air. Resampled are these, for all entrants together, so that what is common to all
 of them, such as a wind that is hard on everyone, does not count as a difference (B. Efron, R. J. Tibshirani, "An Introduction to
 the Bootstrap", 1993, chapters 8 and 13). Percentile intervals are used: of a handful of flights they are too narrow rather than too
-wide, and that is to be said beside them.
+wide, and that is to be said beside them. An entrant that lacks the figure of a flight of which another has it has a mean over other
+flights, perhaps easier ones: it is not compared.
 """
 
 from dataclasses import dataclass
@@ -21,14 +22,16 @@ class Estimate:
     Attributes
     ----------
     mean, low, high : mean over the flights, and its interval; not a number where there is none
-    best : whether no other entrant's mean is better
-    behind_low, behind_high : interval of the difference from the best entrant's mean; 0 for the best
+    whole : whether it has the figure of every flight of which any entrant has it; otherwise it is not compared
+    best : whether it is compared, and the mean of no other that is compared is better
+    behind_low, behind_high : interval of the difference from the best entrant's mean; 0 for the best, not a number if not compared
     flights : number of flights that have the figure
     """
 
     mean: float
     low: float
     high: float
+    whole: bool
     best: bool
     behind_low: float
     behind_high: float
@@ -60,25 +63,27 @@ def paired_estimates(
         members[generator.integers(len(members), size=(resamples, len(members)))]
         for members in (np.flatnonzero(strata == stratum) for stratum in dict.fromkeys(strata.tolist()))
     ], axis=1) if len(strata) else np.empty((resamples, 0), dtype=int)  # fmt: skip
-    known = np.isfinite(values).sum(axis=1)
+    known = np.isfinite(values)
+    whole = np.logical_and(known[:, known.any(axis=0)].all(axis=1), known.any())
     means = np.array([_mean(row) for row in values])
     sampled = np.array([_means(row, columns) for row in values])
-    worth = means if greater_is_better else -means
+    worth = np.where(whole, means if greater_is_better else -means, np.nan)
     best = int(np.nanargmax(worth)) if np.isfinite(worth).any() else -1
     tail = 50.0 * (1.0 - confidence)
     found = []
     for i, mean in enumerate(means):
         low, high = _interval(sampled[i], tail)
-        behind = _interval(sampled[i] - sampled[best], tail) if best >= 0 else (np.nan, np.nan)
+        behind = _interval(sampled[i] - sampled[best], tail) if whole[i] else (np.nan, np.nan)
         found.append(
             Estimate(
                 mean=float(mean),
                 low=low,
                 high=high,
+                whole=bool(whole[i]),
                 best=i == best,
                 behind_low=float(behind[0]),
                 behind_high=float(behind[1]),
-                flights=int(known[i]),
+                flights=int(known[i].sum()),
             )
         )
     return found

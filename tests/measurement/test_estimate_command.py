@@ -274,32 +274,3 @@ def test_files_that_are_not_there_are_refused(tmp_path, capsys):
     (tmp_path / "a.csv").write_text("time_s,so2_ppb,co2_ppm\n", encoding="utf-8")
     assert main([str(tmp_path / "a.csv"), "--config", str(tmp_path / "none.toml"), "--no-report"]) == 2
     assert "give a TOML file" in capsys.readouterr().err
-
-
-def test_a_directory_that_cannot_be_written_is_refused(logged, capsys):
-    (logged.parent / "out").write_text("in the way", encoding="utf-8")
-    assert run(logged) == 2
-    assert "give another --out" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("manifest", ['{"study": "flights", "state": "complete"}', "[]", "{"])
-def test_the_command_does_not_write_over_a_run_of_another_kind(logged, capsys, manifest):
-    out = logged.parent / "out"
-    out.mkdir()
-    (out / "manifest.json").write_text(manifest, encoding="utf-8")
-    assert run(logged) == 2
-    told = capsys.readouterr().err
-    assert told == f"error: output directory '{out}' holds another run; choose another --out\n"
-    assert [path.name for path in out.iterdir()] == ["manifest.json"]
-    assert (out / "manifest.json").read_text(encoding="utf-8") == manifest
-
-
-def test_an_estimate_made_anew_leaves_no_report_of_the_older_one(logged):
-    assert run(logged) == 0
-    out = logged.parent / "out"
-    for name in ("report.html", "report.pdf"):
-        (out / name).write_text("of the older estimate", encoding="utf-8")
-    (out / "export").mkdir()
-    (out / "export" / "flight.kml").write_text("of the older estimate", encoding="utf-8")
-    assert run(logged) == 0
-    assert sorted(path.name for path in out.iterdir()) == ["estimate.json", "manifest.json", "samples.csv"]

@@ -1,8 +1,11 @@
 """What the report of an arena shows, of a quick one on the kinematic vehicle."""
 
+import json
 import math
 import re
+from dataclasses import replace
 
+import pandas as pd
 import pytest
 
 from reports.arena.charts import clusters, crossing_chart, effort_charts, track_charts, worth_chart
@@ -14,6 +17,9 @@ from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
+from scenarios.schema.load import load_study
+from scenarios.studies.arena.entrants import Entrant
+from scenarios.studies.arena.results import estimates
 from tests.reports.report_parts import blocks_of, built, flown
 
 QUICK = (
@@ -125,6 +131,51 @@ def test_what_the_conditions_set_is_said_in_words(arena):
 def test_the_headline_names_the_best_of_each_task(run):
     verdict = arena_content(run).verdict
     assert re.match(r"Tracking: npfg is best, \d+\.\d\d m rms; circling: npfg \(circle\) is best", verdict.headline)
+
+
+def of_a_few_flights(run, path, missing):
+    """Return the report of a copy of an arena of which the flights that are named by what they contain could not be flown."""
+    rows, record = run.summary.copy(), json.loads((run.path / "arena.json").read_text(encoding="utf-8"))
+    gone = rows["flight_id"].str.contains(missing)
+    rows.loc[gone, ["min_distance_m", "criteria_met", "kept_out"]] = [math.nan, False, False]
+    rows.loc[gone, ["outcome", "message"]] = ["infeasible", "too near"]
+    windows = pd.read_csv(run.path / "window.csv").set_index("flight_id")
+    figures = {
+        name: [{} if gone[i] else windows.loc[row["flight_id"]].dropna().to_dict() for i, row in of.iterrows()]
+        for name, of in rows.groupby("trial")
+    }
+    named = ("name", "law", "task", "given", "defaults")
+    entrants = [Entrant(**{key: entry[key] for key in named}) for entry in record["entrants"]]
+    record["estimates"] = estimates(entrants, figures, load_study("arena", QUICK).arena, 1)
+    (path / "arena.json").write_text(json.dumps(record), encoding="utf-8")
+    return arena_content(replace(run, path=path, summary=rows))
+
+
+def test_a_law_that_lacks_flights_is_named_and_not_called_best(run, tmp_path):
+    found = of_a_few_flights(run, tmp_path, "wind_npfg_kinematic_00001")
+    assert found.verdict.headline.startswith("Tracking: pure pursuit is best, ")
+    assert found.verdict.tone == "warn"
+    assert found.verdict.failures == ["npfg: 1 of 4 flights could not be flown, and it is not compared: infeasible: too near"]
+    table = tracking_table(read_arena(replace(run, path=tmp_path)), tracking=True)
+    # Its mean is by far the better one, of the flights that it has.
+    assert [row[1] for row in table.rows] == ["pure pursuit", "npfg"]
+    assert [row[2].endswith(", 3 of 4") for row in table.rows] == [False, True]
+    assert {row for row, _ in table.bold} == {0}
+    each = by_condition_table(read_arena(replace(run, path=tmp_path)), ERROR, tracking=True)
+    assert [" of " in cell for cell in each.rows[1][2:]] == [False, True, True]
+
+
+def test_an_arena_of_which_nothing_was_flown_is_red(run, tmp_path):
+    verdict = of_a_few_flights(run, tmp_path, "kinematic").verdict
+    assert (verdict.headline, verdict.tone) == ("Nothing was flown", "bad")
+    assert "npfg: 4 of 4 flights could not be flown: infeasible: too near" in verdict.failures
+    assert not any("best" in card.name.lower() for card in verdict.figures)
+    assert {card.name: card.met for card in verdict.figures}["Keep-out violations"] is False
+
+
+def test_where_each_law_lacks_another_flight_none_is_called_best(run, tmp_path):
+    headline = of_a_few_flights(run, tmp_path, "calm_npfg_kinematic_00000|wind_pure_pursuit_kinematic_00001").verdict.headline
+    assert headline.startswith("Tracking: no law is called best, as each lacks flights; circling: npfg (circle) is best")
 
 
 def test_an_arena_that_was_not_evaluated_is_reported_as_flights(path, run):

@@ -34,6 +34,45 @@ def test_the_verdict_compares_with_the_oracle(run):
     assert figures["Correct verdicts, over the oracle's"].met == (row["correct"] >= 0.8 * row["oracle_verdicts"])
 
 
+def of_row(run, **values):
+    """Return the verdict on a run whose only row has other values."""
+    return patrol_content(replace(run, summary=run.summary.assign(**values))).verdict
+
+
+@pytest.mark.parametrize(("oracle", "words"), [(0, "no correct verdict"), (1, "1 correct verdict"), (2, "2 correct verdicts")])
+def test_patrols_that_served_no_ship_are_red_and_claim_no_share(run, oracle, words):
+    none = dict.fromkeys(("served", "verdicts", "correct", "wrong", "open", "keepout_violations"), 0)
+    found = of_row(run, **none, oracle_verdicts=oracle, kept_out=True, criteria_met=True)
+    assert (found.headline, found.tone) == (f"No ship was served, and an oracle has {words}", "bad")
+    figures = {card.name: card.met for card in found.figures}
+    assert figures["Ships served"] is False
+    assert figures["Keep-out violations"] is False
+    assert figures["Correct verdicts, over the oracle's"] is (False if oracle else None)
+    assert figures["Wrong verdicts"] is figures["Patrols that kept out, with their aircraft"] is None
+
+
+def test_a_share_of_an_oracle_without_verdicts_is_not_told(run):
+    found = of_row(run, correct=0, wrong=1, verdicts=1, oracle_verdicts=0)
+    assert found.headline == "0 correct verdicts, an oracle has none, 1 wrong"
+
+
+def test_the_closest_approach_to_other_ships_is_judged_by_the_keep_out_radius(run):
+    name = "Closest approach to any other ship"
+    for distance, value, met in ((199.99, "199.9 m", False), (200.0, "200.0 m", True)):
+        (card,) = [card for card in of_row(run, others_distance_min_m=distance).figures if card.name == name]
+        assert (card.value, card.limit, card.met) == (value, "≥ 200 m", met)
+
+
+def test_names_that_a_spreadsheet_would_compute_are_found_in_every_table(run, tmp_path):
+    for name in ("ships.csv", "phases.csv"):
+        table = pd.read_csv(run.path / name)
+        named = table.assign(patrol="'=p_00000", flight_id="'=p_00000_" + table["ship"].astype(str))
+        named.to_csv(tmp_path / name, index=False)
+    renamed = replace(run, path=tmp_path, summary=run.summary.assign(flight_id="=p_00000"))
+    (patrol,) = read_patrols(renamed).patrols
+    assert (len(patrol.ships), len(patrol.phases)) == (2, len(pd.read_csv(run.path / "phases.csv")))
+
+
 def test_bars_are_as_long_as_the_stretches_and_stand_in_the_ships_rows(run):
     patrols = read_patrols(run)
     (patrol,) = patrols.patrols

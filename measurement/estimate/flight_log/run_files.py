@@ -54,8 +54,11 @@ SAMPLE_MEANINGS = {
 }
 """Columns of ``SAMPLES``, and what they are."""
 
+SOURCE_HASH = "source_hash"
+"""Entry of the manifest with the hash of the log's content."""
+
 _HASH_LETTERS = 16
-"""Letters of the hash of flight and configuration that are kept."""
+"""Letters of a hash that are kept."""
 
 _TIME_DIGITS = 15
 """Digits of a time, all that a floating-point number has; the other columns have six."""
@@ -81,6 +84,27 @@ def refuse_another_run(directory: Path) -> None:
         study = None
     if study != STUDY:
         raise MeasurementError(f"output directory '{directory}' holds another run; choose another --out")
+
+
+def refuse_another_log(directory: Path, source: Path) -> None:
+    """Refuse a directory with the estimate of another log, which nobody asked to replace: logs of one name share the default.
+
+    Parameters
+    ----------
+    directory : that is named by the log alone
+    source : file of the log, which can be read
+
+    Raises
+    ------
+    MeasurementError : it holds the estimate of a log with other content
+    """
+    try:
+        known = json.loads((directory / MANIFEST).read_text(encoding="utf-8")).get(SOURCE_HASH)
+    except (FileNotFoundError, NotADirectoryError):
+        return
+    # Estimates of earlier versions do not say of what they are.
+    if known is not None and known != _digest(source.read_bytes()):
+        raise MeasurementError(f"'{directory}' holds the estimate of another log than '{source}'; give another --out")
 
 
 def write_run(
@@ -145,7 +169,7 @@ def build_report(directory: Path) -> str:
 
 def _manifest(analysis: Analysis, source: Path, config: Path | None, given: Sequence[str]) -> dict[str, Any]:
     command, revision = _told(given)
-    digest = hashlib.sha256(source.read_bytes() + (config.read_bytes() if config else b"")).hexdigest()[:_HASH_LETTERS]
+    log = source.read_bytes()
     return {
         "format": FORMAT,
         "study": STUDY,
@@ -156,7 +180,8 @@ def _manifest(analysis: Analysis, source: Path, config: Path | None, given: Sequ
         "state": "complete",
         "overrides": [],
         "config": {"description": f"Logged flight {source.name}, measured with: {analysis.instrument.title}."},
-        "config_hash": digest,
+        "config_hash": _digest(log + (config.read_bytes() if config else b"")),
+        SOURCE_HASH: _digest(log),
         "git_revision": revision,
         "python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}",
@@ -164,6 +189,10 @@ def _manifest(analysis: Analysis, source: Path, config: Path | None, given: Sequ
         "packages": {name: importlib.metadata.version(name) for name in _PACKAGES},
         "files": [ESTIMATE, SAMPLES],
     }
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:_HASH_LETTERS]
 
 
 def _told(given: Sequence[str]) -> tuple[str, str]:

@@ -30,6 +30,9 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
         "oracle_verdicts": "correct verdicts of an oracle, which knows how long each ship takes",
         "told_verdicts": "ships with a correct verdict if each is served alone, and the UAV is told where the plume is",
         "served_per_hour": "ships served in an hour",
+        "keepout_violations": "how often it entered the keep-out area of the ship that it served; and on the way to how many"
+        " ships, or beside them, it came nearer than r_min to another one",
+        "message": "why no ship was served, or why it did not keep out everywhere or come through",
         "duration_s": "duration of the patrol",
         "transit_s": "time on the way between ships",
         "beside_s": "time beside ships",

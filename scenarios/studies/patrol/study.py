@@ -66,17 +66,19 @@ class PatrolStudy(FlightStudy):
         config = self._patrols.patrol
         enough = counts.correct >= config.oracle_share_min * counts.oracle
         right = counts.wrong <= config.wrong_share_max * counts.verdicts
-        met = counts.met == self.planned and enough and right
+        met = counts.met == self.planned and enough and right and counts.served > 0
+        share = f"{100.0 * counts.correct / counts.oracle:.0f} %" if counts.oracle else "–"
         lines = [
             f"patrols: {self.planned} planned, {counts.done} flown; {counts.served} of {counts.ships} ships served in"
             f" {counts.hours:.3g} h, {counts.per_hour:.2f} an hour",
             f"verdicts: {counts.correct} correct, {counts.wrong} wrong, {counts.open} open; the oracle's: {counts.oracle}"
-            f" ({100.0 * counts.share:.0f} %, required {100.0 * config.oracle_share_min:g} %)",
+            f" ({share}, required {100.0 * config.oracle_share_min:g} %)",
             f"keep-out violations: {counts.violations}; patrols that kept out: {counts.kept_out} of {counts.done}",
             *(f"    {row['flight_id']}: {row['message']}" for row in counts.failed),
             f"{f'exit status {int(not met)}: ' if counts.done == self.planned else 'so far '}{counts.met} of {self.planned} patrols"
             f" kept out and brought their aircraft through, and verdicts are {'' if enough else 'not '}as many as"
-            f" patrol.oracle_share_min and {'' if right else 'not '}as right as patrol.wrong_share_max requires",
+            f" patrol.oracle_share_min and {'' if right else 'not '}as right as patrol.wrong_share_max requires"
+            + ("" if counts.served else "; no ship was served"),
         ]
         manifest: dict[str, Any] = {
             "patrols_met": counts.met, "ships_served": counts.served, "verdicts": counts.verdicts, "verdicts_wrong": counts.wrong,
@@ -96,7 +98,7 @@ class PatrolCounts:
     oracle : verdicts of an oracle that knows everything
     violations : of keep-out areas
     hours : of all patrols [h]
-    failed : rows of patrols that failed or served no ship
+    failed : rows of patrols that served no ship, did not keep out, or did not come through
     """
 
     done: int
@@ -135,11 +137,6 @@ class PatrolCounts:
             hours=sum(row.get("duration_s", 0.0) for row in rows) / SECONDS_PER_HOUR,
             failed=[row for row in rows if row["message"]],
         )
-
-    @property
-    def share(self) -> float:
-        """Return correct verdicts over the oracle's; 1 where the oracle has none."""
-        return self.correct / self.oracle if self.oracle else 1.0
 
     @property
     def per_hour(self) -> float:

@@ -98,9 +98,11 @@ def patrol_figures(ships: Sequence[Row], stretches: Sequence[Row], *, endurance:
     judged = [row for row in served if row["verdict"] != "open"]
     duration = max((row["ends_s"] for row in stretches), default=0.0)
     transit = sum(row["ends_s"] - row["begins_s"] for row in stretches if row["phase"] == TRANSIT)
-    others = min((row["others_distance_min_m"] for row in served if "others_distance_min_m" in row), default=math.inf)
+    passed = [row["others_distance_min_m"] for row in served if "others_distance_min_m" in row]
+    others = min(passed, default=math.inf)
     lost = any(row["outcome"] in LOST for row in served)
-    violations = sum(int(row.get("keepout_violations", 0)) for row in served)
+    # On each way to a ship and beside her, that of other ships counts once.
+    violations = sum(int(row.get("keepout_violations", 0)) for row in served) + sum(int(near < keepout_radius) for near in passed)
     kept_out = all(row.get("kept_out", False) for row in served) and others >= keepout_radius
     figures: dict[str, Any] = {
         "ships": len(ships),
@@ -117,10 +119,34 @@ def patrol_figures(ships: Sequence[Row], stretches: Sequence[Row], *, endurance:
         "kept_out": kept_out,
         "aircraft_lost": lost,
         "outcome": (Outcome.AIRCRAFT_LOST if lost else Outcome.COMPLETED).value,
-        "message": "" if served else "no ship can be served within patrol.endurance_s",
+        "message": _message(served, others, keepout_radius),
         "criteria_met": kept_out and not lost,
     }
     near = [row["min_distance_m"] for row in served if "min_distance_m" in row]
     figures |= {"min_distance_m": min(near)} if near else {}
     figures |= {"others_distance_min_m": others} if math.isfinite(others) else {}
     return figures | ({"served_per_hour": SECONDS_PER_HOUR * len(served) / duration} if duration else {})
+
+
+def _message(served: Sequence[Row], others: float, keepout_radius: float) -> str:
+    """Return why a patrol served no ship, or did not keep out with its aircraft; no word if it did.
+
+    Parameters
+    ----------
+    served : rows of the ships that were served
+    others : closest approach to any other ship [m]
+    keepout_radius : r_min [m]
+    """
+    if not served:
+        return "no ship can be served within patrol.endurance_s"
+    failed = [row for row in served if row["outcome"] in LOST or not row.get("kept_out", False)]
+    near = [f"came within {others:.0f} m of another ship"] if others < keepout_radius else []
+    return "; ".join([*near, *(f"ship {row['ship']}: {_ended(row)}" for row in failed)])
+
+
+def _ended(row: Row) -> str:
+    """Return how the flight beside a ship ended: its outcome, its violations and its message."""
+    inside = int(row.get("keepout_violations", 0))
+    violations = f"{inside} keep-out violation{'s' * (inside > 1)}" if inside else ""
+    ended = "" if inside and row["outcome"] == Outcome.COMPLETED.value else str(row["outcome"]).replace("_", " ")
+    return ": ".join(words for words in (ended, violations, str(row.get("message") or "")) if words)

@@ -108,7 +108,7 @@ def test_a_figure_that_differs_in_its_last_bit_is_a_difference(first, same):
     rows.loc[1, "end_distance_m"] = np.nextafter(rows.loc[1, "end_distance_m"], np.inf)
     compared = compare(runs)
     assert compared[0].differing == ["end_distance_m"]
-    assert headline(compared) == "No criterion changed in 3 pairs of flights; figures differ"
+    assert headline(compared) == "No flight changed between met and not met in 3 pairs of flights; figures differ"
     comparison_content(runs, compared)
 
 
@@ -146,6 +146,34 @@ def test_a_new_violation_or_a_lost_aircraft_makes_it_red(first, same, change):
     # The other way round the flight is better.
     back = comparison_content(runs[::-1], compare(runs[::-1])).verdict
     assert (back.holds, back.complete) == (True, True)
+
+
+def test_a_flight_that_met_in_neither_run_and_cannot_be_flown_any_more_is_worse(first, same):
+    runs = read_runs([first, same])
+    for run in runs:
+        run.data.summary.loc[0, "criteria_met"] = False
+    rows = runs[1].data.summary
+    known = rows.select_dtypes("number").columns.drop(["seed"])
+    rows[known] = rows[known].astype(float)
+    rows.loc[0, known] = np.nan
+    rows.loc[0, ["outcome", "message", "kept_out"]] = ["infeasible", "too fast", False]
+    report = comparison_content(runs, compare(runs))
+    assert report.verdict.tone == "warn"
+    changed = "No flight changed between met and not met in 3 pairs of flights"
+    assert report.verdict.headline == f"{changed}; 1 that met in neither run no longer keeps out or completes the mission"
+    assert report.verdict.failures == [
+        "B: 1 of 3 paired flights known to keep out in A alone", "B: 1 of 3 paired flights completed their mission in A alone"
+    ]  # fmt: skip
+    listed = next(table for table in blocks_of(report, Table, "flightsb") if table.head[0] == "Flight")
+    ((_, alone, _, ended),) = listed.rows
+    assert alone == "known to keep out in A alone, completed their mission in A alone"
+    assert "too fast" in ended
+    (figures,) = blocks_of(report, Table, "figures")
+    cells = {row[0]: row[1:] for row in figures.rows}
+    assert cells["Missions completed"] == ["3 of 3", "2 of 3", "−1"]
+    # Two flights have the figure in B, three in A: a sum over other flights is no difference.
+    assert cells["Plume crossings after settling, all flights"] == ["9", "6", "–"]
+    assert {cells[name][2] for name in cells if "[" in name} == {"–"}
 
 
 def test_several_runs_are_each_compared_with_the_first(first, larger, same):

@@ -59,6 +59,13 @@ def test_tracks_are_exported_with_the_vessel_that_was_flown_about(run_path):
     assert tracks["velocity_north_mps"].isna().all()
 
 
+@pytest.mark.parametrize(("run", "expected"), [("small", "small.nu_0.50"), ("nu", "nu_0.50"), ("n" * 198, "nu_0.50")])
+def test_the_file_of_a_flight_has_the_name_of_the_run_once_and_no_more_letters_than_a_file_may(run_path, run, expected):
+    manifest = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))
+    (run_path / "manifest.json").write_text(json.dumps(manifest | {"name": run}), encoding="utf-8")
+    assert [path.name for path in export_run(run_path, "tracks_csv", "nu_0.50")] == [f"{expected}.tracks.csv"]
+
+
 def test_a_history_that_cannot_be_read_leaves_the_head_whole(run_path):
     pd.DataFrame({"time_s": [0.0]}).to_parquet(run_path / "flights" / "nu_1.00.parquet")
     (run_path / "flights" / "nu_0.50.parquet").write_bytes(b"PAR1")

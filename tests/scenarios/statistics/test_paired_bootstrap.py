@@ -42,6 +42,26 @@ def test_more_is_better_where_that_is_asked_for_and_missing_figures_do_not_count
     assert not none.as_good
 
 
+def test_an_entrant_that_lacks_a_flight_which_another_has_is_not_compared():
+    # The second one is better in every flight that it has, and has no figure of the one that was hard on the first.
+    values = np.array([[1.0, 1.0, 9.0], [0.5, 0.5, np.nan]])
+    first, second = paired_estimates(values, np.zeros(3), **OPTIONS)
+    assert (first.whole, first.best, second.whole, second.best, second.as_good) == (True, True, False, False, False)
+    assert (second.mean, second.flights) == (0.5, 2)
+    assert np.isnan([second.behind_low, second.behind_high]).all()
+
+
+def test_a_flight_that_no_entrant_has_a_figure_of_is_none_that_any_lacks():
+    values = np.array([[1.0, np.nan, 2.0], [0.5, np.nan, 3.0]])
+    assert [estimate.whole for estimate in paired_estimates(values, np.zeros(3), **OPTIONS)] == [True, True]
+    assert paired_estimates(values, np.zeros(3), **OPTIONS)[0].best
+
+
+def test_where_each_entrant_lacks_another_flight_none_is_best():
+    values = np.array([[1.0, np.nan], [np.nan, 2.0]])
+    assert [estimate.best for estimate in paired_estimates(values, np.zeros(2), **OPTIONS)] == [False, False]
+
+
 def test_an_interval_of_normal_figures_is_as_wide_as_it_should_be():
     values = np.random.default_rng(4).normal(0.0, 1.0, (1, 400))
     (estimate,) = paired_estimates(values, np.zeros(400), **{**OPTIONS, "resamples": 4000})

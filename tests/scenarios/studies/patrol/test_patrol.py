@@ -13,7 +13,7 @@ from scenarios.experiment.requests import Experiment
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.schema.load import load_study, with_values
 from scenarios.studies.patrol.ships import sampled_patrol
-from scenarios.studies.patrol.tables import ship_row, wind_row
+from scenarios.studies.patrol.tables import patrol_figures, ship_row, wind_row
 from scenarios.studies.patrol.work import PatrolWork
 from scenarios.studies.registry import run_study
 from scenarios.world.world import mean_wind, vessel_of
@@ -135,6 +135,49 @@ def test_a_patrol_that_fails_is_a_row_with_its_reason():
     (row,) = work.fly(Task(number=0)).tables["summary.csv"]
     assert (row["outcome"], row["criteria_met"]) == ("failed", False)
     assert row["message"].startswith("patrol.separation_m is 20000 m")
+
+
+def ship(number, **values):
+    """Return the row of a ship that was served, with other values."""
+    row = {"ship": number, "position": number, "verdict": "below", "correct": True, "outcome": "completed", "message": ""}
+    return row | {"keepout_violations": 0, "kept_out": True, "min_distance_m": 250.0, "others_distance_min_m": 900.0} | values
+
+
+def figures(*ships):
+    return patrol_figures(ships, [], endurance=1500.0, keepout_radius=200.0)
+
+
+def test_what_comes_within_r_min_of_another_ship_is_a_violation_with_its_reason():
+    found = figures(ship(0, others_distance_min_m=120.0), ship(1, others_distance_min_m=180.0), ship(2))
+    assert (found["keepout_violations"], found["kept_out"], found["criteria_met"]) == (2, False, False)
+    assert found["message"] == "came within 120 m of another ship"
+    assert figures(ship(0), ship(1, others_distance_min_m=200.0))["message"] == ""
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"outcome": "failed", "message": "no gain", "kept_out": False}, "ship 1: failed: no gain"),
+        ({"outcome": "aircraft_lost", "message": "stalled"}, "ship 1: aircraft lost: stalled"),
+        ({"keepout_violations": 2, "kept_out": False}, "ship 1: 2 keep-out violations"),
+        ({"outcome": "not_settled", "keepout_violations": 1, "kept_out": False}, "ship 1: not settled: 1 keep-out violation"),
+    ],
+)
+def test_a_patrol_says_which_ship_it_failed_at_and_why(values, message):
+    found = figures(ship(0), ship(1, **values))
+    assert (found["message"], found["criteria_met"]) == (message, False)
+
+
+def test_a_study_that_never_took_off_is_not_met(tmp_path):
+    # The ship is kilometres away, and there are 5 s more than a flight beside her takes.
+    far = ("patrol.ships=1", "patrol.area_m=60000", "patrol.endurance_s=170", "patrol.patience_s=30")
+    result = run_study(patrol(*far), "patrol", tmp_path / "run", executor_factory=InProcessExecutor)
+    (row,) = rows_of(tmp_path / "run")
+    assert (row["served"], row["criteria_met"]) == (0, True)
+    assert not result.all_met
+    told = "\n".join(result.summary.lines)
+    assert "(–, required 80 %)" in told
+    assert told.endswith("; no ship was served")
 
 
 @pytest.mark.parametrize(
