@@ -11,6 +11,7 @@ from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.palette import Meaning
 from reports.document.ship_map import ship_panel
 from reports.run.columns import column
+from reports.run.flight_config import flight_config
 from reports.run.surroundings import surroundings
 from reports.run.time_history import about_the_plume
 
@@ -239,7 +240,7 @@ def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | N
         return None
     time = column(history, "time_s")
     shown = history[time >= time[-1] - _SHOWN_S]
-    about = surroundings(arena.run.manifest["config"], row, shown)
+    about = surroundings(flight_config(arena.run, row), row, shown)
     reference, own = about_the_plume(shown, "reference_"), about_the_plume(shown)
     lines = [
         Line(x=own[0], y=own[1], label="flown", colour=Meaning.FLOWN),
