@@ -4,8 +4,8 @@ import math
 import shutil
 import tempfile
 import weakref
-from collections.abc import Generator
-from dataclasses import dataclass
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, SupportsFloat
 
@@ -18,8 +18,8 @@ from measurement.errors import MeasurementError
 from scenarios.api.flying import flights_of
 from scenarios.api.scenario import Given, load
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.task import Task
 from scenarios.errors import InputError
+from scenarios.experiment.points import STUDY
 from scenarios.experiment.requests import FlightRequest
 from scenarios.flight import FlightWork, payload_of, reader_of
 from scenarios.gym.actions import action_box, limits_of
@@ -108,16 +108,16 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         loaded = load(scenario).set(**keys or {})
         if loaded.parts:
             raise InputError("an environment takes parts by name or by FILE.py:NAME, not as objects")
-        study = flights_of(loaded)
+        self._study = flights_of(loaded)
         directory = Path(tempfile.mkdtemp(prefix="plume-flight-gym-"))
         weakref.finalize(self, shutil.rmtree, directory, ignore_errors=True)
         self.render_mode = render_mode
-        self._work: FlightWork = study.work(RunDirectory(directory))
+        self._work: FlightWork = self._study.work(RunDirectory(directory))
         if self._work.refusal:
             raise InputError(self._work.refusal)
-        self._numbers = {self._name(number): number for number in range(study.planned)}
+        self._numbers = dict(self._own_flights())
         self._aircraft: dict[bool, AutopilotedAircraft] = {}
-        self._episode = self._begun(self._work.request(Task(number=0)))
+        self._episode = self._begun(self._work.request(self._study.task(0)))
         self.action_space = action_box(self._work)
         self.observation_space = observation_space()
 
@@ -160,7 +160,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
             self._episode = self._begun_at_random()
         elif name in self._numbers:
             self._aircraft.clear()
-            self._episode = self._begun(self._work.request(Task(number=self._numbers[name])))
+            self._episode = self._begun(self._work.request(self._study.task(self._numbers[name])))
         else:
             raise InputError(f"the scenario has no flight '{name}'; its flights are {', '.join(self._numbers)}")
         return self._episode.observer.observe(0.0), self._info()
@@ -198,9 +198,15 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         self._episode.steps.close()
         self._aircraft.clear()
 
-    def _name(self, number: int) -> str:
-        experiment, own = self._work.located(number)
-        return experiment.named(own)[0]
+    def _own_flights(self) -> Iterator[tuple[str, int]]:
+        """Yield name and number of each flight of the study; those of comparisons have numbers between them."""
+        first = 0
+        for experiment in self._work.experiments:
+            for number in range(experiment.flights):
+                name, variant = experiment.named(number)
+                if variant == STUDY:
+                    yield name, first + number
+            first += experiment.flights
 
     def _begun(self, request: FlightRequest) -> "_Episode":
         """Begin a flight that was asked for, and refuse one that has no solution in one line."""
@@ -211,9 +217,10 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
 
     def _begun_at_random(self) -> "_Episode":
         """Begin a flight at random, and another one where that has no solution."""
+        numbers = list(self._numbers.values())
         for _ in range(_TRIES):
-            number = int(self.np_random.integers(len(self._numbers)))
-            request = self._work.request(Task(number=number, seed=int(self.np_random.integers(_SEEDS))))
+            task = self._study.task(numbers[int(self.np_random.integers(len(numbers)))])
+            request = self._work.request(replace(task, seed=int(self.np_random.integers(_SEEDS))))
             try:
                 return self._begin(request)
             except (InfeasibleError, MeasurementError) as error:
