@@ -82,6 +82,12 @@ LAW_KEYS: tuple[tuple[str, str, Test], ...] = (
 A steered reference is kept pace with by the look-ahead, whatever the law (``gnc.airspeed.pace_hold``).
 """
 
+
+def _also_of_own_laws(key: str, used: Test) -> Test:
+    """Return whether one of the project's laws uses a key, or one that is added has a field of its name."""
+    return lambda s: used(s) or (not _law("cascade", "lyapunov", "line_of_sight")(s) and key in s.guidance.law_keys)
+
+
 RULES = (
     Rule(
         keys=("guidance.phase_deg", "guidance.placement", "guidance.tracking_allowance_m"),
@@ -274,7 +280,7 @@ RULES = (
          user="variants that are flown at swept speed ratios: give comparison.variants and sweep.nu, or use comparison.flights"),
     Rule(keys=("comparison.flights",), acts=lambda s: bool(s.comparison.variants), user="variants: give comparison.variants"),
     *(
-        Rule(keys=(f"guidance.{key}",), acts=used, user=f"the steering law {laws}: set guidance.law",
+        Rule(keys=(f"guidance.{key}",), acts=_also_of_own_laws(key, used), user=f"the steering law {laws}: set guidance.law",
              by_mission=True, depends=("guidance.law", "guidance.tuning"))
         for key, laws, used in LAW_KEYS
     ),

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import MISSING, fields
+from dataclasses import Field as DataclassField
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, field_validator, model_validator
@@ -106,15 +107,15 @@ class GuidanceConfig(Section):
         if self.tuning == "bounded" and self.law != "cascade":
             raise ValueError(f"tuning is 'bounded' with law '{self.law}', which has no bound; set law to 'cascade'")
         check_divides("rate_hz", self.rate_hz, 120.0)
-        keys = self.law_keys
+        keys, types = self.law_keys, self.law_types if self.model_extra else {}
         for name, value in (self.model_extra or {}).items():
             if name not in keys:
                 meant = nearest(name, [*type(self).model_fields, *keys])
                 guess = f"; did you mean 'guidance.{meant}'?" if meant else ""
                 others = f"; those of law '{self.law}' are {', '.join(keys)}"
                 raise ValueError(f"unknown key 'guidance.{name}'{guess or others}")
-            if isinstance(keys[name], float) and not (type(value) in (int, float) and math.isfinite(value)):
-                raise ValueError(f"{name} is {value!r}; law '{self.law}' takes a finite number, by default {keys[name]:g}")
+            if (wanted := _wanted(types[name], value)) is not None:
+                raise ValueError(f"{name} is {value!r}; law '{self.law}' takes {wanted}, by default {keys[name]!r}")
         return self
 
     @property
@@ -126,6 +127,12 @@ class GuidanceConfig(Section):
         PluginError : there is no such law, or it does not load
         """
         return _law_keys(self.law)
+
+    @property
+    def law_types(self) -> dict[str, type[Any] | None]:
+        """Return the types of the keys of the steering law: bool, int, float, str, or None for others; errors as ``law_keys``."""
+        keys, law = self.law_keys, STEERING_LAWS.get(self.law)
+        return {of.name: _type_of(of.type, keys[of.name]) for of in _fields_of(law)}
 
     def keys_lost_with(self, law: object) -> list[str]:
         """Return the keys given here that are those of this steering law and not of ``law``."""
@@ -145,9 +152,8 @@ def law_refusal(law: str, task: str) -> str:
 
 
 def _law_keys(law: str) -> dict[str, Any]:
-    dataclass: Any = STEERING_LAWS.get(law)
     try:
-        of_dataclass = [of for of in fields(dataclass) if of.init]
+        of_dataclass = _fields_of(STEERING_LAWS.get(law))
     except TypeError:
         raise PluginError(f"steering law '{law}' is not a dataclass; its fields are the keys of [guidance]") from None
     keys = {of.name: of.default if of.default_factory is MISSING else of.default_factory() for of in of_dataclass}
@@ -156,7 +162,33 @@ def _law_keys(law: str) -> dict[str, Any]:
             f"steering law '{law}' has no default for its field '{without[0]}'; give it one, for its fields are keys of [guidance]"
             " that a scenario may leave out"
         )
+    own = {name: of.default for name, of in GuidanceConfig.model_fields.items() if name in keys}
+    if other := [name for name, default in own.items() if keys[name] != default]:
+        raise PluginError(
+            f"steering law '{law}' has {other[0]} = {keys[other[0]]!r}, which is a key of [guidance] already, by default"
+            f" {own[other[0]]!r}; give the field another name, or that default"
+        )
     return keys
+
+
+def _fields_of(law: Any) -> "list[DataclassField[Any]]":
+    return [of for of in fields(law) if of.init]
+
+
+def _type_of(declared: Any, default: object) -> type[Any] | None:
+    """Return the plain type of a field: that which it declares, in words where annotations are, or that of its default."""
+    plain: dict[str, type[Any]] = {"bool": bool, "int": int, "float": float, "str": str}
+    named = declared if isinstance(declared, str) else getattr(declared, "__name__", "")
+    return plain.get(named, float if isinstance(default, float) else None)
+
+
+def _wanted(of: type[Any] | None, value: object) -> str | None:
+    """Return what a key of a type takes, in words, where a value is none; otherwise None."""
+    if of is float:
+        fits = type(value) in (int, float) and math.isfinite(value)
+        return None if fits else "a finite number"
+    words = {bool: "true or false", int: "a whole number", str: "a word in quotation marks"}
+    return None if of is None or type(value) is of else words[of]
 
 
 class FollowingConfig(Section):

@@ -30,7 +30,7 @@ class Entrant:
     name : of the entrant, part of the names of its flights
     law, task : its steering law, and ``TRACKING`` or ``STANDOFF``
     given : what of the reference and of the air the law makes use of
-    defaults : its parameters that are numbers, by their keys in ``[guidance]``
+    defaults : its parameters that are numbers, whole ones apart, by their keys in ``[guidance]``
     """
 
     name: str
@@ -134,9 +134,10 @@ def cases_of(entrants: list[Entrant], chosen: Mapping[str, Mapping[str, float]])
 
 
 def _defaults(law: str, guidance: GuidanceConfig) -> dict[str, float]:
-    """Return the parameters of a law that are numbers: those that the scenario has, and its own defaults."""
-    keys = GuidanceConfig(law=law).law_keys
-    numbers = {key: value for key, value in keys.items() if type(value) in (int, float)}
+    """Return the parameters of a law that are numbers, whole ones apart: those that the scenario has, and its own defaults."""
+    of = GuidanceConfig(law=law)
+    types = of.law_types
+    numbers = {key: value for key, value in of.law_keys.items() if type(value) in (int, float) and types[key] is not int}
     return {key: float(getattr(guidance, key, value)) for key, value in numbers.items()}
 
 
