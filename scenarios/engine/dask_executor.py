@@ -1,13 +1,15 @@
 """Executes tasks on the workers of a Dask cluster: a running one, or one that is started on this machine.
 
-The work is sent to every worker once, as a plugin, together with the files that it needs: workers need the same code
-and packages, but no shared file system. If a worker dies, Dask itself gives its task to another.
+The work is sent to every worker once, as a plugin, together with the aircraft's model: workers need the same code and
+packages, and files that the scenario names at the same paths, but no shared file system. If a worker dies, Dask itself
+gives its task to another.
 """
 
 import faulthandler
 import logging
 import math
 import pickle
+import shutil
 import threading
 import time
 import uuid
@@ -31,6 +33,9 @@ WORKER_MEMORY_MIN = 2**30
 
 CONNECT_TIMEOUT = 15.0
 """Time for the scheduler to answer, and for the first worker to register [s]."""
+
+_FLYING = threading.Lock()
+"""Threads can share neither JSBSim nor faulthandler's timer: a worker with several flies one flight at a time, of all its runs."""
 
 
 class DaskExecutor:
@@ -82,7 +87,7 @@ class DaskExecutor:
             self.__exit__(TimeoutError, None, None)
             raise InputError(f"--scheduler {self._scheduler} has no worker; start some with 'dask worker ADDRESS'") from None
         self._check_code()
-        self._client.register_plugin(_WorkPlugin(self._work, self._limits.time), name=self._name)
+        self._client.register_plugin(_WorkPlugin(self._name, self._work, self._limits.time), name=self._name)
         return self
 
     def _check_code(self) -> None:
@@ -162,9 +167,10 @@ def _fly(name: str, task: Task) -> Result:
 
 
 class _WorkPlugin(distributed.WorkerPlugin):
-    """Holds the work on a worker."""
+    """Holds the work of a run on a worker, with its files in a directory of the run's name: a worker may have several runs."""
 
-    def __init__(self, work: Work, time_limit: float) -> None:
+    def __init__(self, name: str, work: Work, time_limit: float) -> None:
+        self.name = name
         self._content = pickle.dumps(work)
         root = work.model
         files = sorted(path for path in root.rglob("*") if path.is_file()) if root else []
@@ -173,17 +179,21 @@ class _WorkPlugin(distributed.WorkerPlugin):
 
     def setup(self, worker: Any) -> None:
         self._work: Work = pickle.loads(self._content)
-        # Threads can share neither JSBSim nor faulthandler's timer: a worker with several flies one flight at a time.
-        self._lock = threading.Lock()
         if self._files is not None:
-            root = Path(worker.local_directory) / "model"
+            root = self._directory(worker) / "model"
             for name, content in self._files.items():
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_bytes(content)
             self._work = self._work.moved(root)
 
+    def teardown(self, worker: Any) -> None:
+        shutil.rmtree(self._directory(worker), ignore_errors=True)
+
+    def _directory(self, worker: Any) -> Path:
+        return Path(worker.local_directory) / self.name
+
     def fly(self, task: Task) -> Result:
-        with self._lock:
+        with _FLYING:
             # This timer ends the worker without Python's interpreter lock, which a flight that hangs in C++ may hold.
             faulthandler.dump_traceback_later(self._time_limit, exit=True)
             try:

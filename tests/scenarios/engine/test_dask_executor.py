@@ -6,10 +6,14 @@ import signal
 import socket
 import subprocess
 import sys
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
 
 import pandas as pd
 import pytest
 
+from scenarios.engine.dask_executor import _WorkPlugin
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.task import Limits
 from scenarios.errors import InputError
@@ -84,6 +88,32 @@ def test_a_study_that_loses_a_worker_in_the_middle_has_the_rows_of_a_local_one(t
         pd.testing.assert_frame_equal(local, remote, check_exact=True)
     for path in sorted((tmp_path / "local" / "flights").iterdir()):
         assert (tmp_path / "dask" / "flights" / path.name).read_bytes() == path.read_bytes()
+
+
+@dataclass
+class Reading:
+    """Work that returns what the file of its model says."""
+
+    model: Path
+
+    def moved(self, model):
+        return Reading(model)
+
+    def fly(self, _task):
+        return (self.model / "autopilot.xml").read_text(encoding="utf-8")
+
+
+def test_runs_that_share_a_worker_keep_models_of_their_own_until_they_end(tmp_path):
+    worker, plugins = SimpleNamespace(local_directory=str(tmp_path / "worker")), []
+    for run in ("one", "two"):
+        (tmp_path / run).mkdir()
+        (tmp_path / run / "autopilot.xml").write_text(run, encoding="utf-8")
+        plugins.append(_WorkPlugin(run, Reading(tmp_path / run), 100.0))
+        plugins[-1].setup(worker)
+    assert [plugin.fly(None) for plugin in plugins] == ["one", "two"]
+    plugins[0].teardown(worker)
+    assert plugins[1].fly(None) == "two"
+    assert [path.name for path in (tmp_path / "worker").iterdir()] == ["two"]
 
 
 def test_a_limit_of_memory_with_which_no_worker_lives_is_refused_in_one_line(tmp_path):
