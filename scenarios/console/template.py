@@ -12,7 +12,7 @@ from scenarios.errors import InputError
 from scenarios.schema.documented import DocumentedSection, documented_sections
 from scenarios.schema.documented_parts import DIMENSIONLESS, DocumentedKey, documented_part_keys
 from scenarios.schema.effect import unused
-from scenarios.schema.load import load_document, load_study
+from scenarios.schema.load import OPERATIONAL, OPERATIONAL_STUDIES, load_document, load_study
 from scenarios.schema.overrides import Document, as_toml
 from scenarios.schema.scenario import Scenario
 
@@ -60,6 +60,8 @@ def template(name: str, file: str) -> str:
     document, config = load_document(name), load_study(name)
     sections = {section.name: section for section in documented_sections(type(config))}
     lines = [*_comment(_HEAD.format(name=name, file=file)), ""]
+    if document.get("study") in OPERATIONAL_STUDIES:
+        lines += [*_comment(f"No base: without this line it would extend {OPERATIONAL}, as its study does."), "extends = false", ""]
     for section in sections.values():
         if not section.listed:
             lines += _section(section, document, config, sections)

@@ -45,9 +45,9 @@ FORMER_WORDS = {"sea": "flights", "sea_trial": "trials"}
 """What files made for earlier versions say of ``study``."""
 
 OPERATIONAL = "operational"
-"""The base that scenarios extend which name none, and are studies of a vessel that is followed."""
+"""The base that scenarios of these studies extend which name none; with ``extends = false`` they have none."""
 
-_OPERATIONAL_STUDIES = ("sea", "monte_carlo", "falsify")
+OPERATIONAL_STUDIES = ("sea", "monte_carlo", "falsify")
 
 CATALOG, BASES = Path(__file__).parents[1] / "catalog", "bases"
 """The directory of the catalog, whose folders hold a kind of scenario each, and the one of them with bases."""
@@ -202,12 +202,12 @@ def _resolved(given: Document, folder: Path, where: object) -> tuple[Document, s
     if isinstance(listed := document.get("set"), list):
         document["set"] = [_with_absolute_file(override, folder) for override in listed]
     study = document.get("study")
-    base = document.pop("extends", OPERATIONAL if study in _OPERATIONAL_STUDIES else None)
+    base = document.pop("extends", OPERATIONAL if study in OPERATIONAL_STUDIES else None)
     if isinstance(study, str):
         document["study"] = FORMER_WORDS.get(study, study)
-    if not (base is None or isinstance(base, str)):
-        raise InputError(f"{where}: extends is {base!r}; give one catalog name or one path of a TOML file")
-    return document, base
+    if not (base is None or base is False or isinstance(base, str)):
+        raise InputError(f"{where}: extends is {base!r}; give one catalog name or one path of a TOML file, or false for no base")
+    return document, None if base is False else base
 
 
 def _with_absolute_file(override: object, folder: Path) -> object:

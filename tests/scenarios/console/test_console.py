@@ -151,6 +151,24 @@ def test_a_new_file_says_what_the_scenario_says_that_it_is_made_from(name, tmp_p
     assert all(isinstance(source, Scenario) and unused(source, key) for key in differing), differing
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        'study = "monte_carlo"\nextends = "sweep_nu"\nsweep = { nu = [0.3] }\ncomparison = { nu = [], variants = [] }\n',
+        'study = "falsify"\nextends = false\nvessel = { speed_ratio = 0.3 }\n',
+    ],
+)
+def test_a_new_file_of_a_study_with_a_base_of_its_own_has_no_other_base_than_its_source(text, tmp_path):
+    source, path = tmp_path / "source.toml", tmp_path / "mine.toml"
+    draws = '[[draws]]\nkey = "start.range_m"\nuniform = [400.0, 900.0]\n'
+    source.write_text(f'title = "Mine"\n{text}{draws}', encoding="utf-8")
+    assert console("new", path, "--from", source).status == 0
+    made, given = load_study(str(path)), load_study(str(source))
+    assert made.model_dump() == given.model_dump()
+    # Not that of the base operational.
+    assert given.guidance.mission is None
+
+
 def _leaves(values, before=""):
     leaves = {}
     for key, value in values.items():

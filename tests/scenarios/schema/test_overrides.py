@@ -188,7 +188,7 @@ def test_lists_are_replaced_and_tables_are_merged():
         ('"b.toml"', "a.toml: extends goes in a circle: b.toml -> a.toml -> b.toml; remove one of them"),
         ('"sea_wnd"', "b.toml: extends: unknown scenario 'sea_wnd'; did you mean 'sea_wind'?"),
         ('"c.toml"', "b.toml: extends: no scenario file 'c.toml'"),
-        ("3", "b.toml: extends is 3; give one catalog name or one path of a TOML file"),
+        ("3", "b.toml: extends is 3; give one catalog name or one path of a TOML file, or false for no base"),
         ('["sea_wind", "sim3"]', "b.toml: extends is ['sea_wind', 'sim3']; give one catalog name"),
     ],
 )
