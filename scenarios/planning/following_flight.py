@@ -206,9 +206,10 @@ def _with_intervals(scenario: Scenario, vessel: VesselTruth) -> Scenario:
 
 def _check_declared(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
     """Raise an InfeasibleError for a vessel that does more than the keep-out guard is told, where it is not always known."""
-    f, duration = scenario.following, scenario.flight.duration_max_s
+    # A steady vessel does at any time what she does at first.
+    f, duration = scenario.following, 0.0 if isinstance(vessel, SteadyVessel) else scenario.flight.duration_max_s
     known = scenario.vessel_known and scenario.fault.kind != VESSEL_DATA
-    if known or not scenario.guidance.keepout_guard or isinstance(vessel, SteadyVessel):
+    if known or not scenario.guidance.keepout_guard:
         return
     acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
     other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""

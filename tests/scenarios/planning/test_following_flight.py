@@ -5,6 +5,7 @@ import math
 import pytest
 from flight_cases import SPEED, plan, scenario
 
+from gnc.errors import InfeasibleError
 from gnc.mission.plume_following import FollowingParameters
 
 
@@ -40,6 +41,15 @@ def test_what_is_declared_of_the_vessel_is_what_its_discs_are_made_of():
     # The UAV's own place is the vessel's too: 3-4-5.
     assert (limits.acceleration, limits.speed_max, limits.position_sigma) == pytest.approx((0.1, 12.0, 5.0), rel=1e-12)
     assert plan(scenario()).guidance.vessel.limits.speed_max == math.inf
+
+
+def test_a_steady_vessel_that_is_faster_than_declared_is_refused_unless_she_is_always_known():
+    changes = {"reports": {"interval_s": (2.0, 10.0)}}
+    with pytest.raises(InfeasibleError, match=r"moves at up to 7\.99 m/s .*vessel_speed_max_mps = 7, on which .* relies: declare"):
+        plan(scenario(following={"vessel_speed_max_mps": 7.0}, **changes))
+    # Her own speed is no more than that.
+    plan(scenario(following={"vessel_speed_max_mps": 8.0}, **changes))
+    plan(scenario(following={"vessel_speed_max_mps": 7.0}))
 
 
 def test_dead_reckoning_is_reckoned_with_where_satellite_navigation_is_declared_to_fail():
