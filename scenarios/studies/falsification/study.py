@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from common.registry import PluginError
 from common.run_layout import DRAWS, SUMMARY, WORST
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
@@ -75,14 +76,17 @@ class FalsificationStudy(ChosenFlightsStudy):
         def attempt(method: str, points: Array) -> Array:
             return self._clearances(method, points, fly, journal, timer)
 
-        search_in_turns(
-            methods_named(search.methods, self._space, settings, self._seed),
-            self._space,
-            attempt,
-            population=search.population,
-            turns=None if search.time_s else search.generations + 1,
-            within_time=lambda: timer.left and self._has_room,
-        )
+        try:
+            search_in_turns(
+                methods_named(search.methods, self._space, settings, self._seed),
+                self._space,
+                attempt,
+                population=search.population,
+                turns=None if search.time_s else search.generations + 1,
+                within_time=lambda: timer.left and self._has_room,
+            )
+        except PluginError as error:
+            raise InputError(f"search.methods: {error}") from error
         if not self._tasks:
             raise self._without_flights()
         self.flights = {self._trial: len(self._tasks)}

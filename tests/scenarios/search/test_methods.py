@@ -188,3 +188,36 @@ def test_a_search_ends_when_its_time_is_over():
 def test_an_unknown_method_is_refused_with_the_name_that_was_meant():
     with pytest.raises(PluginError, match=r"unknown search method 'corner'; did you mean 'corners'\? known are cma, corners, diff"):
         SEARCH_METHODS.get("corner")
+
+
+class Own:
+    """A method that proposes what it is given, once."""
+
+    exhausted = True
+
+    def __init__(self, *points):
+        self.points = points
+
+    def ask(self, *_):
+        points, self.points = self.points, ()
+        return [[x] * BOWL.dimension for x in points]
+
+    def tell(self, _):
+        raise ZeroDivisionError("no\nclearance")
+
+
+@pytest.mark.parametrize(
+    ("method", "words"),
+    [
+        (Own(*[0.5] * 5), "proposed points of shape (5, 10); it was asked for at most 4 of 10 coordinates each: let ask"),
+        (Own(0.5, 1.5), "proposed a coordinate of 1.5; each lies from 0 to 1"),
+        (Own(float("nan")), "proposed a coordinate of nan; each lies from 0 to 1"),
+        (Own("far"), "failed in ask(): ValueError: could not convert"),
+        (Own(0.5), "failed in tell(): ZeroDivisionError: no clearance"),
+    ],
+)
+def test_what_a_method_of_ones_own_cannot_be_asked_for_is_said_in_one_line_with_its_name(method, words):
+    with pytest.raises(PluginError) as refused:
+        search_in_turns({"own.py:Own": method}, BOWL, lambda _, points: points[:, 0], population=4, turns=2)
+    assert str(refused.value).startswith(f"search method 'own.py:Own' {words}")
+    assert "\n" not in str(refused.value)

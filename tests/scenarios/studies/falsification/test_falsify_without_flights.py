@@ -76,6 +76,20 @@ def test_a_search_by_a_method_that_cannot_search_the_draws_is_refused(tmp_path):
     assert line.startswith("search.methods ['cma'] proposed no flight (continuous draws: 1 of 1, search.population: 16): add")
 
 
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("Unmade", "failed when it was made: KeyError: 'mutations'"), ("Raising", "failed in ask(): RuntimeError: boom")],
+)
+def test_a_method_of_ones_own_that_raises_is_named_with_its_file(tmp_path, name, words):
+    made = "    def __init__(self, *_):\n        {}['mutations']\n"
+    asked = "    def __init__(self, *_):\n        pass\n    def ask(self, *_):\n        raise RuntimeError('boom')\n"
+    text = f"{BEYOND}\nclass Unmade(Centre):\n{made}\nclass Raising(Centre):\n{asked}"
+    (tmp_path / "own.py").write_text(text, encoding="utf-8")
+    method = f"{tmp_path / 'own.py'}:{name}"
+    line = refused(tmp_path, f'search.methods=["{method}"]')
+    assert line == f"search.methods: search method '{method}' {words}"
+
+
 def test_a_number_of_flights_is_refused_with_what_a_search_flies():
     keys = ["search.generations=2", "search.population=16", "search.kept=3", "search.confirmations=2"]
     with pytest.raises(InputError) as refused:
