@@ -15,6 +15,7 @@ import pandas as pd
 
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
+from scenarios.errors import InputError
 from scenarios.experiment.points import STUDY
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
 from scenarios.instruments.instrument import EvaluatedInstrument, GasReader, Instrument
@@ -30,7 +31,8 @@ from scenarios.schema.extension_points import PAYLOADS
 from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.failure import failure, unflown
 from scenarios.simulation.outcome import Outcome
-from scenarios.simulation.record import FlightRecord
+from scenarios.simulation.plume_readings import PlumeBelief
+from scenarios.simulation.record import MEANINGS, FlightRecord
 from scenarios.simulation.release import release
 from scenarios.simulation.time_history import history_files
 from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
@@ -223,9 +225,24 @@ def _measured_from(request: FlightRequest, record: FlightRecord) -> float:
 
 
 def payload_of(request: FlightRequest, plan: FlightPlan) -> list[Instrument | EvaluatedInstrument]:
-    """Return the flight's instruments, fresh."""
+    """Return the flight's instruments, fresh.
+
+    Raises
+    ------
+    InputError : one fills a column of the time history that the flight or another one fills
+    """
     generator = own_generator(request.noise, PAYLOAD)
-    return [PAYLOADS.get(name)(request.scenario, plan.world, generator) for name in plan.payload]
+    instruments = [PAYLOADS.get(name)(request.scenario, plan.world, generator) for name in plan.payload]
+    filled = dict.fromkeys((*MEANINGS, *PlumeBelief.COLUMNS), "the flight itself")
+    for name, instrument in zip(plan.payload, instruments, strict=True):
+        for column in instrument.COLUMNS:
+            if column in filled:
+                raise InputError(
+                    f"payload: instrument '{name}' fills the column '{column}', which {filled[column]} fills already; call it"
+                    " otherwise, or leave the instrument out"
+                )
+            filled[column] = f"instrument '{name}'"
+    return instruments
 
 
 def reader_of(plan: FlightPlan, instruments: list[Instrument | EvaluatedInstrument]) -> GasReader | None:
