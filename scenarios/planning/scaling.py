@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from aircraft.spec import Envelope
 from common.physics.coordinated_turn import heading_rate_for_bank
+from scenarios.schema.effect_rules import LAW_KEYS
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig
@@ -78,6 +79,12 @@ def scaled(scenario: Scenario, envelope: Envelope) -> Scenario:
             continue
         values[key] = tuple(x * factor(unit) for x in default) if isinstance(default, tuple) else default * factor(unit)
     return with_values(scenario, {key: value for key, value in values.items() if not _is_set(scenario, key)})
+
+
+def scaled_law_defaults(envelope: Envelope) -> dict[str, float]:
+    """Return the defaults of the project's own steering laws by their dotted keys, in SI units, scaled to an aircraft."""
+    unit, defaults = units(envelope), GuidanceConfig()
+    return {f"guidance.{name}": getattr(defaults, name) * _SCALED[f"guidance.{name}"](unit) for name, _, _ in LAW_KEYS}
 
 
 def units(envelope: Envelope) -> ScaleFactors:

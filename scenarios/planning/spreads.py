@@ -13,10 +13,9 @@ from scenarios.errors import InputError
 from scenarios.margin.tracking_spread import SpreadTable, tracking_spreads
 from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.reference import oscillation_at
-from scenarios.schema.effect_rules import LAW_KEYS
+from scenarios.planning.scaling import scaled_law_defaults
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.guidance import GuidanceConfig
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 SPREAD_RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -33,9 +32,11 @@ class PredictedSpreads:
     Attributes
     ----------
     tables : by level of turbulence, guidance and reference
+    defaults : of the keys of the project's own steering laws, scaled to the aircraft, by their dotted names
     """
 
     tables: Mapping[Key, SpreadTable] = field(default_factory=dict)
+    defaults: Mapping[str, float] = field(default_factory=dict)
 
     def __call__(self, scenario: Scenario) -> SpreadTable | None:
         """Return the spread of a scenario's flights; none in calm air and for a kinematic vehicle.
@@ -46,7 +47,7 @@ class PredictedSpreads:
         """
         if scenario.turbulence.level == "none" or scenario.fidelity == "kinematic":
             return None
-        if (key := _key(scenario)) not in self.tables:
+        if (key := _key(scenario, self.defaults)) not in self.tables:
             raise InputError(
                 "guidance is sampled from a continuous distribution in turbulence, where each value takes a margin of its own;"
                 " give it a choice of values instead"
@@ -58,31 +59,31 @@ def predicted_spreads(scenarios: Iterable[Scenario], found: Designed | None, set
     """Return the predicted spread of each of some scenarios that has turbulence; of none without an aircraft."""
     if found is None or setup is None:
         return PredictedSpreads()
+    defaults = scaled_law_defaults(found.design.schedule.envelope)
     kinds = {
-        _key(scenario): scenario
+        _key(scenario, defaults): _planned_for(scenario, defaults)
         for scenario in scenarios
         if scenario.turbulence.level != "none" and scenario.fidelity != "kinematic"
     }
-    return PredictedSpreads(tables={key: _spread_table(scenario, found, setup) for key, scenario in kinds.items()})
+    tables = {key: _spread_table(planned, found, setup) for key, planned in kinds.items()}
+    return PredictedSpreads(tables=tables, defaults=defaults)
 
 
-def _key(scenario: Scenario) -> Key:
-    planned = _planned_for(scenario)
+def _key(scenario: Scenario, defaults: Mapping[str, float]) -> Key:
+    planned = _planned_for(scenario, defaults)
     return scenario.turbulence.level, planned.guidance.model_dump_json(), planned.reference.model_dump_json()
 
 
-def _planned_for(scenario: Scenario) -> Scenario:
+def _planned_for(scenario: Scenario, defaults: Mapping[str, float]) -> Scenario:
     """Return the scenario with the steering law that its margin is planned for: its own, or another with default parameters."""
     law = scenario.following.margin_law
     if law is None:
         return scenario
     # The mission has no part in the prediction, and not every law has every mission.
-    defaults = {f"guidance.{key}": GuidanceConfig.model_fields[key].default for key, _, _ in LAW_KEYS}
     return with_values(scenario, {"guidance.law": law, **defaults, "guidance.mission": "follow", "following.margin_law": None})
 
 
 def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> SpreadTable:
-    scenario = _planned_for(scenario)
     schedule = found.design.schedule
     air = low_altitude_turbulence(scenario.altitude, TURBULENCE[scenario.turbulence.level].wind_at_20ft)
     tracking, hold, span = tracking_parameters(scenario, setup), speed_hold(scenario, setup), _wing_span(schedule.spec)

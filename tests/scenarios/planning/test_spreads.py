@@ -1,12 +1,18 @@
 """The margin of a flight that follows a plume: of the turbulence that it has."""
 
+import json
+from dataclasses import replace
+from types import SimpleNamespace
+
 import pytest
 from flight_cases import plan, scenario
 
+from aircraft.fleet.x8 import X8
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.margin.tracking_spread import CALM_AIR_SPREAD, Spread, SpreadTable
+from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import SPREAD_RATIOS, PredictedSpreads, predicted_spreads
 from scenarios.vehicles.vehicle_setup import aircraft_setup
 
@@ -80,6 +86,23 @@ def test_a_flight_whose_spread_was_not_predicted_is_refused():
     assert spreads(gusty(level="moderate")) is TABLED
     with pytest.raises(InputError, match="sampled from a continuous distribution in turbulence"):
         spreads(gusty(level="light"))
+
+
+@pytest.mark.parametrize("airspeed", [19.42, 60.0])
+def test_the_margin_of_another_law_is_planned_with_parameters_scaled_to_the_aircraft(airspeed, monkeypatch):
+    monkeypatch.setattr("scenarios.planning.spreads._spread_table", lambda *_: TABLED)
+    envelope = replace(X8.envelope, airspeed=airspeed)
+    found = SimpleNamespace(design=SimpleNamespace(schedule=SimpleNamespace(envelope=envelope)))
+    trial = scenario(fidelity="six_dof", turbulence={"level": "light"}, following={"margin_law": "cascade"})
+    flown = scaled(trial, envelope)
+    spreads = predicted_spreads([flown], found, SimpleNamespace())
+    ((_, planned, _),) = spreads.tables
+    guidance, keys = json.loads(planned), ("look_ahead_m", "epsilon_per_m", "gain_per_s", "steering_max_rad_s")
+    # Those of the flight itself, whose law is the same.
+    assert [guidance[key] for key in keys] == [getattr(flown.guidance, key) for key in keys]
+    # R is 60 m for the X8, and grows with the square of the airspeed at the same bank.
+    assert guidance["look_ahead_m"] == pytest.approx(60.0 * (airspeed / 19.42) ** 2)
+    assert spreads(flown) is TABLED
 
 
 def test_a_kinematic_vehicle_has_no_spread(x8):
