@@ -194,6 +194,9 @@ def test_a_study_that_never_took_off_is_not_met(tmp_path):
         ('draws=[{key="start.aspect_deg",uniform=[0.0,30.0]}]', ("beside start.aspect_deg",)),
         ("patrol.clearance_m=700", ("are 900 m together, more than start.distance_m, whose end is 800 m",)),
         ("flight.duration_max_s=900", ("'flight.duration_max_s' has no effect here", "patrol.patience_s")),
+        ("criteria.required=keep_out", ("'criteria.required' has no effect here", "judged by patrol.oracle_share_min and")),
+        ("criteria.settles=false", ("'criteria.settles' has no effect here", "patrol.wrong_share_max: set these")),
+        ("histories=4", ("'histories' has no effect here", "a patrol keeps no time histories: leave it out")),
     ],
 )
 def test_what_is_no_patrol_is_refused_in_one_line(override, words, tmp_path):
