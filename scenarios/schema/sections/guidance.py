@@ -1,6 +1,6 @@
 """What a scenario file may say of the guidance: the reference, the steering law, following a vessel that is not known exactly."""
 
-import math
+import sys
 from dataclasses import MISSING, fields
 from dataclasses import Field as DataclassField
 from typing import Annotated, Any, Literal
@@ -182,10 +182,11 @@ def _type_of(declared: Any, default: object) -> type[Any] | None:
     return plain.get(named, float if isinstance(default, float) else None)
 
 
-def _wanted(of: type[Any] | None, value: object) -> str | None:
+def _wanted(of: type[Any] | None, value: Any) -> str | None:
     """Return what a key of a type takes, in words, where a value is none; otherwise None."""
     if of is float:
-        fits = type(value) in (int, float) and math.isfinite(value)
+        # Whole numbers may be too large for a float.
+        fits = type(value) in (int, float) and abs(value) <= sys.float_info.max
         return None if fits else "a finite number"
     words = {bool: "true or false", int: "a whole number", str: "a word in quotation marks"}
     return None if of is None or type(value) is of else words[of]

@@ -61,6 +61,7 @@ def test_a_field_called_as_a_key_of_guidance_is_that_key_and_has_its_default(tmp
         ("guidance.flag=no", "flag is 'no'; law"),
         ("guidance.flag=1", "takes true or false, by default False"),
         ("guidance.gain=much", "gain is 'much'; law"),
+        (f"guidance.gain={10**400}", "takes a finite number, by default 2"),
     ],
 )
 def test_a_key_of_a_law_is_of_the_type_of_its_field(tmp_path, override, words):
