@@ -29,6 +29,7 @@ class Point:
     inputs : swept keys and their values
     flights : number of flights
     beside : number of the study's point whose flights a comparison has with some keys set otherwise; None of others
+    given : keys that its case and its comparison set: what is random of these keeps what they set
     """
 
     label: str
@@ -38,6 +39,7 @@ class Point:
     inputs: Values
     flights: int
     beside: int | None = None
+    given: tuple[str, ...] = ()
 
 
 def points_of(scenario: Scenario) -> list[Point]:
@@ -80,7 +82,8 @@ def _different(values: Sequence[object]) -> Iterable[object]:
 def _cases(scenario: Scenario) -> Iterator[Point]:
     for case in scenario.cases:
         for vehicle in _vehicles(scenario):
-            changed = _case(scenario, case, vehicle)
+            values = _values_of(case, vehicle)
+            changed = _case(scenario, case, {**values, "fidelity": vehicle})
             yield Point(
                 label=f"{case.name}_{vehicle}",
                 variant=case.name if case.comparison else STUDY,
@@ -88,10 +91,12 @@ def _cases(scenario: Scenario) -> Iterator[Point]:
                 nu=None if changed.circles else changed.vessel.speed_ratio,
                 inputs={},
                 flights=scenario.flights,
+                given=tuple(values),
             )
 
 
-def _case(scenario: Scenario, case: CaseConfig, vehicle: str) -> Scenario:
+def _values_of(case: CaseConfig, vehicle: str) -> Values:
+    """Return what a case sets in flights of a vehicle."""
     values = case.set | (case.set_kinematic if vehicle == "kinematic" else {})
     if "fidelity" in values:
         raise InputError(f"case '{case.name}' sets fidelity; set it for the whole scenario, or to 'both'")
@@ -100,8 +105,12 @@ def _case(scenario: Scenario, case: CaseConfig, vehicle: str) -> Scenario:
         if not isinstance(ratios, list | tuple) or len(ratios) != 1:
             raise InputError(f"case '{case.name}' has sweep.nu = {ratios!r}; give it one speed ratio, as in [0.5]")
         values["vessel.speed_ratio"] = ratios[0]
+    return values
+
+
+def _case(scenario: Scenario, case: CaseConfig, values: Values) -> Scenario:
     try:
-        return with_values(scenario, {**values, "fidelity": vehicle})
+        return with_values(scenario, values)
     except InputError as error:
         raise InputError(f"case '{case.name}': {error}") from None
 
@@ -125,6 +134,7 @@ def _varied(point: Point, name: str, values: Values, flights: int | None, *, bes
         inputs=point.inputs,
         flights=min(flights or point.flights, point.flights),
         beside=beside,
+        given=(*point.given, *values),
     )
 
 
