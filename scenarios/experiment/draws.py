@@ -141,9 +141,7 @@ def _share_below(draw: DrawConfig, limit: float) -> float:
     return -math.expm1(-((max(limit, 0.0) / scale) ** shape))
 
 
-def _tried(
-    draws: Sequence[DrawConfig], generator: np.random.Generator, number: int, point: Sequence[float]
-) -> Iterator[Values]:
+def _tried(draws: Sequence[DrawConfig], generator: np.random.Generator, number: int, point: Sequence[float]) -> Iterator[Values]:
     """Yield what to try for a flight, one after the other."""
     if point:
         yield values_at(draws, point)

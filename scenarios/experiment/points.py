@@ -8,10 +8,7 @@ from common.registry import is_file_part
 from scenarios.errors import InputError
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.experiment import CaseConfig
-
-STUDY = "study"
-"""The variant of flights that count; others are comparisons."""
+from scenarios.schema.sections.experiment import STUDY, CaseConfig
 
 Values = dict[str, object]
 
@@ -23,7 +20,7 @@ class Point:
     Attributes
     ----------
     label : part of its flights' names; empty where there is one point alone
-    variant : ``STUDY``, or the name of a comparison
+    variant : ``STUDY`` for flights that count, or the name of a comparison
     scenario : with the point's keys set, for one vehicle
     nu : speed ratio that is swept, or none [-]
     inputs : swept keys and their values

@@ -12,10 +12,11 @@ import numpy as np
 
 from common.run_layout import COMPARISON, SUMMARY
 from scenarios.experiment.draws import SampledFlight, Values, not_displaced, sampled_flight
-from scenarios.experiment.points import STUDY, Point, points_of
+from scenarios.experiment.points import Point, points_of
 from scenarios.schema.keys import displaced
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.experiment import STUDY
 from scenarios.world.noise import Noise
 
 _PLANNED_FOR = ("guidance.", "turbulence.level", "reference.shape", "following.margin_law")
@@ -146,7 +147,7 @@ class Experiment:
         return FlightRequest(flight_id=flight_id, trial=self.name, variant=variant, scenario=scenario, noise=noise, inputs=inputs)
 
     def settings(self) -> Iterator[Scenario]:
-        """Yield every kind of flight, as far as autopilot and margins depend on it: by points, and by choices of guidance and air."""
+        """Yield every kind of flight, as far as autopilot and margins depend on it: by points and by choices."""
         for point in self.points:
             choices = [
                 [(draw.key, value) for value in draw.choice]

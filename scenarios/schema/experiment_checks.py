@@ -3,7 +3,7 @@
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
-from scenarios.schema.sections.experiment import FLIGHTS_MAX
+from scenarios.schema.sections.experiment import FLIGHTS_MAX, STUDY
 
 if TYPE_CHECKING:
     from scenarios.schema.scenario import Scenario
@@ -35,6 +35,15 @@ def check_one_point(scenario: "Scenario") -> None:
     """Refuse several points in a study of one."""
     if scenario.several_points and (why := ONE_POINT.get(scenario.study)):
         raise ValueError(f"study is '{scenario.study}' beside a sweep, cases, a comparison or two vehicles; {why}: remove them")
+
+
+def check_names(scenario: "Scenario") -> None:
+    """Refuse comparisons that have the name of flights that count."""
+    apart = [*scenario.comparison.variants, *(case for case in scenario.cases if case.comparison)]
+    if any(of.name == STUDY for of in apart):
+        raise ValueError(
+            f"a comparison is called '{STUDY}', as flights that count are, and would count as they do; give it another name"
+        )
 
 
 def check_subset(scenario: "Scenario") -> None:

@@ -18,6 +18,9 @@ FLIGHTS_MAX = 1_000_000
 CHAINS_MIN = 10
 """Least number of flights that pass on to the next level: of fewer, one that is an exception would decide all that follows."""
 
+STUDY = "study"
+"""What flights that count have in the place of a comparison's name."""
+
 NU_MAX = 10.0
 """Largest speed ratio of a sweep [-]; from 1 on there is no solution, and the flight is a row that says so."""
 

@@ -33,7 +33,12 @@ def requests_of(**keys):
         ({"wind.from_deg": 45.0}, {"wind.from_deg"}, lambda s: s.wind.from_deg, 45.0),
         ({"vessel.manoeuvres": []}, {"vessel.manoeuvres.0.turn_deg"}, lambda s: s.vessel.manoeuvres, ()),
         ({"vessel.speed_ratio": 0.5}, {"vessel.speed_mps"}, lambda s: s.vessel_speed, 0.5 * 19.42),
-        ({"wind": {"speed_mps": 2.0}}, {"wind.speed_mps", "wind.from_deg"}, lambda s: (s.wind.speed_mps, s.wind.from_deg), (2.0, 0.0)),
+        (
+            {"wind": {"speed_mps": 2.0}},
+            {"wind.speed_mps", "wind.from_deg"},
+            lambda s: (s.wind.speed_mps, s.wind.from_deg),
+            (2.0, 0.0),
+        ),
     ],
 )
 def test_what_a_comparison_or_a_case_sets_wins_over_a_sample_and_others_keep_theirs(values, gone, value_of, expected):
