@@ -88,7 +88,7 @@ def load_study(name: str | Document, overrides: Sequence[str] = (), *, refusing:
         # Keys of the file have to act in what the file alone says: an override may well put one of them aside.
         own, whole = _given(name)
         refuse_unused(checked(whole, Scenario), given_keys(own))
-        refuse_unused(scenario, {parse_override(override)[0] for override in overrides})
+        refuse_unused(scenario, {parse_override(override)[0] for override in overrides}, overriding=True)
     read_logo(scenario.report)
     return scenario
 

@@ -22,9 +22,7 @@ class Section(BaseModel):
 
 
 def refuse_truth_values(kind: type[Any], given: Mapping[str, Any]) -> None:
-    """Raise a ValueError where keys of a section, or of a part's settings, have ``true`` or ``false``, which would count as 1 and 0,
-    for a number.
-    """
+    """Raise a ValueError where a key that takes a number, of a section or of a part's settings, has ``true`` or ``false``."""
     numbers = _number_keys(kind)
     for key, value in given.items():
         if isinstance(value, bool | list | tuple) and (words := numbers.get(key)) is not None and _has_other_truth(value, words):
