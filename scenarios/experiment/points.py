@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from common.registry import is_file_part
 from scenarios.errors import InputError
+from scenarios.schema.experiment_checks import swept_key
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.experiment import STUDY, CaseConfig
@@ -66,14 +67,14 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
             at = dict(zip(sweep, values, strict=True))
             nu = scenario.sweep.nu[list(sweep["nu"]).index(at["nu"])] if "nu" in at else None
             labels = [_label(key, value) for key, value in at.items()] + ([vehicle] if scenario.fidelity == "both" else [])
-            changed = with_values(scenario, {_key(key): value for key, value in at.items()} | {"fidelity": vehicle})
+            changed = with_values(scenario, {swept_key(key): value for key, value in at.items()} | {"fidelity": vehicle})
             inputs = {key: value for key, value in at.items() if key != "nu"}
             yield Point(label="_".join(labels), variant=STUDY, scenario=changed, nu=nu, inputs=inputs, flights=scenario.flights)
 
 
 def _different(values: Sequence[object]) -> Iterable[object]:
-    """Return values each once, told apart by their text: lists and tables may be swept, too."""
-    return {repr(value): value for value in values}.values()
+    """Return values each once, told apart as they compare: lists and tables may be swept, too, and 5 is 5.0."""
+    return [value for i, value in enumerate(values) if value not in values[:i]]
 
 
 def _cases(scenario: Scenario) -> Iterator[Point]:
@@ -133,10 +134,6 @@ def _varied(point: Point, name: str, values: Values, flights: int | None, *, bes
         beside=beside,
         given=(*point.given, *values),
     )
-
-
-def _key(key: str) -> str:
-    return "vessel.speed_ratio" if key == "nu" else key
 
 
 def _label(key: str, value: object) -> str:

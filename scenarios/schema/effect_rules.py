@@ -270,8 +270,10 @@ RULES = (
     Rule(keys=("flight.duration_max_s",), acts=lambda s: s.study != "patrol",
          user="other studies; flights of a patrol are as long as patrol.patience_s allows: set that"),
     Rule(keys=("speed_ratio",), acts=lambda s: bool(s.draws), user="random variables: give draws"),
-    Rule(keys=("comparison.nu",), acts=lambda s: not s.comparison.nu or (bool(s.comparison.variants) and "nu" in s.sweep.root),
-         user="variants that are flown at swept speed ratios: give comparison.variants and sweep.nu, or use comparison.flights"),
+    Rule(keys=("comparison.nu",),
+         acts=lambda s: not s.comparison.nu or (bool(s.comparison.variants) and {*s.comparison.nu} <= {*s.sweep.nu}),
+         user="variants that are flown at swept speed ratios: give comparison.variants, and these ratios in sweep.nu, too, or use"
+         " comparison.flights"),
     Rule(keys=("comparison.flights",), acts=lambda s: bool(s.comparison.variants), user="variants: give comparison.variants"),
     *(
         Rule(keys=(f"guidance.{key}",), acts=used, user=f"the steering law {laws}: set guidance.law",

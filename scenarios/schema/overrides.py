@@ -10,15 +10,13 @@ from typing import Any
 from pydantic import BaseModel
 
 from scenarios.errors import InputError
+from scenarios.schema.experiment_checks import swept_key
 from scenarios.schema.keys import displaced, entry_model, example_value, key_parts
 
 Document = dict[str, Any]
 """A scenario as read from TOML, before it is checked."""
 
 _RATIO, _SPEED = "vessel.speed_ratio", "vessel.speed_mps"
-
-_LONG = {"nu": _RATIO}
-"""Keys that a sweep has short names for."""
 
 
 def parse_override(override: str) -> tuple[str, object]:
@@ -70,10 +68,10 @@ def apply_override(document: Document, key: str, value: object, kind: type[BaseM
         return
     set_value(document, key, value, kind)
     for values in tables:
-        for name in [name for name in values if displaced(_long(name.removeprefix("sweep.")), [key])]:
+        for name in [name for name in values if displaced(swept_key(name.removeprefix("sweep.")), [key])]:
             del values[name]
     if isinstance(swept := document.get("sweep"), dict):
-        document["sweep"] = _without(swept, lambda name: displaced(_long(name), [key]) and (key, _long(name)) != (_SPEED, _RATIO))
+        document["sweep"] = _without(swept, lambda name: _ends_sweep(key, swept_key(name)))
     draws = document.get("draws", [])
     if key != "draws" and isinstance(draws, list):
         document["draws"] = [draw for draw in draws if not (isinstance(draw, dict) and _gives_way(str(draw.get("key")), key))]
@@ -81,13 +79,13 @@ def apply_override(document: Document, key: str, value: object, kind: type[BaseM
             del document["draws"]
 
 
-def _long(name: str) -> str:
-    return _LONG.get(name, name)
+def _ends_sweep(key: str, swept: str) -> bool:
+    return displaced(swept, [key]) and (key, swept) != (_SPEED, _RATIO)
 
 
 def _gives_way(drawn: str, key: str) -> bool:
     """Return whether the draw of a key gives way to a key that is set, or, of the vessel's speed, to a sweep of the other key."""
-    swept = _long(key.removeprefix("sweep."))
+    swept = swept_key(key.removeprefix("sweep."))
     return displaced(drawn, [key] if swept == drawn or swept not in {_SPEED, _RATIO} else [swept])
 
 

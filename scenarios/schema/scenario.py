@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
-from scenarios.schema.experiment_checks import check_draws, check_names, check_one_point, check_search, check_subset
+from scenarios.schema.experiment_checks import check_draws, check_one_point, check_search, check_subset, check_tables
 from scenarios.schema.random_sample import is_random_sample
 from scenarios.schema.sections.equipment import (
     REPORTS_MAX,
@@ -286,7 +286,7 @@ class Scenario(Section):
     @model_validator(mode="after")
     def _varied(self) -> "Scenario":
         check_one_point(self)
-        check_names(self)
+        check_tables(self)
         if self.study == "falsify":
             check_search(self)
         if self.study == "monte_carlo" and self.method == "subset":
