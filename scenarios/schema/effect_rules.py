@@ -235,8 +235,8 @@ RULES = (
          user="a random distance: leave out start.place_m and start.range_m", depends=("start.",)),
     Rule(keys=("start.spread_deg",), acts=lambda s: s.start.place_m is None and s.start.aspect_deg is None,
          user="a random bearing: leave out start.place_m and start.aspect_deg", depends=("start.",)),
-    Rule(keys=("criteria.resumes_within_periods",), acts=lambda s: bool(s.vessel.manoeuvres) or s.vessel.from_file,
-         user="a vessel that manoeuvres: set vessel.manoeuvres", depends=("vessel.manoeuvres", "vessel.track")),
+    Rule(keys=("criteria.resumes_within_periods",), acts=lambda s: bool(s.vessel.manoeuvres) or s.vessel.track != "manoeuvres",
+         user="a vessel that manoeuvres: set vessel.manoeuvres or vessel.track", depends=("vessel.manoeuvres", "vessel.track")),
     Rule(
         keys=("criteria.tracking_error_rms_m", "criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"),
         acts=lambda s: s.criteria.settles,

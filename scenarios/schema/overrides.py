@@ -37,6 +37,11 @@ def parse_override(override: str) -> tuple[str, object]:
                 f"--set '{override}' is not valid TOML: {error}; words in a list are quoted: 'key=[\"word\"]'"
             ) from None
         value = text
+    except ValueError:
+        # Python reads no whole number of more than some thousand digits.
+        raise InputError(
+            f"--set {key.strip()}: value {text.strip()[:20]}... has too many digits; give a number with fewer"
+        ) from None
     if key.strip() == "extends":
         raise InputError(f"--set '{override}': extends stands in a scenario file; name the scenario to fly instead")
     return key.strip(), value
@@ -101,6 +106,13 @@ def _without(values: Document, left_out: Callable[[str], bool], before: str = ""
     return rest
 
 
+def tabled(document: Document) -> Document:
+    """Put the short form of the payload, a list of instruments, into a table, in place, so that other keys find room beside it."""
+    if isinstance(names := document.get("payload"), list | tuple):
+        document["payload"] = {"instruments": names}
+    return document
+
+
 def set_value(document: Document, dotted: str, value: object, kind: type[BaseModel]) -> None:
     """Set a dotted key of a document in place; numbers in it are indices of lists.
 
@@ -109,7 +121,7 @@ def set_value(document: Document, dotted: str, value: object, kind: type[BaseMod
     InputError : the key goes through a value that is not a table, or to an entry that a list does not have
     """
     parts = key_parts(kind, dotted)
-    section: Any = document
+    section: Any = tabled(document)
     for depth, name in enumerate(parts[:-1]):
         if isinstance(section, list):
             key: Any = _index(section, parts, depth, value, kind)

@@ -196,6 +196,8 @@ class Scenario(Section):
                 "reference.path is 'circle' beside wind, a vessel that is followed, a sweep or draws; a circle has no vessel:"
                 " set reference.path to 'oscillation', or put it into a case of its own"
             )
+        if self.circles and self.criteria.required == "keep_out":
+            raise ValueError("criteria.required is 'keep_out', and a circle has no area to keep out of; set it to 'criteria'")
         if self.fidelity == "six_dof" and not self.guidance.command_limit:
             raise ValueError(
                 "guidance.command_limit is false; the aircraft cannot turn as fast as that: set fidelity to 'kinematic'"
