@@ -21,7 +21,7 @@ class Section(BaseModel):
         return given
 
 
-def refuse_truth_values(kind: type[Any], given: Mapping[str, Any]) -> None:
+def refuse_truth_values(kind: Any, given: Mapping[str, Any]) -> None:
     """Raise a ValueError where a key that takes a number, of a section or of a part's settings, has ``true`` or ``false``."""
     numbers = _number_keys(kind)
     for key, value in given.items():
@@ -38,7 +38,7 @@ def _has_other_truth(value: object, words: tuple[bool, ...]) -> bool:
 
 
 @functools.cache
-def _number_keys(kind: type[Any]) -> dict[str, tuple[bool, ...]]:
+def _number_keys(kind: Any) -> dict[str, tuple[bool, ...]]:
     """Return the keys that take numbers, each with the truth values that it takes as words beside them."""
     fields = {name: field.annotation for name, field in kind.model_fields.items()} if issubclass(kind, BaseModel) else None
     leaves = {name: list(_leaves(annotation)) for name, annotation in (fields or typing.get_type_hints(kind)).items()}
