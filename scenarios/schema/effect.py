@@ -8,7 +8,11 @@ from scenarios.schema.effect_rules import OPERATIONAL, RULES, Rule
 from scenarios.schema.keys import known_keys
 from scenarios.schema.scenario import Scenario
 
-_DISPLACED_BY = {"start.distance_m": ("start.range_m", "start.place_m"), "start.spread_deg": ("start.aspect_deg", "start.place_m")}
+_DISPLACED_BY = {
+    "start.distance_m": ("start.range_m", "start.place_m"),
+    "start.spread_deg": ("start.aspect_deg", "start.place_m"),
+    "vessel.speed_mps": ("vessel.speed_ratio",),
+}
 """Keys that other keys put aside, where flights have these."""
 
 

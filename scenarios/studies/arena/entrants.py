@@ -123,14 +123,14 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
             "flight.measured_s": scenario.arena.window_s,
         }
         try:
-            trials[condition.name] = with_values(scenario, {**_draws_left(scenario, condition.set), **condition.set, **bare})
+            trials[condition.name] = with_values(scenario, {**draws_left(scenario, condition.set), **condition.set, **bare})
         except InputError as error:
             raise InputError(f"condition '{condition.name}' of '{name}': {error}") from None
     return trials
 
 
-def _draws_left(scenario: Scenario, values: Mapping[str, object]) -> dict[str, object]:
-    """Return the arena's random variables as a value to set: without those of keys that a condition sets."""
+def draws_left(scenario: Scenario, values: Mapping[str, object]) -> dict[str, object]:
+    """Return the arena's random variables as a value to set: without those of keys that are set beside them."""
     left = tuple(draw.model_dump() for draw in scenario.draws if not displaced(draw.key, values))
     return {} if len(left) == len(scenario.draws) else {"draws": left}
 

@@ -6,6 +6,8 @@ from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import load_study
 from scenarios.schema.scenario import Scenario
+from scenarios.studies.arena.entrants import draws_left, entrants_of
+from scenarios.studies.arena.tuning import Tuner
 from scenarios.studies.registry import study_of
 
 DRAWS = [
@@ -83,3 +85,12 @@ def test_what_a_condition_of_an_arena_sets_wins_over_a_sample():
     assert min(winds["drawn"]) >= 3.0
     assert winds["calm"] == [0.0] * 3
     assert [draw.key for draw in study.trials["calm"].draws] == KEYS[1:]
+
+
+def test_what_is_set_of_the_flights_that_laws_are_tuned_in_wins_over_a_sample():
+    scenario = Scenario.model_validate(BASE | {"arena": {"tracking": ["cascade"], "tuning_set": {"wind": {"speed_mps": 5.0}}}})
+    assert draws_left(scenario, {"flight.crossings": 3}) == {}
+    (entrant,), _ = entrants_of(scenario)
+    tuned = Tuner(scenario=scenario, arena=scenario.arena, lag=0.0)._scenario(entrant, {})
+    assert [draw.key for draw in tuned.draws] == KEYS[2:]
+    assert Experiment("tuning", tuned).request(0).scenario.wind.speed_mps == 5.0

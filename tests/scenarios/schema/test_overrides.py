@@ -202,6 +202,11 @@ def test_an_override_of_a_speed_ends_a_sampled_speed_ratio_and_one_of_the_ratio_
             ["start.distance_m=[300, 350]"],
             "'start.range_m' is swept or sampled in every flight, and takes",
         ),
+        (
+            "sea_approach",
+            ["vessel.speed_mps=5", 'draws=[{key="vessel.speed_ratio",uniform=[0.1,0.5]}]'],
+            "'vessel.speed_ratio' is swept or sampled in every flight",
+        ),
         ("monte_carlo", ["start.spread_deg=10"], "'start.aspect_deg' is swept or sampled in every flight"),
         ("sweep_nu", ["sweep.start.range_m=[400, 500]", "start.distance_m=[300, 350]"], "'start.range_m' is swept or sampled"),
         (
