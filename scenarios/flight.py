@@ -6,6 +6,7 @@ import json
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from datetime import datetime
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,6 @@ import pandas as pd
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
-from scenarios.experiment.points import STUDY
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
 from scenarios.instruments.instrument import EvaluatedInstrument, GasReader, Instrument
 from scenarios.metrics.criteria import failed_criteria, kept_out
@@ -28,6 +28,7 @@ from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.schema.extension_points import PAYLOADS
+from scenarios.schema.sections.experiment import STUDY
 from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.failure import failure, unflown
 from scenarios.simulation.outcome import Outcome
@@ -253,5 +254,11 @@ def reader_of(plan: FlightPlan, instruments: list[Instrument | EvaluatedInstrume
 
 
 def _plain(values: Mapping[str, object]) -> Row:
-    """Return inputs as they go into a table: numbers and words, anything else as JSON."""
-    return {key: value if isinstance(value, str | float | int) else json.dumps(value) for key, value in values.items()}
+    """Return inputs as they go into a table: numbers and words, times in ISO 8601, anything else as JSON."""
+    return {key: _cell(value) for key, value in values.items()}
+
+
+def _cell(value: object) -> object:
+    if isinstance(value, datetime):
+        return value.isoformat()
+    return value if isinstance(value, str | float | int) else json.dumps(value)

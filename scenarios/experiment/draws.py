@@ -2,13 +2,14 @@
 
 import math
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 
 from scenarios.errors import InputError
+from scenarios.schema.keys import displaced
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.experiment import DrawConfig
@@ -20,6 +21,9 @@ _TRIES = 1000
 _ALMOST_ALL = 1.0 - 1e-15
 """The share of a distribution up to its end, where it has none."""
 
+Values = dict[str, object]
+"""Samples, by key."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SampledFlight:
@@ -29,7 +33,7 @@ class SampledFlight:
     ----------
     scenario : with its samples set
     noise : of its start, air, sensors and reports
-    values : the samples, by key
+    values : the samples, by key, without those that give way to given keys
     """
 
     scenario: Scenario
@@ -42,7 +46,15 @@ class SampledFlight:
         return self.noise.seed
 
 
-def sampled_flight(trial: str, scenario: Scenario, number: int, point: Sequence[float] = ()) -> SampledFlight:
+def sampled_flight(
+    trial: str,
+    scenario: Scenario,
+    number: int,
+    point: Sequence[float] = (),
+    *,
+    given: Collection[str] = (),
+    beside: Callable[[Values], Scenario] | None = None,
+) -> SampledFlight:
     """Return one flight of a trial.
 
     Parameters
@@ -53,24 +65,34 @@ def sampled_flight(trial: str, scenario: Scenario, number: int, point: Sequence[
     point : position of each random variable in its distribution, from 0 to 1, in their order; at random if it is empty. Where
         that has no speed ratio within ``scenario.speed_ratio``, the flight is sampled again at random. More numbers after these
         are those of its noise (``Noise.at``); otherwise it has a seed of its own.
+    given : keys that the scenario sets for each of its flights: the samples that give way to them keep their places, so that all
+        others are what they are without them
+    beside : makes the flight whose speed ratio says whether to sample again, of the samples; the flight itself if not given
 
     Raises
     ------
     InputError : a sampled key does not exist or is out of range, or no sample has a speed ratio within ``scenario.speed_ratio``
     """
     sequence = np.random.SeedSequence([scenario.seed, zlib.crc32(trial.encode()), number])
-    inputs, given = point[: len(scenario.draws)], point[len(scenario.draws) :]
+    inputs, of_noise = point[: len(scenario.draws)], point[len(scenario.draws) :]
     for values in _tried(scenario.draws, np.random.default_rng(sequence), number, inputs):
-        flight = with_values(scenario, values)
-        if has_speed_ratio(flight):
+        kept = not_displaced(values, given)
+        flight = with_values(scenario, kept)
+        judged = flight if beside is None else beside(values)
+        if has_speed_ratio(judged):
             own = int(sequence.generate_state(1)[0]) if flight.flight_seed is None else flight.flight_seed
-            noise = Noise.at(given) if given and flight.flight_seed is None else Noise(own)
-            return SampledFlight(scenario=flight, noise=noise, values=values)
-    (low, high), (least, most) = scenario.speed_ratio, speed_ratios(flight)
+            noise = Noise.at(of_noise) if of_noise and flight.flight_seed is None else Noise(own)
+            return SampledFlight(scenario=flight, noise=noise, values=kept)
+    (low, high), (least, most) = judged.speed_ratio, speed_ratios(judged)
     raise InputError(
         f"trial '{trial}': {_TRIES} samples had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
         f" {most:.3f}: widen speed_ratio, or sample other winds and vessel speeds"
     )
+
+
+def not_displaced(values: Mapping[str, object], given: Collection[str]) -> Values:
+    """Return samples, by key, without those that give way to given keys."""
+    return {key: value for key, value in values.items() if not displaced(key, given)}
 
 
 def speed_ratios(flight: Scenario) -> tuple[float, float]:
@@ -105,7 +127,7 @@ def value_at(draw: DrawConfig, share: float) -> object:
     return min(max(value, draw.within[0]), draw.within[1]) if draw.within else value
 
 
-def values_at(draws: Sequence[DrawConfig], point: Sequence[float]) -> dict[str, object]:
+def values_at(draws: Sequence[DrawConfig], point: Sequence[float]) -> Values:
     """Return the values of random variables, by key, for their positions from 0 to 1."""
     return {draw.key: value_at(draw, share) for draw, share in zip(draws, point, strict=True)}
 
@@ -119,14 +141,12 @@ def _share_below(draw: DrawConfig, limit: float) -> float:
     return -math.expm1(-((max(limit, 0.0) / scale) ** shape))
 
 
-def _tried(
-    draws: Sequence[DrawConfig], generator: np.random.Generator, number: int, point: Sequence[float]
-) -> Iterator[dict[str, object]]:
+def _tried(draws: Sequence[DrawConfig], generator: np.random.Generator, number: int, point: Sequence[float]) -> Iterator[Values]:
     """Yield what to try for a flight, one after the other."""
     if point:
         yield values_at(draws, point)
     for _ in range(_TRIES):
-        values: dict[str, object] = {}
+        values: Values = {}
         remainder = number
         for draw in draws:
             if draw.choice is None or draw.weights is not None or point:
@@ -138,8 +158,8 @@ def _tried(
         yield values
 
 
-def check_draws(trial: str, scenario: Scenario) -> None:
-    """Check every choice, and both ends of each range, before any flight.
+def check_draws(trial: str, scenario: Scenario, given: Collection[str] = ()) -> None:
+    """Check every choice, and both ends of each range, before any flight; parameters are those of ``sampled_flight``.
 
     Raises
     ------
@@ -152,11 +172,8 @@ def check_draws(trial: str, scenario: Scenario) -> None:
             )
     for number in range(max((len(draw.choice or ()) for draw in scenario.draws), default=0) or 1):
         for end in (0.0, 1.0):
-            with_values(
-                scenario,
-                {
-                    draw.key: draw.choice[number % len(draw.choice)] if draw.choice else value_at(draw, end)
-                    for draw in scenario.draws
-                },
-            )
-    sampled_flight(trial, scenario, 0)
+            values = {
+                draw.key: draw.choice[number % len(draw.choice)] if draw.choice else value_at(draw, end) for draw in scenario.draws
+            }
+            with_values(scenario, not_displaced(values, given))
+    sampled_flight(trial, scenario, 0, given=given)

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 
 from common.registry import is_file_part
 from scenarios.errors import InputError
+from scenarios.schema.experiment_checks import swept_key
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.experiment import CaseConfig
-
-STUDY = "study"
-"""The variant of flights that count; others are comparisons."""
+from scenarios.schema.sections.experiment import STUDY, CaseConfig
 
 Values = dict[str, object]
 
@@ -23,12 +21,13 @@ class Point:
     Attributes
     ----------
     label : part of its flights' names; empty where there is one point alone
-    variant : ``STUDY``, or the name of a comparison
+    variant : ``STUDY`` for flights that count, or the name of a comparison
     scenario : with the point's keys set, for one vehicle
     nu : speed ratio that is swept, or none [-]
     inputs : swept keys and their values
     flights : number of flights
     beside : number of the study's point whose flights a comparison has with some keys set otherwise; None of others
+    given : keys that its case and its comparison set: what is random of these keeps what they set
     """
 
     label: str
@@ -38,6 +37,7 @@ class Point:
     inputs: Values
     flights: int
     beside: int | None = None
+    given: tuple[str, ...] = ()
 
 
 def points_of(scenario: Scenario) -> list[Point]:
@@ -67,20 +67,21 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
             at = dict(zip(sweep, values, strict=True))
             nu = scenario.sweep.nu[list(sweep["nu"]).index(at["nu"])] if "nu" in at else None
             labels = [_label(key, value) for key, value in at.items()] + ([vehicle] if scenario.fidelity == "both" else [])
-            changed = with_values(scenario, {_key(key): value for key, value in at.items()} | {"fidelity": vehicle})
+            changed = with_values(scenario, {swept_key(key): value for key, value in at.items()} | {"fidelity": vehicle})
             inputs = {key: value for key, value in at.items() if key != "nu"}
             yield Point(label="_".join(labels), variant=STUDY, scenario=changed, nu=nu, inputs=inputs, flights=scenario.flights)
 
 
 def _different(values: Sequence[object]) -> Iterable[object]:
-    """Return values each once, told apart by their text: lists and tables may be swept, too."""
-    return {repr(value): value for value in values}.values()
+    """Return values each once, told apart as they compare: lists and tables may be swept, too, and 5 is 5.0."""
+    return [value for i, value in enumerate(values) if value not in values[:i]]
 
 
 def _cases(scenario: Scenario) -> Iterator[Point]:
     for case in scenario.cases:
         for vehicle in _vehicles(scenario):
-            changed = _case(scenario, case, vehicle)
+            values = _values_of(case, vehicle)
+            changed = _case(scenario, case, {**values, "fidelity": vehicle})
             yield Point(
                 label=f"{case.name}_{vehicle}",
                 variant=case.name if case.comparison else STUDY,
@@ -88,10 +89,12 @@ def _cases(scenario: Scenario) -> Iterator[Point]:
                 nu=None if changed.circles else changed.vessel.speed_ratio,
                 inputs={},
                 flights=scenario.flights,
+                given=tuple(values),
             )
 
 
-def _case(scenario: Scenario, case: CaseConfig, vehicle: str) -> Scenario:
+def _values_of(case: CaseConfig, vehicle: str) -> Values:
+    """Return what a case sets in flights of a vehicle."""
     values = case.set | (case.set_kinematic if vehicle == "kinematic" else {})
     if "fidelity" in values:
         raise InputError(f"case '{case.name}' sets fidelity; set it for the whole scenario, or to 'both'")
@@ -100,8 +103,12 @@ def _case(scenario: Scenario, case: CaseConfig, vehicle: str) -> Scenario:
         if not isinstance(ratios, list | tuple) or len(ratios) != 1:
             raise InputError(f"case '{case.name}' has sweep.nu = {ratios!r}; give it one speed ratio, as in [0.5]")
         values["vessel.speed_ratio"] = ratios[0]
+    return values
+
+
+def _case(scenario: Scenario, case: CaseConfig, values: Values) -> Scenario:
     try:
-        return with_values(scenario, {**values, "fidelity": vehicle})
+        return with_values(scenario, values)
     except InputError as error:
         raise InputError(f"case '{case.name}': {error}") from None
 
@@ -125,11 +132,8 @@ def _varied(point: Point, name: str, values: Values, flights: int | None, *, bes
         inputs=point.inputs,
         flights=min(flights or point.flights, point.flights),
         beside=beside,
+        given=(*point.given, *values),
     )
-
-
-def _key(key: str) -> str:
-    return "vessel.speed_ratio" if key == "nu" else key
 
 
 def _label(key: str, value: object) -> str:

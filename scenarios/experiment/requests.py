@@ -11,11 +11,16 @@ from functools import cached_property
 import numpy as np
 
 from common.run_layout import COMPARISON, SUMMARY
-from scenarios.experiment.draws import sampled_flight
-from scenarios.experiment.points import STUDY, Point, points_of
+from scenarios.experiment.draws import SampledFlight, Values, not_displaced, sampled_flight
+from scenarios.experiment.points import Point, points_of
+from scenarios.schema.keys import displaced
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.experiment import STUDY
 from scenarios.world.noise import Noise
+
+_PLANNED_FOR = ("guidance.", "turbulence.level", "reference.shape", "following.margin_law")
+"""Beginnings of keys for each choice of which the tracking in turbulence is worked out before any flight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -131,7 +136,7 @@ class Experiment:
         point, index = self._point(number)
         flight_id, variant = self.named(number)
         if point.scenario.draws:
-            sampled = sampled_flight(self.name, point.scenario, index, at)
+            sampled = self._sampled(point, index, at)
             scenario, noise, inputs = sampled.scenario, sampled.noise, point.inputs | sampled.values
         else:
             scenario, inputs = point.scenario, point.inputs
@@ -142,12 +147,12 @@ class Experiment:
         return FlightRequest(flight_id=flight_id, trial=self.name, variant=variant, scenario=scenario, noise=noise, inputs=inputs)
 
     def settings(self) -> Iterator[Scenario]:
-        """Yield every kind of flight, as far as autopilot and margins depend on it: choices of guidance and turbulence apart."""
+        """Yield every kind of flight, as far as autopilot and margins depend on it: by points and by choices."""
         for point in self.points:
             choices = [
                 [(draw.key, value) for value in draw.choice]
                 for draw in point.scenario.draws
-                if draw.choice is not None and draw.key.startswith(("guidance.", "turbulence.level"))
+                if draw.choice is not None and draw.key.startswith(_PLANNED_FOR) and not displaced(draw.key, point.given)
             ]
             for chosen in itertools.product(*choices):
                 yield with_values(point.scenario, dict(chosen)) if chosen else point.scenario
@@ -155,6 +160,17 @@ class Experiment:
     def _point(self, number: int) -> tuple[Point, int]:
         i = bisect.bisect_right(self._ends, number)
         return self.points[i], number - (self._ends[i - 1] if i else 0)
+
+    def _sampled(self, point: Point, index: int, at: Sequence[float]) -> SampledFlight:
+        """Return a flight with its samples; one of a comparison has those of the study's flight that it is beside."""
+        if point.beside is None:
+            return sampled_flight(self.name, point.scenario, index, at, given=point.given)
+        study = self.points[point.beside]
+
+        def beside(values: Values) -> Scenario:
+            return with_values(study.scenario, not_displaced(values, study.given))
+
+        return sampled_flight(self.name, point.scenario, index, at, given=point.given, beside=beside)
 
     def _seed(self, point: Point, index: int) -> int:
         """Return the seed of a flight, which depends on nu alone where it is swept: variants start alike."""

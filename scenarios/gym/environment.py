@@ -19,13 +19,13 @@ from scenarios.api.flying import flights_of
 from scenarios.api.scenario import Given, load
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.experiment.points import STUDY
 from scenarios.experiment.requests import FlightRequest
 from scenarios.flight import FlightWork, payload_of, reader_of
 from scenarios.gym.actions import action_box, limits_of
 from scenarios.gym.observation import Array, Observer, observation_space
 from scenarios.gym.reward import LOST, VIOLATION, CrossingReward
 from scenarios.instruments.instrument import Instrument
+from scenarios.schema.sections.experiment import STUDY
 from scenarios.simulation.closed_loop import ClosedLoop, Commands
 from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.record import FlightRecord

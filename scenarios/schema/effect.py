@@ -8,14 +8,23 @@ from scenarios.schema.effect_rules import OPERATIONAL, RULES, Rule
 from scenarios.schema.keys import known_keys
 from scenarios.schema.scenario import Scenario
 
+_DISPLACED_BY = {
+    "start.distance_m": ("start.range_m", "start.place_m"),
+    "start.spread_deg": ("start.aspect_deg", "start.place_m"),
+    "vessel.speed_mps": ("vessel.speed_ratio",),
+}
+"""Keys that other keys put aside, where flights have these."""
 
-def refuse_unused(scenario: Scenario, given: Iterable[str]) -> None:
+
+def refuse_unused(scenario: Scenario, given: Iterable[str], *, overriding: bool = False) -> None:
     """Refuse keys that no part of a scenario's flights uses, those among them that are swept or sampled.
 
     Parameters
     ----------
     scenario : as checked
-    given : dotted keys that its file and the command line set
+    given : dotted keys that its file or the command line sets
+    overriding : whether they are of the command line: then another key that is swept or sampled in every flight must not put them
+        aside; what a file says may be of other flights, such as those of a base that it was made from
 
     Raises
     ------
@@ -25,12 +34,23 @@ def refuse_unused(scenario: Scenario, given: Iterable[str]) -> None:
     for key in given:
         if user := unused(scenario, key):
             raise InputError(f"key '{key}' has no effect here: it is used by {user}")
+        if overriding and (other := _put_aside_by(scenario, key)):
+            raise InputError(
+                f"key '{key}' has no effect here: '{other}' is swept or sampled in every flight, and takes its place; set '{other}'"
+                " instead, or leave it out of sweep and draws"
+            )
     for section, key in _varied_by(scenario, given):
         if key == "fidelity":
             raise InputError("key 'fidelity' has no effect in sweep; leave it out there, and set fidelity to 'both'")
         # What is said of an unknown key comes when it is set.
         if _is_known(key) and (user := unused(scenario, key)):
             raise InputError(f"key '{key}' in {section} has no effect here: it is used by {user}")
+
+
+def _put_aside_by(scenario: Scenario, key: str) -> str | None:
+    """Return the swept or sampled key that puts a dotted key aside in every flight: one above it, or one in its place."""
+    varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
+    return next((other for other in varied if key.startswith(f"{other}.") or other in _DISPLACED_BY.get(key, ())), None)
 
 
 def unused(scenario: Scenario, key: str) -> str:

@@ -241,8 +241,8 @@ RULES = (
          user="a random distance: leave out start.place_m and start.range_m", depends=("start.",)),
     Rule(keys=("start.spread_deg",), acts=lambda s: s.start.place_m is None and s.start.aspect_deg is None,
          user="a random bearing: leave out start.place_m and start.aspect_deg", depends=("start.",)),
-    Rule(keys=("criteria.resumes_within_periods",), acts=lambda s: bool(s.vessel.manoeuvres) or s.vessel.from_file,
-         user="a vessel that manoeuvres: set vessel.manoeuvres", depends=("vessel.manoeuvres", "vessel.track")),
+    Rule(keys=("criteria.resumes_within_periods",), acts=lambda s: bool(s.vessel.manoeuvres) or s.vessel.track != "manoeuvres",
+         user="a vessel that manoeuvres: set vessel.manoeuvres or vessel.track", depends=("vessel.manoeuvres", "vessel.track")),
     Rule(
         keys=("criteria.tracking_error_rms_m", "criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"),
         acts=lambda s: s.criteria.settles,
@@ -280,8 +280,10 @@ RULES = (
     Rule(keys=("histories",), acts=lambda s: s.study != "patrol",
          user="other studies; a patrol keeps no time histories: leave it out"),
     Rule(keys=("speed_ratio",), acts=lambda s: bool(s.draws), user="random variables: give draws"),
-    Rule(keys=("comparison.nu",), acts=lambda s: not s.comparison.nu or (bool(s.comparison.variants) and "nu" in s.sweep.root),
-         user="variants that are flown at swept speed ratios: give comparison.variants and sweep.nu, or use comparison.flights"),
+    Rule(keys=("comparison.nu",),
+         acts=lambda s: not s.comparison.nu or (bool(s.comparison.variants) and {*s.comparison.nu} <= {*s.sweep.nu}),
+         user="variants that are flown at swept speed ratios: give comparison.variants, and these ratios in sweep.nu, too, or use"
+         " comparison.flights"),
     Rule(keys=("comparison.flights",), acts=lambda s: bool(s.comparison.variants), user="variants: give comparison.variants"),
     *(
         Rule(keys=(f"guidance.{key}",), acts=_also_of_own_laws(key, used), user=f"the steering law {laws}: set guidance.law",

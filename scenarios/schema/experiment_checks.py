@@ -1,9 +1,11 @@
 """Whether the parts of an experiment go together: what is sampled, and what a search and subset simulation need."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
-from scenarios.schema.sections.experiment import FLIGHTS_MAX
+from pydantic import BaseModel
+
+from scenarios.schema.sections.experiment import FLIGHTS_MAX, STUDY
 
 if TYPE_CHECKING:
     from scenarios.schema.scenario import Scenario
@@ -23,18 +25,61 @@ ONE_POINT = {
 """Studies of one point, and why."""
 
 
-_WITHOUT_EFFECT = ("criteria.", "statistics.", "search.", "subset.", "arena.", "patrol.", "comparison.")
-"""Sections on which no flight depends: to sweep them would count the same flights several times."""
+_WITHOUT_EFFECT = ("criteria.", "statistics.", "search.", "subset.", "arena.", "patrol.", "comparison.", "sweep.", "cases.")
+"""Sections on which no flight depends: to sweep or sample them would count the same flights several times."""
 
 
 _SWEPT_BESIDE_SECTIONS = ("flight_seed", "fidelity")
 """Keys outside of sections that may be swept, or are refused elsewhere."""
 
 
+_SET_ANYWHERE = ("aircraft.", "fidelity.", "flight_seed.", "criteria.")
+"""Keys outside of sections, and sections on which no flight depends, that may be set for some flights, or are refused elsewhere;
+each with a dot behind it.
+"""
+
+
+_SET_IN = {
+    "comparison": _SET_ANYWHERE,
+    "case": (*_SET_ANYWHERE, "sweep.nu.", "speed_ratio."),
+    "condition": (*_SET_ANYWHERE, "draws.", "speed_ratio."),
+}
+"""The same for each kind of table that sets keys."""
+
+
 def check_one_point(scenario: "Scenario") -> None:
     """Refuse several points in a study of one."""
     if scenario.several_points and (why := ONE_POINT.get(scenario.study)):
         raise ValueError(f"study is '{scenario.study}' beside a sweep, cases, a comparison or two vehicles; {why}: remove them")
+
+
+def check_tables(scenario: "Scenario") -> None:
+    """Refuse comparisons that have the name of flights that count, and tables that set what no flight depends on."""
+    apart = [of.name for of in scenario.comparison.variants] + [case.name for case in scenario.cases if case.comparison]
+    if STUDY in apart:
+        raise ValueError(
+            f"a comparison is called '{STUDY}', as flights that count are, and would count as they do; give it another name"
+        )
+    for kind, name, keys in _tables_of(scenario):
+        for key in keys:
+            if _is_of_run(scenario, key) and not f"{key}.".startswith(_SET_IN[kind]):
+                raise ValueError(
+                    f"{kind} '{name}' sets '{key}', on which its flights do not depend; set it for the whole scenario, and here"
+                    " keys of flights, as wind.speed_mps"
+                )
+
+
+def _is_of_run(scenario: "Scenario", key: str) -> bool:
+    """Return whether a key is outside of sections, or of a section on which no flight depends."""
+    outside = key in type(scenario).model_fields and not isinstance(getattr(scenario, key), BaseModel)
+    return outside or f"{key}.".startswith(_WITHOUT_EFFECT)
+
+
+def _tables_of(scenario: "Scenario") -> Iterator[tuple[str, str, Collection[str]]]:
+    """Yield the tables that set keys for some flights: the kind, the name, and the keys."""
+    yield from (("case", case.name, {**case.set, **case.set_kinematic}) for case in scenario.cases)
+    yield from (("comparison", of.name, of.set) for of in scenario.comparison.variants)
+    yield from (("condition", of.name, of.set) for of in scenario.arena.conditions)
 
 
 def check_subset(scenario: "Scenario") -> None:
@@ -72,8 +117,11 @@ def check_draws(scenario: "Scenario") -> None:
             raise ValueError(f"draws has '{key}' {keys.count(key)} times; give a key once")
         if "." not in key and key != "flight_seed":
             raise ValueError(f"draws has '{key}', the same for all flights; give keys of sections, as in wind.speed_mps")
-        if key in scenario.sweep.root:
+        _check_varied("draws", key, known=type(scenario).model_fields)
+        if key in map(swept_key, scenario.sweep.root):
             raise ValueError(f"'{key}' is in sweep and in draws; give it in one of them")
+    if {"nu", swept_key("nu")} <= scenario.sweep.root.keys():
+        raise ValueError("sweep has 'nu' and 'vessel.speed_ratio', which are the same; give one of them")
     for key in [*keys, *scenario.sweep.root]:
         if key.startswith(DESIGNED_FOR if scenario.flight.altitude_m is None else DESIGNED_FOR[:-1]):
             raise ValueError(
@@ -81,18 +129,31 @@ def check_draws(scenario: "Scenario") -> None:
                 " of its own"
             )
     for key in scenario.sweep.root:
-        _check_swept(key, known=type(scenario).model_fields)
+        _check_varied("sweep", key, known=type(scenario).model_fields)
 
 
-def _check_swept(key: str, known: Collection[str]) -> None:
-    """Refuse to sweep a key that is the same for all flights; an unknown one, and the vehicle, have messages of their own."""
+def swept_key(name: str) -> str:
+    """Return the key that a sweep means by a name: ``nu`` stands for the speed ratio."""
+    return "vessel.speed_ratio" if name == "nu" else name
+
+
+def _check_varied(section: str, key: str, known: Collection[str]) -> None:
+    """Refuse to sweep or sample a key that is the same for all flights; an unknown one, and the vehicle, are refused elsewhere.
+
+    Parameters
+    ----------
+    section : sweep or draws
+    key : as the section has it
+    known : keys outside of sections, and sections
+    """
     if key == "seed":
         raise ValueError(
             "sweep has 'seed', from which flights of one run take their seeds: every point would fly the same; sweep"
             " flight_seed instead, or set flights to the number of flights"
         )
-    if key.startswith(_WITHOUT_EFFECT) or (key in known and key not in _SWEPT_BESIDE_SECTIONS):
+    of_draws = section == "draws" and key.startswith("draws.")
+    if of_draws or key.startswith(_WITHOUT_EFFECT) or (key in known and key not in _SWEPT_BESIDE_SECTIONS):
         raise ValueError(
-            f"sweep has '{key}', which sets nothing of a flight: the same flights would be flown and counted for each value; sweep"
-            " keys that flights depend on, as wind.speed_mps, and give each value of this one a run of its own"
+            f"{section} has '{key}', which sets nothing of a flight: the same flights would be flown and counted for each value;"
+            " take keys that flights depend on, as wind.speed_mps, and give each value of this one a run of its own"
         )

@@ -1,13 +1,16 @@
 """The dotted keys that a schema knows."""
 
 import typing
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from pydantic import BaseModel, RootModel
 from pydantic.fields import FieldInfo
 
 from common.spelling import nearest
+
+_SPEEDS = {"vessel.speed_mps", "vessel.speed_ratio"}
+"""Keys that give the vessel's speed, each in its own way."""
 
 
 def known_keys(kind: type[BaseModel]) -> list[str]:
@@ -35,6 +38,13 @@ def key_parts(kind: type[BaseModel], dotted: str) -> list[str]:
         if issubclass(model, RootModel):
             return [*parts[:depth], ".".join(parts[depth:]).strip('"')]
     return parts
+
+
+def displaced(key: str, given: Iterable[str]) -> bool:
+    """Return whether what varies a dotted key gives way to given keys: to the key itself, to one above it, or, for the vessel's
+    speed and its speed ratio, to the other one of the two.
+    """
+    return any(key == of or key.startswith(f"{of}.") or {key, of} == _SPEEDS for of in given)
 
 
 def suggestion(kind: type[BaseModel], key: str) -> str:

@@ -18,7 +18,7 @@ from common.spelling import did_you_mean
 from scenarios.errors import InputError
 from scenarios.schema.effect import refuse_unused
 from scenarios.schema.keys import suggestion
-from scenarios.schema.overrides import Document, apply_override, as_toml, given_keys, merged, parse_override, set_value
+from scenarios.schema.overrides import Document, apply_override, as_toml, given_keys, merged, parse_override, set_value, tabled
 from scenarios.schema.parts import refuse_missing, with_absolute_files
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.convergence import ConvergenceScenario
@@ -88,7 +88,7 @@ def load_study(name: str | Document, overrides: Sequence[str] = (), *, refusing:
         # Keys of the file have to act in what the file alone says: an override may well put one of them aside.
         own, whole = _given(name)
         refuse_unused(checked(whole, Scenario), given_keys(own))
-        refuse_unused(scenario, {parse_override(override)[0] for override in overrides})
+        refuse_unused(scenario, {parse_override(override)[0] for override in overrides}, overriding=True)
     read_logo(scenario.report)
     return scenario
 
@@ -182,18 +182,19 @@ def _base(base: str, folder: Path, where: object, extended_by: tuple[Path, ...])
     except InputError as error:
         raise InputError(f"{where}: extends: {error}") from None
     # What a description says of one scenario is not so of another that changes its keys.
-    return {key: value for key, value in _read(path, extended_by).items() if key != "description"}
+    return tabled({key: value for key, value in _read(path, extended_by).items() if key != "description"})
 
 
 def _own(path: Path) -> tuple[Document, str | None]:
     """Return the document in a file alone, and the name of the scenario that it extends, if any."""
     try:
         # An editor may have put a byte order mark before the text.
-        return _resolved(tomllib.loads(path.read_text(encoding="utf-8-sig")), path.parent, path)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        given = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except ValueError as error:
         raise InputError(f"{path}: not valid TOML: {error}; fix the file") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}; check the path and its permissions") from None
+    return _resolved(given, path.parent, path)
 
 
 def _resolved(given: Document, folder: Path, where: object) -> tuple[Document, str | None]:

@@ -3,20 +3,20 @@
 import json
 import re
 import tomllib
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Mapping
 from datetime import datetime
 from typing import Any
 
 from pydantic import BaseModel
 
 from scenarios.errors import InputError
-from scenarios.schema.keys import entry_model, example_value, key_parts
+from scenarios.schema.experiment_checks import swept_key
+from scenarios.schema.keys import displaced, entry_model, example_value, key_parts
 
 Document = dict[str, Any]
 """A scenario as read from TOML, before it is checked."""
 
-_SHORT = {"vessel.speed_ratio": "nu"}
-"""Short names that a sweep has for keys."""
+_RATIO, _SPEED = "vessel.speed_ratio", "vessel.speed_mps"
 
 
 def parse_override(override: str) -> tuple[str, object]:
@@ -37,13 +37,20 @@ def parse_override(override: str) -> tuple[str, object]:
                 f"--set '{override}' is not valid TOML: {error}; words in a list are quoted: 'key=[\"word\"]'"
             ) from None
         value = text
+    except ValueError:
+        # Python reads no whole number of more than some thousand digits.
+        raise InputError(
+            f"--set {key.strip()}: value {text.strip()[:20]}... has too many digits; give a number with fewer"
+        ) from None
     if key.strip() == "extends":
         raise InputError(f"--set '{override}': extends stands in a scenario file; name the scenario to fly instead")
     return key.strip(), value
 
 
 def apply_override(document: Document, key: str, value: object, kind: type[BaseModel]) -> None:
-    """Set a key for every flight of a document: no case, no sweep and no random variable sets it otherwise.
+    """Set a key for every flight of a document: no case, no sweep and no random variable sets it, or what is below it, otherwise.
+
+    A speed of the vessel beside a sweep of the speed ratio is left to ``effect``, which refuses it.
 
     Parameters
     ----------
@@ -65,29 +72,45 @@ def apply_override(document: Document, key: str, value: object, kind: type[BaseM
             values[key] = value
         return
     set_value(document, key, value, kind)
-    short = _SHORT.get(key, key)
     for values in tables:
-        for name in (key, f"sweep.{short}"):
-            values.pop(name, None)
+        for name in [name for name in values if displaced(swept_key(name.removeprefix("sweep.")), [key])]:
+            del values[name]
     if isinstance(swept := document.get("sweep"), dict):
-        document["sweep"] = _without(swept, {key, short})
+        document["sweep"] = _without(swept, lambda name: _ends_sweep(key, swept_key(name)))
     draws = document.get("draws", [])
     if key != "draws" and isinstance(draws, list):
-        document["draws"] = [draw for draw in draws if not (isinstance(draw, dict) and draw.get("key") == key)]
+        document["draws"] = [draw for draw in draws if not (isinstance(draw, dict) and _gives_way(str(draw.get("key")), key))]
         if not draws and "draws" in document:
             del document["draws"]
 
 
-def _without(values: Document, keys: Collection[str], before: str = "") -> Document:
-    """Return the values of a sweep without those of some dotted keys, which may stand in tables of their own."""
+def _ends_sweep(key: str, swept: str) -> bool:
+    return displaced(swept, [key]) and (key, swept) != (_SPEED, _RATIO)
+
+
+def _gives_way(drawn: str, key: str) -> bool:
+    """Return whether the draw of a key gives way to a key that is set, or, of the vessel's speed, to a sweep of the other key."""
+    swept = swept_key(key.removeprefix("sweep."))
+    return displaced(drawn, [key] if swept == drawn or swept not in {_SPEED, _RATIO} else [swept])
+
+
+def _without(values: Document, left_out: Callable[[str], bool], before: str = "") -> Document:
+    """Return the values of a sweep without those of dotted keys that are left out, which may stand in tables of their own."""
     rest: Document = {}
     for name, value in values.items():
         if isinstance(value, dict):
-            if below := _without(value, keys, f"{before}{name}."):
+            if below := _without(value, left_out, f"{before}{name}."):
                 rest[name] = below
-        elif f"{before}{name}" not in keys:
+        elif not left_out(f"{before}{name}"):
             rest[name] = value
     return rest
+
+
+def tabled(document: Document) -> Document:
+    """Put the short form of the payload, a list of instruments, into a table, in place, so that other keys find room beside it."""
+    if isinstance(names := document.get("payload"), list | tuple):
+        document["payload"] = {"instruments": names}
+    return document
 
 
 def set_value(document: Document, dotted: str, value: object, kind: type[BaseModel]) -> None:
@@ -98,7 +121,7 @@ def set_value(document: Document, dotted: str, value: object, kind: type[BaseMod
     InputError : the key goes through a value that is not a table, or to an entry that a list does not have
     """
     parts = key_parts(kind, dotted)
-    section: Any = document
+    section: Any = tabled(document)
     for depth, name in enumerate(parts[:-1]):
         if isinstance(section, list):
             key: Any = _index(section, parts, depth, value, kind)

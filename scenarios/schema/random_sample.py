@@ -24,8 +24,10 @@ def is_random_sample(scenario: "Scenario") -> bool:
     if not scenario.finds and any(key.startswith(_READ) for key in scenario.sweep.root):
         # Points have the same seeds.
         return False
-    in_turn = {draw.key: draw.choice for draw in scenario.draws if draw.choice is not None and draw.weights is None}
-    if len(in_turn) < len(scenario.draws):
+    # What is drawn of these tells no two flights apart either.
+    draws = [draw for draw in scenario.draws if scenario.finds or not draw.key.startswith(_READ)]
+    in_turn = {draw.key: draw.choice for draw in draws if draw.choice is not None and draw.weights is None}
+    if len(in_turn) < len(draws):
         return True
     listed = {*scenario.sweep.root, *in_turn}
     if "flight_seed" in listed:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
-from scenarios.schema.experiment_checks import check_draws, check_one_point, check_search, check_subset
+from scenarios.schema.experiment_checks import check_draws, check_one_point, check_search, check_subset, check_tables
 from scenarios.schema.random_sample import is_random_sample
 from scenarios.schema.sections.equipment import (
     REPORTS_MAX,
@@ -196,6 +196,8 @@ class Scenario(Section):
                 "reference.path is 'circle' beside wind, a vessel that is followed, a sweep or draws; a circle has no vessel:"
                 " set reference.path to 'oscillation', or put it into a case of its own"
             )
+        if self.circles and self.criteria.required == "keep_out":
+            raise ValueError("criteria.required is 'keep_out', and a circle has no area to keep out of; set it to 'criteria'")
         if self.fidelity == "six_dof" and not self.guidance.command_limit:
             raise ValueError(
                 "guidance.command_limit is false; the aircraft cannot turn as fast as that: set fidelity to 'kinematic'"
@@ -286,6 +288,7 @@ class Scenario(Section):
     @model_validator(mode="after")
     def _varied(self) -> "Scenario":
         check_one_point(self)
+        check_tables(self)
         if self.study == "falsify":
             check_search(self)
         if self.study == "monte_carlo" and self.method == "subset":

@@ -7,8 +7,9 @@ from gnc.estimation.own_motion import Motion
 from gnc.guidance import Guidance
 from gnc.mission.mode import Mode
 from scenarios.planning.flight_plan import FlightPlan
+from scenarios.schema.sections.flight import DITCHED
 from scenarios.simulation.judge import Judge
-from scenarios.simulation.outcome import DITCHED, Outcome
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.settling import Settling
 from scenarios.vehicles.vehicle import Vehicle
 

@@ -19,7 +19,3 @@ class Outcome(Enum):
     INFEASIBLE = "infeasible"
     TRIM_FAILED = "trim_failed"
     FAILED = "failed"
-
-
-DITCHED = "ditched"
-"""Mode of a flight that came down on the water because of a fault, as its guidance meant to: its aircraft is lost."""

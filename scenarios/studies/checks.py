@@ -68,7 +68,7 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
         if experiment.scenario.draws:
             for point in experiment.points:
                 with plugins_explained("a flight cannot be sampled", [point.scenario]):
-                    check_draws(experiment.name, point.scenario)
+                    check_draws(experiment.name, point.scenario, point.given)
 
 
 def check_without_design(scenario: Scenario) -> None:

@@ -1,6 +1,7 @@
 """One flight as a task: whatever becomes of it is a row."""
 
 import re
+from datetime import UTC, datetime
 
 import pytest
 from flight_cases import ASTERN, SPEED, fly, work
@@ -149,3 +150,11 @@ def test_beside_a_plume_that_rises_steeply_a_cylinder_is_kept_out_of_horizontall
         assert sphere["horizontal_distance_min_m"] < 130.0
     # A steered reference keeps off horizontally whatever the shape: outside of either.
     assert sphere["horizontal_distance_min_m"] <= sphere["min_distance_m"]
+
+
+def test_a_sampled_time_of_the_start_is_a_time_in_the_table_of_what_varies():
+    at = datetime(2026, 6, 1, 12, tzinfo=UTC)
+    drawn = [{"key": "place.utc", "choice": [at]}]
+    flown = fly(draws=drawn, start=ASTERN, flight={"crossings": 0, "duration_max_s": 5.0})
+    assert flown.row["outcome"] != "failed", flown.row["message"]
+    assert flown.tables["draws.csv"][0]["place.utc"] == "2026-06-01T12:00:00+00:00"

@@ -1,6 +1,7 @@
 """What a scenario file may say of an experiment: sweeps, cases, comparisons, random variables, statistics, a search."""
 
 import math
+import sys
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, RootModel, field_validator, model_validator
@@ -17,6 +18,9 @@ FLIGHTS_MAX = 1_000_000
 
 CHAINS_MIN = 10
 """Least number of flights that pass on to the next level: of fewer, one that is an exception would decide all that follows."""
+
+STUDY = "study"
+"""What flights that count have in the place of a comparison's name."""
 
 NU_MAX = 10.0
 """Largest speed ratio of a sweep [-]; from 1 on there is no solution, and the flight is a row that says so."""
@@ -40,6 +44,8 @@ class SweepConfig(RootModel[dict[str, tuple[Any, ...]]]):
                 raise ValueError(f"{key} has no values; give at least one, as in [0.3, 0.5]")
             if len(values) > 1000:
                 raise ValueError(f"{key} has {len(values)} values; the most is 1000")
+            if any(isinstance(value, int) and abs(value) > sys.float_info.max for value in values):
+                raise ValueError(f"{key} has a number of more than 308 digits; give values that flights can have")
         for nu in self.root.get("nu", ()):
             if not isinstance(nu, int | float) or isinstance(nu, bool) or not 0.0 <= nu <= NU_MAX:
                 raise ValueError(f"nu is {nu!r}; speed ratios lie between 0 and {NU_MAX:g}")

@@ -2,9 +2,14 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
+from common.spelling import did_you_mean
+from gnc.mission.mode import Mode
 from scenarios.schema.sections.section import Angle, Limit, NonNegative, Positive, Section, check_ordered
+
+DITCHED = "ditched"
+"""Mode of a flight that came down on the water because of a fault, as its guidance meant to: its aircraft is lost."""
 
 
 class StartConfig(Section):
@@ -107,3 +112,19 @@ class CriteriaConfig(Section):
     """Whether flight.altitude_min_m and altitude_max_m must never be left, but by an aircraft with a fault."""
     modes_at_end: tuple[str, ...] = ()
     """Modes in which it may end; any if empty."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "CriteriaConfig":
+        for name in ("crossing_interval_s", "crossing_distance_m"):
+            if (values := getattr(self, name)) is not None:
+                check_ordered(name, values)
+        return self
+
+    @field_validator("modes_at_end")
+    @classmethod
+    def _known(cls, modes: tuple[str, ...]) -> tuple[str, ...]:
+        known = [*(mode.value for mode in Mode), DITCHED]
+        for mode in modes:
+            if mode not in known:
+                raise ValueError(f"'{mode}' is no mode{did_you_mean(mode, known) or ';'} modes are {', '.join(known)}")
+        return modes

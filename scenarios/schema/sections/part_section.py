@@ -9,7 +9,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError, model_validator
 
 from common.registry import PluginError
 from common.spelling import did_you_mean
-from scenarios.schema.sections.section import Section
+from scenarios.schema.sections.section import Section, refuse_truth_values
 
 
 class PartSection(Section):
@@ -61,6 +61,7 @@ class PartSection(Section):
         return self
 
     def _check(self, part: Any) -> None:
+        refuse_truth_values(part.SETTINGS, self.model_extra or {})
         try:
             self.settings(part)
         except ValidationError as error:

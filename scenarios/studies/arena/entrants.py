@@ -7,6 +7,7 @@ from typing import Any
 from common.registry import PluginError, is_file_part
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.errors import InputError
+from scenarios.schema.keys import displaced
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig, law_refusal
@@ -122,10 +123,16 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
             "flight.measured_s": scenario.arena.window_s,
         }
         try:
-            trials[condition.name] = with_values(scenario, {**condition.set, **bare})
+            trials[condition.name] = with_values(scenario, {**draws_left(scenario, condition.set), **condition.set, **bare})
         except InputError as error:
             raise InputError(f"condition '{condition.name}' of '{name}': {error}") from None
     return trials
+
+
+def draws_left(scenario: Scenario, values: Mapping[str, object]) -> dict[str, object]:
+    """Return the arena's random variables as a value to set: without those of keys that are set beside them."""
+    left = tuple(draw.model_dump() for draw in scenario.draws if not displaced(draw.key, values))
+    return {} if len(left) == len(scenario.draws) else {"draws": left}
 
 
 def cases_of(entrants: list[Entrant], chosen: Mapping[str, Mapping[str, float]]) -> tuple[dict[str, Any], ...]:

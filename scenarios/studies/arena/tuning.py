@@ -23,7 +23,7 @@ from scenarios.schema.sections.experiment import ArenaConfig
 from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.failure import failure
 from scenarios.simulation.release import release
-from scenarios.studies.arena.entrants import TUNING, Entrant
+from scenarios.studies.arena.entrants import TUNING, Entrant, draws_left
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 _STEP = 0.15
@@ -102,6 +102,7 @@ class Tuner:
             # Costs are of the tracking alone.
             "payload.instruments": (),
             "emission.ship": None,
+            **draws_left(self.scenario, arena.tuning_set),
             **arena.tuning_set,
             **entrant.values(parameters),
         }

@@ -161,13 +161,15 @@ def test_lists_and_what_is_not_set_are_read_as_they_were_given_and_empty_cells_a
     assert "nu" not in config
 
 
-def test_what_is_sampled_holds_in_flights_of_a_comparison_and_what_is_swept_gives_way_to_it():
-    variants = [{"name": "high", "set": {"plume.source_height_m": 80.0, "emission.load": 0.1}}]
-    trial = BASE | {"comparison": {"variants": variants}, "draws": [{"key": "emission.load", "uniform": [0.2, 0.9]}]}
-    inputs = {"plume.source_height_m": 20.0, "emission.load": 0.7}
+def test_what_is_sampled_holds_in_flights_of_a_comparison_and_what_is_swept_or_set_gives_way_to_it():
+    variants = [{"name": "high", "set": {"plume.source_height_m": 80.0, "keepout": {"radius_m": 300.0}}}]
+    drawn = [{"key": key, "uniform": [0.2, 0.9]} for key in ("emission.load", "keepout.radius_m")]
+    trial = BASE | {"comparison": {"variants": variants}, "draws": drawn}
+    inputs = {"plume.source_height_m": 20.0, "emission.load": 0.7, "keepout.radius_m": 250.0}
     config = flight_config(*made(trial, inputs, variant="high"))
-    assert (config["plume"]["source_height_m"], config["emission"]["load"]) == (80.0, 0.7)
+    assert (config["plume"]["source_height_m"], config["emission"]["load"], config["keepout"]["radius_m"]) == (80.0, 0.7, 300.0)
     assert flight_config(*made(trial, inputs))["plume"]["source_height_m"] == 20.0
+    assert flight_config(*made(trial, inputs))["keepout"]["radius_m"] == 250.0
 
 
 @pytest.mark.parametrize(

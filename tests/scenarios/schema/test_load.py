@@ -58,6 +58,9 @@ def test_overrides_set_any_key(override, value):
         ("guidance={tuning='bounded', law='lyapunov'}", ["tuning is 'bounded' with law 'lyapunov'", "set law to 'cascade'"]),
         ("study=magic", ["study is 'magic'", "flights, paper, convergence, trials, monte_carlo, falsify"]),
         ("study=paper", ["study is 'paper' without cases"]),
+        (f"seed={'9' * 5000}", ["--set seed: value 99999999999999999999... has too many digits"]),
+        (f"sweep.start.range_m=[{'9' * 400}]", ["start.range_m has a number of more than 308 digits"]),
+        ("criteria.resumes_within_periods=2", ["'criteria.resumes_within_periods' has no effect here", "a vessel that manoeuvres"]),
     ],
 )
 def test_bad_values_are_refused_in_one_line_that_names_them(override, words):
@@ -144,3 +147,35 @@ def test_a_trial_in_a_file_is_relative_to_the_list_and_in_an_override_to_the_cur
     assert listed.trials == (str(tmp_path / "lists" / "own.toml"), "sea_wind")
     assert TrialStudy(listed, "list").trials["own"].title == "lists"
     assert TrialStudy(overridden, "list").trials["own"].title == "elsewhere"
+
+
+def test_a_file_with_a_number_of_too_many_digits_is_refused(tmp_path):
+    path = tmp_path / "long.toml"
+    path.write_text(f'title = "long"\nseed = {"9" * 5000}\n', encoding="utf-8")
+    with pytest.raises(InputError, match=r"long\.toml: not valid TOML: .* 5000 digits"):
+        load_study(str(path))
+
+
+def test_instruments_that_are_listed_take_keys_of_their_own_from_overrides_and_from_files_that_extend_the_list(tmp_path):
+    listed, own = tmp_path / "listed.toml", tmp_path / "own.toml"
+    listed.write_text('title = "l"\nextends = "sulphur"\npayload = ["sniffer"]\n', encoding="utf-8")
+    own.write_text('title = "o"\nextends = "listed.toml"\npayload.sensor = "fast"\n', encoding="utf-8")
+    for study in (
+        load_study(str(own)),
+        load_study(str(listed), ["payload.sensor=fast"]),
+        load_study("sulphur", ['payload=["sniffer"]', "payload.sensor=fast"]),
+    ):
+        assert study.payload.instruments == ("sniffer",)
+        assert study.payload.model_extra == {"sensor": "fast"}
+
+
+def test_a_track_of_ones_own_may_have_manoeuvres_that_end(tmp_path):
+    (tmp_path / "track.py").write_text("class Turning:\n    manoeuvres_end = 30.0\n", encoding="utf-8")
+    path = tmp_path / "own.toml"
+    path.write_text('title = "o"\nvessel.track = "track.py:Turning"\ncriteria.resumes_within_periods = 2.0\n', encoding="utf-8")
+    assert load_study(str(path)).criteria.resumes_within_periods == 2.0
+
+
+def test_keeping_out_is_not_required_of_a_circle_which_has_no_vessel():
+    with pytest.raises(InputError, match=r"case 'sim1': criteria\.required is 'keep_out', and a circle has no area to keep out of"):
+        Experiment("paper", load_study("paper", ["criteria.required=keep_out"]))

@@ -7,6 +7,7 @@ from pydantic import BaseModel, RootModel
 
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
+from scenarios.experiment.requests import Experiment
 from scenarios.schema.keys import known_keys
 from scenarios.schema.load import load_document, load_study
 from scenarios.schema.overrides import given_keys, merged, set_value
@@ -163,6 +164,62 @@ def test_an_override_of_a_swept_key_ends_its_sweep(tmp_path, override, left):
     # Two values of each key that is still swept.
     assert len(points) == 2 ** len(left)
     assert {*load_study(path, [override]).sweep.root} == left
+
+
+@pytest.mark.parametrize(
+    ("override", "gone", "value_of", "expected"),
+    [
+        ("vessel.manoeuvres=[{at_s=100,turn_deg=90}]", "vessel.manoeuvres.", lambda s: s.vessel.manoeuvres[0].turn_deg, 90.0),
+        ("wind={speed_mps=5,from_deg=20}", "wind.", lambda s: (s.wind.speed_mps, s.wind.from_deg), (5.0, 20.0)),
+        ("start.range_m=500", "start.range_m", lambda s: s.start.range_m, 500.0),
+        ("vessel.speed_ratio=0.4", "vessel.speed_mps", lambda s: s.vessel.speed_ratio, 0.4),
+        ("sweep.nu=[0.4]", "vessel.speed_mps", lambda s: s.vessel.speed_ratio, 0.4),
+    ],
+)
+def test_an_override_ends_what_is_sampled_of_its_key_and_below_it(override, gone, value_of, expected):
+    study = load_study("monte_carlo", [override])
+    every = [draw.key for draw in load_study("monte_carlo").draws]
+    assert [draw.key for draw in study.draws] == [key for key in every if not key.startswith(gone)]
+    experiment = Experiment("t", study)
+    assert {value_of(experiment.request(number).scenario) for number in range(3)} == {expected}
+
+
+def test_an_override_of_a_speed_ends_a_sampled_speed_ratio_and_one_of_the_ratio_a_swept_speed(tmp_path):
+    drawn = write(tmp_path, "drawn.toml", 'title = "d"\n[[draws]]\nkey = "vessel.speed_ratio"\nuniform = [0.2, 0.5]\n')
+    study = load_study(drawn, ["vessel.speed_mps=5"])
+    assert (study.draws, study.vessel_speed) == ((), 5.0)
+    swept = write(tmp_path, "speeds.toml", 'title = "s"\nsweep.vessel.speed_mps = [5, 6]\n')
+    assert [point.scenario.vessel_speed for point in points_of(load_study(swept, ["vessel.speed_ratio=0.5"]))] == [9.71]
+    # Of a sweep of ratios, of which a run is made, the speed does not end anything.
+    assert "'vessel.speed_mps' has no effect here" in refusal("sweep_nu", "vessel.speed_mps=5")
+
+
+@pytest.mark.parametrize(
+    ("scenario", "override", "words"),
+    [
+        (
+            "monte_carlo",
+            ["start.distance_m=[300, 350]"],
+            "'start.range_m' is swept or sampled in every flight, and takes",
+        ),
+        (
+            "sea_approach",
+            ["vessel.speed_mps=5", 'draws=[{key="vessel.speed_ratio",uniform=[0.1,0.5]}]'],
+            "'vessel.speed_ratio' is swept or sampled in every flight",
+        ),
+        ("monte_carlo", ["start.spread_deg=10"], "'start.aspect_deg' is swept or sampled in every flight"),
+        ("sweep_nu", ["sweep.start.range_m=[400, 500]", "start.distance_m=[300, 350]"], "'start.range_m' is swept or sampled"),
+        (
+            "sea_approach",
+            ["vessel.manoeuvres=[{at_s=9}]", "sweep.vessel.manoeuvres=[[{at_s=9}]]", "vessel.manoeuvres.0.turn_deg=5"],
+            "'vessel.manoeuvres' is swept or sampled in every flight",
+        ),
+    ],
+)
+def test_an_override_that_another_key_puts_aside_in_every_flight_is_refused(scenario, override, words):
+    message = refusal(scenario, *override)
+    assert "has no effect here" in message
+    assert words in message
 
 
 def test_a_sweep_on_the_command_line_is_kept_beside_an_earlier_override(tmp_path):

@@ -4,11 +4,13 @@ start."""
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.schema.load import load_study, with_values
+from scenarios.experiment.points import points_of
+from scenarios.schema.load import checked, load_study, with_values
 from scenarios.schema.scenario import Scenario
 
 WIND = {"key": "wind.speed_mps", "uniform": [0.0, 5.0]}
 FROM = {"key": "wind.from_deg", "choice": [0.0, 90.0, 180.0, 270.0]}
+LOAD = {"key": "emission.load", "uniform": [0.2, 0.9]}
 SEEDS = {"key": "flight_seed", "choice": [1, 2]}
 START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
 
@@ -40,6 +42,12 @@ START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
         ({"start": {"range_m": 500.0, "aspect_deg": 180.0}, "flights": 8, "sweep": {"start.course_deg": [0.0, 90.0]}}, False),
         # Sniffers that read the same flight.
         ({"flights": 8, "sweep": {"payload.sensor": ["fast", "electrochemical"]}}, False),
+        # And sniffers that are drawn, without and with a path that depends on what is read.
+        ({"flight_seed": 3, "flights": 8, "draws": [LOAD]}, False),
+        ({"flight_seed": 3, "flights": 8, "draws": [LOAD, WIND]}, True),
+        ({"flight_seed": 3, "flights": 8, "draws": [LOAD], "following": {"plume": "estimated"}}, True),
+        ({"flights": 8, "draws": [LOAD]}, True),
+        ({"flights": 4, "draws": [SEEDS, {"key": "payload.exact", "choice": [True, False]}]}, False),
         # Each level starts from the nearest flights of the one before.
         ({"study": "monte_carlo", "method": "subset", "draws": [WIND]}, False),
         ({"study": "falsify", "draws": [WIND]}, False),
@@ -70,3 +78,54 @@ def test_a_distance_that_is_sampled_is_checked_by_its_own_value_and_not_by_that_
     assert study.draws[1].key == "start.range_m"
     with pytest.raises(InputError, match=r"start\.range_m is 490 m; it must exceed keepout\.radius_m, 500 m"):
         with_values(study, {"start.range_m": 490.0})
+
+
+CASE = [{"name": "own", "set": {"seed": 3}}]
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"draws": [{"key": "criteria.tracking_error_rms_m", "uniform": [1.0, 2.0]}]}, "draws has 'criteria.tracking_error_rms_m'"),
+        ({"draws": [{"key": "search.kept", "choice": [1, 2]}]}, "draws has 'search.kept', which sets nothing of a flight"),
+        ({"draws": [WIND, {"key": "draws.0.uniform", "choice": [[0, 1], [0, 2]]}]}, "draws has 'draws.0.uniform'"),
+        ({"sweep": {"nu": [0.3], "vessel.speed_ratio": [0.4]}}, "sweep has 'nu' and 'vessel.speed_ratio', which are the same"),
+        ({"sweep": {"nu": [0.3]}, "draws": [{"key": "vessel.speed_ratio", "uniform": [0.2, 0.4]}]}, "is in sweep and in draws"),
+        ({"cases": CASE}, "case 'own' sets 'seed', on which its flights do not depend"),
+        ({"cases": [{"name": "own", "set_kinematic": {"flights": 3}}]}, "case 'own' sets 'flights'"),
+        ({"cases": [{"name": "own", "set": {"sweep.wind.speed_mps": [3]}}]}, "case 'own' sets 'sweep.wind.speed_mps'"),
+        ({"comparison": {"variants": [{"name": "own", "set": {"study": "paper"}}]}}, "comparison 'own' sets 'study'"),
+        ({"comparison": {"variants": [{"name": "own", "set": {"search.kept": 9}}]}}, "comparison 'own' sets 'search.kept'"),
+        ({"comparison": {"variants": [{"name": "own", "set": {"draws": []}}]}}, "comparison 'own' sets 'draws'"),
+        ({"arena": {"conditions": [{"name": "own", "title": "Own", "set": {"flights": 2}}]}}, "condition 'own' sets 'flights'"),
+        ({"arena": {"conditions": [{"name": "own", "title": "Own", "set": {"arena": {}}}]}}, "condition 'own' sets 'arena'"),
+    ],
+)
+def test_what_no_flight_depends_on_is_neither_sampled_nor_set_for_some_flights(keys, words):
+    with pytest.raises(InputError) as refusal:
+        checked({"title": "own", **keys}, Scenario)
+    assert words in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_what_some_flights_may_depend_on_is_set_for_them():
+    of_flights = {"flight_seed": 3, "criteria.settles": False, "wind": {"speed_mps": 3.0}}
+    conditions = [{"name": "own", "title": "Own", "set": of_flights | {"draws": [WIND], "speed_ratio": [0.2, 0.5]}}]
+    cases = [{"name": "own", "set": of_flights | {"sweep.nu": [0.3]}}]
+    assert Scenario(title="own", study="arena", arena={"conditions": conditions}).arena.conditions[0].set["flight_seed"] == 3
+    assert Scenario(title="own", cases=cases).cases[0].set["flight_seed"] == 3
+    variants = [{"name": "own", "set": of_flights | {"fidelity": "kinematic", "draws.0.uniform": [0.0, 1.0]}}]
+    assert Scenario(title="own", draws=[WIND], comparison={"variants": variants}).comparison.variants[0].set["flight_seed"] == 3
+
+
+def test_swept_values_that_are_equal_are_flown_once():
+    points = points_of(Scenario(title="own", sweep={"wind.speed_mps": [5, 5.0, 6], "start.distance_m": [[400, 500], [400.0, 500]]}))
+    assert [point.scenario.wind.speed_mps for point in points] == [5.0, 6.0]
+
+
+def test_a_comparison_at_a_speed_ratio_that_is_not_swept_is_refused():
+    for nu in ("[0.33]", "[0.3, 0.33]"):
+        with pytest.raises(InputError, match=r"'comparison\.nu' has no effect here: .* these ratios in sweep\.nu, too"):
+            load_study("sweep_nu", ["sweep.nu=[0.3, 0.6]", f"comparison.nu={nu}"])
+    # That of the file is left aside by an override.
+    assert load_study("sweep_nu", ["sweep.nu=[0.3]"]).comparison.nu == (0.15, 0.5)

@@ -7,7 +7,7 @@ from flight_cases import scenario
 
 from gnc.mission.mode import Mode
 from scenarios.schema.load import load_study
-from scenarios.simulation.outcome import DITCHED
+from scenarios.schema.sections.flight import DITCHED
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 

@@ -1,0 +1,96 @@
+"""Keys that a case, a comparison or a condition sets beside random variables: what is set wins, and all others start alike."""
+
+import pytest
+
+from scenarios.experiment.draws import sampled_flight
+from scenarios.experiment.requests import Experiment
+from scenarios.schema.load import load_study
+from scenarios.schema.scenario import Scenario
+from scenarios.studies.arena.entrants import draws_left, entrants_of
+from scenarios.studies.arena.tuning import Tuner
+from scenarios.studies.registry import study_of
+
+DRAWS = [
+    {"key": "wind.speed_mps", "uniform": [3.0, 8.0]},
+    {"key": "wind.from_deg", "choice": [0.0, 90.0, 180.0]},
+    {"key": "vessel.manoeuvres.0.turn_deg", "uniform": [-90.0, 90.0]},
+    {"key": "vessel.speed_mps", "uniform": [2.0, 8.0]},
+]
+BASE = {
+    "title": "t", "fidelity": "kinematic", "flights": 6, "guidance": {"mission": "follow"}, "draws": DRAWS,
+    "vessel": {"manoeuvres": [{"at_s": 50.0}]},
+}  # fmt: skip
+KEYS = [draw["key"] for draw in DRAWS]
+
+
+def requests_of(**keys):
+    experiment = Experiment("t", Scenario.model_validate(BASE | keys))
+    return [experiment.request(number) for number in range(experiment.flights)]
+
+
+@pytest.mark.parametrize(
+    ("values", "gone", "value_of", "expected"),
+    [
+        ({"wind.speed_mps": 0.0}, {"wind.speed_mps"}, lambda s: s.wind.speed_mps, 0.0),
+        ({"wind.from_deg": 45.0}, {"wind.from_deg"}, lambda s: s.wind.from_deg, 45.0),
+        ({"vessel.manoeuvres": []}, {"vessel.manoeuvres.0.turn_deg"}, lambda s: s.vessel.manoeuvres, ()),
+        ({"vessel.speed_ratio": 0.5}, {"vessel.speed_mps"}, lambda s: s.vessel_speed, 0.5 * 19.42),
+        (
+            {"wind": {"speed_mps": 2.0}},
+            {"wind.speed_mps", "wind.from_deg"},
+            lambda s: (s.wind.speed_mps, s.wind.from_deg),
+            (2.0, 0.0),
+        ),
+    ],
+)
+def test_what_a_comparison_or_a_case_sets_wins_over_a_sample_and_others_keep_theirs(values, gone, value_of, expected):
+    plain = requests_of()
+    compared = requests_of(comparison={"variants": [{"name": "own", "set": values}]})
+    cases = requests_of(cases=[{"name": "own", "set": values}])
+    for study, flight, of_case in zip(plain, compared[len(plain) :], cases, strict=True):
+        kept = {key: value for key, value in study.inputs.items() if key not in gone}
+        assert flight.inputs == of_case.inputs == kept
+        assert flight.seed == of_case.seed == study.seed
+        assert flight.scenario.vessel == of_case.scenario.vessel
+        assert value_of(flight.scenario) == value_of(of_case.scenario) == expected
+
+
+def test_a_flight_of_a_comparison_is_sampled_again_where_the_flight_beside_it_is():
+    # In calm air other samples than the study's would have a speed ratio within these.
+    narrow = {"speed_ratio": [0.2, 0.7], "comparison": {"variants": [{"name": "calm", "set": {"wind.speed_mps": 0.0}}]}}
+    flights = requests_of(**narrow)
+    for study, calm in zip(flights[:6], flights[6:], strict=True):
+        assert calm.inputs == {key: value for key, value in study.inputs.items() if key != "wind.speed_mps"}
+        assert calm.scenario.wind.speed_mps == 0.0
+
+
+def test_a_sample_that_gives_way_keeps_its_place_in_a_spread_sample_too():
+    scenario = Scenario.model_validate(BASE)
+    at = (0.1, 0.5, 0.3, 0.7)
+    every, without = (sampled_flight("t", scenario, 0, at, given=given).values for given in ((), ("wind.speed_mps",)))
+    assert without == {key: value for key, value in every.items() if key != "wind.speed_mps"}
+
+
+def test_what_a_condition_of_an_arena_sets_wins_over_a_sample():
+    conditions = [
+        {"name": "drawn", "title": "Drawn"},
+        {"name": "calm", "title": "Calm", "set": {"wind.speed_mps": 0.0}},
+    ]
+    arena = {
+        "study": "arena", "flight": {"duration_max_s": 60.0, "crossings": 0},
+        "arena": {"tracking": ["cascade"], "window_s": 30.0, "evaluations": 0, "tuning_duration_s": 40.0, "conditions": conditions},
+    }  # fmt: skip
+    study = study_of(load_study(BASE | arena), "t")
+    winds = {name: [of.request(i).scenario.wind.speed_mps for i in range(3)] for name, of in study.experiments.items()}
+    assert min(winds["drawn"]) >= 3.0
+    assert winds["calm"] == [0.0] * 3
+    assert [draw.key for draw in study.trials["calm"].draws] == KEYS[1:]
+
+
+def test_what_is_set_of_the_flights_that_laws_are_tuned_in_wins_over_a_sample():
+    scenario = Scenario.model_validate(BASE | {"arena": {"tracking": ["cascade"], "tuning_set": {"wind": {"speed_mps": 5.0}}}})
+    assert draws_left(scenario, {"flight.crossings": 3}) == {}
+    (entrant,), _ = entrants_of(scenario)
+    tuned = Tuner(scenario=scenario, arena=scenario.arena, lag=0.0)._scenario(entrant, {})
+    assert [draw.key for draw in tuned.draws] == KEYS[2:]
+    assert Experiment("tuning", tuned).request(0).scenario.wind.speed_mps == 5.0
