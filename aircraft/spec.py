@@ -17,8 +17,10 @@ MODELS = Path(__file__).parent / "models"
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
 """What an aircraft and its model may be called: the name becomes part of file names and of XML."""
 
-_ACTUATOR_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.\-]*")
-"""What an actuator may be called: the name becomes part of a JSBSim property."""
+_ACTUATOR_NAME = re.compile(
+    r"(?!(engine|none|vessel_data|satellite_navigation|sniffer_(dead|saturated))$)[A-Za-z_][A-Za-z0-9_.\-]*"
+)
+"""What an actuator may be called: the name becomes part of a JSBSim property, and is none of another fault."""
 
 SETTLE_TIMES = 0.1, 120.0
 """Range of the time in which servos and engines come to rest [s]."""
@@ -263,6 +265,8 @@ class AircraftSpec:
                 yield f"'{actuator.name}' is no name of an actuator, or taken; use letters, digits, '_', '-' and '.'"
             if not actuator.commands:
                 yield f"actuator '{actuator.name}' has no commands; name the JSBSim properties that command it"
+            elif actuator.feedback is None and not any(set(actuator.commands) <= set(i.commands) for i in self.inputs):
+                yield f"actuator '{actuator.name}' has commands of its own and no feedback; name what reads command and position"
         least, most = SETTLE_TIMES
         if not least <= self.settle_time <= most:
             yield f"settle_time is {self.settle_time:g} s; it must lie between {least:g} and {most:g} s"

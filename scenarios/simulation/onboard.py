@@ -67,7 +67,8 @@ class OnboardSensing:
         if self.failing and time >= fault.begins:
             self.failing = False
             self._vehicle.fail(fault.kind)
-        satellites = not fault.lasts(SATELLITES, time)
+        # It begins with a place that is known, too: dead reckoning goes on from one.
+        satellites = step == 0 or not fault.lasts(SATELLITES, time)
         position, measured, measured_heading = self._errors.read(step, motion, airspeed, heading, satellites=satellites)
         self.airspeed_error = measured - airspeed
         return position, measured, measured_heading, roll, motion[4], self._vehicle.servo_error()

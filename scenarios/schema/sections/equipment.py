@@ -57,7 +57,7 @@ class SensorsConfig(Section):
 class FaultConfig(Section):
     """A fault in flight."""
 
-    kind: Annotated[str, Field(pattern=r"^[a-z_0-9]+$")] = "none"
+    kind: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.\-]+$")] = "none"
     """none, vessel_data, satellite_navigation, sniffer_dead, sniffer_saturated, engine, or the name of an actuator of the aircraft
     (the error lists them)."""
     at_s: tuple[NonNegative, NonNegative] = (100.0, 250.0)

@@ -135,6 +135,11 @@ MAY = "; it needs elevator, aileron, throttle, may have rudder, and no others: c
             "'left elevon' is no name of an actuator, or taken",
         ),
         ({"own_actuators": (*X8.own_actuators, X8.own_actuators[0])}, "'left_elevon' is no name of an actuator, or taken; use let"),
+        ({"own_actuators": (Actuator(name="engine", commands=THREE[2].commands),)}, "'engine' is no name of an actuator, or taken"),
+        (
+            {"own_actuators": (Actuator(name="flap", commands=("fcs/flap",)),)},
+            "actuator 'flap' has commands of its own and no feed",
+        ),
         ({"own_actuators": (Actuator(name="flap", commands=()),)}, "actuator 'flap' has no commands; name the JSBSim properties"),
         ({"settle_time": -1.0}, "settle_time is -1 s; it must lie between 0.1 and 120 s; correct its spec"),
         ({"envelope": replace(X8.envelope, airspeed_max=15.0)}, "airspeed is 19.42 m/s; it must lie between airspeed_min, 15, and"),

@@ -1,11 +1,17 @@
 """One elevon of the X8 that sticks: what its servo reports, and what the other one can do with the elevator held."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
+
 import numpy as np
 import pytest
 
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.atmosphere.weather import Weather
 from aircraft.fleet.x8 import X8
+from aircraft.simulation.fdm import Fdm
+from aircraft.spec import Actuator
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.servo_monitor import ServoMonitor
 
@@ -102,3 +108,12 @@ def test_the_elevator_is_held_where_it_was_at_the_release_until_the_next_one(x8_
     assert x8_aircraft.fdm.read("fcs/elevator-cmd-norm") == trim
     watched(x8_aircraft, release(x8_aircraft, x8_schedule), lambda _: RATE, 3.0)
     assert abs(x8_aircraft.fdm.read("fcs/elevator-cmd-norm") - trim) > 0.01
+
+
+def test_a_throttle_of_another_name_is_monitored_as_little_as_one_that_is_called_so(x8_aircraft, x8_schedule):
+    release(x8_aircraft, x8_schedule)
+    renamed = replace(X8, own_actuators=(*X8.own_actuators, Actuator(name="motor", commands=X8.input("throttle").commands)))
+    renamed.check()
+    monitor = ServoMonitor(cast("Fdm", SimpleNamespace(spec=renamed, node=x8_aircraft.fdm.node)), TIME_STEP)
+    # Of the elevons alone, in trim: rounding of JSBSim.
+    assert monitor.error() < 1e-6

@@ -159,3 +159,14 @@ def test_a_given_plume_of_a_vessel_at_rest_is_crossed_where_it_is():
     result = fly(vessel={"speed_mps": 0.0, "course_deg": 200.0}, plume=given, start=ASTERN, flight={"crossings": 6})
     assert (result.row["outcome"], result.row["keepout_violations"]) == ("completed", 0), result.row["message"]
     assert result.row["crossing_count"] == 6
+
+
+def test_satellites_that_are_lost_at_the_start_leave_a_place_to_reckon_from():
+    # Without one the UAV took itself to be at the ship's place, and came within 176 m of her.
+    lost = {"kind": "satellite_navigation", "at_s": (0.0, 0.0), "satellite_navigation_s": 60.0}
+    result = fly(
+        vessel={"speed_ratio": 0.5}, fault=lost, start={"range_m": 420.0, "aspect_deg": 0.0, "course_deg": 0.0},
+        flight={"crossings": 0, "duration_max_s": 90.0}, criteria={"settles": False},
+    )  # fmt: skip
+    assert result.row["keepout_violations"] == 0
+    assert result.row["min_distance_m"] > 210.0
