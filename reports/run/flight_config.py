@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import pandas as pd
 
+from common.dotted_keys import at_or_below
 from reports.run.run_data import RunData
 
 Config = Mapping[str, Any]
@@ -62,17 +63,16 @@ def _own_config(run: RunData, row: Row, drawn: Mapping[str, Row], trial: Config 
     of_case, of_comparison = _of_case(config, row), _of_comparison(config, row)
     # A comparison changes what was swept; what is random is sampled in its flights, too, but for keys that it or a case sets.
     values = of_case | {key: value for key, value in inputs.items() if key not in sampled} | of_comparison
-    values |= {key: value for key, value in inputs.items() if key in sampled and not _set_by({**of_case, **of_comparison}, key)}
+    values |= {
+        key: value
+        for key, value in inputs.items()
+        if key in sampled and not any(at_or_below(key, of) for of in (*of_case, *of_comparison))
+    }
     if isinstance(shape := row.get("keepout_shape"), str):
         values["keepout.shape"] = shape
     for key, value in values.items():
         config = _with_value(config, key.split("."), value)
     return config
-
-
-def _set_by(values: Mapping[str, Any], key: str) -> bool:
-    """Return whether values, by key, hold a dotted key or one above it."""
-    return any(key == of or key.startswith(f"{of}.") for of in values)
 
 
 def _of_comparison(config: Config, row: Row) -> dict[str, Any]:

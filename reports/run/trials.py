@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.dotted_keys import at_or_below
 from reports.run.columns import Array, column, measured
 from reports.run.flight_config import Config, flight_config, keepout_shape
 from reports.run.run_data import RunData
@@ -140,7 +141,7 @@ class Trial:
     def varies(self, key: str) -> bool:
         """Return whether flights differ in ``key``, or in anything below it."""
         keys = [*self.swept, *(draw["key"] for draw in self.sampled)]
-        return any(varied == key or varied.startswith(f"{key}.") for varied in keys)
+        return any(at_or_below(varied, key) for varied in keys)
 
     @property
     def kind(self) -> Kind:

@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import BaseModel, RootModel
 from pydantic.fields import FieldInfo
 
+from common.dotted_keys import at_or_below
 from common.spelling import nearest
 
 _SPEEDS = {"vessel.speed_mps", "vessel.speed_ratio"}
@@ -44,7 +45,7 @@ def displaced(key: str, given: Iterable[str]) -> bool:
     """Return whether what varies a dotted key gives way to given keys: to the key itself, to one above it, or, for the vessel's
     speed and its speed ratio, to the other one of the two.
     """
-    return any(key == of or key.startswith(f"{of}.") or {key, of} == _SPEEDS for of in given)
+    return any(at_or_below(key, of) or {key, of} == _SPEEDS for of in given)
 
 
 def suggestion(kind: type[BaseModel], key: str) -> str:

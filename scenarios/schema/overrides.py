@@ -90,8 +90,9 @@ def _ends_sweep(key: str, swept: str) -> bool:
 
 def _gives_way(drawn: str, key: str) -> bool:
     """Return whether the draw of a key gives way to a key that is set, or, of the vessel's speed, to a sweep of the other key."""
-    swept = swept_key(key.removeprefix("sweep."))
-    return displaced(drawn, [key] if swept == drawn or swept not in {_SPEED, _RATIO} else [swept])
+    if key.startswith("sweep."):
+        return {drawn, swept_key(key.removeprefix("sweep."))} == {_SPEED, _RATIO}
+    return displaced(drawn, [key])
 
 
 def _without(values: Document, left_out: Callable[[str], bool], before: str = "") -> Document:

@@ -12,6 +12,26 @@ POPULATION, GENERATIONS, KEPT, CONFIRMATIONS = 12, 7, 3, 2
 
 METHODS = ("corners", "differential_evolution", "local", "cma")
 
+
+def short_flights(duration):
+    """Return the tables of flights that are quick to fly, of so many seconds, in which keeping out alone is required."""
+    return f"""
+[wind]
+speed_mps = 3.0
+[guidance]
+rate_hz = 5.0
+[reports]
+interval_s = [1.0, 2.0]
+[flight]
+crossings = 0
+duration_max_s = {duration}
+log_rate_hz = 5.0
+[criteria]
+required = "keep_out"
+settles = false
+"""
+
+
 SEARCH = f"""
 study = "falsify"
 title = "short"
@@ -31,20 +51,7 @@ uniform = [-180.0, 180.0]
 [[draws]]
 key = "wind.from_deg"
 uniform = [0.0, 360.0]
-[wind]
-speed_mps = 3.0
-[guidance]
-rate_hz = 5.0
-[reports]
-interval_s = [1.0, 2.0]
-[flight]
-crossings = 0
-duration_max_s = 4.0
-log_rate_hz = 5.0
-[criteria]
-required = "keep_out"
-settles = false
-"""
+{short_flights(4.0)}"""
 
 
 def run(search, out, *overrides, factory=InProcessExecutor, resume=False, progress=lambda *_: None):

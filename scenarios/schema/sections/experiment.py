@@ -123,8 +123,7 @@ class DrawConfig(Section):
                 f"draw of '{self.key}' has {' and '.join(given) or 'none'} of uniform, normal, weibull and choice; give one"
             )
         for name in ("uniform", "within"):
-            if (values := getattr(self, name)) is not None:
-                check_ordered(f"{name} of the draw of '{self.key}'", values)
+            check_ordered(f"{name} of the draw of '{self.key}'", getattr(self, name))
         if self.within is not None and given[0] not in ("normal", "weibull"):
             raise ValueError(f"draw of '{self.key}' has within beside {given[0]}; it cuts off a normal or a weibull")
         if self.weights is not None and (self.choice is None or len(self.weights) != len(self.choice) or not sum(self.weights)):

@@ -116,8 +116,7 @@ class CriteriaConfig(Section):
     @model_validator(mode="after")
     def _ordered(self) -> "CriteriaConfig":
         for name in ("crossing_interval_s", "crossing_distance_m"):
-            if (values := getattr(self, name)) is not None:
-                check_ordered(name, values)
+            check_ordered(name, getattr(self, name))
         return self
 
     @field_validator("modes_at_end")

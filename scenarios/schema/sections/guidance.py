@@ -243,6 +243,5 @@ class FollowingConfig(Section):
     @model_validator(mode="after")
     def _ordered(self) -> "FollowingConfig":
         for name in ("source_height_m", "load"):
-            if (values := getattr(self, name)) is not None:
-                check_ordered(name, values)
+            check_ordered(name, getattr(self, name))
         return self

@@ -87,7 +87,7 @@ def check_divides(name: str, rate: float, whole: float) -> None:
         raise ValueError(f"{name} is {rate:g} Hz; it must divide {whole:g} Hz, e.g. {nearest}")
 
 
-def check_ordered(name: str, values: Range) -> None:
-    """Raise a ValueError unless the first of ``values``, called ``name``, is at most the second."""
-    if values[0] > values[1]:
+def check_ordered(name: str, values: Range | None) -> None:
+    """Raise a ValueError unless the first of ``values``, called ``name``, is at most the second, or there are none."""
+    if values is not None and values[0] > values[1]:
         raise ValueError(f"{name} is {list(values)}; its first value must not exceed its second")

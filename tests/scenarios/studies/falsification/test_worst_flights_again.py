@@ -6,8 +6,9 @@ import pytest
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
+from tests.scenarios.short_search import short_flights
 
-SEARCH = """
+SEARCH = f"""
 study = "falsify"
 title = "short"
 description = "A search."
@@ -29,20 +30,7 @@ at_s = 2.0
 [start]
 range_m = 400.0
 aspect_deg = 0.0
-[wind]
-speed_mps = 3.0
-[guidance]
-rate_hz = 5.0
-[reports]
-interval_s = [1.0, 2.0]
-[flight]
-crossings = 0
-duration_max_s = 30.0
-log_rate_hz = 5.0
-[criteria]
-required = "keep_out"
-settles = false
-"""
+{short_flights(30.0)}"""
 
 
 def flown(path, out, *overrides):
