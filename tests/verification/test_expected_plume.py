@@ -8,6 +8,7 @@ from exhaust_cases import SENSOR
 
 from gnc.estimation.plume.estimator import HIT
 from gnc.estimation.plume.prior import PlumePrior, expected_plume, rise
+from gnc.mission.axis_height import AxisHeight
 from measurement.emission.emission import Emission, emission_of
 from measurement.emission.fuel import fuel_preset
 from measurement.emission.ship import ship_preset
@@ -48,6 +49,22 @@ def test_height_spreads_and_peak_are_those_of_the_plume_model(apparent: float, w
     assert prior.meander_z == pytest.approx(true["meander_z"], rel=0.3, abs=3.0)
     peak = 1e6 * CO2_RATE / (2.0 * math.pi * apparent * true["relative_y"] * true["relative_z"] * 42.3)
     assert abs(math.log(prior.peak / peak)) < 0.3
+
+
+@pytest.mark.parametrize("source", [2.0, 35.0])
+@pytest.mark.parametrize("apparent", [5.0, 10.0, 18.0])
+def test_a_plume_that_is_not_searched_for_is_followed_at_the_height_of_the_plume_model(apparent: float, source: float) -> None:
+    """At a sixth of her power, whose slow exhaust the wake of the funnel draws down by up to 3.6 m, and never below the sea."""
+    weak = emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), power=2e6)
+    height = AxisHeight(
+        source=source, momentum_flux=weak.momentum_flux, buoyancy_flux=weak.buoyancy_flux, stack_diameter=weak.stack_diameter,
+        exhaust_speed=weak.exhaust_speed,
+    )  # fmt: skip
+    age = 270.0 / apparent
+    of = spreads(weak, MarineAir(wind_speed=8.0), source, np.array([apparent]), age, PlumeSettings())
+    # The model's table has steps of 0.1 s.
+    true = float(np.interp(age, 0.1 * np.arange(of.height.shape[1]), of.height[0]))
+    assert height.at(270.0, apparent) == pytest.approx(true, abs=0.02)
 
 
 @pytest.mark.parametrize(

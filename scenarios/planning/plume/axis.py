@@ -118,6 +118,8 @@ def axis_height(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, fl
         climb=climb,
         momentum_flux=expected.momentum_flux,
         buoyancy_flux=expected.buoyancy_flux,
+        stack_diameter=expected.stack_diameter,
+        exhaust_speed=expected.exhaust_speed,
         lowest=lowest,
         highest=highest,
     )
