@@ -112,7 +112,7 @@ class ClosedLoop:
             columns=recorder.columns,
             history=rows[::log_interval] if self._every_step else rows,
             every_step=rows,
-            saturation_fraction=saturated / max(1, step),
+            saturation_fraction=saturated / (step + 1),
             heading_rate_demand_max=demand_max,
             heading_rate_command_max=command_max,
             guard_time=len(guarding) * time_step,
