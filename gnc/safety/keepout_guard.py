@@ -57,9 +57,9 @@ class KeepoutGuard:
     """
 
     __slots__ = (
-        "_drift_rate", "_explained", "_free_steps", "_given", "_kept_off", "_lag", "_note", "_note_rate", "_prediction", "_radius",
-        "_rate", "_side", "_speed_error", "_time_step", "_turn_speed", "_turn_time", "_until_acting", "intervening",
-        "interventions", "lost", "tubes",
+        "_drift_rate", "_explained", "_free_steps", "_given", "_kept_off", "_lag", "_note", "_note_rate", "_prediction",
+        "_quarter_turn", "_radius", "_rate", "_side", "_speed_error", "_time_step", "_turn_speed", "_turn_time", "_until_acting",
+        "intervening", "interventions", "lost", "tubes",
     )  # fmt: skip
 
     def __init__(
@@ -78,7 +78,7 @@ class KeepoutGuard:
         turn_speed: float = math.inf,
     ) -> None:
         self._radius, self._turn_speed = radius, turn_speed
-        self._rate, self._time_step = heading_rate_max, time_step
+        self._rate, self._time_step, self._quarter_turn = heading_rate_max, time_step, 0.5 * math.pi / heading_rate_max
         self._lag, self._until_acting = lag, delay
         self._given = GivenCommands(
             lag=lag,
@@ -197,12 +197,16 @@ class KeepoutGuard:
         tubes, last = self.tubes, self._kept_off
         nearest = tubes[0]
         if len(tubes) > 1:
-            nearest = max(tubes, key=lambda tube: self._gap(tube, time, own))
+            widest = self._gap(nearest, time, own)
+            for tube in tubes[1:]:
+                gap = self._gap(tube, time, own)
+                if gap > widest:
+                    nearest, widest = tube, gap
         return (nearest,) if last is None or last is nearest else (nearest, last)
 
     def _gap(self, tube: Tube, time: float, own: AirMotion) -> float:
         """Return the distance from a disc at the end of a quarter of a turn, if the vehicle stayed where it is [m]."""
-        since = time - tube.time + 0.5 * math.pi / self._rate
+        since = time - tube.time + self._quarter_turn
         north = own.ground_north - tube.north - tube.velocity_north * since
         east = own.ground_east - tube.east - tube.velocity_east * since
         return math.hypot(north, east) - tube.radius - (tube.growth + 0.5 * tube.acceleration * since) * since

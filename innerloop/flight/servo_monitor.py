@@ -54,5 +54,6 @@ class ServoMonitor:
             oldest = recent[0]
             # Between the oldest and the newest of its commands a surface is at no distance from them.
             if not (oldest <= at <= now or now <= at <= oldest):
-                worst = max(worst, at - max(recent), min(recent) - at)
+                off = at - max(recent) if at > now else min(recent) - at
+                worst = off if off > worst else worst
         return worst

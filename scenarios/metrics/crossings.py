@@ -53,19 +53,19 @@ def find_crossings(
     rate = path.derivative()
     side = CubicHermiteSpline(time, across, axis_north * velocity[:, 1] - axis_east * velocity[:, 0])
     crossings = []
-    for moment in side.roots(extrapolate=False):
-        if not math.isfinite(moment):
-            continue
-        north, east, up = (float(x) for x in path(moment))
+    moments = side.roots(extrapolate=False)
+    moments = moments[np.isfinite(moments)]
+    for moment, (north, east, up), (v_north, v_east, _) in zip(
+        moments.tolist(), path(moments).tolist(), rate(moments).tolist(), strict=True
+    ):
         along = axis_north * north + axis_east * east
         if along <= 0.0:
             continue
-        v_north, v_east, _ = (float(x) for x in rate(moment))
         v_along = axis_north * v_north + axis_east * v_east
         v_across = axis_north * v_east - axis_east * v_north
         crossings.append(
             Crossing(
-                time=float(moment),
+                time=moment,
                 axis_distance=along / math.cos(elevation),
                 distance=math.sqrt(north * north + east * east + up * up),
                 angle=abs(math.atan2(abs(v_across), v_along)),

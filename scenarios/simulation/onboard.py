@@ -29,8 +29,8 @@ class OnboardSensing:
     """
 
     __slots__ = (
-        "_altitude", "_errors", "_exact", "_fault", "_guidance", "_held", "_readings", "_received", "_report", "_vehicle",
-        "_vessel", "airspeed_error", "failing",
+        "_altitude", "_errors", "_exact", "_fault", "_guidance", "_held", "_readings", "_received", "_report",
+        "_satellites_fail", "_vehicle", "_vessel", "airspeed_error", "failing",
     )  # fmt: skip
 
     def __init__(
@@ -50,6 +50,7 @@ class OnboardSensing:
         self._vehicle, self._guidance, self._readings = vehicle, guidance, readings
         self._report = guidance.target.report
         self._altitude, self._held, self.failing = altitude, False, world.fault.of_aircraft()
+        self._satellites_fail = world.fault.kind == SATELLITES
         self.airspeed_error = 0.0
 
     def read(self, step: int, time: float, motion: Motion) -> Readings:
@@ -68,7 +69,7 @@ class OnboardSensing:
             self.failing = False
             self._vehicle.fail(fault.kind)
         # It begins with a place that is known, too: dead reckoning goes on from one.
-        satellites = step == 0 or not fault.lasts(SATELLITES, time)
+        satellites = not self._satellites_fail or step == 0 or not fault.lasts(SATELLITES, time)
         position, measured, measured_heading = self._errors.read(step, motion, airspeed, heading, satellites=satellites)
         self.airspeed_error = measured - airspeed
         return position, measured, measured_heading, roll, motion[4], self._vehicle.servo_error()

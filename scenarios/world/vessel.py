@@ -79,6 +79,7 @@ class TabledVessel:
         place = np.zeros_like(velocity)
         place[1:] = np.cumsum(0.5 * TRACK_STEP * (velocity[1:] + velocity[:-1]), axis=0)
         self._table = np.column_stack([place, velocity, course])
+        self._last = len(velocity) - 2
         self.manoeuvres_end = manoeuvres_end
 
     @property
@@ -93,10 +94,11 @@ class TabledVessel:
 
     def motion(self, time: float) -> tuple[float, float, float, float]:
         """Return north, east [m] and their rates [m/s] at a time [s]."""
-        at = _COLUMNS * min(int(time / TRACK_STEP), len(self._table) - 2)
-        north, east, v_north, v_east = self._flat[at : at + 4]
-        v_north_after, v_east_after = self._flat[at + _COLUMNS + 2 : at + _COLUMNS + 4]
-        since = time - at // _COLUMNS * TRACK_STEP
+        step, last = int(time / TRACK_STEP), self._last
+        step = step if step < last else last
+        at = _COLUMNS * step
+        north, east, v_north, v_east, _, _, _, v_north_after, v_east_after = self._flat[at : at + _COLUMNS + 4]
+        since = time - step * TRACK_STEP
         half = 0.5 * since * since / TRACK_STEP
         fraction = since / TRACK_STEP
         return (
@@ -108,7 +110,7 @@ class TabledVessel:
 
     def course(self, time: float) -> float:
         """Return the course [rad] at a time [s]."""
-        at = _COLUMNS * min(int(time / TRACK_STEP), len(self._table) - 2)
+        at = _COLUMNS * min(int(time / TRACK_STEP), self._last)
         course, after = self._flat[at + 4], self._flat[at + _COLUMNS + 4]
         return course + (time / TRACK_STEP - at // _COLUMNS) * (after - course)
 
