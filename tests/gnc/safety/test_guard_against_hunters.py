@@ -47,7 +47,7 @@ def test_a_dead_time_of_no_whole_number_of_steps_lets_nobody_in(delay, lag, rate
 @HUNTED
 def test_where_the_vessel_is_taken_to_be_is_not_enough(hunter):
     # The same hunts, and a guard that knows where the newest report says that she is. Measured, 27 to 200 m inside.
-    assert min(hunted(seed, hunter, silence=60.0, known=as_it_was_known).closest for seed in range(2)) < RADIUS - 20.0
+    assert any(hunted(seed, hunter, silence=60.0, known=as_it_was_known).closest < RADIUS - 20.0 for seed in range(2))
 
 
 def test_a_guard_that_forgets_what_it_kept_off_finds_no_way_out():
