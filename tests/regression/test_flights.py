@@ -105,8 +105,8 @@ def test_starting_ahead_of_the_vessel_without_an_approach_the_guard_keeps_out_an
 
 def test_preview_and_airspeed_trim_each_take_away_error(fly):
     def steady_error(*overrides):
-        _, history = fly("flight.crossings=13", *overrides)
-        late = history[history["time_s"] > history["time_s"].iloc[-1] - 100.0]
+        _, history = fly("flight.crossings=9", *overrides)
+        late = history[history["time_s"] > history["time_s"].iloc[-1] - 60.0]
         off = np.hypot(late["reference_north_m"] - late["north_m"], late["reference_east_m"] - late["east_m"])
         return math.sqrt(float(np.mean(off**2)))
 
@@ -114,7 +114,7 @@ def test_preview_and_airspeed_trim_each_take_away_error(fly):
     no_trim = steady_error("guidance.airspeed_trim=false")
     no_preview = steady_error("guidance.preview=false")
     neither = steady_error("guidance.preview=false", "guidance.airspeed_trim=false")
-    # Measured 0.11, 0.17, 1.8 and 2.3 m; asserted is the order with room for another machine's rounding.
+    # Measured 0.15, 0.24, 1.7 and 2.3 m; asserted is the order with room for another machine's rounding.
     assert both < no_trim < no_preview < neither
     assert both < 0.5
 
