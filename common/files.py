@@ -52,7 +52,16 @@ def write_json(path: Path, value: Mapping[str, Any], *, indent: int | None = 1) 
     ------
     ValueError : a number is not finite, which JSON cannot express
     """
-    text = json.dumps(value, indent=indent, allow_nan=False) + "\n"
+    write_text(path, json_text(value, indent=indent))
+
+
+def json_text(value: Mapping[str, Any], *, indent: int | None = 1) -> str:
+    """Return what ``write_json`` writes."""
+    return json.dumps(value, indent=indent, allow_nan=False) + "\n"
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, completely or not at all."""
     write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 

@@ -207,7 +207,7 @@ RUN_FILES = ["manifest.json", "journal.sqlite", "journal.sqlite", "summary.csv",
 
 
 @given(st.sampled_from(RUN_FILES), DAMAGES, st.integers(0, 10**6))
-@settings(max_examples=14 * DEPTH, derandomize=DEPTH == 1)
+@settings(max_examples=10 * DEPTH, derandomize=DEPTH == 1)
 def test_a_damaged_run_is_continued_to_the_same_rows_or_refused(place, name, how, at):
     run = fresh(place)
     damage(run / name, how, at)
@@ -219,7 +219,7 @@ def test_a_damaged_run_is_continued_to_the_same_rows_or_refused(place, name, how
 
 
 @given(st.sampled_from(RUN_FILES), DAMAGES, st.integers(0, 10**6))
-@settings(max_examples=14 * DEPTH, derandomize=DEPTH == 1)
+@settings(max_examples=10 * DEPTH, derandomize=DEPTH == 1)
 def test_a_flight_of_a_damaged_run_is_replayed_or_refused(place, name, how, at):
     original = fresh(place)
     damage(original / name, how, at)
@@ -232,7 +232,7 @@ def test_a_flight_of_a_damaged_run_is_replayed_or_refused(place, name, how, at):
 
 
 @given(st.sampled_from(RUN_FILES), DAMAGES, st.integers(0, 10**6))
-@settings(max_examples=14 * DEPTH, derandomize=DEPTH == 1)
+@settings(max_examples=10 * DEPTH, derandomize=DEPTH == 1)
 def test_a_report_of_a_damaged_run_names_it_or_is_refused(place, name, how, at):
     from reports.errors import ReportError
     from reports.registry import content

@@ -3,6 +3,7 @@
 The abstract of the paper promises such conditions and its text omits them; docs/actuation_bounds.md derives what is computed here.
 """
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -48,6 +49,7 @@ class BoundedSteering:
     convergence_time: float
 
 
+@functools.lru_cache(maxsize=64)
 def heading_rate_bound(
     parameters: LookAhead, *, speed: float, reference_heading_rate_max: float, steering_max: float, tolerance: float = _TOLERANCE
 ) -> float:
@@ -133,6 +135,7 @@ def convergence_time(
     return turning + (by_radius + parameters.epsilon * (distance_from**2 - distance_to**2)) / speed
 
 
+@functools.lru_cache(maxsize=64)
 def fastest_within(
     *,
     speed: float,

@@ -76,7 +76,10 @@ def is_cached(spec: AircraftSpec, altitude: float) -> bool:
 def _at(spec: AircraftSpec, found: Designed) -> Designed:
     """Return a design whose model is where that of ``spec`` is: the same files may have been elsewhere when it was made."""
     schedule = found.design.schedule
-    schedule = replace(schedule, spec=schedule.spec.placed(spec))
+    placed = schedule.spec.placed(spec)
+    if placed == schedule.spec:
+        return found
+    schedule = replace(schedule, spec=placed)
     return replace(found, design=replace(found.design, schedule=schedule))
 
 
@@ -86,8 +89,19 @@ def design_key(spec: AircraftSpec, altitude: float) -> str:
     for text in (
         repr(replace(spec, root=Path(), folder=None, other_roots=())),
         repr(altitude),
-        platform.python_version(),
         model_hash(spec.files),
+        _program_hash(),
+    ):
+        digest.update(text.encode())
+    return digest.hexdigest()
+
+
+@functools.cache
+def _program_hash() -> str:
+    """Return the hash of the program that designs, which stays what it is while a process runs: versions and source."""
+    digest = hashlib.sha256()
+    for text in (
+        platform.python_version(),
         *(f"{package} {importlib.metadata.version(package)}" for package in _PACKAGES),
     ):
         digest.update(text.encode())

@@ -1,9 +1,11 @@
 """A designed autopilot: its tables, its margins and the record of its design. What designs it is elsewhere."""
 
+import functools
 from dataclasses import dataclass
 from typing import Any
 
 from aircraft.errors import AircraftError
+from common.files import json_text
 from innerloop.analysis.checks import Check
 from innerloop.synthesis.schedule import Schedule
 from innerloop.synthesis.weights import LoopBandwidths
@@ -32,9 +34,14 @@ class Design:
     checks: tuple[Check, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Designed:
     """A design and its record."""
 
     design: Design
     record: Record
+
+    @functools.cached_property
+    def record_text(self) -> str:
+        """The record as every run with the design has it, on one line: half a megabyte of numbers."""
+        return json_text(self.record, indent=None)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from common.cells import cell
-from common.files import write_json, write_whole
+from common.files import write_json, write_text, write_whole
 from common.run_layout import (
     BOUNDS,
     DESIGN_RECORD,
@@ -182,6 +182,10 @@ class RunDirectory:
     def write_json(self, path: Path, value: Mapping[str, Any], *, indent: int | None = 1) -> None:
         """Write a JSON file, completely or not at all; with an ``indent`` of None on one line."""
         write_json(path, value, indent=indent)
+
+    def write_text(self, path: Path, text: str) -> None:
+        """Write a text file, completely or not at all."""
+        write_text(path, text)
 
     def write_frame(self, name: str, frame: "pd.DataFrame") -> None:
         """Write a table to ``name``, a CSV or Parquet file by its suffix, completely or not at all."""

@@ -13,6 +13,7 @@ from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, Ref
 from scenarios.planning.limits import omega_max
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig
+from scenarios.schema.sections.world import KeepoutConfig
 
 STEPS_MIN = 6
 """Least steps of the guidance between two crossings [-]: fewer do not show the oscillation."""
@@ -75,9 +76,14 @@ def orbits(
 
 def placed_distance(scenario: Scenario, orbit: Orbit, axis: PlumeAxis) -> float:
     """Return r_CO [m], at which an orbit keeps the tracking allowance from the keep-out area."""
-    rule = distance_by_paper if scenario.guidance.placement == "paper" else distance_exact
-    distance_min = scenario.keepout.radius_m + scenario.guidance.tracking_allowance_m
-    if scenario.keepout.shape == "sphere":
+    return distance_kept(scenario.guidance, scenario.keepout, orbit, axis)
+
+
+def distance_kept(guidance: GuidanceConfig, keepout: KeepoutConfig, orbit: Orbit, axis: PlumeAxis) -> float:
+    """Return r_CO [m], as ``placed_distance`` does of a scenario with such sections."""
+    rule = distance_by_paper if guidance.placement == "paper" else distance_exact
+    distance_min = keepout.radius_m + guidance.tracking_allowance_m
+    if keepout.shape == "sphere":
         return rule(orbit, axis, distance_min)
     # As far off horizontally as over a level plume.
     return rule(orbit, PlumeAxis(heading=axis.heading), distance_min) / math.cos(axis.elevation)

@@ -144,8 +144,7 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
     schedule = found.design.schedule
     with tempfile.TemporaryDirectory() as folder:
         write_tree(write_root(schedule, Path(folder)), run.model)
-    # A megabyte of numbers.
-    run.write_json(run.innerloop, found.record, indent=None)
+    run.write_text(run.innerloop, found.record_text)
     start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.altitude, schedule.level(schedule.middle))
     turns = schedule.trims[schedule.middle]
     reversal, slow_lag = found.record["turn_reversal"], float(found.record["heading_rate_lag_s"])

@@ -13,8 +13,8 @@ HEIGHT = ("--altitude", 60.0)
 
 
 @pytest.mark.usefixtures("sketched")
-def test_the_command_leaves_a_directory_that_can_be_reported_on_again(tmp_path):
-    ended = run_command("innerloop.design", "x8", *HEIGHT, "--out", tmp_path / "x8")
+def test_the_command_leaves_a_directory_that_can_be_reported_on_again_and_may_repeat_the_search_over_reversals(tmp_path):
+    ended = run_command("innerloop.design", "x8", *HEIGHT, "--out", tmp_path / "x8", "--reversals", 3)
     assert ended.status == 0, ended.errors
     assert {"manifest.json", "innerloop.json", "report.html", "report.pdf", "model"} <= {
         p.name for p in (tmp_path / "x8").iterdir()
@@ -23,12 +23,6 @@ def test_the_command_leaves_a_directory_that_can_be_reported_on_again(tmp_path):
     assert (manifest["study"], manifest["name"]) == ("design", "x8")
     assert manifest["packages"]["jsbsim"]
     assert content(read_run(tmp_path / "x8")).verdict.headline in ended.out
-
-
-@pytest.mark.usefixtures("sketched")
-def test_the_search_over_reversals_can_be_repeated_with_more_of_them(tmp_path):
-    ended = run_command("innerloop.design", "x8", *HEIGHT, "--out", tmp_path / "x8", "--reversals", 3)
-    assert ended.status == 0, ended.errors
     own = json.loads((tmp_path / "x8" / "innerloop.json").read_text(encoding="utf-8"))["turn_reversal"]
     found = own["repeated_search"]
     assert found["reversals"] == 3

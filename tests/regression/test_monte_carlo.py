@@ -15,7 +15,7 @@ FLIGHTS = 6
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory):
     out = tmp_path_factory.mktemp("monte_carlo") / "run"
-    scenario = load_study("monte_carlo", [f"flights={FLIGHTS}", "flight.duration_max_s=90", "histories=1"])
+    scenario = load_study("monte_carlo", [f"flights={FLIGHTS}", "flight.duration_max_s=60", "histories=1"])
     run_study(scenario, "monte_carlo", out, executor_factory=ExecutorFactory(jobs=2))
     return out
 
@@ -23,7 +23,7 @@ def directory(tmp_path_factory):
 def test_no_flight_enters_the_keep_out_area(directory):
     summary = pd.read_csv(directory / "summary.csv")
     assert len(summary) == FLIGHTS
-    # Not all of them settle within 90 s: those are not met, and keep out all the same.
+    # Not all of them settle within 60 s: those are not met, and keep out all the same.
     assert set(summary["outcome"]) <= {"completed", "not_settled", "incomplete"}
     assert (summary["criteria_met"] == (summary["outcome"] == "completed")).all()
     assert summary["kept_out"].all()

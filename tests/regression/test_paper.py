@@ -205,7 +205,7 @@ def few_bounds(monkeypatch):
 
 
 def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
-    scenario = load_study("paper", ["fidelity=kinematic"])
+    scenario = load_study("paper", ["fidelity=kinematic", "flight.crossings=10"])
     result = run_study(scenario, "paper", tmp_path / "run")
     assert [row["flight_id"] for row in rows_of(tmp_path / "run")] == [
         "sim1_kinematic",

@@ -5,10 +5,10 @@ import math
 import pytest
 from study_runs import assert_flown_as_the_issue_asks, fly_study
 
-from reports.build import build_reports
 from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.registry import content
+from reports.render.html import write_html
 from reports.run.run_data import read_run
 from scenarios.errors import InputError
 
@@ -50,12 +50,15 @@ def test_its_airspeeds_are_named_where_the_scenario_leaves_them(t37, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.usefixtures("sketched")
-def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(t37):
-    html, pdf = build_reports(t37.path)
-    assert pdf.read_bytes().startswith(b"%PDF")
-    assert "of the T37 in six degrees of freedom" in html.read_text(encoding="utf-8")
-    report = content(read_run(t37.path))
+@pytest.fixture(scope="module")
+def report(t37):
+    return content(read_run(t37.path))
+
+
+def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(report, tmp_path):
+    write_html(report, tmp_path / "report.html")
+    html = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "of the T37 in six degrees of freedom" in html
     blocks = [block for section in report.sections for block in section.blocks]
     charts = {block.name: block for block in blocks if isinstance(block, Chart)}
     # Half of what a comparison's panel could show is there to be seen, after settling and within the settling band.
@@ -72,11 +75,10 @@ def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(t37):
     # Fitted limits have three digits, and equilibria are shown in the turn that it flies, nearest to 30 degrees.
     assert {card.name: card.limit for card in report.verdict.figures}["Tracking error, rms after settling, worst"] == "≤ 40.1 m"
     assert not [block for block in blocks if isinstance(block, Table) and not block.rows]
-    assert "level, and at 31.6 degrees of bank" in html.read_text(encoding="utf-8")
+    assert "level, and at 31.6 degrees of bank" in html
 
 
-def test_the_report_of_its_run_does_not_speak_of_the_x8(t37):
-    report = content(read_run(t37.path))
+def test_the_report_of_its_run_does_not_speak_of_the_x8(report):
     said = [report.verdict.headline, report.verdict.detail]
     said += [block.caption for section in report.sections for block in section.blocks if isinstance(block, Chart)]
     assert not [text for text in said if "X8" in text or "propeller" in text]

@@ -87,7 +87,8 @@ def flown(name, size, time_step, root=None):
     found = start()
     fdm = Fdm(AEROSONDE, root, time_step)
     fdm.command(dict(found.inputs))
-    fdm.hold(found.state(), round(2.0 / time_step))
+    # Twenty time constants of the servos, more of the rotor: e^-20.
+    fdm.hold(found.state(), round(0.5 / time_step))
     nodes = [(fdm.node(READS[state][0]), READS[state][1]) for state in bm.FLOWN_STATES]
     every = round(TIMES[1] / time_step)
     rows, before = [], 0.0

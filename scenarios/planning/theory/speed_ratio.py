@@ -11,9 +11,10 @@ from common.physics.coordinated_turn import bank_for_heading_rate
 from gnc.errors import InfeasibleError
 from gnc.reference.placement import PlumeAxis
 from scenarios.planning.limits import omega_max
-from scenarios.planning.reference import oscillation_at, placed_distance
+from scenarios.planning.reference import distance_kept, oscillation_at
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig
+from scenarios.schema.sections.world import KeepoutConfig
 
 CROSSING_LIMITS = Path(__file__).parent / "crossing_limits.json"
 """Shortest crossing intervals by optimal control, written by ``python -m benchmarks.crossing_limit --write``."""
@@ -41,19 +42,28 @@ def theory_over_speed_ratio(scenario: Scenario) -> dict[str, list[float]]:
         return {}
     axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
     names = ("nu", "crossing_interval_predicted_s", "r_co_m", *(f"crossing_interval_{shape}_s" for shape in _OSCILLATIONS))
-    curves: dict[str, list[float]] = {name: [] for name in names}
-    for nu in np.linspace(0.0, _RATIO_MAX, _POINTS).tolist():
-        try:
-            orbit = oscillation_at(scenario.guidance, scenario.reference, nu)
-            distance = placed_distance(scenario, orbit, axis)
-            others = [_crossing_interval(scenario.guidance, shape, nu) for shape in _OSCILLATIONS]
-        except InfeasibleError:
-            break
-        for name, value in zip(curves, (nu, orbit.crossing_interval, distance, *others), strict=True):
-            curves[name].append(value)
+    points = _points(scenario.guidance, scenario.reference, scenario.keepout, axis)
+    curves = {name: [point[i] for point in points] for i, name in enumerate(names)}
     if scenario.follows:
         del curves["r_co_m"]
     return curves | crossing_limit(scenario.guidance)
+
+
+@functools.lru_cache(maxsize=8)
+def _points(
+    guidance: GuidanceConfig, reference: ReferenceConfig, keepout: KeepoutConfig, axis: PlumeAxis
+) -> tuple[tuple[float, ...], ...]:
+    """Return speed ratio, crossing interval, r_CO and the other crossing intervals, remembered for the next study of a process."""
+    points: list[tuple[float, ...]] = []
+    for nu in np.linspace(0.0, _RATIO_MAX, _POINTS).tolist():
+        try:
+            orbit = oscillation_at(guidance, reference, nu)
+            distance = distance_kept(guidance, keepout, orbit, axis)
+            others = [_crossing_interval(guidance, shape, nu) for shape in _OSCILLATIONS]
+        except InfeasibleError:
+            break
+        points.append((nu, orbit.crossing_interval, distance, *others))
+    return tuple(points)
 
 
 @functools.lru_cache(maxsize=len(_OSCILLATIONS) * _POINTS)

@@ -18,6 +18,7 @@ HEADING_RATE = STANDARD_GRAVITY / SPEED
 """That of 45 degrees of bank [rad/s]."""
 
 
+@functools.cache
 def courses(*, roll_rate=ROLL_RATE, heading_rate=HEADING_RATE):
     return BankSwing(speed=SPEED, heading_rate=heading_rate, roll_rate_max=roll_rate)
 

@@ -17,7 +17,7 @@ HUNTED = pytest.mark.parametrize("hunter", HUNTERS, ids=lambda hunter: hunter.__
 
 
 @HUNTED
-@pytest.mark.parametrize("silence", [0.0, 150.0])
+@pytest.mark.parametrize("silence", [0.0, 90.0])
 def test_a_hunter_does_not_get_in_however_she_reports(hunter, silence):
     found = hunted(1 if silence else 0, hunter, silence=silence)
     # What is kept for the looks, 4 cm, is on the safe side of it.
@@ -47,7 +47,7 @@ def test_a_dead_time_of_no_whole_number_of_steps_lets_nobody_in(delay, lag, rate
 @HUNTED
 def test_where_the_vessel_is_taken_to_be_is_not_enough(hunter):
     # The same hunts, and a guard that knows where the newest report says that she is. Measured, 27 to 200 m inside.
-    assert min(hunted(seed, hunter, silence=60.0, known=as_it_was_known).closest for seed in range(2)) < RADIUS - 20.0
+    assert any(hunted(seed, hunter, silence=60.0, known=as_it_was_known).closest < RADIUS - 20.0 for seed in range(2))
 
 
 def test_a_guard_that_forgets_what_it_kept_off_finds_no_way_out():

@@ -24,6 +24,14 @@ from innerloop.designs.cache import design_key, designed
 from innerloop.designs.designed import DesignError
 
 
+@pytest.fixture(autouse=True)
+def another_process():
+    """Have each test hash the program anew, as another process would, and leave nothing of what it changed."""
+    cache._program_hash.cache_clear()
+    yield
+    cache._program_hash.cache_clear()
+
+
 @pytest.fixture
 def asked(monkeypatch, tmp_path, designs):
     """An empty cache of its own, and a list of what was asked to be designed: a short form of the X8's design stands for all."""
@@ -148,8 +156,10 @@ def test_any_changed_source_file_is_another_key(monkeypatch, tmp_path, package, 
     source = {"aircraft": aircraft, "common": common, "innerloop": innerloop}[package]
     folder = shutil.copytree(next(iter(source.__path__)), tmp_path / package)
     monkeypatch.setattr(cache, package, SimpleNamespace(__path__=[str(folder)]))
+    cache._program_hash.cache_clear()
     assert design_key(X8, 100.0) == before
     (folder / file).write_text((folder / file).read_text(encoding="utf-8") + "\n", encoding="utf-8")
+    cache._program_hash.cache_clear()
     assert design_key(X8, 100.0) != before
 
 
@@ -158,6 +168,7 @@ def test_another_version_of_a_package_is_another_key(monkeypatch, package):
     before = design_key(X8, 100.0)
     version = cache.importlib.metadata.version
     monkeypatch.setattr(cache.importlib.metadata, "version", lambda name: "0.0" if name == package else version(name))
+    cache._program_hash.cache_clear()
     assert design_key(X8, 100.0) != before
 
 

@@ -1,5 +1,6 @@
 """The search for the reversal in which an aircraft strays farthest from its response."""
 
+import functools
 import math
 from collections import deque
 from dataclasses import replace
@@ -23,12 +24,14 @@ from innerloop.jsbsim.properties import HEADING_RATE
 REVERSALS = 12
 
 
-@pytest.fixture
-def flown(x8_schedule, x8_aircraft, x8_root):
+@pytest.fixture(scope="module")
+def flown(x8_schedule, x8_root):
     """Return the response of the X8 at the bank of its studies, and a function that searches a few reversals of a new one."""
     level, bank = x8_schedule.level(x8_schedule.middle), X8.envelope.bank
-    measured, slow_lag = measure_turn_reversal(x8_aircraft, level, bank), measure_lag(x8_aircraft, level, bank)
+    measuring = AutopilotedAircraft(X8, x8_root)
+    measured, slow_lag = measure_turn_reversal(measuring, level, bank), measure_lag(measuring, level, bank)
 
+    @functools.cache
     def flown(response=measured, seed=0, slow_lag_times=1.0):
         aircraft, behind = [AutopilotedAircraft(X8, x8_root)], slow_lag_times * slow_lag
         return search_reversals(aircraft, level, bank, response, behind, reversals=REVERSALS, seed=seed)
@@ -45,7 +48,7 @@ def test_it_finds_a_deviation_and_the_same_for_the_same_seed(flown):
     assert found.reversals == REVERSALS
     assert X8.envelope.airspeed_min < found.airspeed_before < X8.envelope.airspeed_max
     assert abs(found.command_before) <= 1.0
-    assert search() == found
+    assert search(seed=0) == found
     assert search(seed=1) != found
 
 
