@@ -3,7 +3,7 @@
 from scenarios import run
 
 if __name__ == "__main__":
-    study = run("monte_carlo", jobs=2, flights=8, flight={"crossings": 3}, progress=True)
+    study = run("monte_carlo", jobs=2, flights=6, flight={"crossings": 1}, progress=True)
     found = study.statistics
 
     violation = found.violation

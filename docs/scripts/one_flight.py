@@ -2,7 +2,7 @@
 
 from scenarios import fly
 
-flight = fly("sweep_nu", nu=0.5, **{"guidance.preview": False})
+flight = fly("sweep_nu", nu=0.5, flight={"crossings": 6}, **{"guidance.preview": False})
 
 unit = flight.row.attrs["units"]["min_distance_m"]
 print(f"{flight.flight_id}: {'met' if flight.met else '; '.join(flight.reasons)}")

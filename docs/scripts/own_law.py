@@ -21,5 +21,5 @@ class Pursuit:
 
 
 if __name__ == "__main__":
-    sweep = run("sweep_nu", nu=[0.3, 0.6], law=Pursuit(gain=1.5), comparison={"variants": []})
+    sweep = run("sweep_nu", nu=[0.3, 0.6], law=Pursuit(gain=1.5), flight={"crossings": 6}, comparison={"variants": []})
     print(sweep.summary[["nu", "criteria_met", "min_distance_m", "tracking_error_rms_m"]])

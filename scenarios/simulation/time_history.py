@@ -82,7 +82,8 @@ def history_files(
 
 def as_parquet(history: pd.DataFrame) -> bytes:
     """Return a time history as a Parquet file; unit and meaning of each column are in the metadata of its field."""
-    table, meanings = pa.Table.from_pandas(history, preserve_index=False), MEANINGS | INSTRUMENT_MEANINGS
+    # In this thread: to begin others takes longer than to convert so few columns, and other flights have the other cores.
+    table, meanings = pa.Table.from_pandas(history, preserve_index=False, nthreads=1), MEANINGS | INSTRUMENT_MEANINGS
     described = [
         field.with_metadata({"unit": unit_of(field.name), "meaning": meanings.get(field.name, "")}) for field in table.schema
     ]

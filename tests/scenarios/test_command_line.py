@@ -1,6 +1,7 @@
 """The commands as a user types them: in a process of their own where that is tested, else in this one, which has imported all."""
 
 import json
+import multiprocessing
 import os
 import shlex
 import signal
@@ -34,12 +35,14 @@ def run_here(monkeypatch, capsys):
     return run_here
 
 
-@pytest.fixture
-def interruptible():
-    """Let a child process take SIGINT, also where pytest itself was started to ignore it, as a script does behind ``&``."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
+def run_apart(arguments, errors):
+    """Run a command in the process that this is, in a group of its own; what it says of errors goes into a file."""
+    os.setsid()
+    # Also where pytest itself was started to ignore it, as a script does behind ``&``.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.argv = ["scenarios.run", *map(str, arguments)]
+    with errors.open("w", encoding="utf-8") as sys.stderr, Path(os.devnull).open("w", encoding="utf-8") as sys.stdout:
+        main()
 
 
 def assert_refused(result, *words):
@@ -61,19 +64,19 @@ for fidelity in ("kinematic", "six_dof"):
 """Flights of both vehicles, the autopilot of one of them in the cache."""
 
 
-@pytest.mark.parametrize(
-    ("code", "heavy"),
-    [
-        ("import scenarios.run, innerloop.design, reports.build", HEAVY | {"numpy", "jsbsim", "plotly", "pydantic"}),
-        ("from scenarios.console.describe import described; described('payload.sensor')", HEAVY),
-        (FLIGHTS, DESIGNING),
-    ],
-    ids=["help", "what is said of a key", "flights"],
-)
+STEPS = {
+    "import scenarios.run, innerloop.design, reports.build": HEAVY | {"numpy", "jsbsim", "plotly", "pydantic"},
+    "from scenarios.console.describe import described; described('payload.sensor')": HEAVY,
+    FLIGHTS: DESIGNING,
+}
+"""What help needs, what is said of a key, and flights: one after the other, with what none of them needs so far."""
+
+
 @pytest.mark.usefixtures("x8_design")
-def test_what_is_not_needed_is_not_imported(code, heavy):
-    code += f"\nimport sys; sys.exit(', '.join(sorted({heavy!r} & set(sys.modules))) or 0)"
-    found = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+def test_what_is_not_needed_is_not_imported():
+    unneeded = "if found := sorted({!r} & set(sys.modules)): sys.exit({!r} + ' imports ' + ', '.join(found))"
+    code = ["import sys", *(line for step, heavy in STEPS.items() for line in (step, unneeded.format(heavy, step)))]
+    found = subprocess.run([sys.executable, "-c", "\n".join(code)], cwd=ROOT, capture_output=True, text=True, check=False)
     assert found.stderr == ""
     assert found.returncode == 0
 
@@ -179,7 +182,7 @@ def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_
     assert manifest["outcomes"]["infeasible"] == 1
 
 
-def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tmp_path, run_here, interruptible):
+def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tmp_path, run_here):
     # Two crossings are too few for means over them.
     settings = ["sweep_nu", *SHORT, "--jobs", "1", "--set", "criteria.crossing_interval_error=0.1"]
     settings += ["--set", "criteria.tracking_error_rms_m=5.0"]
@@ -188,21 +191,18 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
     settings += ["--set", "fidelity=kinematic", "--set", f"sweep.nu={nus}"]
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     assert run_here(*settings, "--out", whole).returncode == 0
-    process = subprocess.Popen(
-        [sys.executable, "-m", "scenarios.run", *settings, "--out", str(broken)],
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+    arguments = [*settings, "--out", broken]
+    process = multiprocessing.get_context("fork").Process(target=run_apart, args=(arguments, tmp_path / "errors"))
+    process.start()
     # A time history is there just before its flight is done: once there are two, the first flight is.
     while len(list((broken / "flights").glob("*.parquet"))) < 2:
-        assert process.poll() is None
+        assert process.exitcode is None
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)  # what a terminal does at Ctrl-C
-    _, errors = process.communicate(timeout=60)
-    assert process.returncode == 130
+    process.join(60)
+    process.kill()  # where it has not ended
+    assert process.exitcode == 130
+    errors = (tmp_path / "errors").read_text(encoding="utf-8")
     assert "Traceback" not in errors
     assert "--resume" in errors
     assert json.loads((broken / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"

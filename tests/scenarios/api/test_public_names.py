@@ -79,19 +79,14 @@ def python(code):
     assert (found.returncode, found.stderr) == (0, ""), found.stderr
 
 
-def test_importing_the_package_imports_nothing_of_others():
+def test_importing_the_package_imports_nothing_of_others_and_its_names_no_simulator_and_no_figures():
     python(
-        "import sys, scenarios;"
-        "heavy = {'numpy', 'scipy', 'pandas', 'control', 'jsbsim', 'matplotlib', 'pydantic', 'typer'};"
-        "sys.exit(', '.join(sorted(heavy & set(sys.modules))) or 0)"
-    )
-
-
-def test_importing_the_names_imports_no_simulator_and_no_figures():
-    python(
-        "import sys; from scenarios import fly, load, run, Scenario;"
-        "heavy = {'pandas', 'control', 'jsbsim', 'matplotlib', 'typst'};"
-        "sys.exit(', '.join(sorted(heavy & set(sys.modules))) or 0)"
+        "import sys, scenarios\n"
+        "heavy = {'numpy', 'scipy', 'pandas', 'control', 'jsbsim', 'matplotlib', 'pydantic', 'typer'}\n"
+        "if found := sorted(heavy & set(sys.modules)): sys.exit('the package: ' + ', '.join(found))\n"
+        "from scenarios import fly, load, run, Scenario\n"
+        "heavy = {'pandas', 'control', 'jsbsim', 'matplotlib', 'typst'}\n"
+        "if found := sorted(heavy & set(sys.modules)): sys.exit('the names: ' + ', '.join(found))"
     )
 
 

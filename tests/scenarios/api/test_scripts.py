@@ -8,11 +8,11 @@ import pytest
 SCRIPTS = Path(__file__).parents[3] / "docs" / "scripts"
 
 PRINTED = {
-    "one_flight": ("nu_0.50", "30 crossings", "rad"),
+    "one_flight": ("nu_0.50", "6 crossings", "rad"),
     "own_law": ("criteria_met", "0.3", "True"),
     "ship_from_ais": ("from 2026-06-01T10:00:00", "keep-out violations: 0"),
     "aircraft_directory": ("fleet/heavy", "0.3", "0.6", "True"),
-    "monte_carlo": ("0 of 8 flights", "at 95% confidence", "median of the closest approach"),
+    "monte_carlo": ("0 of 6 flights", "at 95% confidence", "median of the closest approach"),
 }
 
 WRITTEN = {

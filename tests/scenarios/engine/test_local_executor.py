@@ -5,9 +5,9 @@ import itertools
 import multiprocessing
 import os
 import signal
-import subprocess
 import sys
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -18,7 +18,6 @@ from scenarios.engine.local_executor import LocalExecutor
 from scenarios.engine.task import Limits, Task
 from scenarios.errors import InputError
 
-ROOT = Path(__file__).parents[3]
 LONG = 60.0
 """What nobody waits for [s]."""
 
@@ -191,54 +190,51 @@ def test_processes_leave_ctrl_c_to_their_parent(tmp_path):
     assert begun(tmp_path, 1) == 1
 
 
-ORPHANS = """
-import itertools, sys, time
-from pathlib import Path
-sys.path[:0] = sys.argv[2:]
-from engine_cases import Squares
-from scenarios.engine.local_executor import LocalExecutor
-from scenarios.engine.task import Limits, Task
-from scenarios.errors import InputError
+@dataclass(frozen=True, kw_only=True)
 class Slow(Squares):
+    """Squares that take a moment, and from the fifth on another time [s]."""
+
+    later: float
+
     def fly(self, task):
         time.sleep(0.05)
         result = super().fly(task)
-        {works}
+        time.sleep(self.later if task.number > 3 else 0.0)
         return result
-with LocalExecutor(Slow(marks=Path(sys.argv[1])), jobs=2, limits=Limits()) as executor:
-    for result in executor.fly(Task(number=i) for i in itertools.count()):
-        if result.task.number == 3:
-            print("flying", flush=True)
-            {waits}
-"""
+
+
+def command(marks, pause, later, told):
+    """Have tasks done for ever, tell when the fourth is done, and take no more results for some time [s]."""
+    with LocalExecutor(Slow(marks=marks, later=later), jobs=2, limits=Limits()) as executor:
+        for result in executor.fly(Task(number=i) for i in itertools.count()):
+            if result.task.number == 3:
+                told.send("flying")
+                time.sleep(pause)
 
 
 @pytest.mark.parametrize(
-    ("waits", "works"),
-    [
-        ("pass", "pass"),
-        ("time.sleep(60)", "pass"),
-        # Nobody would wait for the end of such a flight.
-        ("pass", "time.sleep(600.0 if task.number > 3 else 0.0)"),
-    ],
+    ("pause", "later"),
+    # Nobody would wait for the end of the long flight.
+    [(0.0, 0.0), (LONG, 0.0), (0.0, 10.0 * LONG)],
     ids=["at work", "idle", "in a long flight"],
 )
-def test_processes_whose_parent_is_killed_end_by_themselves(waits, works, tmp_path):
-    code = ORPHANS.format(waits=waits, works=works)
-    parent = subprocess.Popen(
-        [sys.executable, "-c", code, str(tmp_path), str(Path(__file__).parent), str(ROOT)], stdout=subprocess.PIPE, text=True
-    )
-    with parent:
-        assert parent.stdout.readline() == "flying\n"
-        time.sleep(0.2)  # Those that are to be idle have done what they were given.
-        parent.kill()
-        # They have its standard output: it is at its end once the last of them is.
-        try:
-            parent.communicate(timeout=20.0)
-        except subprocess.TimeoutExpired:
-            for pid in workers(tmp_path):
-                os.kill(pid, signal.SIGKILL)
-            pytest.fail("processes outlived their parent")
+def test_processes_whose_parent_is_killed_end_by_themselves(pause, later, tmp_path):
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe(duplex=False)
+    parent = context.Process(target=command, args=(tmp_path, pause, later, theirs))
+    parent.start()
+    theirs.close()
+    assert ours.recv() == "flying"
+    time.sleep(0.2)  # Those that are to be idle have done what they were given.
+    parent.kill()
+    parent.join()
+    # They have their parent's end of the pipe: it is closed once the last of them has ended.
+    if not ours.poll(20.0):
+        for pid in workers(tmp_path):
+            os.kill(pid, signal.SIGKILL)
+        pytest.fail("processes outlived their parent")
+    with pytest.raises(EOFError):
+        ours.recv()
     assert len(workers(tmp_path)) == 2
 
 

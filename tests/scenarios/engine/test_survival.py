@@ -18,9 +18,9 @@ from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.scenarios.short_trial import short_trial
 
-FLIGHTS = 80
+FLIGHTS = 60
 
-TRIAL = short_trial(flights=FLIGHTS, duration=5.0, histories=10)
+TRIAL = short_trial(flights=FLIGHTS, duration=5.0, histories=10, rate=5.0)
 
 
 @pytest.fixture(scope="module")

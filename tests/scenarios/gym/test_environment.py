@@ -99,11 +99,11 @@ def test_an_episode_in_a_simulation_that_has_flown_before_is_the_same():
     for _ in range(2):
         _, info = env.reset(seed=5)
         places = []
-        for _ in range(600):
+        for _ in range(300):
             observed, *_, info = env.step(info["guidance"])
             places.append(observed[:2])
         tracks.append(places)
-    # A minute. JSBSim's clock goes on from flight to flight, and leaves 1e-12 m in the last digits.
+    # Half a minute. JSBSim's clock goes on from flight to flight, and leaves 1e-12 m in the last digits.
     assert np.array(tracks[0]) == pytest.approx(np.array(tracks[1]), abs=1e-9)
 
 

@@ -12,7 +12,8 @@ from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import find_spec
 from innerloop.designs.cache import cache_directory
 from innerloop.designs.designed import DesignError
-from reports.build import build_reports
+from reports.output import write_report
+from reports.run.run_data import read_run
 from scenarios.errors import InputError
 from scenarios.run import command
 from scenarios.schema.load import load_study
@@ -63,13 +64,15 @@ def test_a_number_that_is_no_aircraft_is_refused_like_a_word(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "error",
+    ("error", "drawn"),
     [
-        DesignError("aircraft 'x8': no design has 6 dB. It is not flown"),
-        AircraftError("aircraft 'x8' does not trim: not converged"),
+        (DesignError("aircraft 'x8': no design has 6 dB. It is not flown"), True),
+        (AircraftError("aircraft 'x8' does not trim: not converged"), False),
     ],
 )
-def test_a_design_that_is_refused_is_rows_with_its_reason_and_exit_status_1(refuse, error, tmp_path, capsys):
+def test_a_design_that_is_refused_is_rows_with_its_reason_and_exit_status_1(refuse, error, drawn, tmp_path, capsys, request):
+    if not drawn:
+        request.getfixturevalue("sketched")
     refuse(error)
     out = tmp_path / "run"
     assert exit_status(out, "sweep.nu=[0.3, 0.5]") == 1
@@ -141,9 +144,8 @@ def test_no_test_touches_the_users_own_designs(cache_home):
     assert cache_directory().is_relative_to(cache_home)
 
 
-@pytest.mark.usefixtures("sketched")
-def test_the_reports_of_a_refused_aircraft_name_it(refuse, tmp_path):
+def test_the_report_of_a_refused_aircraft_names_it(refuse, tmp_path):
     refuse(DesignError("no design has the margins"))
     run(tmp_path / "run", "aircraft=T37")
-    html, _ = build_reports(tmp_path / "run")
-    assert "T37" in html.read_text(encoding="utf-8")
+    write_report(read_run(tmp_path / "run"), page := tmp_path / "report.html")
+    assert "T37" in page.read_text(encoding="utf-8")

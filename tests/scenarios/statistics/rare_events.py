@@ -66,7 +66,10 @@ def noisy(probability, *, seed_share, blend_share):
     def value(points):
         inputs = normal(points).sum(axis=1) / math.sqrt(DIMENSION)
         seed = hashed([point[DIMENSION] for point in points])
-        blend = np.array([np.dot(hashed(point[DIMENSION + 1 :: 2]), point[DIMENSION + 2 :: 2]) for point in points])
+        # Blends have different numbers of parts: all of them in one row, of which each begins where the one before it ends.
+        parts = np.concatenate([point[DIMENSION + 1 :] for point in points])
+        begins = np.cumsum([0] + [(len(point) - DIMENSION - 1) // 2 for point in points[:-1]])
+        blend = np.add.reduceat(hashed(parts[::2]) * parts[1::2], begins)
         shares = (1.0 - seed_share - blend_share, seed_share, blend_share)
         parts = zip(shares, (inputs, seed, blend), strict=True)
         return -ndtri(probability) - np.sum([math.sqrt(share) * part for share, part in parts], axis=0)

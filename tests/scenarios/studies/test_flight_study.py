@@ -1,6 +1,7 @@
 """Flights and lists of trials as the command line runs them, kinematic and short."""
 
 import json
+import shutil
 
 import pandas as pd
 import pytest
@@ -14,7 +15,7 @@ from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 from tests.scenarios.short_trial import short_trial
 
-TRIAL = short_trial(flights=4, duration=4.0)
+TRIAL = short_trial(flights=4, duration=4.0, rate=5.0)
 
 
 def written(directory):
@@ -241,15 +242,15 @@ def state_of(directory):
     return {path.relative_to(directory).as_posix(): (path.read_bytes(), path.stat().st_mtime_ns) for path in files}
 
 
-def test_a_resumed_list_that_had_nothing_to_do_rewrites_nothing(listed, tmp_path):
-    run(listed, tmp_path / "run")
+def test_a_resumed_list_that_had_nothing_to_do_rewrites_nothing(listed, whole, tmp_path):
+    shutil.copytree(whole, tmp_path / "run")
     before = state_of(tmp_path / "run")
     assert not run(listed, tmp_path / "run", resume=True).changed
     assert state_of(tmp_path / "run") == before
 
 
-def test_a_table_that_somebody_has_changed_is_written_again(listed, tmp_path):
-    run(listed, tmp_path / "run")
+def test_a_table_that_somebody_has_changed_is_written_again(listed, whole, tmp_path):
+    shutil.copytree(whole, tmp_path / "run")
     before = state_of(tmp_path / "run")
     summary = tmp_path / "run" / "summary.csv"
     summary.write_text(summary.read_text(encoding="utf-8").replace("completed", "ditched"), encoding="utf-8")
@@ -259,8 +260,8 @@ def test_a_table_that_somebody_has_changed_is_written_again(listed, tmp_path):
     assert {name for name in before if after[name] != before[name]} == {"summary.csv"}
 
 
-def test_time_histories_that_were_deleted_or_cut_are_made_again_to_the_last_bit(listed, tmp_path):
-    run(listed, tmp_path / "run")
+def test_time_histories_that_were_deleted_or_cut_are_made_again_to_the_last_bit(listed, whole, tmp_path):
+    shutil.copytree(whole, tmp_path / "run")
     before = state_of(tmp_path / "run")
     deleted = [name for name in before if name.startswith("flights/")]
     assert len(deleted) == 8

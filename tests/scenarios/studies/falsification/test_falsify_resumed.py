@@ -10,6 +10,9 @@ from scenarios.studies.falsification.results import UNFLOWN, SearchedFlight, sea
 from tests.scenarios.losing_executor import losing
 from tests.scenarios.short_search import CONFIRMATIONS, KEPT, POPULATION, manifest, run, same_tables, tables
 
+TURNS = "search.generations=4"
+"""Each method's turn, and one more: what the first turns found decides the later ones."""
+
 
 def clock(monkeypatch):
     """Have the search's time advance by a second whenever it is looked at."""
@@ -25,8 +28,8 @@ def test_a_search_is_resumed_after_a_lost_flight_on_which_others_depend(search, 
             raise KeyboardInterrupt
 
     # The eighth flight of the first turn: what the third turn proposes depends on it.
-    assert run(search, out, factory=losing(7), progress=interrupt).interrupted
-    result = run(search, out, resume=True)
+    assert run(search, out, TURNS, factory=losing(7), progress=interrupt).interrupted
+    result = run(search, out, TURNS, resume=True)
     searched = tables(out)[0].set_index("flight_id")
     assert "short_00007" not in searched.index[searched["min_distance_m"].notna()]
     assert result.summary.done == result.planned
@@ -35,7 +38,7 @@ def test_a_search_is_resumed_after_a_lost_flight_on_which_others_depend(search, 
     assert searched.loc["short_00007", "search_method"] == "corners"
     assert not any("1000000" in line or line.startswith("  :") for line in result.summary.lines)
     # A search that was not interrupted goes the same way.
-    run(search, tmp_path / "whole", factory=losing(7))
+    run(search, tmp_path / "whole", TURNS, factory=losing(7))
     same_tables(tmp_path / "whole", out)
 
 
@@ -48,10 +51,10 @@ def test_a_method_of_one_flight_without_a_measurement_has_no_nearest():
 
 def test_a_lost_flight_on_which_no_other_depends_is_tried_again(search, tmp_path):
     found = tmp_path / "found"
-    run(search, found)
+    run(search, found, TURNS)
     last = len(tables(found)[0]) - 1
-    run(search, tmp_path / "run", factory=losing(last), progress=lambda *_: None)
-    assert run(search, tmp_path / "run", resume=True).all_met
+    run(search, tmp_path / "run", TURNS, factory=losing(last))
+    assert run(search, tmp_path / "run", TURNS, resume=True).all_met
     same = [pd.read_csv(out / "summary.csv").drop(columns="wall_time_s") for out in (found, tmp_path / "run")]
     pd.testing.assert_frame_equal(*(rows[: last + 1] for rows in same), check_exact=True)
 
