@@ -21,6 +21,7 @@ from reports.errors import ReportError
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.effect import unused
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
@@ -35,7 +36,7 @@ AUTOPILOT = ["step1", "step2", "step3", "levelmargins", "leveldiskmargins", "loo
 def run_path(tmp_path_factory):
     path = tmp_path_factory.mktemp("reports") / "run"
     scenario = load_study("sweep_nu", OVERRIDES)
-    run_study(scenario, "sweep_nu", path)
+    run_study(scenario, "sweep_nu", path, executor_factory=InProcessExecutor)
     return path
 
 
