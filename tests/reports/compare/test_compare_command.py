@@ -47,6 +47,7 @@ def test_it_prints_the_figures_and_writes_reports_and_table_beside_the_first_run
     assert sorted(path.name for path in copies[0].rglob("*")) == before
 
 
+@pytest.mark.usefixtures("sketched")
 def test_out_names_the_directory_and_is_made(first, same, tmp_path):
     ended = compared(first, same, "--out", tmp_path / "a" / "b")
     assert ended.status == 0, ended
