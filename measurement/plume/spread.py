@@ -1,5 +1,6 @@
 """Spreads of a plume over the sea: about its fixed axis, about its centre at one moment, and of the centre about the axis."""
 
+import functools
 import math
 from dataclasses import dataclass
 
@@ -67,7 +68,22 @@ def spreads(
 
     Holds for 50 to 1000 m and up to about 300 s, over sea, in an apparent wind above 2 m/s.
     """
-    age: Array = STEP * np.arange(math.ceil(age_max / STEP) + 2, dtype=np.float64)
+    return _spreads(emission, air, source_height, tuple(wind.tolist()), age_max, STEP, settings)
+
+
+@functools.lru_cache(maxsize=8)
+def _spreads(
+    emission: Emission,
+    air: MarineAir,
+    source_height: float,
+    winds: tuple[float, ...],
+    age_max: float,
+    step: float,
+    settings: PlumeSettings,
+) -> Spreads:
+    """Return the same, kept for the next flights in the same wind: those of a comparison, or with another law or sensor."""
+    wind = np.array(winds)
+    age: Array = step * np.arange(math.ceil(age_max / step) + 2, dtype=np.float64)
     column = wind[:, np.newaxis]
     climb = rise(emission, column, age, air.brunt_vaisala)
     stack = np.maximum(0.0, source_height - settings.downwash * downwash(emission, column))
@@ -76,10 +92,13 @@ def spreads(
     start = emission.stack_diameter**2 / 8.0 * np.maximum(emission.exhaust_speed / column, 1.0) + emission.wake_spread**2
     source = start + (_BUOYANT * climb) ** 2
     dissipation = air.dissipation(settings.dissipation_height * source_height)
-    turbulent = _turbulent(source, absolute, dissipation, air.sigma_w, settings.richardson)
+    turbulent = _turbulent(step, source, absolute, dissipation, air.sigma_w, settings.richardson)
     relative = np.sqrt(source + turbulent)
     meander = np.sqrt(np.maximum(0.0, absolute - turbulent))
-    return Spreads(stack + climb, relative[0], relative[1], meander[0], meander[1])
+    found = (stack + climb, relative[0], relative[1], meander[0], meander[1])
+    for values in found:
+        values.flags.writeable = False
+    return Spreads(*found)
 
 
 def _across(air: MarineAir, height: Array, age: Array) -> Array:
@@ -97,12 +116,12 @@ def _up(air: MarineAir, height: Array, age: Array) -> Array:
     return result
 
 
-def _turbulent(source: Array, absolute: Array, dissipation: float, sigma_w: float, richardson: float) -> Array:
+def _turbulent(interval: float, source: Array, absolute: Array, dissipation: float, sigma_w: float, richardson: float) -> Array:
     """sigma_t^2 [m2], of the shape of ``absolute``, by Euler's rule; the time of the ballistic term is the step's middle."""
     others = source.T[:, np.newaxis, :].copy()
     growth = np.diff(absolute, axis=-1).transpose(2, 0, 1)
-    explosive = STEP * 3.0 * (richardson * dissipation) ** (1.0 / 3.0)
-    ballistic = STEP**2 * (2.0 * np.arange(len(growth)) + 1.0)
+    explosive = interval * 3.0 * (richardson * dissipation) ** (1.0 / 3.0)
+    ballistic = interval**2 * (2.0 * np.arange(len(growth)) + 1.0)
     steepest = (_BATCHELOR * dissipation ** (2.0 / 3.0) * ballistic).tolist()
     bound = np.minimum(growth, (sigma_w**2 * ballistic)[:, np.newaxis, np.newaxis])
     result = np.zeros((len(growth) + 1, *growth.shape[1:]))

@@ -1,9 +1,13 @@
 """A logged flight for the tests of the command."""
 
+import functools
+
 import numpy as np
 import pandas as pd
 import pytest
 from crossings import flight
+
+from measurement.estimate.flight_log.analysis import analyse
 
 
 @pytest.fixture
@@ -24,3 +28,9 @@ def logged(tmp_path):
     table.to_csv(path, index=False)
     (tmp_path / "instrument.toml").write_text('instrument = "electrochemical"\n', encoding="utf-8")
     return path
+
+
+@pytest.fixture
+def briefly(monkeypatch):
+    """Have the command estimate after one, two and five minutes, and not at fifteen times more for a curve: it takes a quarter."""
+    monkeypatch.setattr("measurement.estimate.__main__.analyse", functools.partial(analyse, points=0))

@@ -13,6 +13,8 @@ from measurement.estimate.__main__ import main
 from measurement.estimate.flight_log.config import LogConfig
 from measurement.estimate.flight_log.csv_file import EARTH_RADIUS_M, read_flight
 
+BRIEFLY = pytest.mark.usefixtures("briefly")
+
 
 def test_a_flight_is_estimated_printed_and_written(logged, capsys):
     assert run(logged) == 0
@@ -36,6 +38,7 @@ def test_a_flight_is_estimated_printed_and_written(logged, capsys):
     assert sorted(path.name for path in out.iterdir()) == ["estimate.json", "manifest.json", "samples.csv"]
 
 
+@BRIEFLY
 def test_readings_that_no_channel_uses_are_said(logged, capsys):
     own = "[instrument.channels.so2]\ncross = { no = 0.015, no2 = -0.16 }\n[instrument.channels.co2]\n[instrument.channels.no2]\n"
     config = logged.parent / "own.toml"
@@ -49,6 +52,7 @@ def test_readings_that_no_channel_uses_are_said(logged, capsys):
     assert "not used" not in capsys.readouterr().out
 
 
+@BRIEFLY
 def test_columns_units_and_places_are_mapped(logged, capsys):
     table = pd.read_csv(logged)
     renamed = pd.DataFrame({
@@ -80,6 +84,7 @@ def test_columns_units_and_places_are_mapped(logged, capsys):
     capsys.readouterr()
 
 
+@BRIEFLY
 def test_an_instrument_of_ones_own_has_its_response_found(logged, capsys):
     (logged.parent / "instrument.toml").write_text(
         "limits_percent = [0.2]\n[instrument]\ntitle = 'Mine'\n[instrument.channels.so2]\ncross = { no = 0.015, no2 = -0.16 }\n"
@@ -112,6 +117,7 @@ def test_a_compressed_log_is_read(logged):
     )
 
 
+@BRIEFLY
 def test_seconds_since_1970_are_written_in_full(logged):
     table = pd.read_csv(logged)
     table["time_s"] += 1714560000.25
@@ -181,6 +187,7 @@ def test_files_with_mistakes_are_refused_in_one_line(logged, capsys, content, me
     assert told.count(str(logged)) <= 1
 
 
+@BRIEFLY
 @pytest.mark.parametrize("console", [True, False])
 def test_command_and_revision_are_recorded_as_those_of_flights(logged, monkeypatch, tmp_path, console):
     shared = pytest.importorskip("common.provenance", reason="measurement stands alone here")
@@ -238,6 +245,7 @@ def test_a_code_for_a_missing_reading_is_refused(logged, capsys, column, value, 
     assert error.count("\n") == 1
 
 
+@BRIEFLY
 @MISSING
 def test_a_code_for_a_missing_reading_that_is_named_is_an_empty_cell(logged, column, value, told):
     with_value(logged, column, 100, value)
@@ -258,6 +266,7 @@ def test_readings_of_the_wrong_sign_that_no_noise_explains_are_refused(logged, c
     assert "more are as low; noise, zero and other gases explain" in capsys.readouterr().err
 
 
+@BRIEFLY
 def test_an_unfiltered_cell_may_read_below_zero_for_no2_that_is_not_measured(logged):
     # 1.6 of NO2: far below the noise, and what such a cell truly reads in a plume.
     readings, _ = flight("alphasense_b4", 0.1, 4)

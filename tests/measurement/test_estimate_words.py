@@ -23,6 +23,7 @@ def test_a_content_that_rounds_to_0_has_no_sign():
     assert content_words(-0.0004, 0.0, 0.0196) == "0.000 %, 95 % interval 0.000 to 0.020 %"
 
 
+@pytest.mark.usefixtures("briefly")
 @pytest.mark.parametrize("level", [420.0, None])
 def test_a_record_without_a_verdict_says_so_and_prints_no_nan(logged, capsys, level):
     table = pd.read_csv(logged)

@@ -4,6 +4,7 @@ import re
 
 from reports.build import build_reports
 from reports.document.chart import Chart
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
@@ -11,7 +12,7 @@ from scenarios.studies.registry import run_study
 def flown(tmp_path_factory, scenario, overrides):
     """Fly a scenario with overrides and return the directory of the run."""
     path = tmp_path_factory.mktemp(scenario) / "run"
-    run_study(load_study(scenario, overrides), scenario, path, overrides=overrides)
+    run_study(load_study(scenario, overrides), scenario, path, executor_factory=InProcessExecutor, overrides=overrides)
     return path
 
 

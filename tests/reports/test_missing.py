@@ -10,6 +10,7 @@ from reports.output import flight_figure
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.in_process import assert_refused, run_command
@@ -21,7 +22,7 @@ def whole(tmp_path_factory):
     """A run whose manifest says that it had a file of each kind; statistics and a design it has not, as if they were gone."""
     folder = tmp_path_factory.mktemp("runs")
     (folder / "short.toml").write_text(short_trial(flights=2, duration=8.0), encoding="utf-8")
-    run_study(load_study(str(folder / "short.toml")), "short", folder / "run")
+    run_study(load_study(str(folder / "short.toml")), "short", folder / "run", executor_factory=InProcessExecutor)
     return folder / "run"
 
 

@@ -21,6 +21,7 @@ from reports.errors import ReportError
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.effect import unused
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
@@ -35,7 +36,7 @@ AUTOPILOT = ["step1", "step2", "step3", "levelmargins", "leveldiskmargins", "loo
 def run_path(tmp_path_factory):
     path = tmp_path_factory.mktemp("reports") / "run"
     scenario = load_study("sweep_nu", OVERRIDES)
-    run_study(scenario, "sweep_nu", path)
+    run_study(scenario, "sweep_nu", path, executor_factory=InProcessExecutor)
     return path
 
 
@@ -60,8 +61,8 @@ def charts_of(report):
 
 def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
     def drawn(chart):
-        # Those of single flights are drawn in the report of trials.
-        return Figure(figsize=(1.0, 1.0)) if chart.name in ("tracks", "histories") else matplotlib_charts.draw(chart)
+        # Those of single flights are drawn in the report of trials, and page 1's in its own tests.
+        return Figure(figsize=(1.0, 1.0)) if chart.name in ("first", "tracks", "histories") else matplotlib_charts.draw(chart)
 
     monkeypatch.setattr("reports.render.pdf.draw", drawn)
     text = built(copy)
@@ -181,7 +182,7 @@ def test_the_aircraft_is_named_at_the_head_of_the_report(report):
     assert "of the Skywalker X8 in six degrees of freedom" in report.flown
 
 
-@pytest.mark.usefixtures("sketched")
+@pytest.mark.usefixtures("sketched", "without_single_flights")
 def test_a_record_of_another_aircraft_over_airspeed_and_bank_is_shown_in_the_sweeps_report(copy):
     design = record()
     (copy / "innerloop.json").write_text(json.dumps(design), encoding="utf-8")

@@ -7,6 +7,7 @@ from report_parts import blocks_of
 
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.sections.experiment import TrialList
 from scenarios.studies.registry import run_study
 
@@ -49,7 +50,7 @@ def small_trials(folder):
     for name, text in (("steady", STEADY), ("turns", TURNS)):
         (folder / f"{name}.toml").write_text(text, encoding="utf-8")
     study = TrialList(study="trials", title="Small", trials=[str(folder / "steady.toml"), str(folder / "turns.toml")])
-    run_study(study, "small", folder / "run")
+    run_study(study, "small", folder / "run", executor_factory=InProcessExecutor)
     return folder / "run"
 
 

@@ -146,10 +146,11 @@ def _searched(record: Record, instrument: SnifferSpec, free: npt.NDArray[np.int6
     for log_t90 in np.log(_T90_SEARCH) if 0 in free else best[:1]:
         signals = make_signals(record, _applied(instrument, np.array([log_t90, given])))
         _, so2 = signals.excess()
+        size = float(np.linalg.norm(so2))
         for delay in _DELAY_SEARCH if 1 in free else (given,):
             co2 = without(signals.basis, shifted(signals.co2, record.step, delay - given))
             # SO2 does not fall where CO2 rises: a negative share is none.
             explained = float(co2 @ so2) / max(float(np.linalg.norm(co2)), 1e-30)
-            if explained > most * float(np.linalg.norm(so2)):
-                best, most = np.array([log_t90, delay]), explained / float(np.linalg.norm(so2))
+            if explained > most * size:
+                best, most = np.array([log_t90, delay]), explained / size
     return best

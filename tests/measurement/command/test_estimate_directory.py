@@ -8,6 +8,8 @@ from logged_flights import run
 
 from measurement.estimate.__main__ import main
 
+pytestmark = pytest.mark.usefixtures("briefly")
+
 
 def test_a_directory_that_cannot_be_written_is_refused(logged, capsys):
     (logged.parent / "out").write_text("in the way", encoding="utf-8")

@@ -6,6 +6,7 @@ import pandas as pd
 
 from reports.compare.runs import Run
 from reports.run.run_data import RunData
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
@@ -23,7 +24,7 @@ SWEEP = (
 def flown(path, *overrides):
     """Fly a short sweep into a directory and return its path."""
     given = [*SWEEP, *overrides]
-    run_study(load_study("sweep_nu", given), "sweep_nu", path, overrides=given)
+    run_study(load_study("sweep_nu", given), "sweep_nu", path, executor_factory=InProcessExecutor, overrides=given)
     return path
 
 

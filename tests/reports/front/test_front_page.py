@@ -54,7 +54,7 @@ def built(run_path):
     """Return the text of the page for the screen, and that of each printed page, of whose figures page 1's alone is drawn."""
 
     def drawn(chart):
-        return matplotlib_charts.draw(chart) if chart.name == "picture" else Figure(figsize=(1.0, 1.0))
+        return matplotlib_charts.draw(chart) if chart.name == "first" else Figure(figsize=(1.0, 1.0))
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.render.pdf.draw", drawn)

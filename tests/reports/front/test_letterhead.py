@@ -11,6 +11,9 @@ from reports.errors import ReportError
 from reports.registry import content
 from reports.run.letterhead import parse_settings
 from reports.run.run_data import read_run
+from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
 from tests.in_process import run_command
 
 SHORT = """
@@ -28,7 +31,7 @@ report.author = "A. Author"
 def flown(tmp_path_factory):
     folder = tmp_path_factory.mktemp("letterhead")
     (folder / "short.toml").write_text(SHORT, encoding="utf-8")
-    assert run_command("scenarios.run", folder / "short.toml", "--out", folder / "run", "--no-report").status == 0
+    run_study(load_study(str(folder / "short.toml")), "short", folder / "run", executor_factory=InProcessExecutor)
     return folder / "run"
 
 

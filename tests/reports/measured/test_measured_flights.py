@@ -14,6 +14,7 @@ from reports.measurement import flight_charts, flight_tables, flights
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
@@ -25,7 +26,7 @@ QUICK = (
 
 def flown(directory, *overrides):
     scenario = load_study("sulphur", (*QUICK, *overrides))
-    run_study(scenario, "sulphur", directory)
+    run_study(scenario, "sulphur", directory, executor_factory=InProcessExecutor)
     return content(read_run(directory))
 
 

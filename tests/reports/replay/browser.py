@@ -27,15 +27,14 @@ class Browser:
     Parameters
     ----------
     profile : an empty directory that it may write to
-    options : more options of its command line
     """
 
-    def __init__(self, profile, *options):
+    def __init__(self, profile):
         to_read, self._write = os.pipe()
         self._read, to_write = os.pipe()
         # The browser reads commands from file 3 and writes answers to file 4.
         shell = f'exec "$0" "$@" 3<&{to_read} 4>&{to_write}'
-        command = ["bash", "-c", shell, PROGRAM, *_OPTIONS, *options, f"--user-data-dir={profile}", "about:blank"]
+        command = ["bash", "-c", shell, PROGRAM, *_OPTIONS, f"--user-data-dir={profile}", "about:blank"]
         self._process = subprocess.Popen(command, pass_fds=(to_read, to_write), stderr=subprocess.DEVNULL)
         os.close(to_read)
         os.close(to_write)

@@ -3,6 +3,7 @@
 import pytest
 from trial_runs import small_trials
 
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies import paper
 from scenarios.studies.registry import run_study
@@ -28,7 +29,8 @@ def run_of(tmp_path_factory):
                 # The bounds of the paper's run are not what is tested here, and take most of its time.
                 patch.setattr(paper, "SEARCH_STATES", 10_000)
                 patch.setattr(paper, "RESERVES", (0.0, 0.2, 0.4))
-                run_study(load_study(name, ("fidelity=kinematic", *OVERRIDES[name])), name, directory / name)
+                study = load_study(name, ("fidelity=kinematic", *OVERRIDES[name]))
+                run_study(study, name, directory / name, executor_factory=InProcessExecutor)
             flown[name] = directory / name
         return flown[name]
 

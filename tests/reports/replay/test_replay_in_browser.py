@@ -1,4 +1,4 @@
-"""Reports of every kind that has a replay, opened from disk in a browser that has no network."""
+"""Reports of every kind that has a replay, opened from disk in a browser that has no network; pages in a narrow window."""
 
 import json
 import math
@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from browser import PROGRAM, Browser
 
-from reports.document.blocks import FlightPicker
+from reports.document.blocks import Content, FlightPicker, Section, Text, Verdict
 from reports.registry import content
 from reports.render.html import write_html
+from reports.run.letterhead import Letterhead
 from reports.run.run_data import read_run
 
 pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no chromium is installed; .ci/run installs it")
@@ -185,17 +186,49 @@ def test_another_flight_is_picked_and_those_without_a_history_have_no_replay(bro
     assert browser.run("document.getElementById('replay').hidden") is True
 
 
-def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(page, tmp_path):
-    without = Browser(tmp_path, "--disable-3d-apis")
+def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(browser, page):
+    # As of a browser that does not have it, which says so at once.
+    without = """{
+        const known = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+            return kind.startsWith("webgl") ? null : known.call(this, kind, ...more);
+        };
+    }"""
+    script = browser.send("Page.addScriptToEvaluateOnNewDocument", source=without)["identifier"]
     try:
-        without.open(page)
-        assert without.run("document.querySelector('[data-part=without]').innerText").startswith(
+        browser.open(page)
+        assert browser.run("document.querySelector('[data-part=without]').innerText").startswith(
             "This browser does not draw in three"
         )
-        assert without.run("window.replay.place()") is None
-        without.run("window.replay.seek(12.5)")
-        without.settle()
-        assert without.run("document.querySelector('[data-part=clock]').textContent").startswith("12.5 s")
-        assert without.errors == []
+        assert browser.run("window.replay.place()") is None
+        browser.run("window.replay.seek(12.5)")
+        browser.settle()
+        assert browser.run("document.querySelector('[data-part=clock]').textContent").startswith("12.5 s")
+        assert browser.errors == []
     finally:
-        without.close()
+        browser.send("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
+
+
+TITLES = (
+    "Trials", "Criteria", "Speed ratio", "Comparison", "Failed flights", "Single flights", "Autopilot", "Parameters", "Provenance",
+)  # fmt: skip
+
+WIDTHS = (320, 500, 1000)
+"""Of windows [px]."""
+
+
+def test_every_link_of_the_navigation_is_within_the_window(browser, tmp_path):
+    """The head of a page in a narrow window: nothing runs off its edge."""
+    sections = [Section(anchor=f"s{i}", title=title, blocks=[Text("Words.")]) for i, title in enumerate(TITLES)]
+    verdict = Verdict(holds=True, complete=True, headline="All well", detail="", failures=[], figures=[])
+    head = Letterhead(run="run", when="2026-11-23 08:00 UTC")
+    words = {"title": "Title", "description": "", "changes": "", "flown": ""}
+    report = Content(**words, letterhead=head, verdict=verdict, picture=None, sections=sections)
+    write_html(report, tmp_path / "report.html")
+    browser.open(tmp_path / "report.html", width=WIDTHS[0])
+    for width in WIDTHS:
+        browser.resize(width)
+        rights = browser.run("[...document.querySelectorAll('nav a')].map((link) => link.getBoundingClientRect().right)")
+        # The link to the summary beside those to the sections.
+        assert len(rights) == 1 + len(TITLES)
+        assert max(rights) <= width

@@ -20,7 +20,9 @@ from reports.run.flight_config import flight_config, flight_configs
 from reports.run.plume_shape import plume_shape
 from reports.run.run_data import RunData, read_run
 from reports.run.trials import read_trials
-from tests.in_process import run_command
+from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
 
 APART = """
 study = "sea"
@@ -50,7 +52,7 @@ OWN = [("sphere", 20.0), ("sphere", 60.0), ("cylinder", 20.0), ("cylinder", 60.0
 def apart(tmp_path_factory):
     folder = tmp_path_factory.mktemp("apart")
     (folder / "apart.toml").write_text(APART, encoding="utf-8")
-    run_command("scenarios.run", folder / "apart.toml", "--out", folder / "run", "--no-report", "--jobs", 1)
+    run_study(load_study(str(folder / "apart.toml")), "apart", folder / "run", executor_factory=InProcessExecutor)
     return read_run(folder / "run")
 
 

@@ -15,7 +15,9 @@ from reports.flights.trials.panels_over import LIMIT_LABEL
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
-from tests.in_process import run_command
+from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
 
 KINEMATIC = """
 description = "Flights for a test."
@@ -39,7 +41,7 @@ nu = [0.2, 0.4]
 def trial(tmp_path_factory):
     folder = tmp_path_factory.mktemp("swept")
     (folder / "short.toml").write_text(SHORT, encoding="utf-8")
-    run_command("scenarios.run", folder / "short.toml", "--out", folder / "run", "--no-report", "--jobs", 1)
+    run_study(load_study(str(folder / "short.toml")), "short", folder / "run", executor_factory=InProcessExecutor)
     return read_trials(read_run(folder / "run"))[0]
 
 
@@ -102,7 +104,7 @@ nu = [0.3, 0.6]
 def windy(tmp_path_factory):
     folder = tmp_path_factory.mktemp("windy")
     (folder / "windy.toml").write_text(WINDY, encoding="utf-8")
-    run_command("scenarios.run", folder / "windy.toml", "--out", folder / "run", "--no-report", "--jobs", 1)
+    run_study(load_study(str(folder / "windy.toml")), "windy", folder / "run", executor_factory=InProcessExecutor)
     return content(read_run(folder / "run"))
 
 
