@@ -1,6 +1,5 @@
 """Axis and spreads of a plume, looked up by the apparent wind at emission and by age."""
 
-import functools
 import math
 
 import numpy as np
@@ -9,7 +8,7 @@ from measurement.emission.emission import Emission
 from measurement.plume.air import MarineAir
 from measurement.plume.arrays import Array, Indices
 from measurement.plume.settings import PlumeSettings
-from measurement.plume.spread import STEP, Spreads, spreads
+from measurement.plume.spread import STEP, spreads
 
 _RATIO = math.log(1.08)
 """Step between winds of the table, as a logarithm: linear between them is good to 1e-3."""
@@ -21,14 +20,6 @@ _TYPICAL_AGE = 30.0
 """Age that a plume typically has where it is crossed [s]."""
 
 _COLUMNS = 5
-
-
-@functools.lru_cache(maxsize=8)
-def _spreads(
-    emission: Emission, air: MarineAir, source_height: float, winds: tuple[float, ...], age_max: float, settings: PlumeSettings
-) -> Spreads:
-    """Return what ``spreads`` does; kept, for flights of different laws through one plume ask for the same."""
-    return spreads(emission, air, source_height, np.array(winds), age_max, settings)
 
 
 class SpreadTable:
@@ -55,7 +46,7 @@ class SpreadTable:
         count = 1 if steady else 1 + math.ceil(math.log(high / low) / _RATIO)
         grid = np.array([0.5 * (low + high)]) if steady else np.geomspace(low, high, count)
         self._first, self._step = math.log(grid[0]), math.log(high / low) / max(1, count - 1)
-        of = _spreads(emission, air, source_height, tuple(grid.tolist()), age_max, settings)
+        of = spreads(emission, air, source_height, grid, age_max, settings)
         table = np.stack([of.height, of.relative_y, of.relative_z, of.meander_y, of.meander_z], axis=-1)
         if settings.mean:
             table[..., 1:3] = np.hypot(table[..., 1:3], table[..., 3:])
