@@ -195,13 +195,8 @@ class KeepoutGuard:
     def _candidates(self, time: float, own: AirMotion) -> Sequence[Tube]:
         """Return the disc that reaches least far towards the vehicle, and the one that was kept off last."""
         tubes, last = self.tubes, self._kept_off
-        nearest = tubes[0]
-        if len(tubes) > 1:
-            widest = self._gap(nearest, time, own)
-            for tube in tubes[1:]:
-                gap = self._gap(tube, time, own)
-                if gap > widest:
-                    nearest, widest = tube, gap
+        gaps = [self._gap(tube, time, own) for tube in tubes] if len(tubes) > 1 else [0.0]
+        nearest = tubes[gaps.index(max(gaps))]
         return (nearest,) if last is None or last is nearest else (nearest, last)
 
     def _gap(self, tube: Tube, time: float, own: AirMotion) -> float:
