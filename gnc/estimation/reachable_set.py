@@ -145,9 +145,11 @@ class ReachableSet:
         """Return the discs of the reports that are kept at ``time`` [s], that of the newest first."""
         limits, reports = self._limits, self._reports
         found = [tube(report, limits, time) for report in reports]
-        for disc, report in zip(tuple(found), reports, strict=True):
-            # Of use once the edge of the other may move faster than the vessel, by when a turn away is over.
-            edge = disc.growth + disc.acceleration * limits.horizon
-            if math.hypot(disc.velocity_north, disc.velocity_east) + edge > limits.speed_max and limits.acceleration > 0.0:
-                found.append(tube_by_speed(report, limits, time))
+        if limits.acceleration > 0.0 and limits.speed_max < math.inf:
+            speed_max, horizon = limits.speed_max, limits.horizon
+            for disc, report in zip(tuple(found), reports, strict=True):
+                # Of use once the edge of the other may move faster than the vessel, by when a turn away is over.
+                edge = disc.growth + disc.acceleration * horizon
+                if math.hypot(disc.velocity_north, disc.velocity_east) + edge > speed_max:
+                    found.append(tube_by_speed(report, limits, time))
         return found

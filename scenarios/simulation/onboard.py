@@ -29,8 +29,8 @@ class OnboardSensing:
     """
 
     __slots__ = (
-        "_altitude", "_errors", "_exact", "_fault", "_guidance", "_held", "_readings", "_received", "_report",
-        "_satellites_fail", "_vehicle", "_vessel", "airspeed_error", "failing",
+        "_air_data", "_altitude", "_exact", "_fault", "_guidance", "_held", "_read_with_errors", "_readings", "_received",
+        "_report", "_satellites_fail", "_servo_error", "_vehicle", "_vessel", "airspeed_error", "failing",
     )  # fmt: skip
 
     def __init__(
@@ -45,7 +45,8 @@ class OnboardSensing:
     ) -> None:
         if not isinstance(guidance.target, ReportedTarget):
             raise TypeError("the guidance knows its target exactly, and has no use for reports; give it a filter")
-        self._errors, self._fault, self._vessel = sensing.errors, world.fault, world.vessel
+        self._fault, self._vessel = world.fault, world.vessel
+        self._read_with_errors, self._air_data, self._servo_error = sensing.errors.read, vehicle.air_data, vehicle.servo_error
         self._exact, self._received = sensing.received is None, list(reversed(sensing.received or []))
         self._vehicle, self._guidance, self._readings = vehicle, guidance, readings
         self._report = guidance.target.report
@@ -55,7 +56,7 @@ class OnboardSensing:
 
     def read(self, step: int, time: float, motion: Motion) -> Readings:
         """Return what the sensors say at a step; hand on what reports have come, and let fail what fails now."""
-        airspeed, heading, roll = self._vehicle.air_data()
+        airspeed, heading, roll = self._air_data()
         fault = self._fault
         if self._exact:
             # The flight begins with a vessel that is known, whatever fails.
@@ -70,9 +71,9 @@ class OnboardSensing:
             self._vehicle.fail(fault.kind)
         # It begins with a place that is known, too: dead reckoning goes on from one.
         satellites = not self._satellites_fail or step == 0 or not fault.lasts(SATELLITES, time)
-        position, measured, measured_heading = self._errors.read(step, motion, airspeed, heading, satellites=satellites)
+        position, measured, measured_heading = self._read_with_errors(step, motion, airspeed, heading, satellites=satellites)
         self.airspeed_error = measured - airspeed
-        return position, measured, measured_heading, roll, motion[4], self._vehicle.servo_error()
+        return position, measured, measured_heading, roll, motion[4], self._servo_error()
 
     def act(self, step: int, time: float, motion: Motion) -> None:
         """Pass on what the guidance has decided beside heading rate and airspeed, and to it what has been read."""
