@@ -7,9 +7,12 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicHermiteSpline
+from scipy.interpolate import CubicHermiteSpline, PPoly
 
 Array = npt.NDArray[np.float64]
+
+_ROUNDING = 1e-9
+"""Coefficients that are 0 but for rounding, over the largest of the same cubic [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,10 +54,8 @@ def find_crossings(
     across = axis_north * position[:, 1] - axis_east * position[:, 0]
     path = CubicHermiteSpline(time, position, velocity)
     rate = path.derivative()
-    side = CubicHermiteSpline(time, across, axis_north * velocity[:, 1] - axis_east * velocity[:, 0])
     crossings = []
-    moments = side.roots(extrapolate=False)
-    moments = moments[np.isfinite(moments)]
+    moments = _roots(time, across, axis_north * velocity[:, 1] - axis_east * velocity[:, 0])
     for moment, (north, east, up), (v_north, v_east, _) in zip(
         moments.tolist(), path(moments).tolist(), rate(moments).tolist(), strict=True
     ):
@@ -73,6 +74,25 @@ def find_crossings(
             )
         )
     return crossings
+
+
+def _roots(time: Array, across: Array, rate: Array) -> Array:
+    """Return when the cubic through values and their rates is 0 [s], in order; all shapes (n,).
+
+    Between samples a cubic stays within its Bernstein coefficients, and is asked for roots only where these have both signs.
+    """
+    side, third = CubicHermiteSpline(time, across, rate), np.diff(time) / 3.0
+    coefficients = np.stack([across[:-1], across[:-1] + third * rate[:-1], across[1:] - third * rate[1:], across[1:]])
+    rounding = _ROUNDING * np.abs(coefficients).max(axis=0)
+    pieces = np.flatnonzero((coefficients.min(axis=0) <= rounding) & (coefficients.max(axis=0) >= -rounding))
+    found = [np.empty(0)]
+    # Pieces that follow each other go together: a root at the sample between two is one.
+    for run in np.split(pieces, np.flatnonzero(np.diff(pieces) > 1) + 1):
+        if len(run):
+            part = PPoly.construct_fast(side.c[:, run[0] : run[-1] + 1], side.x[run[0] : run[-1] + 2])
+            found.append(part.roots(extrapolate=False))
+    moments = np.concatenate(found)
+    return moments[np.isfinite(moments)]
 
 
 def crossing_rows(crossings: Sequence[Crossing]) -> list[dict[str, Any]]:
