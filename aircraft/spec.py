@@ -20,7 +20,7 @@ NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
 _ACTUATOR_NAME = re.compile(
     r"(?!(engine|none|vessel_data|satellite_navigation|sniffer_(dead|saturated))$)[A-Za-z_][A-Za-z0-9_.\-]*"
 )
-"""What an actuator may be called: the name becomes part of a JSBSim property, and is none of another fault."""
+"""What an actuator may be called: the name becomes part of a JSBSim property, and may not be that of another fault."""
 
 SETTLE_TIMES = 0.1, 120.0
 """Range of the time in which servos and engines come to rest [s]."""

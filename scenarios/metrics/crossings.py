@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline, PPoly
 
+from scenarios.metrics.bezier import bezier_points
+
 Array = npt.NDArray[np.float64]
 
 _ROUNDING = 1e-9
@@ -81,8 +83,7 @@ def _roots(time: Array, across: Array, rate: Array) -> Array:
 
     Between samples a cubic stays within its Bernstein coefficients, and is asked for roots only where these have both signs.
     """
-    side, third = CubicHermiteSpline(time, across, rate), np.diff(time) / 3.0
-    coefficients = np.stack([across[:-1], across[:-1] + third * rate[:-1], across[1:] - third * rate[1:], across[1:]])
+    side, coefficients = CubicHermiteSpline(time, across, rate), bezier_points(time, across, rate)
     rounding = _ROUNDING * np.abs(coefficients).max(axis=0)
     pieces = np.flatnonzero((coefficients.min(axis=0) <= rounding) & (coefficients.max(axis=0) >= -rounding))
     found = [np.empty(0)]

@@ -88,6 +88,6 @@ def check_divides(name: str, rate: float, whole: float) -> None:
 
 
 def check_ordered(name: str, values: Range | None) -> None:
-    """Raise a ValueError unless the first of ``values``, called ``name``, is at most the second, or there are none."""
+    """Raise a ValueError if the first of ``values``, called ``name``, exceeds the second; None passes."""
     if values is not None and values[0] > values[1]:
         raise ValueError(f"{name} is {list(values)}; its first value must not exceed its second")
