@@ -164,7 +164,7 @@ def sketched(monkeypatch: pytest.MonkeyPatch) -> None:
     """
     from matplotlib.figure import Figure
 
-    monkeypatch.setattr("reports.render.pdf.draw", lambda _: Figure(figsize=(1.0, 1.0)))
+    monkeypatch.setattr("reports.render.figure_files.draw", lambda _: Figure(figsize=(1.0, 1.0)))
 
 
 @pytest.fixture

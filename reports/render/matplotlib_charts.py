@@ -47,8 +47,6 @@ _STYLE: dict[Any, Any] = {
     # Nobody reads what has to be added to every mark.
     "axes.formatter.useoffset": False,
     "legend.frameon": False,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "report",
     # A dollar sign in a title is one.
     "text.parse_math": False,
 }

@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import typst
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 
 from reports.document.blocks import Block, Card, Content, FlightContent, FlightPicker, Section
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in
-from reports.render.matplotlib_charts import draw
+from reports.render.figure_files import write_figures
 
 _AFTER_FLIGHTS = 2
 """Sections after the flights: parameters and provenance."""
@@ -23,20 +22,26 @@ TEMPLATE = Path(__file__).parent / "templates" / "report.typ"
 
 Data = dict[str, Any]
 
+Figures = dict[str, Chart]
+"""Charts by the name of the file that each is drawn into."""
+
 
 def write_pdf(report: Content, path: Path, *, all_flights: bool = False) -> None:
     """Write the report to ``path``, with ``all_flights`` or with those that are printed."""
     with tempfile.TemporaryDirectory() as folder:
         directory = Path(folder)
         (directory / "report.typ").write_text(TEMPLATE.read_text(encoding="utf-8"), encoding="utf-8")
-        data = _data(report, directory, all_flights=all_flights)
+        figures: Figures = {}
+        data = _data(report, directory, figures, all_flights=all_flights)
+        write_figures(figures, directory)
         (directory / "data.json").write_text(json.dumps(data), encoding="utf-8")
         path.write_bytes(typst.compile(str(directory / "report.typ")))
 
 
-def _data(report: Content, directory: Path, *, all_flights: bool) -> Data:
+def _data(report: Content, directory: Path, figures: Figures, *, all_flights: bool) -> Data:
+    """Return what is typeset; its charts are added to ``figures``, and its logo is written."""
     pickers = [block for section in report.sections for block in section.blocks if isinstance(block, FlightPicker)]
-    sections = [_section(section, directory) for section in _in_print(report.sections)]
+    sections = [_section(section, figures) for section in _in_print(report.sections)]
     # Flights have pages of their own before parameters and provenance, and their figures the numbers after all others.
     numbers = count(figures_in(report.picture, report.sections) + 1)
     flights = [flight for picker in pickers for flight in picker.flights if all_flights or flight.printed]
@@ -56,9 +61,9 @@ def _data(report: Content, directory: Path, *, all_flights: bool) -> Data:
         "verdict": {"tone": verdict.tone, "sign": verdict.sign, "headline": verdict.headline, "detail": verdict.detail},
         "failures": verdict.first_failures,
         "cards": [_card(card, judges=verdict.judges) for card in verdict.cards],
-        "picture": _image(report.picture, directory) if report.picture else None,
+        "picture": _image(report.picture, figures) if report.picture else None,
         "sections": [section for section in sections if section["blocks"]],
-        "flights": [_flight(flight, directory, numbers) for flight in flights],
+        "flights": [_flight(flight, figures, numbers) for flight in flights],
     }
 
 
@@ -73,27 +78,23 @@ def _card(card: Card, *, judges: bool) -> Data:
     return {"name": card.name, "value": card.value, "tone": card.tone, "judgement": card.judgement if judges else ""}
 
 
-def _section(section: Section, directory: Path) -> Data:
+def _section(section: Section, figures: Figures) -> Data:
     """Return a section without its picker, whose flights have pages of their own."""
-    blocks = [_block(block, directory) for block in section.blocks if not isinstance(block, FlightPicker)]
+    blocks = [_block(block, figures) for block in section.blocks if not isinstance(block, FlightPicker)]
     return {"title": section.title, "blocks": blocks}
 
 
-def _block(block: Block, directory: Path) -> Data:
-    return {"kind": type(block).__name__, **(_image(block, directory) if isinstance(block, Chart) else asdict(block))}
+def _block(block: Block, figures: Figures) -> Data:
+    return {"kind": type(block).__name__, **(_image(block, figures) if isinstance(block, Chart) else asdict(block))}
 
 
-def _flight(flight: FlightContent, directory: Path, numbers: Iterator[int]) -> Data:
+def _flight(flight: FlightContent, figures: Figures, numbers: Iterator[int]) -> Data:
     charts = [replace(chart, number=f"Figure {next(numbers)}") for chart in flight.charts]
-    images = [{"kind": "Chart", **_image(chart, directory, f"{flight.flight_id}-")} for chart in charts]
+    images = [{"kind": "Chart", **_image(chart, figures, f"{flight.flight_id}-")} for chart in charts]
     return {"title": flight.title, "charts": images}
 
 
-def _image(chart: Chart, directory: Path, prefix: str = "") -> Data:
+def _image(chart: Chart, figures: Figures, prefix: str = "") -> Data:
     file = f"{prefix}{chart.name}.svg"
-    figure = draw(chart)
-    # What is drawn as pixels has 200 to the inch. `savefig` would draw all twice, the first time to lay it out alone.
-    figure.set_dpi(200)
-    canvas: Any = FigureCanvasSVG(figure)
-    canvas.print_svg(directory / file)
+    figures[file] = chart
     return {"file": file, "number": chart.number, "caption": chart.caption}

@@ -64,7 +64,7 @@ def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
         # Those of single flights are drawn in the report of trials, and page 1's in its own tests.
         return Figure(figsize=(1.0, 1.0)) if chart.name in ("first", "tracks", "histories") else matplotlib_charts.draw(chart)
 
-    monkeypatch.setattr("reports.render.pdf.draw", drawn)
+    monkeypatch.setattr("reports.render.figure_files.draw", drawn)
     text = built(copy)
     assert "Sweep of the speed ratio" in text
     figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])

@@ -57,7 +57,7 @@ def built(run_path):
         return matplotlib_charts.draw(chart) if chart.name == "first" else Figure(figsize=(1.0, 1.0))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.render.pdf.draw", drawn)
+        patch.setattr("reports.render.figure_files.draw", drawn)
         html, pdf = build_reports(run_path)
     return html.read_text(encoding="utf-8"), pages_of(pdf)
 

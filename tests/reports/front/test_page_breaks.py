@@ -19,7 +19,7 @@ def blank(monkeypatch):
     def drawn(chart):
         return Figure(figsize=draw(chart).get_size_inches())
 
-    monkeypatch.setattr("reports.render.pdf.draw", drawn)
+    monkeypatch.setattr("reports.render.figure_files.draw", drawn)
 
 
 def pages_of(blocks, path):

@@ -1,0 +1,48 @@
+"""Figures of a printed report, drawn by one process or by several."""
+
+import os
+
+import pytest
+from matplotlib.figure import Figure
+
+from reports.render import figure_files
+from reports.render.figure_files import write_figures
+from tests.reports.test_blocks import a_chart
+
+COUNT = 12
+
+
+def drawn_by(folder, processes, monkeypatch):
+    """Draw charts by so many processes; return each file's content."""
+    monkeypatch.setattr(figure_files.os, "cpu_count", lambda: processes)
+    folder.mkdir()
+    write_figures({f"{i}.svg": a_chart(f"chart{i}") for i in range(COUNT)}, folder)
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def test_they_do_not_depend_on_the_number_of_processes(tmp_path, monkeypatch):
+    alone = drawn_by(tmp_path / "alone", 1, monkeypatch)
+    assert len(alone) == COUNT
+    assert drawn_by(tmp_path / "together", 2, monkeypatch) == alone
+
+
+def test_several_processes_draw_where_there_is_enough_to_draw(tmp_path, monkeypatch):
+    def drawn(chart):
+        (tmp_path / str(os.getpid())).touch()
+        return Figure(figsize=(1.0, 1.0))
+
+    monkeypatch.setattr(figure_files, "draw", drawn)
+    drawn_by(tmp_path / "together", 2, monkeypatch)
+    drawers = {path.name for path in tmp_path.iterdir() if path.is_file()}
+    assert drawers
+    assert str(os.getpid()) not in drawers
+
+
+def test_what_cannot_be_drawn_is_told_as_by_one_process(tmp_path, monkeypatch):
+    def fails(chart):
+        raise ValueError(f"{chart.name} is too large")
+
+    monkeypatch.setattr(figure_files, "draw", fails)
+    for processes in (1, 2):
+        with pytest.raises(ValueError, match="chart0 is too large"):
+            drawn_by(tmp_path / str(processes), processes, monkeypatch)
