@@ -43,11 +43,11 @@ if settings is not None:
 
 
 LONGEST = (
-    "test_aircraft_directory.py", "test_stock_designs.py", "test_replay_in_browser.py", "test_flights.py", "test_every_key_acts.py",
-    "test_paper.py", "test_reports.py", "test_margins.py", "test_scripts.py", "test_subset_study.py", "test_corners.py",
-    "test_stock_flights.py", "test_local_executor.py", "test_robustness.py", "test_convergence_report.py", "test_arena.py",
-    "test_convergence.py", "test_command_line.py", "test_design_report.py", "test_patrol.py", "test_estimate_uncertainty.py",
-    "test_keepout_guard.py", "test_fuzz.py", "test_survival.py", "test_falsify_study.py", "test_dask_executor.py",
+    "test_aircraft_directory.py", "test_replay_in_browser.py", "test_stock_designs.py", "test_flights.py", "test_every_key_acts.py",
+    "test_subset_study.py", "test_reports.py", "test_paper.py", "test_scripts.py", "test_margins.py", "test_corners.py",
+    "test_convergence_report.py", "test_stock_flights.py", "test_arena.py", "test_local_executor.py", "test_convergence.py",
+    "test_command_line.py", "test_design_report.py", "test_patrol.py", "test_estimate_uncertainty.py", "test_keepout_guard.py",
+    "test_fuzz.py", "test_survival.py", "test_falsify_study.py", "test_robustness.py", "test_dask_executor.py",
 )  # fmt: skip
 """Files of tests that take longest, in this order: each is run by one process, and none may begin one when the others are done."""
 

@@ -159,11 +159,11 @@ def scenario_path(name: str, folder: Path | None = None, *, extended: bool = Fal
 
 def _given(scenario: str | Document) -> tuple[Document, Document]:
     """Return what a scenario itself says, and the same with what it extends."""
-    if isinstance(scenario, str):
-        path = scenario_path(scenario)
-        return _own(path)[0], _read(path)
-    own, base = _resolved(copy.deepcopy(scenario), Path(), "scenario")
-    return own, own if base is None else merged(_base(base, Path(), "scenario", ()), own)
+    if not isinstance(scenario, str):
+        own, base = _resolved(copy.deepcopy(scenario), Path(), "scenario")
+        return own, own if base is None else merged(_base(base, Path(), "scenario", ()), own)
+    own, base = _own(path := scenario_path(scenario))
+    return own, own if base is None else merged(_base(base, path.parent, path, (path,)), own)
 
 
 def _read(path: Path, extended_by: tuple[Path, ...] = ()) -> Document:

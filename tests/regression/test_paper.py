@@ -205,7 +205,7 @@ def few_bounds(monkeypatch):
 
 
 def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
-    scenario = load_study("paper", ["fidelity=kinematic", "flight.crossings=10"])
+    scenario = load_study("paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10"])
     result = run_study(scenario, "paper", tmp_path / "run")
     assert [row["flight_id"] for row in rows_of(tmp_path / "run")] == [
         "sim1_kinematic",
@@ -231,7 +231,7 @@ def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
 )
 def test_what_is_not_the_papers_is_not_called_reproduced(changes, headline, tmp_path, few_bounds):
     # An override has its way in every case, also where the case sets that key; report and exit status then agree.
-    scenario = load_study("paper", ["fidelity=kinematic", "flight.crossings=10", *changes])
+    scenario = load_study("paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10", *changes])
     result = run_study(scenario, "paper", tmp_path / "run")
     assert not result.all_met
     report = content(read_run(tmp_path / "run"))

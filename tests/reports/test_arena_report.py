@@ -23,7 +23,8 @@ from scenarios.studies.arena.results import estimates
 from tests.reports.report_parts import blocks_of, built, flown
 
 QUICK = (
-    "fidelity=kinematic", "flights=2", "flight.duration_max_s=60", "arena.window_s=30", "arena.tuning_duration_s=30",
+    "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5",
+    "flights=2", "flight.duration_max_s=60", "arena.window_s=30", "arena.tuning_duration_s=30",
     "arena.evaluations=2", "arena.tuning_flights=1", "arena.resamples=100", "start.distance_m=[300,350]", "start.spread_deg=20",
     'arena.tracking=["npfg","pure_pursuit"]', 'arena.standoff=["npfg"]', "arena.limits=[[0.0,5.0],[1.0,9.0]]",
     'arena.conditions=[{name="calm",title="Calm air"},{name="wind",title="Wind",set={"wind.speed_mps"=4.0}}]',

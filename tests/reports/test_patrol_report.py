@@ -14,7 +14,8 @@ from reports.run.run_data import read_run
 from tests.reports.report_parts import flown
 
 QUICK = (
-    "fidelity=kinematic", "flights=1", "patrol.ships=2", "patrol.area_m=9000", "patrol.endurance_s=330", "patrol.separation_m=2000",
+    "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5", "flights=1", "patrol.ships=2", "patrol.area_m=9000",
+    "patrol.endurance_s=330", "patrol.separation_m=2000",
 )  # fmt: skip
 
 

@@ -16,6 +16,7 @@ STEADY = """
 study = "sea"
 title = "Steady"
 fidelity = "kinematic"
+guidance.rate_hz = 10.0
 flights = 2
 draws = [{ key = "wind.speed_mps", uniform = [2.0, 4.0] }]
 [flight]
@@ -27,6 +28,7 @@ TURNS = """
 study = "sea"
 title = "Turns"
 fidelity = "kinematic"
+guidance.rate_hz = 10.0
 flights = 2
 [wind]
 speed_mps = 3.0

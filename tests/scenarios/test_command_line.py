@@ -188,7 +188,7 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
     settings += ["--set", "criteria.tracking_error_rms_m=5.0"]
     # Flights enough that some are left when the interrupt comes: each takes a tenth of a second.
     nus = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
-    settings += ["--set", "fidelity=kinematic", "--set", f"sweep.nu={nus}"]
+    settings += ["--set", "fidelity=kinematic", "--set", "guidance.rate_hz=10", "--set", f"sweep.nu={nus}"]
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     assert run_here(*settings, "--out", whole).returncode == 0
     arguments = [*settings, "--out", broken]

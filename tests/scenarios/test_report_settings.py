@@ -20,6 +20,7 @@ pytestmark = pytest.mark.usefixtures("sketched")
 SHORT = """
 title = "Short"
 fidelity = "kinematic"
+guidance.rate_hz = 10.0
 seed = 3
 vessel.speed_mps = 8.0
 flight.crossings = 2

@@ -12,6 +12,7 @@ from scenarios.studies.registry import run_study
 
 SWEEP = (
     "fidelity=kinematic",
+    "guidance.rate_hz=10",
     "sweep.nu=[0.3, 0.5, 0.7]",
     "flight.crossings=3",
     "comparison.nu=[0.5]",

@@ -15,7 +15,8 @@ from reports.registry import content
 from reports.run.run_data import read_run
 
 QUICK = (
-    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "start.course_deg=-90",
+    "fidelity=kinematic", "guidance.rate_hz=10",
+    "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "start.course_deg=-90",
     "wind.speed_mps=3", "wind.from_deg=40", "vessel.speed_mps=8", "emission.sulphur_percent=1.5", "emission.load=0.6",
     "payload.sensor=fast", "flight.altitude_m=60", "flight.after_settling_s=60",
     "following={source_height_m=[20.0, 60.0], load=[0.2, 0.9], climb_gradient=0.08, plume='estimated'}",

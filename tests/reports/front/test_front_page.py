@@ -25,6 +25,7 @@ SHORT = """
 title = "Short"
 description = "Flights for a test."
 fidelity = "kinematic"
+guidance.rate_hz = 10.0
 flights = 5
 seed = 3
 vessel.speed_mps = 8.0

@@ -19,6 +19,7 @@ from tests.in_process import run_command
 SHORT = """
 title = "Short"
 fidelity = "kinematic"
+guidance.rate_hz = 10.0
 seed = 3
 vessel.speed_mps = 8.0
 flight.crossings = 2

@@ -19,7 +19,8 @@ from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
 QUICK = (
-    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "following={}", "start.place_m=[-250,-120]",
+    "fidelity=kinematic", "guidance.rate_hz=10",
+    "reports.interval_s=[0,0]", "sensors={}", "following={}", "start.place_m=[-250,-120]",
     "start.course_deg=-90", "wind.speed_mps=2", "wind.from_deg=0", "vessel.speed_mps=10", "flight.after_settling_s=40",
 )  # fmt: skip
 

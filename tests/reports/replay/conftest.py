@@ -29,7 +29,7 @@ def run_of(tmp_path_factory):
                 # The bounds of the paper's run are not what is tested here, and take most of its time.
                 patch.setattr(paper, "SEARCH_STATES", 10_000)
                 patch.setattr(paper, "RESERVES", (0.0, 0.2, 0.4))
-                study = load_study(name, ("fidelity=kinematic", *OVERRIDES[name]))
+                study = load_study(name, ("fidelity=kinematic", "guidance.rate_hz=10", *OVERRIDES[name]))
                 run_study(study, name, directory / name, executor_factory=InProcessExecutor)
             flown[name] = directory / name
         return flown[name]

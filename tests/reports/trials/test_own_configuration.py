@@ -29,6 +29,7 @@ study = "sea"
 title = "Apart"
 description = "Flights for a test."
 fidelity = "kinematic"
+guidance.rate_hz = 10.0
 flights = 1
 flight = { crossings = 2, altitude_m = 100.0 }
 start.distance_m = [300.0, 400.0]

@@ -22,6 +22,7 @@ from scenarios.studies.registry import run_study
 KINEMATIC = """
 description = "Flights for a test."
 fidelity = "kinematic"
+guidance.rate_hz = 10.0
 seed = 3
 flight.crossings = 2
 start.distance_m = [300.0, 400.0]

@@ -214,6 +214,7 @@ def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
     assert turns["reports.interval_s"] == ["2 to 10", "0 to 0"]
     # Its own keys, and those that the base which it extends sets otherwise than the schema.
     own = {"flights, seed", "speed_ratio", "wind.speed_mps", "flight.crossings", "criteria.crossing_interval_error"}
+    own |= {"guidance.rate_hz"}
     base = given_keys(tomllib.loads(bases()[OPERATIONAL].read_text(encoding="utf-8")))
     assert own <= set(steady) <= own | base
     assert ["wind.speed_mps", "0"] in [row[:2] for row in defaults.rows]

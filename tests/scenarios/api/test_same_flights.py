@@ -14,6 +14,7 @@ from tests.in_process import run_command
 SHORT = """
 title = "Two short flights"
 fidelity = "kinematic"
+guidance.rate_hz = 10.0
 seed = 7
 
 [sweep]

@@ -23,6 +23,7 @@ ROOT = Path(__file__).parents[3]
 SHORT = """
 title = "Two short flights"
 fidelity = "kinematic"
+guidance.rate_hz = 10.0
 histories = 5
 
 [sweep]

@@ -231,7 +231,7 @@ def test_every_key_has_another_value_here():
 
 def beginning_of(base):
     """Return what makes of a flight its beginning, which is enough to see most keys act."""
-    return ("flight.duration_max_s=20", *(("fault.at_s=[8.0, 15.0]",) if "fault" in BASES[base] else ()))
+    return ("flight.duration_max_s=10", *(("fault.at_s=[3.0, 6.0]",) if "fault" in BASES[base] else ()))
 
 
 def differ(one, other):

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import openturns as ot
 import pytest
 from scipy.special import ndtr
 
@@ -53,6 +52,9 @@ def test_four_branches_in_as_many_directions_are_all_found():
 
 
 def test_openturns_finds_the_same_with_the_same_effort():
+    # Here, where one of the processes that run tests imports it: it takes half a second.
+    import openturns as ot
+
     def openturns_estimate(value, seed):
         def wrapped(sample):
             # OpenTURNS works in standard normal space, and this project in the unit cube.
