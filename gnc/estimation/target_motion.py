@@ -1,10 +1,14 @@
 """Where the vessel is taken to be, and how it moves: known exactly, or from its reports."""
 
+import math
 from collections.abc import Sequence
 from typing import Protocol
 
 from gnc.estimation.reachable_set import ReachableSet, Tube
 from gnc.estimation.vessel_filter import VesselFilter, VesselReport
+
+REPORTED_SCATTER = 0.03
+"""What the estimated acceleration of a steady vessel scatters by, where its reports have errors [m/s^2]."""
 
 
 class TargetMotion(Protocol):
@@ -14,7 +18,7 @@ class TargetMotion(Protocol):
     ----------
     north, east : [m]
     velocity_north, velocity_east : [m/s]
-    acceleration_north, acceleration_east : when it was last planned [m/s^2]
+    acceleration_north, acceleration_east : when it was last planned, as much as is not the scatter of its reports [m/s^2]
     tubes : discs that contain it, from when it was last planned on, the one known best first
     """
 
@@ -100,7 +104,7 @@ class ReportedTarget:
             vessel = self.vessel.at(time)
             self.north, self.east = vessel.north, vessel.east
             self.velocity_north, self.velocity_east = vessel.velocity_north, vessel.velocity_east
-            self.acceleration_north, self.acceleration_east = vessel.acceleration_north, vessel.acceleration_east
+            self.acceleration_north, self.acceleration_east = self._manoeuvre(vessel.acceleration_north, vessel.acceleration_east)
             self._gain_north = self._time_step * vessel.acceleration_north
             self._gain_east = self._time_step * vessel.acceleration_east
         else:
@@ -112,3 +116,11 @@ class ReportedTarget:
     def age(self, time: float) -> float:
         """Return how old the last report is at ``time`` [s]."""
         return time - self.vessel.time
+
+    def _manoeuvre(self, north: float, east: float) -> tuple[float, float]:
+        """Return as much of an estimated acceleration as is not the scatter of reports [m/s^2]."""
+        if self.vessel.exact:
+            return north, east
+        size = math.hypot(north, east)
+        share = 1.0 - REPORTED_SCATTER / size if size > REPORTED_SCATTER else 0.0
+        return share * north, share * east

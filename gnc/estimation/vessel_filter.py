@@ -74,6 +74,11 @@ class VesselFilter:
         self._covariance: Covariance = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.time = -math.inf
 
+    @property
+    def exact(self) -> bool:
+        """Return whether reports have no errors."""
+        return self._position == self._velocity == 0.0
+
     def report(self, report: VesselReport) -> None:
         """Correct the estimate by a report."""
         if report.time <= self.time:

@@ -18,8 +18,8 @@ from gnc.reference.steered import SteeredReference
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.tracker import Tracker, TrackingParameters
 
-MANOEUVRE_RANGE, REPORTED_SCATTER = 200.0, 0.03
-"""Distance that the orbit is moved off per acceleration of the vessel [s^2], and what its reports scatter by [m/s^2]."""
+MANOEUVRE_RANGE = 200.0
+"""Distance that the orbit is moved off per acceleration of the vessel [s^2]: the centre follows a manoeuvre late."""
 
 GLIDE_ALTITUDE = -1000.0
 """Altitude that a gliding vehicle is commanded [m]: so far below that the autopilot holds its airspeed by pitch, and sinks."""
@@ -197,9 +197,7 @@ class PlumeFollowing:
 
     def _move_centre(self) -> None:
         own, target = self._own, self._target
-        manoeuvring = math.hypot(target.acceleration_north, target.acceleration_east)
-        # The centre follows a manoeuvre late.
-        manoeuvre_range = MANOEUVRE_RANGE * max(0.0, manoeuvring - REPORTED_SCATTER)
+        manoeuvre_range = MANOEUVRE_RANGE * math.hypot(target.acceleration_north, target.acceleration_east)
         self.centre.move(
             self._plan_time,
             vessel_north=target.velocity_north,

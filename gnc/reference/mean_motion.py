@@ -1,7 +1,8 @@
 """What mean motion takes a reference's orbit to where it should be.
 
 It is that of the centre of oscillation, and a drift towards it. Along the centre's motion a drift changes the amplitude alone;
-across, it turns the mean course, which moves the orbit's centre by itself, the more the slower the orbit.
+across, it turns the mean course, which moves the orbit's centre by itself, the more the slower the orbit. So a slow orbit does not
+turn with each small swing of a plume whose direction is not known well.
 """
 
 import math
@@ -27,6 +28,9 @@ _SLOW = 0.25
 _SLOW_GAIN_MIN = 0.1
 """Fraction of that gain which is kept at any speed ratio [-]: an orbit at rest across the plume has to be centred, too."""
 
+_SWING = 0.1
+"""Speed of a slow centre's swing about the vessel, over V_r, of which half is followed [-]: less is mostly the plume's scatter."""
+
 _SPEED_RATIO_MIN = 0.1
 """Speed ratio that a mean motion has at least where it is turned [-]: a smaller one would be turned to any course by a drift."""
 
@@ -49,9 +53,10 @@ def mean_motion(
     off_north, off_east : from the orbit's centre to it [m]
     speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
     """
-    moving = math.hypot(centre.velocity_north, centre.velocity_east)
+    north, east = _followed(centre, speed)
+    moving = math.hypot(north, east)
     if moving > _STILL * speed:
-        cos_m, sin_m = centre.velocity_north / moving, centre.velocity_east / moving
+        cos_m, sin_m = north / moving, east / moving
     else:
         cos_m, sin_m = -math.cos(centre.axis), -math.sin(centre.axis)
     gain = _CENTRE_GAIN * heading_rate_max
@@ -62,3 +67,14 @@ def mean_motion(
     across = limited(gain * (off_east * cos_m - off_north * sin_m), most)
     turned = math.atan2(across, max(along, _SPEED_RATIO_MIN * speed))
     return math.atan2(sin_m, cos_m) + turned, along / math.cos(turned) / speed
+
+
+def _followed(centre: MovingCentre, speed: float) -> tuple[float, float]:
+    """Return the velocity of a centre, of a slow one without most of a small swing about the vessel, north and east [m/s]."""
+    slow = centre.speed_ratio / _SLOW
+    if slow >= 1.0:
+        return centre.velocity_north, centre.velocity_east
+    swing = centre.swing
+    followed = max(slow * slow, swing * swing / (swing * swing + (_SWING * speed) ** 2))
+    left_out = (1.0 - followed) * swing
+    return centre.velocity_north + left_out * math.sin(centre.axis), centre.velocity_east - left_out * math.cos(centre.axis)

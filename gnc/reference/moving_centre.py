@@ -78,12 +78,13 @@ class MovingCentre:
     axis : course along which the plume trails, in that frame [rad]
     distance : r_CO [m]
     speed_ratio : nu, vessel through the air over the vehicle's speed [-]
+    swing : what turning about the vessel adds to the velocity, to the right of the axis [m/s]
     in_place : whether its distance is what it should be
     plume_known : whether the apparent wind is enough to tell the plume's direction
     """
 
     __slots__ = (
-        "_parameters", "_started", "axis", "distance", "in_place", "plume_known", "speed_ratio", "velocity_east",
+        "_parameters", "_started", "axis", "distance", "in_place", "plume_known", "speed_ratio", "swing", "velocity_east",
         "velocity_north", "x", "y",
     )  # fmt: skip
 
@@ -91,7 +92,7 @@ class MovingCentre:
         self._parameters = parameters
         self._started = False
         self.axis = math.pi
-        self.distance = self.x = self.y = self.velocity_north = self.velocity_east = self.speed_ratio = 0.0
+        self.distance = self.x = self.y = self.velocity_north = self.velocity_east = self.speed_ratio = self.swing = 0.0
         self.plume_known = self.in_place = True
 
     def move(
@@ -157,6 +158,7 @@ class MovingCentre:
         self.in_place = abs(target - self.distance) < _IN_PLACE * target
         cos_a, sin_a = math.cos(self.axis), math.sin(self.axis)
         self.x, self.y = self.distance * cos_a, self.distance * sin_a
+        self.swing = turn * self.distance
         self.velocity_north = air_north + recede * cos_a - turn * self.y
         self.velocity_east = air_east + recede * sin_a + turn * self.x
 

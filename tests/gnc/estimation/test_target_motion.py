@@ -1,9 +1,11 @@
 """The vessel's motion as the guidance has it: known exactly, or from reports."""
 
+import math
+
 import pytest
 
 from gnc.estimation.reachable_set import ReachableSet, Tube, VesselLimits
-from gnc.estimation.target_motion import ReportedTarget, SteadyTarget
+from gnc.estimation.target_motion import REPORTED_SCATTER, ReportedTarget, SteadyTarget
 from gnc.estimation.vessel_filter import VesselFilter, VesselReport
 
 TIME_STEP = 0.05
@@ -35,9 +37,34 @@ def test_a_reported_target_is_where_the_filter_has_it_when_the_mission_plans():
     target.update(7.0, True)
     seen = target.vessel.at(7.0)
     assert fields(target) == (seen.north, seen.east, seen.velocity_north, seen.velocity_east)
-    assert (target.acceleration_north, target.acceleration_east) == (seen.acceleration_north, seen.acceleration_east)
-    assert target.acceleration_north > 0.0
     assert target.age(7.0) == 2.0
+
+
+def test_of_the_acceleration_of_a_reported_vessel_the_scatter_of_her_reports_is_left_out():
+    # 0.5 m/s within 5 s: more than a steady vessel's reports scatter by within the filter, in one direction only.
+    target = reported((0.0, 0.0, 0.0, 6.0, 2.0), (5.0, 30.0, 10.0, 6.5, 2.0), (10.0, 66.0, 20.0, 8.0, 2.0))
+    target.update(10.0, True)
+    seen = target.vessel.at(10.0)
+    size = math.hypot(seen.acceleration_north, seen.acceleration_east)
+    assert size > REPORTED_SCATTER
+    expected = [(size - REPORTED_SCATTER) * part / size for part in (seen.acceleration_north, seen.acceleration_east)]
+    assert (target.acceleration_north, target.acceleration_east) == pytest.approx(expected, rel=1e-12)
+    # A tenth of that is scatter.
+    steady = reported((0.0, 0.0, 0.0, 6.0, 2.0), (5.0, 30.0, 10.0, 6.05, 2.0))
+    steady.update(7.0, True)
+    assert steady.vessel.at(7.0).acceleration_north > 0.0
+    assert (steady.acceleration_north, steady.acceleration_east) == (0.0, 0.0)
+
+
+def test_the_acceleration_of_a_vessel_without_errors_is_taken_as_it_is():
+    known = VesselFilter(position_sigma=0.0, velocity_sigma=0.0, acceleration=0.02, memory=40.0)
+    target = ReportedTarget(known, ReachableSet(LIMITS), TIME_STEP)
+    for report in ((0.0, 0.0, 0.0, 6.0, 2.0), (5.0, 30.125, 10.0, 6.05, 2.0)):
+        target.report(VesselReport(*report))
+    target.update(7.0, True)
+    seen = known.at(7.0)
+    assert (target.acceleration_north, target.acceleration_east) == (seen.acceleration_north, seen.acceleration_east)
+    assert 0.0 < target.acceleration_north < REPORTED_SCATTER
 
 
 def test_between_plans_it_goes_on_at_its_acceleration():

@@ -150,6 +150,8 @@ def test_a_vessel_that_turns_moves_it_by_omega_cross_r():
     move(centre, (8.0, 0.0), acceleration=(0.0, 8.0 * 0.01), time_step=0.0)
     # What it has along the axis besides, it spends on moving out: swung round, it takes up the orbit's width. Rounding.
     assert centre.velocity_east == pytest.approx(-0.01 * centre.distance, abs=1e-9)
+    # To the right of an axis that points south.
+    assert centre.swing == pytest.approx(0.01 * centre.distance, abs=1e-9)
     assert centre.velocity_north < 8.0
 
 
