@@ -55,7 +55,7 @@ def test_no_neighbour_of_the_fastest_is_faster_within_the_limit(reserve):
             for c in steps:
                 neighbour = look_ahead(a * found.look_ahead.epsilon, b * found.look_ahead.radius)
                 steering_max = c * found.steering_max
-                # The closed form may lead the search astray by 0.1 % of the time, measured: docs, "The fastest within a limit".
+                # The closed form may lead the search astray by 0.1 % of the time: docs, "The fastest parameters within a limit".
                 if time_of(neighbour, steering_max) < found.convergence_time * (1.0 - 0.0015):
                     faster.append((neighbour, steering_max))
     assert len(faster) > 20
@@ -76,7 +76,7 @@ def test_a_reference_that_spends_all_leaves_nothing_to_search():
 
 
 def test_the_look_ahead_is_not_made_shorter_than_a_slow_reference_damps():
-    # A circle at 0.01 rad/s: V/(2 omega_r) = 971 m is critical damping. docs, "How long convergence takes".
+    # A circle at 0.01 rad/s: V/(2 omega_r) = 971 m is critical damping. docs, "Convergence time".
     found = fastest(1.0 - 0.01 / LIMIT)
     # The closed form of the search puts R there; the certain R is 0.1 % more, for it covers more states.
     assert SPEED / 0.02 * (1.0 - 1e-12) <= found.look_ahead.radius <= 1.005 * SPEED / 0.02
@@ -152,7 +152,7 @@ def test_from_the_worst_course_the_estimate_holds_where_the_reference_turns_much
 
 
 def test_the_estimate_is_poor_where_the_reference_turns_slower_than_the_look_ahead_damps():
-    # omega_r = 0.05 rad/s against V/(2 R) = 0.16 rad/s: docs, "How long convergence takes". Some take thrice as long.
+    # omega_r = 0.05 rad/s against V/(2 R) = 0.16 rad/s: docs, "Convergence time". Some take thrice as long.
     since, _ = convergence(LOOK_AHEAD, 0.4, lambda _: 0.05, 0.0, longest=3.0)
     assert since.max() > 2.9 * closing_time(LOOK_AHEAD)
 
