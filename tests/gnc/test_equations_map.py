@@ -11,8 +11,8 @@ import pytest
 ROOT = Path(__file__).parents[2]
 MAP = (ROOT / "gnc" / "EQUATIONS.md").read_text(encoding="utf-8")
 EQUATIONS, _, AFTER = MAP.partition("## Where the code differs from the paper")
-DIFFERENCES, _, AFTER = AFTER.partition("## Slips in the printed text")
-SLIPS, _, _ = AFTER.partition("## Why trajectories are bounded")
+DIFFERENCES, _, AFTER = AFTER.partition("## Errors in the printed text")
+ERRORS, _, _ = AFTER.partition("## Why trajectories are bounded")
 ROWS = {
     int(cells[0].strip("()")): cells[1:]
     for cells in ([cell.strip() for cell in line.strip("|").split("|")] for line in EQUATIONS.splitlines() if line.startswith("|"))
@@ -114,8 +114,8 @@ def test_every_place_where_gnc_says_that_it_differs_is_in_the_list_of_difference
                 assert f"`{module_of(path)}.{node.name}`" in DIFFERENCES
 
 
-def test_each_slip_says_where_what_and_why():
-    rows = [line.strip("|").split("|") for line in SLIPS.splitlines() if line.startswith("| ")][1:]
+def test_each_error_in_the_text_says_where_what_and_why():
+    rows = [line.strip("|").split("|") for line in ERRORS.splitlines() if line.startswith("| ")][1:]
     # Among them what this section was written for: the factor of (32).
     assert any(row[0].strip() == "(32)" for row in rows)
     assert all(len(row) == 4 and all(cell.strip() for cell in row) for row in rows)
