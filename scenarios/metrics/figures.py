@@ -18,6 +18,10 @@ from scenarios.world.ais.track import AisVessel
 from scenarios.world.place import Place
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+_LEAVING = [mode.number for mode in (Mode.GLIDING, Mode.TERMINATING, Mode.DEPARTING)]
+"""Modes in which the vehicle leaves for good: it tracks no reference, and its commands are others'."""
 
 
 def plan_row(plan: FlightPlan) -> Row:
@@ -80,7 +84,8 @@ def _place_row(place: Place) -> Row:
 def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Crossing]]:
     """Measure a flight.
 
-    Keep-out, guard and limits count from the first second; tracking, airspeed and crossings from settling.
+    Keep-out, guard and limits count from the first second, and crossings from settling. Tracking, airspeed and altitude count from
+    settling until the vehicle leaves for good.
 
     Returns
     -------
@@ -114,8 +119,9 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     settled = time >= record.settled_at
     if np.count_nonzero(settled) < 2:
         settled = np.zeros_like(settled)
-    else:
-        row |= _tracking_figures(plan, record, settled, to_reference[settled])
+    beside = settled & ~np.isin(column("mode"), _LEAVING)
+    if beside.any():
+        row |= _tracking_figures(plan, record, beside, to_reference[beside])
     row["settling_time_s"] = record.settled_at
     if plan.world is None:
         return row, []
@@ -123,7 +129,9 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     row |= _keepout_figures(plan, record, position, velocity)
     if not settled.any():
         return row, []
-    row |= _estimation_figures(plan, record, settled, position)
+    if beside.any():
+        row["spread_m"] = _spread(record, beside, position)
+    row |= _estimation_figures(plan, record, settled)
     crossings = crossings_of(plan, record, settled, position, velocity)
     return row | _crossing_figures(plan, record, crossings), crossings
 
@@ -145,21 +153,18 @@ def _modes(record: FlightRecord) -> list[str]:
     return [names[int(number)] for number in dict.fromkeys(record.column("mode").tolist())]
 
 
-def _tracking_figures(plan: FlightPlan, record: FlightRecord, settled: npt.NDArray[np.bool_], to_reference: Array) -> Row:
-    """Measure what a flight does once it has settled, with a vessel or without."""
+def _tracking_figures(plan: FlightPlan, record: FlightRecord, beside: Mask, to_reference: Array) -> Row:
+    """Measure what a settled flight does until it leaves, with a vessel or without."""
     column = record.column
-    airspeed_error = (column("airspeed_mps") - column("airspeed_command_mps"))[settled]
-    commanded = column("altitude_command_m")
-    # A vehicle with a fault is commanded to sink: that is no error of its altitude.
-    held = settled & (commanded > 0.0)
-    altitude_error = (column("altitude_m") - commanded)[held if held.any() else settled]
-    heading_rate_error = (column("heading_rate_rad_s") - column("reference_heading_rate_rad_s"))[settled]
+    airspeed_error = (column("airspeed_mps") - column("airspeed_command_mps"))[beside]
+    altitude_error = (column("altitude_m") - column("altitude_command_m"))[beside]
+    heading_rate_error = (column("heading_rate_rad_s") - column("reference_heading_rate_rad_s"))[beside]
     return {
         "tracking_error_rms_m": rms(to_reference),
         "tracking_error_max_m": float(np.max(to_reference)),
         "airspeed_error_rms_mps": rms(airspeed_error),
         "airspeed_error_max_mps": float(np.max(np.abs(airspeed_error))),
-        "airspeed_trim_rms_mps": rms(column("airspeed_command_mps")[settled] - plan.guidance.speed),
+        "airspeed_trim_rms_mps": rms(column("airspeed_command_mps")[beside] - plan.guidance.speed),
         "altitude_error_rms_m": rms(altitude_error),
         "altitude_error_max_m": float(np.max(np.abs(altitude_error))),
         "heading_rate_error_rms_rad_s": rms(heading_rate_error),
@@ -195,18 +200,23 @@ def _vessel_error(record: FlightRecord) -> Array:
     return np.hypot(*(column(f"vessel_seen_{axis}_m") - column(f"vessel_{axis}_m") for axis in ("north", "east")))
 
 
-def _estimation_figures(plan: FlightPlan, record: FlightRecord, settled: npt.NDArray[np.bool_], position: Array) -> Row:
-    """Measure what the guidance knows, and how far the UAV strays towards the vessel, once the flight has settled."""
+def _spread(record: FlightRecord, beside: Mask, position: Array) -> float:
+    """Return the standard deviation of the tracking error towards the vessel, of a settled flight until it leaves [m]."""
+    north, east = position[beside, 0], position[beside, 1]
+    to_north, to_east = (
+        record.column(f"reference_{axis}_m")[beside] - record.column(f"{axis}_m")[beside] for axis in ("north", "east")
+    )
+    return float(np.std((to_north * north + to_east * east) / np.hypot(north, east)))
+
+
+def _estimation_figures(plan: FlightPlan, record: FlightRecord, settled: Mask) -> Row:
+    """Measure what the guidance knows, and how often it had to be guarded, once the flight has settled."""
 
     def column(name: str) -> Array:
         return record.column(name)[settled]
 
     weather = plan.world.weather if plan.world else None
-    distance = np.hypot(position[settled, 0], position[settled, 1])
-    to_north, to_east = (column(f"reference_{axis}_m") - column(f"{axis}_m") for axis in ("north", "east"))
-    towards = (to_north * position[settled, 0] + to_east * position[settled, 1]) / distance
     row: Row = {
-        "spread_m": float(np.std(towards)),
         "vessel_error_rms_m": rms(_vessel_error(record)[settled]),
         "centre_error_rms_m": rms(column("centre_error_m")),
         "guard_after_settling_s": plan.log_interval * plan.time_step * float(np.count_nonzero(column("guard") > 0.0)),
@@ -217,9 +227,7 @@ def _estimation_figures(plan: FlightPlan, record: FlightRecord, settled: npt.NDA
     return row
 
 
-def crossings_of(
-    plan: FlightPlan, record: FlightRecord, settled: npt.NDArray[np.bool_], position: Array, velocity: Array
-) -> list[Crossing]:
+def crossings_of(plan: FlightPlan, record: FlightRecord, settled: Mask, position: Array, velocity: Array) -> list[Crossing]:
     """Find crossings of an axis that may turn, in the frame that turns with it."""
     time, axis = record.column("time_s")[settled], np.unwrap(record.column("plume_axis_rad")[settled])
     position, velocity = position[settled], velocity[settled]

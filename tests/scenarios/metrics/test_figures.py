@@ -208,6 +208,25 @@ def test_a_flight_that_never_settled_has_no_tracking_error(tracking_plan):
     assert (crossings, "tracking_error_rms_m" in row) == ([], False)
 
 
+@pytest.mark.parametrize("mode", [Mode.DEPARTING, Mode.GLIDING, Mode.TERMINATING])
+def test_a_vehicle_that_leaves_for_good_is_no_longer_off_its_reference(plan, mode):
+    history = weave(plan)
+    left = column(history, "time_s") > 60.0
+    modes = np.where(left, mode.number, Mode.TRACKING.number)
+    # 3 m off while it tracks, and 500 m while it leaves, which sinks and slows down meanwhile.
+    off = np.where(left, 500.0, 3.0)
+    columns = {
+        "mode": modes, "reference_north_m": column(history, "north_m") + off, "airspeed_command_mps": np.where(left, 12.0, 19.42),
+        "altitude_command_m": np.where(left, -1000.0, plan.altitude),
+    }  # fmt: skip
+    row, crossings = figures(plan, weave(plan, **columns))
+    assert row["tracking_error_rms_m"] == row["tracking_error_max_m"] == pytest.approx(3.0)
+    assert row["airspeed_error_max_mps"] == row["altitude_error_max_m"] == 0.0
+    assert 0.0 < row["spread_m"] < 3.0
+    # What it crosses on its way is counted, and the end is the end.
+    assert (len(crossings), row["tracking_error_end_m"]) == (10, pytest.approx(500.0))
+
+
 def test_modes_are_listed_in_the_order_of_their_first_time(plan):
     history = weave(plan)
     modes = np.full(len(history), float(Mode.TRACKING.number))
