@@ -114,6 +114,10 @@ class Ending:
             return self._judge.words
         if math.isnan(settling.at):
             flown = "did not settle"
+            if settling.tracked >= plan.settling_period:
+                flown = (
+                    f"tracked its reference for {settling.tracked:.0f} s, but its orbit was not in its place, so it did not settle"
+                )
         elif self._missing:
             flown = f"flew {plan.after_settling - self._missing:.0f} of {plan.after_settling:g} s after settling"
         elif plan.crossings or not settling.crossings:

@@ -26,14 +26,17 @@ def ended(
     vessel=True,
     after=math.inf,
     enough=None,
+    tracked=0.0,
 ):
     """Return how a flight ended at 300 s."""
-    plan = SimpleNamespace(crossings=asked, after_settling=after, duration_max=300.0, world=object() if vessel else None)
+    plan = SimpleNamespace(
+        crossings=asked, after_settling=after, duration_max=300.0, world=object() if vessel else None, settling_period=19.0
+    )
     vehicle = SimpleNamespace(fault=lambda _: trouble)
     guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mission=SimpleNamespace(mode=mode))
     guidance.target = SimpleNamespace(north=0.0, east=0.0)
     judge = SimpleNamespace(enough=enough, over=lambda *_: True, words=f"{enough and enough.value}: it left") if enough else None
-    ending = Ending(plan, vehicle, guidance, SimpleNamespace(at=settled, crossings=flown), judge)
+    ending = Ending(plan, vehicle, guidance, SimpleNamespace(at=settled, crossings=flown, tracked=tracked), judge)
     ending.reached(300.0, (0.0, 0.0, 0.0, 0.0, 0.0), sample, complete=0 < asked <= flown)
     return ending
 
@@ -49,6 +52,11 @@ def ended(
         ({"asked": 12, "mode": Mode.OUTRUN}, Outcome.COMPLETED, ""),
         ({"vessel": False, "settled": math.nan, "flown": 0}, Outcome.COMPLETED, ""),
         ({"settled": math.nan, "flown": 0}, Outcome.NOT_SETTLED, "did not settle within 300 s"),
+        (
+            {"settled": math.nan, "tracked": 242.0},
+            Outcome.NOT_SETTLED,
+            "tracked its reference for 242 s, but its orbit was not in its place, so it did not settle within 300 s",
+        ),
         ({"settled": math.nan, "mode": Mode.OUTRUN}, Outcome.NOT_SETTLED, "did not settle within 300 s, and ended outrun"),
         ({"flown": 0}, Outcome.INCOMPLETE, "flew 0 crossings after settling within 300 s"),
         ({"asked": 30}, Outcome.INCOMPLETE, "flew 12 of 30 crossings after settling within 300 s"),

@@ -56,6 +56,13 @@ def test_a_flight_that_leaves_the_band_before_the_period_is_over_has_not_settled
     assert settling.crossings == 0
 
 
+def test_the_longest_time_near_the_reference_is_known_wherever_the_orbit_is():
+    settling = make()
+    for time, tracking in ((0.0, 9.0), (1.0, 1.0), (5.0, 1.0), (6.0, 9.0), (7.0, 1.0), (9.0, 1.0)):
+        sample(settling, time, tracking=tracking, centre=math.inf)
+    assert (settling.tracked, math.isnan(settling.at)) == (4.0, True)
+
+
 def test_it_stays_settled():
     settling = make()
     for step in range(50):
