@@ -1,17 +1,22 @@
-"""The dotted keys that a schema knows."""
+"""The dotted keys that a schema knows, and what is wrong with the value of one."""
 
+import re
 import typing
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from pydantic import BaseModel, RootModel
+from pydantic import BaseModel, RootModel, ValidationError
 from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
 
 from common.dotted_keys import at_or_below
-from common.spelling import nearest
+from common.spelling import did_you_mean, nearest
 
 _SPEEDS = {"vessel.speed_mps", "vessel.speed_ratio"}
 """Keys that give the vessel's speed, each in its own way."""
+
+_UNION_MEMBER = re.compile(r"constrained-\w+|literal\[.*\]|function-.*")
+"""What pydantic adds to the place of an error in a value of several types."""
 
 
 def known_keys(kind: type[BaseModel]) -> list[str]:
@@ -62,6 +67,54 @@ def suggestion(kind: type[BaseModel], key: str) -> str:
         return f"; did you mean {' or '.join(map(repr, found))}?"
     where = f"in {'.'.join(parents)} " if parents else ""
     return f"; known {where}are {', '.join(siblings)}" if siblings else ""
+
+
+def key_of(entry: ErrorDetails) -> str:
+    """Return the dotted key that an entry of a validation error is about, without pydantic's names for the types of a union."""
+    parts = [str(part) for part in entry["loc"]]
+    return ".".join(parts[:-1] if _UNION_MEMBER.fullmatch(parts[-1]) else parts) if parts else ""
+
+
+def explanation(error: ValidationError, kind: type[BaseModel]) -> str:
+    """Return what is wrong with a document in one line: the first key, its value, the limit, and how many other keys are wrong."""
+    entries = error.errors()
+    key, more = key_of(entries[0]), len({key_of(entry) for entry in entries}) - 1
+    # A criterion may be false: that it is not judged.
+    switch = any(key_of(entry) == key and entry["msg"] == "Input should be False" for entry in entries[1:])
+    others = f" (and {more} more key{'s' * (more > 1)})" if more else ""
+    return f"{_explained(key, entries[0], kind)}{', or false' if switch else ''}{others}"
+
+
+def _explained(key: str, entry: ErrorDetails, kind: type[BaseModel]) -> str:
+    error_type, value = entry["type"], entry["input"]
+    *parents, last = key.split(".")
+    if error_type == "extra_forbidden":
+        return f"unknown key '{key}'{suggestion(kind, key)}"
+    if error_type == "missing":
+        if last.isdecimal():
+            return f"{'.'.join(parents)} has too few values; give one more, as in [400, 800]"
+        return f"key '{key}' is missing; add it to the scenario"
+    text = entry["msg"].removeprefix("Value error, ")
+    where = f"{key}: " if key else ""
+    if error_type == "value_error":
+        return text if text.startswith("unknown key") else f"{where}{text}"
+    remedy = f"; {text[0].lower()}{text[1:]}"
+    if error_type == "tuple_type":
+        remedy = "; give a list in brackets, as in [0.5] or [400, 800]"
+    elif error_type == "too_short":
+        remedy = "; give at least one value"
+    elif error_type == "model_type":
+        remedy = f"; it is a section with keys of its own: set one of them{_example(kind, key)}"
+    elif error_type == "literal_error":
+        guess = did_you_mean(str(value), re.findall(r"'([^']+)'", text))
+        remedy = f"{guess or ';'} it must be {text.removeprefix('Input should be ')}"
+    return f"{where}value is {value!r}{remedy}"
+
+
+def _example(kind: type[BaseModel], section: str) -> str:
+    """Return the first key of a section as an example, of a section that is not in a list."""
+    first = next((key for key in known_keys(kind) if key.startswith(f"{section}.")), "")
+    return f", as in {first}=..." if first else ""
 
 
 def entry_model(kind: type[BaseModel], parts: Sequence[str]) -> type[BaseModel] | None:

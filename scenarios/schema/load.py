@@ -3,13 +3,12 @@
 import copy
 import functools
 import json
-import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from common.files import is_file
 from common.registry import announced, is_file_part
@@ -17,7 +16,7 @@ from common.run_layout import FLIGHTS, MANIFEST
 from common.spelling import did_you_mean
 from scenarios.errors import InputError
 from scenarios.schema.effect import refuse_unused
-from scenarios.schema.keys import suggestion
+from scenarios.schema.keys import explanation, key_of
 from scenarios.schema.overrides import Document, apply_override, as_toml, given_keys, merged, parse_override, set_value, tabled
 from scenarios.schema.parts import refuse_missing, with_absolute_files
 from scenarios.schema.scenario import Scenario
@@ -104,6 +103,7 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
     if document.get("study") == "trials":
         own = [override for override in overrides if _section(override) in TrialList.model_fields]
         for_trials = [override for override in overrides if override not in own]
+        _refuse_unknown({_section(override) for override in for_trials})
         given = document.get("set", [])
         if for_trials and isinstance(given, list):
             document["set"] = [*given, *for_trials]
@@ -119,6 +119,14 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
             raise InputError(_unknown_nu(document, value))
         apply_override(document, key, value, kind)
     return document
+
+
+def _refuse_unknown(sections: set[str]) -> None:
+    """Refuse what is neither a key of a list of trials nor one of its trials."""
+    for section in sorted(sections - {*Scenario.model_fields, "nu"}):
+        guess = did_you_mean(section, TrialList.model_fields) or did_you_mean(section, Scenario.model_fields)
+        known = f"; known are {', '.join(TrialList.model_fields)}, and the keys of each trial's scenario"
+        raise InputError(f"unknown key '{section}'{guess or known}")
 
 
 def _section(override: str) -> str:
@@ -236,13 +244,9 @@ def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:
     try:
         return kind.model_validate(document)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        if key == "nu" and kind is Scenario:
+        if key_of(error.errors()[0]) == "nu" and kind is Scenario:
             raise InputError(_unknown_nu(document, document["nu"])) from None
-        more = len({entry["loc"] for entry in error.errors()}) - 1
-        others = f" (and {more} more keys)" if more else ""
-        raise InputError(f"{_explain(key, first['type'], first['msg'], first.get('input'), kind)}{others}") from None
+        raise InputError(explanation(error, kind)) from None
 
 
 def sweeps_speed_ratio(document: Mapping[str, Any]) -> bool:
@@ -277,24 +281,3 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
     for key, value in values.items():
         set_value(document, key, value, Scenario)
     return checked(document, Scenario)
-
-
-def _explain(key: str, error_type: str, message: str, value: object, kind: type[BaseModel]) -> str:
-    if error_type == "extra_forbidden":
-        return f"unknown key '{key}'{suggestion(kind, key)}"
-    if error_type == "missing":
-        *parents, last = key.split(".")
-        if last.isdecimal():
-            return f"{'.'.join(parents)} has too few values; give one more, as in [400, 800]"
-        return f"key '{key}' is missing; add it to the scenario"
-    text = message.removeprefix("Value error, ")
-    where = f"{key}: " if key else ""
-    if error_type == "value_error":
-        return text if text.startswith("unknown key") else f"{where}{text}"
-    remedy = f"; {text[0].lower()}{text[1:]}"
-    if error_type == "tuple_type":
-        remedy = "; give a list in brackets, as in [0.5] or [400, 800]"
-    elif error_type == "literal_error":
-        guess = did_you_mean(str(value), re.findall(r"'([^']+)'", text))
-        remedy = f"{guess or ';'} it must be {text.removeprefix('Input should be ')}"
-    return f"{where}value is {value!r}{remedy}"

@@ -39,6 +39,8 @@ def test_overrides_set_any_key(override, value):
         ("keepout.radius_m=inf", ["keepout.radius_m", "inf"]),
         ("keepout.radius_m=wide", ["keepout.radius_m", "'wide'", "number"]),
         ("keepout.radius_m.x=1", ["keepout.radius_m.x", "not a section"]),
+        ("criteria.crossing_interval_error=no", ["criteria.crossing_interval_error: value is 'no'", "number", ", or false"]),
+        ("wind=5", ["wind: value is 5; it is a section with keys of its own: set one of them, as in wind.speed_mps=..."]),
         ("guidance.law=magic", ["guidance.law", "'magic'", "cascade"]),
         ("guidance.rate_hz=50", ["rate_hz is 50 Hz", "must divide 120 Hz", "e.g. 40"]),
         # Nothing could be logged at so low a rate: flight.log_rate_hz divides it, and is at least 5.
@@ -70,6 +72,25 @@ def test_bad_values_are_refused_in_one_line_that_names_them(override, words):
     assert "\n" not in message
     for word in words:
         assert word in message
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("shares=0.1", "unknown key 'shares'; did you mean 'share'?"),
+        ("wnd.speed_mps=5", "unknown key 'wnd'; did you mean 'wind'?"),
+        ("xyzzy=1", "known are study, title, description, trials, share, seed, histories, set, report, and the keys of each trial"),
+    ],
+)
+def test_an_unknown_key_of_a_list_of_trials_is_compared_with_its_own_keys_and_those_of_its_trials(override, words):
+    with pytest.raises(InputError) as refusal:
+        load_study("sea_trial", [override])
+    assert words in str(refusal.value)
+
+
+def test_an_empty_list_is_refused_without_words_of_the_library():
+    with pytest.raises(InputError, match=r"^search\.methods: value is \[\]; give at least one value$"):
+        load_study("falsify", ["search.methods=[]"])
 
 
 def test_an_unknown_scenario_lists_the_known_ones():
