@@ -1,4 +1,4 @@
-"""The known name that is spelt most like an unknown one."""
+"""Names that are nearly right: the known name that is spelt most like an unknown one, and names with another unit."""
 
 import difflib
 from collections.abc import Iterable
@@ -14,6 +14,16 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     cutoff = 0.5 if len(name) <= _SHORT else 0.6
     close = difflib.get_close_matches(name.lower(), by_lower_case, n=1, cutoff=cutoff)
     return by_lower_case[close[0]] if close else None
+
+
+def other_units(heads: Iterable[str], columns: Iterable[str]) -> str:
+    """Return, as a remedy, which of ``heads`` are those of missing ``columns`` but for the unit at their end, or nothing."""
+    known = set(heads)
+    missing = {column.rpartition("_")[0]: column for column in columns if "_" in column and column not in known}
+    pairs = [(head, missing[stem]) for head in heads if (stem := head.rpartition("_")[0]) in missing]
+    return "; ".join(
+        f"'{head}' is in another unit than '{column}': convert its values before you rename it" for head, column in pairs
+    )
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

@@ -13,6 +13,7 @@ from scenarios.api.objects import LentWork, check_picklable, lent
 from scenarios.api.results import Flight, Run
 from scenarios.api.scenario import Given, Scenario, load
 from scenarios.errors import InputError
+from scenarios.schema.load import load_document, sweeps_speed_ratio
 
 if TYPE_CHECKING:
     from scenarios.engine.executor import Executor
@@ -127,15 +128,16 @@ def flights_of(loaded: Scenario) -> "FlightStudy":
 def _only_flight(study: "FlightStudy", loaded: Scenario) -> str:
     """Return the name of the only flight of a study."""
     if study.planned > 1:
+        single = " set nu to a single number," if sweeps_speed_ratio(load_document(loaded.source, loaded.changes)) else ""
         raise InputError(
-            f"'{loaded.name}' has {study.planned} flights; name one of them by flight_id ({_names(study)}), set nu, or use run"
+            f"'{loaded.name}' has {study.planned} flights; name one of them by flight_id ({_names(study)}),{single} or use run"
         )
     return next(iter(study.experiments.values())).named(0)[0]
 
 
 def _names(study: "FlightStudy") -> str:
-    """Return the names of the first and the last flight."""
-    first, *_, last = [(experiment, number) for experiment in study.experiments.values() for number in (0, experiment.flights - 1)]
+    """Return the names of the first and the last flight, comparisons apart."""
+    first, *_, last = [(experiment, number) for experiment in study.experiments.values() for number in (0, experiment.counted - 1)]
     return " to ".join(dict.fromkeys(experiment.named(number)[0] for experiment, number in (first, last)))
 
 

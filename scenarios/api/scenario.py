@@ -123,6 +123,11 @@ def load(scenario: Given | Scenario, /, *, name: str | None = None, **keys: obje
     elif isinstance(scenario, Mapping):
         document, parts = named(scenario)
         made = Scenario(name=name or "scenario", source=document, parts=parts)
+    elif not isinstance(scenario, str | os.PathLike):
+        raise InputError(
+            f"scenario is {scenario!r}, of type {type(scenario).__name__}; give the name of a catalog scenario, the path of a file, a"
+            " mapping, or what load returned"
+        )
     else:
         made = Scenario(name=name or Path(scenario).stem, source=os.fspath(scenario))
     return made.set(**keys)

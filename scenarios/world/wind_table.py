@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from aircraft.atmosphere.wind import WindField, over_the_sea
 from common.physics.wind import wind_velocity
+from common.spelling import other_units
 from common.times import utc_text
 from measurement.tables import other_separator
 from scenarios.errors import InputError
@@ -128,8 +129,9 @@ def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, 
     if words := other_separator(",".join(heads)):
         raise InputError(f"wind.table: {path} {words}")
     if not set(COLUMNS[2:]) <= set(heads) or not set(COLUMNS[:2]) & set(heads):
+        remedy = other_units(heads, COLUMNS[2:]) or "rename the columns to these"
         raise InputError(f"wind.table: {path}, line 1: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)},"
-                         " of which time_utc or height_m may be missing: rename the columns to these")  # fmt: skip
+                         f" of which time_utc or height_m may be missing: {remedy}")  # fmt: skip
     for line, row in enumerate(cells, start=2):
         if not any(cell.strip() for cell in row):
             continue

@@ -9,6 +9,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
+from common.spelling import other_units
 from measurement.tables import other_separator
 from scenarios.errors import InputError
 from scenarios.world.ais.nmea import nmea_rows
@@ -81,7 +82,7 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow]]:
                 raise _no_row(path, mmsi, islice(_all_rows(path, file, None), _COUNTED))
             return found
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}; check the path, relative to the scenario file") from None
+        raise InputError(f"{path}: cannot be read: {error.strerror}; check the path") from None
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: not a table or NMEA sentences as text ({error}); unpack it, or save it in UTF-8") from None
 
@@ -102,15 +103,16 @@ def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterat
     if layout is None:
         if words := other_separator(head):
             raise InputError(f"{path} {words}")
-        plain = ",".join(LAYOUTS[0].columns)
+        plain = LAYOUTS[0].columns
+        remedy = other_units(heads, plain) or "rename the columns to these"
         raise InputError(
             f"{path}, line 1: the header is {head.strip()[:_SHOWN]!r}; known are those of the Danish Maritime Authority and of"
-            f" Marine Cadastre, and {plain}: rename the columns to these"
+            f" Marine Cadastre, and {','.join(plain)}: {remedy}"
         )
     places = [heads.index(column) for column in layout.columns]
-    wanted = "" if mmsi is None else str(mmsi)
+    identifier = "" if mmsi is None else str(mmsi)
     # Files of a day have millions of lines: those of other vessels are passed over as they are.
-    lines = ((number, line) for number, line in enumerate(file, start=2) if wanted in line)
+    lines = ((number, line) for number, line in enumerate(file, start=2) if identifier in line)
     for number, line in lines:
         cells = next(csv.reader([line]), [])
         if len(cells) <= max(places):
@@ -137,7 +139,7 @@ def _of_one(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) ->
         if mmsi is None or identity == mmsi:
             found.append(row)
     if mmsi is None and len(counts) > 1:
-        raise InputError(f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one: vessel.mmsi")
+        raise InputError(f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them (vessel.mmsi)")
     if not found:
         return None
     return mmsi if mmsi is not None else next(iter(counts)), found
@@ -148,7 +150,7 @@ def _no_row(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) ->
     counts = Counter(identity for identity, _ in rows)
     if not counts:
         return InputError(f"{path}: no row with a report; give a file of AIS reports")
-    return InputError(f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check vessel.mmsi")
+    return InputError(f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi)")
 
 
 def _most(counts: Counter[int]) -> str:

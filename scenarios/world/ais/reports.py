@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from numbers import Integral
 from pathlib import Path
 
 import numpy as np
@@ -78,9 +79,11 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
     Raises
     ------
     InputError : the file cannot be read, its layout is unknown, fewer than two rows of the vessel are of use, or its units are
-        others
+        others; or ``mmsi`` is no whole number
     """
     path = Path(path)
+    if mmsi is not None and (isinstance(mmsi, bool) or not isinstance(mmsi, Integral)):
+        raise InputError(f"{path}: mmsi is {mmsi!r}; give a whole number, as in mmsi=219999001")
     identity, rows = rows_of(path, mmsi)
     dropped: Counter[str] = Counter()
     first: dict[str, int] = {}

@@ -116,11 +116,16 @@ def test_a_vessel_at_rest_needs_no_course(read):
         ("", None, ["the file is empty"]),
         ("a,b,c\n1,2,3\n", None, ["line 1", "the header is 'a,b,c'", PLAIN]),
         # 5 is in lines of the file, 366 in none: either way its vessels are named.
-        (table(*rows()), 5, ["no row of MMSI 5; it has 219999001 (3 rows): check vessel.mmsi"]),
-        (table(*rows()), 366, ["no row of MMSI 366; it has 219999001 (3 rows): check vessel.mmsi"]),
+        (table(*rows()), 5, ["no row of MMSI 5; it has 219999001 (3 rows): check the number (vessel.mmsi)"]),
+        (table(*rows()), 366, ["no row of MMSI 366; it has 219999001 (3 rows): check the number (vessel.mmsi)"]),
+        (table(*rows()), "219999001", ["mmsi is '219999001'; give a whole number, as in mmsi=219999001"]),
+        (
+            table(*rows()).replace("sog_kn", "sog_mps"), None,
+            ["'sog_mps' is in another unit than 'sog_kn': convert its values before you rename it"],
+        ),
         (table(*reversed(rows())), None, ["1 of 3 rows", "2 out of order (first in line 2)", "sort the file by time"]),
         (table(), None, ["no row with a report"]),
-        (table(*rows(), "2026-06-01T10:00:05Z,7,57.0,11.3,12.0,20.5"), None, ["2 vessels", "name one: vessel.mmsi"]),
+        (table(*rows(), "2026-06-01T10:00:05Z,7,57.0,11.3,12.0,20.5"), None, ["2 vessels", "name one of them (vessel.mmsi)"]),
         (
             table(*rows(), "04.05.2026 08:00:00,219999001,57.0,11.3,12.0,20.5"), None,
             ["line 5", "'04.05.2026 08:00:00' is no time of the layout plain, as in 2026-06-01T10:00:00Z; correct it"],

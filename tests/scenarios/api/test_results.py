@@ -161,7 +161,14 @@ def test_a_run_directory_is_written_where_it_is_asked_for(tmp_path):
 @pytest.mark.parametrize(
     ("scenario", "words"),
     [
-        (SHORT, "'scenario' has 2 flights; name one of them by flight_id"),
+        (
+            SHORT,
+            "'scenario' has 2 flights; name one of them by flight_id (nu_0.30 to nu_0.50), set nu to a single number, or use run",
+        ),
+        ("monte_carlo", "has 1000 flights; name one of them by flight_id (monte_carlo_00000 to monte_carlo_00999), or use run"),
+        ("sweep_nu", "by flight_id (nu_0.00 to nu_0.95)"),
+        (42, "scenario is 42, of type int; give the name of a catalog scenario"),
+        (["sweep_nu"], "scenario is ['sweep_nu'], of type list; give"),
         (SEARCHED, "which has no flight that could be flown alone; use run"),
         ("convergence", "which has no flight that could be flown alone; use run"),
         ("sweep_un", "unknown scenario 'sweep_un'; did you mean 'sweep_nu'?"),
