@@ -125,8 +125,8 @@ def load(scenario: Given | Scenario, /, *, name: str | None = None, **keys: obje
         made = Scenario(name=name or "scenario", source=document, parts=parts)
     elif not isinstance(scenario, str | os.PathLike):
         raise InputError(
-            f"scenario is {scenario!r}, of type {type(scenario).__name__}; give the name of a catalog scenario, the path of a file, a"
-            " mapping, or what load returned"
+            f"scenario is {scenario!r}, of type {type(scenario).__name__}; give the name of a catalog scenario, the path of a file,"
+            " a mapping, or what load returned"
         )
     else:
         made = Scenario(name=name or Path(scenario).stem, source=os.fspath(scenario))

@@ -21,8 +21,9 @@ _WIDTH = 118
 _HEAD = """\
 Made from {name} by plume-flight new. Fly it with: plume-flight run {file}
 
-Every key is here with its meaning, range and default. A key behind a # is not set, and stands there with its default: \
-remove the # to set it. A key that no part of the flights uses is refused, with the part that would use it.
+Every key is here with its meaning, range and default. A key behind a # is not set: it stands there with its default, with \
+what {name} says where these flights do not use it, or without a value where it has no default. Remove the # to set it, and \
+give it a value. A key that no part of the flights uses is refused, with the part that would use it.
 The seeds of flights follow from the name of this file, unless nu is swept: called otherwise it has other starts.
 """
 
@@ -128,7 +129,8 @@ def _of_parts(section: DocumentedSection, values: Mapping[str, Any], config: Bas
     known = {key.key.rpartition(".")[2] for key in section.keys}
     part = getattr(config, section.name, None) if section.name else None
     defaults = dict(getattr(part, "law_keys", None) or getattr(part, "part_keys", {}))
-    documented = {key.key: key for key in documented_part_keys()}
+    documented = {key.key: key for key in documented_part_keys() if key.key.rpartition(".")[0] == section.name}
+    defaults = {key.key.rpartition(".")[2]: key.default for key in documented.values()} | defaults
     for name in dict.fromkeys([*defaults, *(name for name in values if name not in known)]):
         key = documented.get(f"{section.name}.{name}")
         if name in known or (name not in defaults and not key):

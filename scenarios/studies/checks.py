@@ -19,10 +19,12 @@ from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.limits import check_flyable
+from scenarios.planning.plume.axis import flown_altitudes
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.parts import names_file, part_names
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation.failure import failure
+from scenarios.world.exhaust import Smoke, without_smoke
 from scenarios.world.faults import NOT_OF_AIRCRAFT
 from scenarios.world.vessel import check_manoeuvres
 from scenarios.world.world import mean_wind, vessel_of
@@ -76,12 +78,13 @@ def check_without_design(scenario: Scenario) -> None:
 
     Raises
     ------
-    InputError : a part that does not exist, a fault that it cannot have, turbulence at an altitude for which it is not known, files
-        of a track or of wind that are of no use
+    InputError : a part that does not exist, exhaust without smoke, a fault that it cannot have, turbulence at an altitude for which
+        it is not known, limits of the altitude that leave no room, files of a track or of wind that are of no use
     """
     _check_parts(scenario)
     _check_fault(scenario)
     _check_turbulence(scenario)
+    _check_altitudes(scenario)
     if _vessel_known(scenario) and (scenario.vessel.from_file or scenario.wind.table is not None):
         mean_wind(scenario, vessel_of(scenario))
 
@@ -120,6 +123,19 @@ def _check_turbulence(scenario: Scenario) -> None:
             ) from None
 
 
+def _check_altitudes(scenario: Scenario) -> None:
+    """Refuse limits of the altitude that leave no room in any flight; where flights differ in them, each has its own result."""
+    deciding = ["flight.", "following.", "emission.ship", "turbulence.level"]
+    deciding += ["plume.source_height_m"] if scenario.flight.altitude_m is None else []
+    sampled = any(draw.key.startswith(tuple(deciding)) for draw in scenario.draws)
+    if sampled or scenario.emission.ship is None or scenario.following.plume == "predicted":
+        return
+    try:
+        flown_altitudes(scenario)
+    except InfeasibleError as error:
+        raise InputError(str(error)) from None
+
+
 def _check_fault(scenario: Scenario) -> None:
     kinds = scenario.declared_faults
     known = set(NOT_OF_AIRCRAFT)
@@ -147,7 +163,7 @@ def _vessel_known(scenario: Scenario) -> bool:
 
 
 def _check_parts(scenario: Scenario) -> None:
-    sampled = any(draw.key.startswith("emission.") for draw in scenario.draws)
+    sampled = any(draw.key.startswith(("emission.", "plume.model")) for draw in scenario.draws)
     if "sniffer" in scenario.payload.instruments and scenario.emission.ship is None and not sampled:
         raise InputError("payload.instruments has a sniffer, and there is no exhaust: set emission.ship, or leave the sniffer out")
     for key, name in part_names(scenario):
@@ -156,3 +172,6 @@ def _check_parts(scenario: Scenario) -> None:
                 PART_REGISTRIES[key].get(name)
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None
+    smoke = hasattr(PLUME_MODELS.get(scenario.plume.model), Smoke.dispersion.__name__)
+    if scenario.emission.ship is not None and not sampled and not smoke:
+        raise InputError(without_smoke(scenario))

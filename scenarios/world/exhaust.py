@@ -102,6 +102,14 @@ def emission(scenario: Scenario, *, speed: float, load: float | None = None) -> 
     return emission_of(ship, fuel_of(scenario), power=load * ship.power_max, air_temperature=air_temperature)
 
 
+def without_smoke(scenario: Scenario) -> str:
+    """Return why a vessel with exhaust cannot have such a plume."""
+    return (
+        f"emission.ship is '{scenario.emission.ship}', and plume.model '{scenario.plume.model}' has no smoke: set plume.model to"
+        " 'fluctuating', or leave emission.ship out"
+    )
+
+
 def exhaust_of(
     scenario: Scenario, vessel: VesselTruth, plume: Plume, wind: WindField, *, duration: float, generator: np.random.Generator
 ) -> Exhaust | None:
@@ -115,10 +123,7 @@ def exhaust_of(
     if scenario.emission.ship is None:
         return None
     if not isinstance(plume, Smoke):
-        raise InfeasibleError(
-            f"emission.ship is '{scenario.emission.ship}', and plume.model '{scenario.plume.model}' has no smoke: set plume.model"
-            " to 'fluctuating', or leave emission.ship out"
-        )
+        raise InfeasibleError(without_smoke(scenario))
     air, height = scenario.wind, scenario.plume.source_height_m
     _, _, v_north, v_east = vessel.motion(0.0)
     emitted = emission(scenario, speed=math.hypot(v_north, v_east), load=scenario.emission.load)

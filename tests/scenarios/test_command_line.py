@@ -111,6 +111,14 @@ def test_help_and_list_answer():
             ["payload.instruments has a sniffer, and there is no exhaust: set emission.ship"],
         ),
         (
+            ["sweep_nu", "--set", "emission.ship=container"],
+            ["emission.ship is 'container', and plume.model 'straight' has no smoke: set plume.model to 'fluctuating'"],
+        ),
+        (
+            ["plume_search", "--set", "flight.altitude_min_m=100", "--set", "flight.altitude_max_m=105"],
+            ["flight.altitude_min_m and altitude_max_m are 100 and 105 m", "give them 16 m or more between them"],
+        ),
+        (
             ["sea_faults", "--set", "fault.declared=['engin']"],
             ["fault.declared has 'engin'; did you mean 'engine'? what can fail is "],
         ),

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from measurement.errors import MeasurementError
-from measurement.estimate.flight_log.config import LogConfig
+from measurement.estimate.flight_log.config import COLUMNS, LogConfig
 from measurement.estimate.record import check_increasing, check_units, lowest_reading
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
@@ -97,7 +97,10 @@ def _check_separator(path: Path) -> None:
 
 def _missing(path: Path, what: str, key: str, name: str, table: pd.DataFrame) -> str:
     there = ", ".join(f"'{column}'" for column in list(table.columns)[:12])
-    return f"'{path}' has no {what} column '{name}', but {there}; name it in [columns] of the configuration: {key} = \"...\""
+    remedy = f'name it in [columns] of the configuration: {key} = "..."'
+    if name != COLUMNS[key]:
+        remedy = f'correct {key} = "{name}" in [columns] of the configuration'
+    return f"'{path}' has no {what} column '{name}', but {there}; {remedy}"
 
 
 def _numbers(table: pd.DataFrame, name: str, path: Path) -> Array:
@@ -107,6 +110,12 @@ def _numbers(table: pd.DataFrame, name: str, path: Path) -> Array:
         row = int(np.argmax(words.to_numpy()))
         raise MeasurementError(
             f"'{path}': column '{name}' has {str(table[name].iloc[row])!r} in row {row + 2}; it must hold numbers, or be empty"
+        )
+    if np.isinf(numbers).any():
+        row = int(np.argmax(np.isinf(numbers)))
+        raise MeasurementError(
+            f"'{path}': column '{name}' is infinite in row {row + 2}; where it stands for a reading out of range, leave the record"
+            " out from there, or leave the cell empty"
         )
     return numbers.to_numpy(dtype=np.float64)
 
