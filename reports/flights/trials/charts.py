@@ -151,7 +151,7 @@ def _spread(trial: Trial) -> Panel | None:
     most = float(np.nanmax(predicted, initial=0.0))
     if not most > 0.0:
         return None
-    lines, top = capped(predicted, measured, by_violation(trial), most, unit="m")
+    lines, top = capped(predicted, measured, by_violation(trial), most, unit="m", what="deviation towards the vessel")
     ends = np.array([0.0, min(top, 1.05 * most)])
     same = Line(x=ends, y=ends, label="as predicted", colour="black", style="dot")
     return Panel(
