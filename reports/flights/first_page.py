@@ -30,9 +30,11 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     if not np.isfinite(vessel).any():
         return f"{flights}, about a circle without a vessel"
     wind = column(flown, "wind_speed_mps")
-    levels = [str(level) for level in flown["turbulence"].dropna().unique() if level != "none"] if "turbulence" in flown else []
+    levels = flown["turbulence"].dropna() if "turbulence" in flown else pd.Series(dtype=str)
+    levels = levels[levels != "none"]
     air = f"wind of {_range(wind)} m/s" if np.nanmax(wind, initial=0.0) > _CALM else "still air"
-    gusty = f" and {' or '.join(levels)} turbulence" if levels else ""
+    some = f", in {len(levels):,} of them," * (len(levels) < len(flown))
+    gusty = f" and{some} {' or '.join(map(str, levels.unique()))} turbulence" if len(levels) else ""
     return f"{flights}, beside a vessel at {_range(vessel)} m/s, in {air}{gusty}"
 
 
