@@ -5,6 +5,7 @@ import numpy as np
 from reports.compare.figures import Difference
 from reports.compare.pairs import Pairs
 from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import Meaning
 from reports.document.panels import Group, around, points
 from reports.monte_carlo.names import input_label
 from reports.run.columns import Array, met
@@ -59,7 +60,7 @@ def _groups(pairs: Pairs) -> list[Group]:
         (~both & ~worse & ~better, "not met in either", "grey"),
         (both, "met in both", "blue"),
         (better, f"met in {pairs.other.letter} alone", "green"),
-        (worse, f"met in {pairs.first.letter} alone", "orange"),
+        (worse, f"met in {pairs.first.letter} alone", Meaning.LIMIT),
     ]
 
 
