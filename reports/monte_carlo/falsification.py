@@ -76,7 +76,7 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
     )
     again = float(np.min(clearance(flights)))
     if least > again >= 0.0:
-        found += f" Repeated with fresh noise, flights stayed {again:.1f} m outside and more."
+        found += f" The closest repeat with fresh noise stayed {again:.1f} m outside."
     methods = _methods(settings["methods"], set(searched["search_method"]))
     budget = (
         f"{settings['generations'] + 1} turns of {settings['population']} points"
