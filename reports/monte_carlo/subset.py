@@ -3,7 +3,7 @@
 from typing import Any
 
 from common.intervals import percent
-from reports.document.blocks import Block, Section, Table, Text
+from reports.document.blocks import Block, Heading, Section, Table, Text
 from reports.document.tables import number
 from reports.monte_carlo.names import Units, input_name, input_unit
 from reports.monte_carlo.subset_charts import curve_chart, distance_chart, input_charts
@@ -24,6 +24,7 @@ def subset_sections(statistics: Record, units: Units) -> list[Section]:
                 Text(probability_in_words(statistics)),
                 _probability_table(statistics),
                 *curve_chart(statistics),
+                Heading("How the flights ended"),
                 ending_table(statistics),
             ],
         ),
