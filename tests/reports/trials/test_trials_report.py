@@ -289,7 +289,7 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
             "did not settle within 20 s: allow more time (flight.duration_max_s), or",
             "not settled: did not settle within 20 s",
         ),
-        ("infeasible", "nu is 1.5; it must be below 1: slow the vessel", "infeasible: nu is 1.5"),
+        ("infeasible", "nu is 1.5; it must be below 1: slow the vessel", "infeasible: ν is 1.5"),
         (
             "completed",
             "rms tracking error 2.00 m, above the limit of 1.5 m; ended outrun",
