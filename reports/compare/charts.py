@@ -1,5 +1,7 @@
 """Figures of pairs of flights: one run over the other, and how far the flights of each pair differ."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from reports.compare.figures import Difference
@@ -64,6 +66,11 @@ def _groups(pairs: Pairs) -> list[Group]:
     ]
 
 
+def _marks(x: Array, y: Array, groups: list[Group]) -> list[Line]:
+    """Return markers as ``points`` does; those of flights met in one run alone are told apart in grey, too."""
+    return [replace(line, style="diamonds") if line.label.endswith(" alone") else line for line in points(x, y, groups)]
+
+
 def _scatter(difference: Difference, groups: list[Group], pairs: Pairs) -> Panel:
     known = np.isfinite(difference.change)
     limits = around(np.concatenate([difference.before[known], difference.after[known]]))
@@ -73,7 +80,7 @@ def _scatter(difference: Difference, groups: list[Group], pairs: Pairs) -> Panel
         title=difference.figure.name,
         x_label=f"In {pairs.first.letter} [{difference.figure.unit}]",
         y_label=f"In {pairs.other.letter} [{difference.figure.unit}]",
-        lines=[equal, *points(difference.before, difference.after, groups)],
+        lines=[equal, *_marks(difference.before, difference.after, groups)],
         x_range=limits,
         y_range=limits,
     )
@@ -98,7 +105,7 @@ def _changes(difference: Difference, x: Array, x_label: str, groups: list[Group]
         title="Difference",
         x_label=x_label,
         y_label=f"Difference [{difference.figure.unit}]",
-        lines=[zero, *points(x, difference.change, groups)],
+        lines=[zero, *_marks(x, difference.change, groups)],
         x_range=around(x),
     )
 
@@ -114,7 +121,7 @@ def _ranked(difference: Difference, groups: list[Group]) -> Panel:
         title="Difference",
         x_label=f"Difference [{difference.figure.unit}]",
         y_label="Pairs below [%]",
-        lines=[zero, *points(change, share, groups)],
+        lines=[zero, *_marks(change, share, groups)],
         x_range=around(np.append(difference.known, 0.0)),
         y_range=(0.0, 100.0),
     )
