@@ -99,6 +99,12 @@ def test_turbulence_that_only_some_flights_had_is_not_told_of_all(run_path, leve
     assert flights_in_words(run, run.summary.assign(turbulence=levels, wind_speed_mps=4.0)).endswith(f", in {words}")
 
 
+def test_of_a_vessel_that_changes_her_speed_page_1_tells_that_of_the_start(run_path):
+    run = read_run(run_path)
+    manoeuvring = run.summary.assign(nu_min=0.2, nu_max=[0.2, 0.2, 0.5, 0.2, 0.2])
+    assert flights_in_words(run, manoeuvring).endswith(", beside a vessel at 8 m/s at the start, in still air")
+
+
 def test_the_closest_and_the_median_flight_are_those_of_the_summary(run_path, report):
     rows = read_run(run_path).summary.sort_values("min_distance_m")
     shown = [float(re.search(r"([\d.]+) m$", panel.title)[1]) for panel in report.picture.panels]
