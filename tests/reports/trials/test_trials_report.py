@@ -213,7 +213,6 @@ def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
     assert turns["vessel.manoeuvres"] == ["in turn one of: 20° to starboard at 0.5°/s; 10° to port at 0.5°/s", "none"]
     assert turns["reports.interval_s"] == ["2 to 10", "0 to 0"]
     # Its own keys, and those that the base which it extends sets otherwise than the schema.
-    # It does not limit the speed ratio.
     own = {"flights, seed", "wind.speed_mps", "flight.crossings", "criteria.crossing_interval_error"}
     own |= {"guidance.rate_hz"}
     base = given_keys(tomllib.loads(bases()[OPERATIONAL].read_text(encoding="utf-8")))
