@@ -51,6 +51,12 @@ _GIVEN = (
     " as."
 )
 
+_ONCE = (
+    "One flight in each condition says nothing of other starts and other air: intervals have no width, and which law is best is not"
+    " shown."
+)
+"""What is said of laws that were flown once in each condition."""
+
 _NONE_BEST = "no law is called best, as each lacks flights"
 """What is said of a task in which no law is compared."""
 
@@ -70,9 +76,11 @@ def arena_content(run: RunData) -> Findings:
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         _section("parameters", "Parameters", "Parameters", [parameter_table(run)]),
     ]
+    both = len(arena.entrants) - len({entrant.law for entrant in arena.entrants})
+    laws = f"{len(arena.entrants) - both} steering laws" + f", {both} of them in both tasks" * (both > 0)
+    often = {1: "once", 2: "twice"}.get(arena.flights, f"{arena.flights} times")
     flown = (
-        f"{len(arena.entrants)} steering laws, each flown {arena.flights} times in each of {len(arena.conditions)} conditions:"
-        f" {flights_in_words(run, measured(run.summary))}."
+        f"{laws}, each flown {often} in each of {len(arena.conditions)} conditions: {flights_in_words(run, measured(run.summary))}."
     )
     pictures = effort_charts(arena) if arena.in_task(tracking=True) else [crossing_chart(arena)]
     return Findings(flown=flown, verdict=_verdict(arena), picture=pictures[0], sections=sections)
@@ -166,7 +174,7 @@ def _verdict(arena: Arena) -> Verdict:
         holds=len(flown) > 0 and not violations and not gone,
         complete=len(flown) == planned,
         headline=_headline(arena, best) if len(flown) else "Nothing was flown",
-        detail=f"Means over all conditions, over the end of each flight. {_alike(arena, best)}",
+        detail=f"Means over all conditions, over the end of each flight. {_ONCE if arena.flights == 1 else _alike(arena, best)}",
         failures=failures,
         figures=figures,
     )
@@ -174,10 +182,10 @@ def _verdict(arena: Arena) -> Verdict:
 
 def _headline(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
     """Return which law is best in each task, or that none can be called so."""
-    found = dict(best)
+    found, leads = dict(best), "is best" if arena.flights > 1 else "has the least error"
     words = [
         f"{'tracking' if task else 'circling'}: "
-        + (f"{found[task].title} is best, {_mean(arena, found[task], ERROR)} m rms" if task in found else _NONE_BEST)
+        + (f"{found[task].title} {leads}, {_mean(arena, found[task], ERROR)} m rms" if task in found else _NONE_BEST)
         for task in (True, False)
         if arena.in_task(tracking=task)
     ]

@@ -1,10 +1,13 @@
 """Figures of pairs of flights: one run over the other, and how far the flights of each pair differ."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from reports.compare.figures import Difference
 from reports.compare.pairs import Pairs
 from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import Meaning
 from reports.document.panels import Group, around, points
 from reports.monte_carlo.names import input_label
 from reports.run.columns import Array, met
@@ -59,8 +62,13 @@ def _groups(pairs: Pairs) -> list[Group]:
         (~both & ~worse & ~better, "not met in either", "grey"),
         (both, "met in both", "blue"),
         (better, f"met in {pairs.other.letter} alone", "green"),
-        (worse, f"met in {pairs.first.letter} alone", "orange"),
+        (worse, f"met in {pairs.first.letter} alone", Meaning.LIMIT),
     ]
+
+
+def _marks(x: Array, y: Array, groups: list[Group]) -> list[Line]:
+    """Return markers as ``points`` does; those of flights met in one run alone are told apart in grey, too."""
+    return [replace(line, style="diamonds") if line.label.endswith(" alone") else line for line in points(x, y, groups)]
 
 
 def _scatter(difference: Difference, groups: list[Group], pairs: Pairs) -> Panel:
@@ -72,7 +80,7 @@ def _scatter(difference: Difference, groups: list[Group], pairs: Pairs) -> Panel
         title=difference.figure.name,
         x_label=f"In {pairs.first.letter} [{difference.figure.unit}]",
         y_label=f"In {pairs.other.letter} [{difference.figure.unit}]",
-        lines=[equal, *points(difference.before, difference.after, groups)],
+        lines=[equal, *_marks(difference.before, difference.after, groups)],
         x_range=limits,
         y_range=limits,
     )
@@ -97,7 +105,7 @@ def _changes(difference: Difference, x: Array, x_label: str, groups: list[Group]
         title="Difference",
         x_label=x_label,
         y_label=f"Difference [{difference.figure.unit}]",
-        lines=[zero, *points(x, difference.change, groups)],
+        lines=[zero, *_marks(x, difference.change, groups)],
         x_range=around(x),
     )
 
@@ -113,7 +121,7 @@ def _ranked(difference: Difference, groups: list[Group]) -> Panel:
         title="Difference",
         x_label=f"Difference [{difference.figure.unit}]",
         y_label="Pairs below [%]",
-        lines=[zero, *points(change, share, groups)],
+        lines=[zero, *_marks(change, share, groups)],
         x_range=around(np.append(difference.known, 0.0)),
         y_range=(0.0, 100.0),
     )

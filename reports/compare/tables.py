@@ -1,5 +1,6 @@
 """Tables of a comparison: figures of whole runs, differences of pairs, flights whose criteria changed."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -16,6 +17,9 @@ from reports.run.columns import Array, Mask, column, completed, count, kept_out,
 
 LISTED_MAX = 40
 """Flights that are listed one by one."""
+
+_DIGITS_MAX = 5
+"""Digits after the point at most of figures that are nearly 0."""
 
 _COUNTS: dict[str, Callable[[pd.DataFrame], Mask]] = {
     "Flights that met every criterion": met,
@@ -69,11 +73,12 @@ def side_by_side(runs: Sequence[Run]) -> Table:
         values = [float(whole.taken(of)) if len(of) else None for of in known]
         if any(value is not None for value in values):
             unit = "" if figure.unit == "-" else f" [{figure.unit}]"
+            digits = _digits(figure, values)
             changes = [
-                _change(value, values[0], figure) if same and len(of) == len(known[0]) else "–"
+                _change(value, values[0], digits) if same and len(of) == len(known[0]) else "–"
                 for value, of, same in zip(values[1:], known[1:], alike, strict=True)
             ]
-            rows.append([f"{whole.words}{unit}", *(number(value, _pattern(figure.digits)) for value in values), *changes])
+            rows.append([f"{whole.words}{unit}", *(number(value, _pattern(digits)) for value in values), *changes])
     letters = [run.letter for run in runs]
     return Table(
         head=["", *letters, *(f"{letter} − {letters[0]}" for letter in letters[1:])],
@@ -90,8 +95,16 @@ def _known(whole: _Whole, rows: pd.DataFrame) -> Array:
     return values[np.isfinite(values)]
 
 
-def _change(value: float | None, first: float | None, figure: Figure) -> str:
-    return "–" if value is None or first is None else signed(value - first, figure.digits)
+def _change(value: float | None, first: float | None, digits: int) -> str:
+    return "–" if value is None or first is None else signed(value - first, digits)
+
+
+def _digits(figure: Figure, values: Sequence[float | None]) -> int:
+    """Return how many digits after the point show two of the least value: of 0.003 and 0.006, not 0.00 and 0.01."""
+    known = [abs(value) for value in values if value]
+    if not known or not figure.digits:
+        return figure.digits
+    return max(figure.digits, min(_DIGITS_MAX, 1 - math.floor(math.log10(min(known)))))
 
 
 def signed(value: float, digits: int) -> str:
@@ -112,18 +125,20 @@ def difference_table(pairs: Pairs, found: dict[str, Difference]) -> Table:
     for i, difference in enumerate(of for name, of in found.items() if name == "keepout_violations" or not of.is_none):
         figure, known = difference.figure, difference.known
         both = np.isfinite(difference.change)
+        medians = [float(np.median(values[both])) for values in (difference.before, difference.after)]
+        digits = _digits(figure, medians)
         interval = (
-            f"{signed(difference.low, figure.digits)} to {signed(difference.high, figure.digits)}"
+            f"{signed(difference.low, digits)} to {signed(difference.high, digits)}"
             if np.isfinite([difference.low, difference.high]).all()
             else "–"
         )
         rows.append([
             figure.name if figure.unit == "-" else f"{figure.name} [{figure.unit}]",
             f"{len(known):,}",
-            *(number(np.median(values[both]), _pattern(figure.digits)) for values in (difference.before, difference.after)),
-            signed(difference.median, figure.digits),
+            *(number(median, _pattern(digits)) for median in medians),
+            signed(difference.median, digits),
             interval,
-            f"{signed(float(known.min()), figure.digits)} to {signed(float(known.max()), figure.digits)}",
+            f"{signed(float(known.min()), digits)} to {signed(float(known.max()), digits)}",
             f"{count(known < 0.0):,}, {count(known > 0.0):,}",
         ])  # fmt: skip
         bold += [(i, 5)] if difference.excludes_zero else []

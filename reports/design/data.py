@@ -176,4 +176,4 @@ def reversal_sentences(design: Record) -> str | None:
 def _worst_case(search: Record) -> str:
     """Return which aircraft deviated most, unless the search flew it as modelled only."""
     of = search.get("deviation_of_m", {})
-    return f" (the worst: {max(of, key=of.get)})" if len(of) > 1 else ""
+    return minus(f" (the worst: {max(of, key=of.get)})") if len(of) > 1 else ""

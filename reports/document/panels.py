@@ -20,6 +20,8 @@ COUNTED_MIN = 5
 """Flights that are counted at least: fewer are seen one by one in a table."""
 
 _BINS = 24
+"""Bars of a histogram at most; of few flights there are twice as many as the root of their number."""
+
 _SPREAD = 0.32
 """Half-width of a row of markers that would hide each other, in rows."""
 
@@ -69,8 +71,11 @@ def points(x: Array, y: Array, groups: Sequence[Group]) -> list[Line]:
     ]
 
 
-def capped(x: Array, y: Array, groups: Sequence[Group], limit: float, unit: str = "") -> tuple[list[Line], float]:
-    """Return markers as ``points`` does, those far above all others on the upper edge with their values, and where that is."""
+def capped(x: Array, y: Array, groups: Sequence[Group], limit: float, unit: str = "", what: str = "") -> tuple[list[Line], float]:
+    """Return markers as ``points`` does, those far above all others on the upper edge with their values, and where that is.
+
+    Panels of several figures share a legend, in which ``what`` tells whose values these are.
+    """
     known = y[np.isfinite(y)]
     least = 0.0 if math.isnan(limit) else limit
     highest = _SPARE * max([*known, least]) or 1.0
@@ -81,14 +86,14 @@ def capped(x: Array, y: Array, groups: Sequence[Group], limit: float, unit: str 
     lines = points(np.where(beyond, np.nan, x), y, groups)
     if beyond.any():
         edge = np.full(int(np.count_nonzero(beyond)), 0.97 * top)
-        lines.append(Line(x=x[beyond], y=edge, label=beyond_label(y[beyond], unit), colour="black", style="diamonds"))
+        lines.append(Line(x=x[beyond], y=edge, label=beyond_label(y[beyond], unit, what), colour="black", style="diamonds"))
     return lines, top
 
 
-def beyond_label(values: Array, unit: str) -> str:
+def beyond_label(values: Array, unit: str, what: str = "") -> str:
     """Return what the legend says of values that a panel has no room for: each of a few, else how far they reach."""
     shown = ", ".join(f"{value:.3g}" for value in np.sort(values)) if len(values) <= _NAMED else f"up to {np.max(values):.3g}"
-    return f"beyond the panel: {shown} {unit}".strip()
+    return f"{what} beyond the panel: {shown} {unit}".strip()
 
 
 def level(x: Array, value: float, label: str, colour: str = Meaning.LIMIT) -> Line:
@@ -118,7 +123,7 @@ def histogram(series: Sequence[tuple[Array, str, str]], x_label: str, upright: S
     every = np.concatenate([values[np.isfinite(values)] for values, _, _ in series])
     if len(every) < COUNTED_MIN:
         return None
-    edges = np.histogram_bin_edges(every, bins=_BINS)
+    edges = np.histogram_bin_edges(every, bins=min(_BINS, math.ceil(2.0 * math.sqrt(len(every)))))
     marked = np.array([value for value, _ in upright])
     lines, most = [], 1
     for values, label, colour in series:

@@ -13,10 +13,12 @@ from reports.run.columns import Array
 from reports.run.run_data import RunData
 
 
-def parameter_table(run: RunData) -> Table:
-    """Return every parameter of the run with its unit and meaning."""
+def parameter_table(run: RunData, sampled: Mapping[str, str] | None = None) -> Table:
+    """Return every parameter of the run with its unit and meaning, and of those that are ``sampled`` how, by their keys."""
+    known = sampled or {}
     rows = [
-        [p["key"], parameter_value(p["value"], p["key"]), p["unit"], in_symbols(p["meaning"])] for p in run.manifest["parameters"]
+        [p["key"], known.get(p["key"]) or parameter_value(p["value"], p["key"]), p["unit"], in_symbols(p["meaning"])]
+        for p in run.manifest["parameters"]
     ]
     return Table(
         caption="Every parameter, with its unit and meaning.",
@@ -94,7 +96,7 @@ def span(values: Array, pattern: str) -> str:
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
-_SYMBOLS = {r"\bpi/omega_0\b": "π/ω₀", r"\bomega_0\b": "ω₀", r"\bomega_max\b": "ω_max", r"\bnu = ": "ν = "}
+_SYMBOLS = {r"\bpi/omega_0\b": "π/ω₀", r"\bomega_0\b": "ω₀", r"\bomega_max\b": "ω_max", r"\bnu (?=is |= )": "ν "}
 """How documents and messages, which are plain, write symbols; and how figures and tables do."""
 
 

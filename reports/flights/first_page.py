@@ -17,6 +17,9 @@ from reports.run.trials import Trial
 _NAME_MAX = 36
 """Letters of a flight's name that there is room for above its picture."""
 
+_STEADY = 0.005
+"""Change of the speed ratio up to which a vessel keeps her speed and course [-]."""
+
 _CALM = 0.05
 """Speed of the wind below which air counts as still [m/s]."""
 
@@ -30,10 +33,13 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     if not np.isfinite(vessel).any():
         return f"{flights}, about a circle without a vessel"
     wind = column(flown, "wind_speed_mps")
-    levels = [str(level) for level in flown["turbulence"].dropna().unique() if level != "none"] if "turbulence" in flown else []
+    levels = flown["turbulence"].dropna() if "turbulence" in flown else pd.Series(dtype=str)
+    levels = levels[levels != "none"]
     air = f"wind of {_range(wind)} m/s" if np.nanmax(wind, initial=0.0) > _CALM else "still air"
-    gusty = f" and {' or '.join(levels)} turbulence" if levels else ""
-    return f"{flights}, beside a vessel at {_range(vessel)} m/s, in {air}{gusty}"
+    some = f", in {len(levels):,} of them," * (len(levels) < len(flown))
+    gusty = f" and{some} {' or '.join(map(str, levels.unique()))} turbulence" if len(levels) else ""
+    manoeuvres = np.any(column(flown, "nu_max") - column(flown, "nu_min") > _STEADY)
+    return f"{flights}, beside a vessel at {_range(vessel)} m/s{' at the start' * bool(manoeuvres)}, in {air}{gusty}"
 
 
 def hours(flown: pd.DataFrame) -> str:

@@ -16,6 +16,10 @@ _HEAD = ["Parameter", "Value", "Default", "Unit", "Meaning and equation"]
 _WIDTHS = [2.5, 1.5, 0.9, 0.5, 4.1]
 
 
+_ANY_RATIO = 1e9
+"""Upper end of the speed ratios of a scenario that limits none [-]."""
+
+
 def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
     """Return every parameter of a run's only trial; of several, what each sets, and the others with their defaults."""
     blocks: list[Block] = []
@@ -53,8 +57,8 @@ def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
     """Return what a trial sweeps and samples, and every parameter or those that differ from their defaults."""
     listed = {parameter["key"]: parameter for parameter in trial.parameters()}
     rows = [["flights, seed", f"{trial.planned}, {trial.config['seed']}", "", "", "Number of flights; seed of all random numbers"]]
-    if trial.setting("speed_ratio") and (trial.varies("wind") or trial.varies("vessel")):
-        low, high = trial.config["speed_ratio"]
+    low, high = trial.setting("speed_ratio") or (0.0, _ANY_RATIO)
+    if high < _ANY_RATIO and (trial.varies("wind") or trial.varies("vessel")):
         rows.append(["speed_ratio", f"{low:g} to {high:g}", "", "", "Samples with another speed ratio ν are sampled again"])
     inputs = {key: f"swept: {parameter_value(values)}" for key, values in trial.swept.items()}
     inputs |= {sample["key"]: distribution(sample, trial.setting("study", "flights")) for sample in trial.sampled}

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from reports.document.blocks import Block, FlightContent, FlightPicker, Section, Text
-from reports.document.tables import number, outcome
+from reports.document.tables import ending, number, outcome
 from reports.flights.flight_view import flight_view
 from reports.flights.names import flight_name, flown_elsewhere
 from reports.flights.single_flight import flight_charts
@@ -35,7 +35,8 @@ def flight_section(trials: list[Trial]) -> Section:
         telling = {str(row["flight_id"]): why for _, row, why in picked}
         flights = [_of_sweep(trials[0], row, telling.get(str(row["flight_id"]), "")) for _, row in trials[0].rows.iterrows()]
         text = (
-            f"Every flight of the sweep on the screen; in print {len(telling)}: {', '.join(telling.values())}."
+            f"On the screen every flight of the sweep can be chosen. Printed are {len(telling)}, by what each shows:"
+            f" {', '.join(telling.values())}."
             " The option --all-flights of plume-flight report prints them all."
         )
     else:
@@ -73,7 +74,8 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
     return FlightContent(
         flight_id=str(row["flight_id"]),
         label=f"{name} · {state.split(':', maxsplit=1)[0]}",
-        title=f"{name}: {state} ({world or 'not flown'})",
+        # What to do about a flight that could not be flown the verdict says.
+        title=f"{name}: {state} ({world})" if flown else f"{name}: not flown, {ending(row)}",
         charts=flight_charts(view)[int(alone) :],
         scene=flight_scene(trial, row, view.whole) if view else None,
     )

@@ -168,7 +168,10 @@ def _not_met(trial: Trial) -> list[str]:
         return [*(f"{_SEVERAL[bool(trial.swept)].join(flights)}: {reason}" for reason, flights in reasons.items()), *lines]
     inside, depth = count(violated(rows)), largest(column(rows, "keepout_depth_m"))
     parts = [f"{inside} violated the keep-out area, by up to {number(depth, '{:.1f} m')}"] if inside else []
-    parts += [f"{c.failed}: {c.what}" + f", {c.limit}" * (c.key != "mission") for c in criteria_of(trial) if c.failed]
+    failed = [criterion for criterion in criteria_of(trial) if criterion.failed]
+    parts += [
+        f"{c.failed} did not complete the mission" if c.key == "mission" else f"{c.failed}: {c.what}, {c.limit}" for c in failed
+    ]
     why = f" ({'; '.join(parts)})" if parts else ""
     return [f"{trial.title}: {len(others)} of {len(rows)} flights failed a criterion{why}", *lines]
 
@@ -273,4 +276,7 @@ def _worst(criteria: list[Criterion], key: str) -> Card | None:
     missing = [criterion.missing for criterion in criteria if criterion.key == key and criterion.missing]
     # Flights that were flown and have no figure fail the criterion; of those that were not another tile tells.
     without = f" ({'; '.join(missing)})" if missing and worst.fraction <= 1.0 else ""
-    return Card(f"{worst.what}, worst{without}", worst.worst, worst.limit, not failed)
+    # The tracking error of every trial is a figure of its own, which may be larger where nothing limits it.
+    everywhere = sum(criterion.key == key for criterion in criteria) == sum(criterion.key == "mission" for criterion in criteria)
+    of = "" if everywhere else " of the trials that limit it"
+    return Card(f"{worst.what}, worst{of}{without}", worst.worst, worst.limit, not failed)

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from reports.document.blocks import Block, Heading, Section, Table, Text
-from reports.document.chart import Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
 from reports.run.columns import clearance, violated
 from reports.run.run_data import RunData
@@ -16,6 +16,9 @@ _POINTS_MAX = 4000
 
 _LISTED_MAX = 12
 """Violations that are listed by name, at most."""
+
+_MARKS: tuple[Style, ...] = ("points", "diamonds", "square", "ring", "cross")
+"""Of the methods: they are told apart in grey, too."""
 
 _CONFIRMATION = "confirmation"
 """What stands for the method of flights that repeat one of the worst."""
@@ -71,6 +74,9 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
         if least >= 0.0
         else f"{inside:,} of the flights violated the keep-out area, the deepest by {-least:.1f} m."
     )
+    again = float(np.min(clearance(flights)))
+    if least > again >= 0.0:
+        found += f" The closest repeat with fresh noise stayed {again:.1f} m outside."
     methods = _methods(settings["methods"], set(searched["search_method"]))
     budget = (
         f"{settings['generations'] + 1} turns of {settings['population']} points"
@@ -125,7 +131,8 @@ def search_chart(flights: pd.DataFrame) -> Chart:
     for i, name in enumerate(methods):
         points = shown & (flights["search_method"] == name).to_numpy()
         label = method_name(name) or "a flight"
-        lines.append(Line(x=number[points], y=distance[points], label=label, colour=series_colour(i), style="points"))
+        style = _MARKS[i % len(_MARKS)]
+        lines.append(Line(x=number[points], y=distance[points], label=label, colour=series_colour(i), style=style))
     lines += [
         Line(x=number, y=np.minimum.accumulate(distance), label="closest so far", colour="grey"),
         Line(x=number[[0, -1]], y=np.zeros(2), label="r_min", colour=Meaning.LIMIT, style="dash"),

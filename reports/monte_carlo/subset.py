@@ -3,7 +3,8 @@
 from typing import Any
 
 from common.intervals import percent
-from reports.document.blocks import Block, Section, Table, Text
+from reports.document.blocks import Block, Heading, Section, Table, Text
+from reports.document.tables import number
 from reports.monte_carlo.names import Units, input_name, input_unit
 from reports.monte_carlo.subset_charts import curve_chart, distance_chart, input_charts
 from reports.monte_carlo.tables import Record, ending_table
@@ -23,6 +24,7 @@ def subset_sections(statistics: Record, units: Units) -> list[Section]:
                 Text(probability_in_words(statistics)),
                 _probability_table(statistics),
                 *curve_chart(statistics),
+                Heading("How the flights ended"),
                 ending_table(statistics),
             ],
         ),
@@ -215,7 +217,7 @@ def _named(entry: Record, units: Units) -> str:
 
 def _values(entry: Record) -> tuple[str, str]:
     if entry["edges"]:
-        return f"median {entry['median']:.3g}", f"median {entry['median_near']:.3g}"
+        return number(entry["median"], "median {:.3g}"), number(entry["median_near"], "median {:.3g}")
     shares = [
         ", ".join(f"{name.replace('_', ' ')} {percent(share)}" for name, share in zip(entry["names"], entry[which], strict=True))
         for which in ("declared", "near")

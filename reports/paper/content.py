@@ -11,7 +11,7 @@ from common.run_layout import BOUNDS
 from reports.design.section import innerloop_section
 from reports.document.blocks import Findings, FlightContent, FlightPicker, Heading, Section, Table, Text
 from reports.document.chart import Chart
-from reports.document.tables import length, number, outcome, parameter_table
+from reports.document.tables import kinematic, length, number, outcome, parameter_table
 from reports.flights.flight_view import flight_view
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import track_picture
@@ -56,8 +56,9 @@ def paper_content(run: RunData) -> Findings:
 
 
 def _flown(run: RunData) -> str:
-    flown = " and ".join(f"the {vehicle_name(run, fidelity)}" for fidelity in vehicles(run))
-    return f"Simulations 1 to 3 of the paper, {len(run.summary)} flights with {flown}."
+    names = {"kinematic": f"the kinematic vehicle, {kinematic(run)}"}
+    flown = ", and of ".join(names.get(fidelity, "the aircraft in six degrees of freedom") for fidelity in vehicles(run))
+    return f"Simulations 1 to 3 of the paper: {len(run.summary)} flights of {flown}."
 
 
 def _picture(run: RunData) -> Chart | None:
@@ -103,7 +104,8 @@ _SIMULATIONS = (
 
 
 def _detail(picker: FlightPicker) -> Section:
-    return Section(anchor="flights", title="Single flights", nav_title="Flights", blocks=[picker] if picker.flights else [])
+    text = Text("The flights beside a vessel, drawn as those of any other study.")
+    return Section(anchor="flights", title="Single flights", nav_title="Flights", blocks=[text, picker] if picker.flights else [])
 
 
 def _flight_table(run: RunData) -> Table:

@@ -7,6 +7,7 @@ import numpy as np
 from reports.design.section import innerloop_section
 from reports.document.blocks import Card, Findings, Heading, Section, Text, Verdict
 from reports.document.tables import parameter_table, vehicle_flown
+from reports.flights.parameter_tables import distribution
 from reports.patrol.charts import patrol_chart, time_lines
 from reports.patrol.data import Patrols, read_patrols
 from reports.patrol.tables import oracle_table, ship_table
@@ -41,7 +42,7 @@ def patrol_content(run: RunData) -> Findings:
             blocks=[block for i, chart, table in charts for block in (Heading(f"Patrol {i}"), chart, table)],
         ),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
-        Section(anchor="parameters", title="Parameters", blocks=[parameter_table(run)]),
+        Section(anchor="parameters", title="Parameters", blocks=[parameter_table(run, _sampled(run))]),
     ]
     patrols_flown = f"{len(patrols.patrols)} patrol{'s' * (len(patrols.patrols) != 1)}"
     words = (
@@ -49,6 +50,11 @@ def patrol_content(run: RunData) -> Findings:
         f" {patrols.total('ships')} ships were served."
     )
     return Findings(flown=words, verdict=_verdict(patrols), picture=charts[0][1] if charts else None, sections=sections)
+
+
+def _sampled(run: RunData) -> dict[str, str]:
+    """Return how each key is sampled that is, for every patrol or for every ship."""
+    return {sample["key"]: distribution(sample, "patrol") for sample in run.manifest["config"].get("draws", [])}
 
 
 def _verdict(patrols: Patrols) -> Verdict:

@@ -13,6 +13,7 @@ from reports.document.chart import Chart
 from reports.render import replay
 from reports.render.plotly_charts import draw
 from reports.render.script_data import for_script
+from reports.render.words import unbroken
 
 PLOTLY = Path(__file__).parent / "bundle" / "plotly-cartesian.min.js"
 """Library that draws the charts of every page; ``bundle/README.md`` says where it comes from."""
@@ -47,6 +48,7 @@ def write_html(report: Content, path: Path) -> None:
         breakable=_breakable,
         is_figures=_is_figures,
         paper_width=_PAPER,
+        unbroken=unbroken,
     )
     path.write_text(page, encoding="utf-8")
 

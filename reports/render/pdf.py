@@ -14,6 +14,7 @@ from reports.document.blocks import Block, Card, Content, FlightContent, FlightP
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in
 from reports.render.figure_files import write_figures
+from reports.render.words import unbroken
 
 _AFTER_FLIGHTS = 2
 """Sections after the flights: parameters and provenance."""
@@ -57,8 +58,13 @@ def _data(report: Content, directory: Path, figures: Figures, *, all_flights: bo
         "logo": f"logo{head.logo.suffix}" if head.logo else "",
         "description": report.description,
         "changes": report.changes,
-        "flown": report.flown,
-        "verdict": {"tone": verdict.tone, "sign": verdict.sign, "headline": verdict.headline, "detail": verdict.detail},
+        "flown": unbroken(report.flown),
+        "verdict": {
+            "tone": verdict.tone,
+            "sign": verdict.sign,
+            "headline": unbroken(verdict.headline),
+            "detail": unbroken(verdict.detail),
+        },
         "failures": verdict.first_failures,
         "cards": [_card(card, judges=verdict.judges) for card in verdict.cards],
         "picture": _image(report.picture, figures) if report.picture else None,

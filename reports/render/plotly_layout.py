@@ -98,6 +98,8 @@ def narrow(chart: Chart) -> Data:
             # Names that a panel shared with the one to its left.
             named = panel if any(name for _, name in panel.y_names) else named
             ordinate |= {"ticktext": [name for _, name in named.y_names], "title": {"text": named.y_label, "standoff": 8}}
+        elif len(lines := wrapped(panel.y_label, place.room(i)[1])) > 1:
+            ordinate |= {"title": {"text": "<br>".join(lines), "standoff": 8}}
         found |= {f"xaxis{_number(i)}": {"domain": x, "showticklabels": True}, f"yaxis{_number(i)}": ordinate}
     return found
 

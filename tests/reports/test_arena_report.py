@@ -134,6 +134,15 @@ def test_the_headline_names_the_best_of_each_task(run):
     assert re.match(r"Tracking: npfg is best, \d+\.\d\d m rms; circling: npfg \(circle\) is best", verdict.headline)
 
 
+def test_of_one_flight_in_each_condition_no_law_is_called_best(run, monkeypatch):
+    once = replace(read_arena(run), flights=1)
+    monkeypatch.setattr("reports.arena.content.read_arena", lambda _: once)
+    found = arena_content(run)
+    assert ", each flown once in each of " in found.flown
+    assert re.match(r"Tracking: npfg has the least error, \d+\.\d\d m rms; circling: ", found.verdict.headline)
+    assert "which law is best is not shown" in found.verdict.detail
+
+
 def of_a_few_flights(run, path, missing):
     """Return the report of a copy of an arena of which the flights that are named by what they contain could not be flown."""
     rows, record = run.summary.copy(), json.loads((run.path / "arena.json").read_text(encoding="utf-8"))

@@ -132,3 +132,8 @@ def test_long_keys_may_go_on_over_the_next_line_on_the_screen_and_short_ones_may
     text = html_of([Table(head=["Key", "Value"], rows=rows, widths=[1.0, 1.0])], tmp_path)
     assert "guidance.<wbr>heading_<wbr>rate_<wbr>max_<wbr>rad_<wbr>s" in text
     assert "ω_max &amp; &lt;b&gt;, r_min" in text
+
+
+@pytest.mark.parametrize(("rows", "classes"), [(14, 'class="scroll whole"'), (15, 'class="scroll"')])
+def test_a_short_table_stays_on_one_printed_page_and_a_long_one_may_go_on_over_the_next(rows, classes, tmp_path):
+    assert classes in html_of([Table(head=["a"], rows=[["1"]] * rows, widths=[1.0])], tmp_path)

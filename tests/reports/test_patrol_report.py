@@ -35,6 +35,14 @@ def test_the_verdict_compares_with_the_oracle(run):
     assert figures["Correct verdicts, over the oracle's"].met == (row["correct"] >= 0.8 * row["oracle_verdicts"])
 
 
+def test_keys_that_are_sampled_say_how_and_not_what_they_are_where_nothing_samples_them(run):
+    (table,) = (s.blocks[-1] for s in patrol_content(run).sections if s.anchor == "parameters")
+    values = {row[0]: row[1] for row in table.rows}
+    # As in the catalog.
+    assert values["wind.speed_mps"] == "uniform from 3 to 12"
+    assert values["emission.sulphur_percent"].startswith("67 % 0.1; ")
+
+
 def of_row(run, **values):
     """Return the verdict on a run whose only row has other values."""
     return patrol_content(replace(run, summary=run.summary.assign(**values))).verdict

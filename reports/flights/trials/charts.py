@@ -151,7 +151,7 @@ def _spread(trial: Trial) -> Panel | None:
     most = float(np.nanmax(predicted, initial=0.0))
     if not most > 0.0:
         return None
-    lines, top = capped(predicted, measured, by_violation(trial), most, unit="m")
+    lines, top = capped(predicted, measured, by_violation(trial), most, unit="m", what="deviation")
     ends = np.array([0.0, min(top, 1.05 * most)])
     same = Line(x=ends, y=ends, label="as predicted", colour="black", style="dot")
     return Panel(
@@ -191,7 +191,7 @@ def _errors(trial: Trial) -> list[Chart]:
         "error of the wind estimate": over.figure("wind_error_rms_mps", "Error of the wind estimate, rms [m/s]"),
         "error of the vessel's position, counted": vessel,
         "how long the keep-out guard changed commands": (
-            over.figure("guard_time_s", "Guard changes commands for [s]") if total(rows, "guard_time_s") else None
+            over.figure("guard_time_s", "Time guarded [s]") if total(rows, "guard_time_s") else None
         ),
     }
     shown = [(words, panel) for words, panel in panels.items() if panel is not None]

@@ -77,7 +77,8 @@ class PanelsOver:
     def figure(self, name: str, y_label: str) -> Panel | None:
         """Return a panel of any figure, its criterion if it has one, and those far above all others at its edge."""
         y, limit = column(self._rows, name), self.limit(name)
-        lines, top = capped(self._x, y, self._groups, limit, unit=y_label.partition("[")[2].removesuffix("]"))
+        words, _, unit = y_label.removesuffix("]").partition(" [")
+        lines, top = capped(self._x, y, self._groups, limit, unit, words.partition(",")[0].lower())
         criterion = [] if math.isnan(limit) else [level(self._span, limit, "criterion")]
         return self._panel(y_label, [*lines, *criterion], y_range=(-0.03 * top, top))
 

@@ -125,7 +125,12 @@ def criteria_table(trials: list[Trial]) -> Table:
     rows = []
     for trial in trials:
         listed = criteria_of(trial)
-        rows += [[trial.title, c.what, c.limit, "; ".join(filter(None, (c.worst, c.missing))), f"{c.failed}"] for c in listed]
+        # Flights that were not flown are told beside the figure, as on page 1, and fail the mission alone.
+        failed = [c.flown_failed if c.missing else c.failed for c in listed]
+        rows += [
+            [trial.title, c.what, c.limit, "; ".join(filter(None, (c.worst, c.missing))), f"{n}"]
+            for c, n in zip(listed, failed, strict=True)
+        ]
     head, widths = ["Trial", "Criterion", "Limit", "Worst measured", "Not met"], [1.7, 2.5, 1.2, 1.7, 0.7]
     if len(trials) == 1:
         return Table(
@@ -203,8 +208,9 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
         for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()
     ]
     head = ["Flight", "ν flown [-]", "Keep-out violations", "Closest [m]", "How it ended, and the criteria that it failed"]
+    first = count(violated(failed)) > 0
     table = Table(
-        caption="Flights that failed a criterion, keep-out violations first, each with its reason.",
+        caption=f"Flights that failed a criterion, {'keep-out violations first, ' * first}each with its reason.",
         head=head,
         rows=rows,
         widths=[min(2.4, 0.12 * max(len(row[0]) for row in rows)), 0.5, 0.9, 0.8, 4.4],
@@ -214,5 +220,5 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     )
     more = len(failed) - len(rows)
     flights = "flights did" if len(failed) > 1 else "flight did"
-    text = f"{len(failed)} {flights} not meet every criterion; those with keep-out violations come first."
+    text = f"{len(failed)} {flights} not meet every criterion{'; those with keep-out violations come first' * first}."
     return [Text(text + (f" The first {len(rows)} are listed, {more} more are in {SUMMARY}." if more else "")), table]

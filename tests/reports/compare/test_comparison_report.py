@@ -52,6 +52,11 @@ def test_every_flight_whose_criteria_changed_is_listed_with_its_reason(report):
         assert "rms tracking error" in row[3]
 
 
+def test_flights_that_met_in_one_run_alone_are_told_apart_in_grey(report):
+    lines = [line for chart in blocks_of(report, Chart) for panel in chart.panels for line in panel.lines]
+    assert {line.style for line in lines if line.label == "met in A alone"} == {"diamonds"}
+
+
 def test_charts_can_be_drawn_for_screen_and_print(report):
     charts = blocks_of(report, Chart)
     assert_axes_read_quantity_and_unit(charts)

@@ -84,6 +84,12 @@ def test_the_table_counts_lower_and_higher_and_marks_an_interval_without_0():
     assert (row, 5) in table.bold
 
 
+def test_values_that_are_nearly_0_are_written_with_as_many_digits_as_their_difference():
+    pairs = pairs_of([0.003] * 8, [0.006] * 8)
+    (row,) = (cells for cells in difference_table(pairs, differences(pairs)).rows if cells[0].startswith("Tracking error"))
+    assert row[2:5] == ["0.0030", "0.0060", "+0.0030"]
+
+
 @pytest.mark.parametrize(
     ("value", "text"), [(0.0, "0"), (-0.0, "0"), (1234.56, "+1,234.6"), (-0.04, "−0.04"), (-0.06, "−0.1"), (1.5e-7, "+1.5e-07")]
 )

@@ -12,7 +12,7 @@ from reports.build import build_reports
 from reports.document.blocks import CARDS_MAX, Card, Heading, Section, Table, Verdict
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in, numbered
-from reports.flights.first_page import closest_and_typical
+from reports.flights.first_page import closest_and_typical, flights_in_words
 from reports.flights.selection import picked_flights
 from reports.registry import content
 from reports.render import matplotlib_charts
@@ -84,6 +84,25 @@ def test_page_1_says_when_and_what_was_flown_and_shows_the_closest_flight_and_a_
     )
     titles = [panel.title for panel in report.picture.panels]
     assert [title.split(":")[0] for title in titles] == ["Closest", "Typical"]
+
+
+@pytest.mark.parametrize(
+    ("levels", "words"),
+    [
+        (["none", "light", "light", "moderate", "none"], "wind of 4 m/s and, in 3 of them, light or moderate turbulence"),
+        (["light"] * 5, "wind of 4 m/s and light turbulence"),
+        (["none"] * 5, "wind of 4 m/s"),
+    ],
+)
+def test_turbulence_that_only_some_flights_had_is_not_told_of_all(run_path, levels, words):
+    run = read_run(run_path)
+    assert flights_in_words(run, run.summary.assign(turbulence=levels, wind_speed_mps=4.0)).endswith(f", in {words}")
+
+
+def test_of_a_vessel_that_changes_her_speed_page_1_tells_that_of_the_start(run_path):
+    run = read_run(run_path)
+    manoeuvring = run.summary.assign(nu_min=0.2, nu_max=[0.2, 0.2, 0.5, 0.2, 0.2])
+    assert flights_in_words(run, manoeuvring).endswith(", beside a vessel at 8 m/s at the start, in still air")
 
 
 def test_the_closest_and_the_median_flight_are_those_of_the_summary(run_path, report):

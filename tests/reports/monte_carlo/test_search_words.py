@@ -13,9 +13,12 @@ def test_only_methods_that_had_a_turn_are_said_to_have_searched():
     assert _methods(asked, set(asked)) == "corner sampling, differential evolution, local climb, CMA-ES"
 
 
-def in_words(proposed):
-    """Return what is said of 40 flights that were measured, 2 with a violation, 3 repeats with one, and 8 without measurement."""
-    rows = [(190.0, 1, "")] * 2 + [(250.0, 0, "")] * 38 + [(180.0, 1, "short_00000")] * 3
+VIOLATED = [(190.0, 1, "")] * 2 + [(250.0, 0, "")] * 38 + [(180.0, 1, "short_00000")] * 3
+"""40 flights that were measured, 2 with a violation, and 3 repeats with one: closest approach, violations, and what is repeated."""
+
+
+def in_words(proposed, rows=VIOLATED):
+    """Return what is said of flights that were measured, of which the search says 8 more."""
     flights = pd.DataFrame(rows, columns=["min_distance_m", "keepout_violations", "confirms"])
     flights = flights.assign(keepout_radius_m=200.0, search_method="corners")
     config = {"search": {"methods": ["corners"], "generations": 2, "population": 16, "time_s": None}, "draws": [{}] * 4}
@@ -29,3 +32,10 @@ def test_repeats_are_no_violations_of_the_search_and_flights_without_a_measureme
     assert "the deepest by 10.0 m" in words
     assert "beyond what the scenario declares" not in words
     assert "; 2 more points were not flown, as they lie beyond what the scenario declares. 2 of" in in_words(50)
+
+
+def test_a_repeat_that_came_closer_than_the_search_is_told_beside_it():
+    kept = [(265.1, 0, "")] * 40
+    words = in_words(48, [*kept, (263.4, 0, "short_00000")])
+    assert "stayed 65.1 m outside the keep-out area. The closest repeat with fresh noise stayed 63.4 m outside. A search" in words
+    assert "repeat" not in in_words(48, [*kept, (270.0, 0, "short_00000")])

@@ -154,7 +154,8 @@ def test_the_navigation_leads_to_the_replay(browser, page):
 
 def test_the_page_is_not_wider_than_a_small_screen(browser, page):
     show(browser, page, 520)
-    widest = "Math.max(...[...document.querySelectorAll('.replay, .replay *')].map((part) => part.getBoundingClientRect().right))"
+    parts = "[...document.querySelectorAll('.replay, .replay *, .picker *')]"
+    widest = f"Math.max(...{parts}.map((part) => part.getBoundingClientRect().right))"
     assert browser.run(widest) <= 520
     assert browser.run("document.querySelector('[data-part=stage]').clientWidth") > 400
 

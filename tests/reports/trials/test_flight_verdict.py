@@ -88,18 +88,20 @@ def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_fig
     judged = with_criterion(with_values(run, 1, **NOT_FLOWN), "steady", "tracking_error_rms_m", 50.0)
     report = content(judged)
     figures = {card.name: card for card in report.verdict.figures}
-    worst = figures["Tracking error, rms after settling, worst (1 flight has no figure: not flown)"]
+    worst = figures["Tracking error, rms after settling, worst of the trials that limit it (1 flight has no figure: not flown)"]
     assert worst.met
     assert re.fullmatch(r"[\d.]+ m", worst.value)
     # Of all that were planned, not of those that were flown.
     assert (figures["Missions completed"].value, figures["Missions completed"].met) == ("3 of 4", False)
-    assert any(row[2].endswith(" m; 1 flight has no figure: not flown") for row in rows_of(report, "Steady"))
+    (row,) = (row for row in rows_of(report, "Steady") if row[2].endswith(" m; 1 flight has no figure: not flown"))
+    # As on page 1: it fails the mission, and not what could not be measured.
+    assert row[3] == "0"
 
 
 def test_a_flight_that_was_flown_and_has_no_figure_fails_the_criterion_on_it(run):
     values = {"outcome": "not_settled", "criteria_met": False, "tracking_error_rms_m": float("nan")}
     judged = with_criterion(with_values(run, 1, **values), "steady", "tracking_error_rms_m", 50.0)
-    name = "Tracking error, rms after settling, worst (1 flight has no figure: not settled)"
+    name = "Tracking error, rms after settling, worst of the trials that limit it (1 flight has no figure: not settled)"
     (worst,) = (card for card in content(judged).verdict.figures if card.name == name)
     assert not worst.met
 

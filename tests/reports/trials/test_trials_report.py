@@ -213,7 +213,7 @@ def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
     assert turns["vessel.manoeuvres"] == ["in turn one of: 20° to starboard at 0.5°/s; 10° to port at 0.5°/s", "none"]
     assert turns["reports.interval_s"] == ["2 to 10", "0 to 0"]
     # Its own keys, and those that the base which it extends sets otherwise than the schema.
-    own = {"flights, seed", "speed_ratio", "wind.speed_mps", "flight.crossings", "criteria.crossing_interval_error"}
+    own = {"flights, seed", "wind.speed_mps", "flight.crossings", "criteria.crossing_interval_error"}
     own |= {"guidance.rate_hz"}
     base = given_keys(tomllib.loads(bases()[OPERATIONAL].read_text(encoding="utf-8")))
     assert own <= set(steady) <= own | base
@@ -288,7 +288,7 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
             "did not settle within 20 s: allow more time (flight.duration_max_s), or",
             "not settled: did not settle within 20 s",
         ),
-        ("infeasible", "nu is 1.5; it must be below 1: slow the vessel", "infeasible: nu is 1.5"),
+        ("infeasible", "nu is 1.5; it must be below 1: slow the vessel", "infeasible: ν is 1.5"),
         (
             "completed",
             "rms tracking error 2.00 m, above the limit of 1.5 m; ended outrun",
