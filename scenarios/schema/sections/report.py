@@ -17,11 +17,11 @@ class ReportConfig(Section):
     """Title and sender of the reports. A run keeps its seed, and can be resumed, whatever stands here."""
 
     title: Words = ""
-    """Of the reports, if not that of the scenario."""
+    """Title of the reports; that of the scenario if not given."""
     author: Words = ""
-    """Who made the study."""
+    """Author of the study."""
     organisation: Words = ""
-    """For whom the author speaks."""
+    """Organisation of the author."""
     logo: Annotated[str, Field(max_length=4096)] = ""
     """A picture for page 1: a PNG, JPEG or SVG file, whose path is relative to the scenario file."""
 
