@@ -55,7 +55,7 @@ def write_json(path: Path, value: Mapping[str, Any], *, indent: int | None = 1) 
     write_text(path, json_text(value, indent=indent))
 
 
-def json_text(value: Mapping[str, Any], *, indent: int | None = 1) -> str:
+def json_text(value: Mapping[str, Any], *, indent: int | None) -> str:
     """Return what ``write_json`` writes."""
     return json.dumps(value, indent=indent, allow_nan=False) + "\n"
 

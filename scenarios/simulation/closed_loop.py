@@ -44,9 +44,9 @@ class ClosedLoop:
         self,
         plan: FlightPlan,
         vehicle: Vehicle,
-        payload: Sequence[Instrument] = (),
+        payload: Sequence[Instrument],
         *,
-        reader: GasReader | None = None,
+        reader: GasReader | None,
         every_step: bool = False,
     ) -> None:
         self.plan, self.vehicle, self._every_step = plan, vehicle, every_step
