@@ -74,7 +74,7 @@ def write_tree(source: Path, target: Path) -> None:
 
 
 def remove_reports(directory: Path) -> None:
-    """Remove reports and exports of a run that goes on, or of a design that is made anew: they would tell what is no longer so."""
+    """Remove reports and exports of a run that continues, or of a design that is made again: they are no longer true."""
     for name in (REPORT_HTML, REPORT_PDF):
         (directory / name).unlink(missing_ok=True)
     shutil.rmtree(directory / EXPORT, ignore_errors=True)

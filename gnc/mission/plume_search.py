@@ -15,7 +15,7 @@ _STEP = 6.0
 """Between the heights that are weighed [m]: less than the spread of a plume."""
 
 _HORIZON = 8
-"""Passes that are looked ahead [-]."""
+"""Number of passes that the search plans ahead [-]."""
 
 _KNOWN = 0.3
 """Deviation of the height over the spread of a pass [-], below which nothing is gained by flying anywhere else."""
@@ -27,7 +27,7 @@ _RUNG = 15.0
 """Between the heights of a ladder [m]."""
 
 _AHEAD = 3.0
-"""Passes that what is learned in this one is good for [-]: after those the others have told as much."""
+"""Passes over which the information of this one counts [-]: after those the later ones have given as much."""
 
 
 class Search(Protocol):
@@ -70,7 +70,7 @@ class HeightSearch:
         return self._hitting(estimator)
 
     def _hitting(self, estimator: PlumeEstimator) -> float:
-        """Return the height that lets expect the most hits: now, and later by what the pass says of the height."""
+        """Return the height with the most expected hits: now, and later by what the pass shows of the height."""
         height, deviation = estimator.height, estimator.height_deviation
         spread, meander = estimator.sigma_z, estimator.meander_z
         if deviation < _KNOWN * math.hypot(spread, meander):

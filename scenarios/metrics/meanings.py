@@ -158,7 +158,7 @@ _OF_SEARCH = {
     "altitude_outside_s": "time outside the limits of the altitude",
     "enough": "why the flight ended early, or empty",
 }
-"""Of flights that search for the plume, are told where it is, or end with a verdict."""
+"""Of flights that search for the plume, are given its true axis, or end with a verdict."""
 
 _FLIGHTS = {**_OF_POINT, **_PLANNED, **_MEASURED, **_OF_SNIFFER, **_OF_SEARCH}
 

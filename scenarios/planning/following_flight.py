@@ -205,7 +205,7 @@ def _with_intervals(scenario: Scenario, vessel: VesselTruth) -> Scenario:
 
 
 def _check_declared(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
-    """Raise an InfeasibleError for a vessel that does more than the keep-out guard is told, where it is not always known."""
+    """Raise an InfeasibleError for a vessel that exceeds what the keep-out guard assumes, where it is not always known."""
     # A steady vessel does at any time what she does at first.
     f, duration = scenario.following, 0.0 if isinstance(vessel, SteadyVessel) else scenario.flight.duration_max_s
     known = scenario.vessel_known and scenario.fault.kind != VESSEL_DATA

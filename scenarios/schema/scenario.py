@@ -144,7 +144,7 @@ class Scenario(Section):
 
     @property
     def finds(self) -> bool:
-        """Return whether a plume is searched for, told, or measured until there is a verdict."""
+        """Return whether a plume is searched for, given, or measured until there is a verdict."""
         return self.following.plume != "predicted" or self.flight.until == "verdict"
 
     @property

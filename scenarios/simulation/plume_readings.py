@@ -18,7 +18,7 @@ _SELDOM = 15.0
 
 
 class PlumeReadings:
-    """Passes on what a sniffer reads, and what a flight is told of its plume.
+    """Passes on the readings of a sniffer, and the true axis of the plume to a flight that is given it.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class PlumeReadings:
     world, vehicle : of the flight
     axis : of the plume, as the guidance has it
     interval : guidance steps between rows of the record, at which the sniffer's path is known
-    told : whether the guidance is told where the axis is
+    told : whether the guidance is given the true axis
     """
 
     __slots__ = ("_axis", "_interval", "_reader", "_told", "_vehicle", "_world")

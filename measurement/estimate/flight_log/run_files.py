@@ -138,7 +138,7 @@ def write_run(
 
 
 def _remove_older(directory: Path) -> None:
-    """Remove what tells of an older estimate; its manifest last, and the new one is written when all is there."""
+    """Remove the files of an older estimate, its manifest last; the new manifest is written when all files are there."""
     if (directory / MANIFEST).exists():
         for name in REPORTS:
             (directory / name).unlink(missing_ok=True)

@@ -126,5 +126,5 @@ class CriteriaConfig(Section):
         known = [*(mode.value for mode in Mode), DITCHED]
         for mode in modes:
             if mode not in known:
-                raise ValueError(f"'{mode}' is no mode{did_you_mean(mode, known) or ';'} modes are {', '.join(known)}")
+                raise ValueError(f"'{mode}' is not a mode{did_you_mean(mode, known) or ';'} modes are {', '.join(known)}")
         return modes

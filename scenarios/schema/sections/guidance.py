@@ -183,7 +183,7 @@ def _type_of(declared: Any, default: object) -> type[Any] | None:
 
 
 def _wanted(of: type[Any] | None, value: Any) -> str | None:
-    """Return what a key of a type takes, in words, where a value is none; otherwise None."""
+    """Return what a key of a type takes, in words, where a value is of another type; otherwise None."""
     if of is float:
         # Whole numbers may be too large for a float.
         fits = type(value) in (int, float) and abs(value) <= sys.float_info.max

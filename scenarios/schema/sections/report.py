@@ -31,7 +31,7 @@ def read_logo(report: ReportConfig) -> Picture | None:
 
     Raises
     ------
-    InputError : the file is no picture
+    InputError : the file is not a picture
     """
     try:
         return read_picture(Path(report.logo)) if report.logo else None
@@ -44,7 +44,7 @@ def report_entry(report: ReportConfig) -> dict[str, Any]:
 
     Raises
     ------
-    InputError : the logo is no picture
+    InputError : the logo is not a picture
     """
     logo = read_logo(report)
     kept = {"logo": f"{LOGO}{logo.suffix}", "logo_sha256": logo.sha256} if logo else {}

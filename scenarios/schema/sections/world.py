@@ -197,5 +197,5 @@ class TurbulenceConfig(Section):
 
     @property
     def calm(self) -> bool:
-        """Whether there is none."""
+        """Whether there is neither turbulence nor a gust."""
         return self.level == "none" and not self.gusts

@@ -262,7 +262,7 @@ def test_a_result_that_is_not_as_it_was_added_is_refused_in_a_line(tmp_path, sta
         assert journal.is_empty()
         journal.close()
         return
-    with pytest.raises(InputError, match=r"journal\.sqlite' is (damaged|no journal of this version)") as refused:
+    with pytest.raises(InputError, match=r"journal\.sqlite' is (damaged|not a journal of this version)") as refused:
         Journal(path, reading=reading)
     assert "\n" not in str(refused.value)
 

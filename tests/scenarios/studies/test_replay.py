@@ -142,7 +142,7 @@ def test_a_run_whose_trial_is_no_name_of_a_file_is_not_replayed(runs, tmp_path, 
     (copy / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
     tampered(copy, {"trial": trial, "flight_id": "planted"})
     before = files_below(tmp_path)
-    with pytest.raises(InputError, match=r"names a trial .*, which is no name of a trial; do not use this run") as refused:
+    with pytest.raises(InputError, match=r"names a trial .*, which cannot be the name of a trial; do not use this run") as refused:
         replay(copy / "flights" / "planted", tmp_path / "a" / "b" / "again")
     assert "\n" not in str(refused.value)
     assert files_below(tmp_path) == before
