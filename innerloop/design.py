@@ -144,10 +144,10 @@ def _with_repeated_search(found: "Designed", root: Path, reversals: int) -> "Rec
     """Return the design's record with what a search over so many reversals finds."""
     from innerloop.designs.long_search import repeat_search
 
-    def told(count: int, deviation: float) -> None:
+    def report_progress(count: int, deviation: float) -> None:
         print(f"{count} of {reversals} reversals, largest deviation {deviation:.2f} m", file=sys.stderr)
 
-    searched = repeat_search(found, root, reversals, done=told)
+    searched = repeat_search(found, root, reversals, done=report_progress)
     return found.record | {"turn_reversal": found.record["turn_reversal"] | {"repeated_search": searched}}
 
 

@@ -134,7 +134,7 @@ class SearchedAxis:
         """Return the probability that the plume can be crossed within the altitudes that are flown [-]; costly."""
         return self._estimator.measurable if self._estimator is not None else math.nan
 
-    def heed(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
+    def take_readings(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
         """Take note of the place now, and of what was read since the last readings came, each with its own time [s]."""
         situation = self._situation
         if self._estimator is None or situation is None:

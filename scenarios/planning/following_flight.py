@@ -138,7 +138,7 @@ def following_flight(
             received=received,
             errors=SensorErrors(scenario.sensors, steps=steps, time_step=1.0 / g.rate_hz, generator=generators.sensors),
             reads_plume=f.plume == "estimated" or flight.until == "verdict",
-            told=f.plume == "told",
+            knows_axis=f.plume == "told",
         ),
         oscillation=orbit,
         periods=periods,

@@ -114,8 +114,8 @@ class GuidanceConfig(Section):
                 guess = f"; did you mean 'guidance.{meant}'?" if meant else ""
                 others = f"; those of law '{self.law}' are {', '.join(keys)}"
                 raise ValueError(f"unknown key 'guidance.{name}'{guess or others}")
-            if (wanted := _wanted(types[name], value)) is not None:
-                raise ValueError(f"{name} is {value!r}; law '{self.law}' takes {wanted}, by default {keys[name]!r}")
+            if (expected := _expected(types[name], value)) is not None:
+                raise ValueError(f"{name} is {value!r}; law '{self.law}' takes {expected}, by default {keys[name]!r}")
         return self
 
     @property
@@ -182,7 +182,7 @@ def _type_of(declared: Any, default: object) -> type[Any] | None:
     return plain.get(named, float if isinstance(default, float) else None)
 
 
-def _wanted(of: type[Any] | None, value: Any) -> str | None:
+def _expected(of: type[Any] | None, value: Any) -> str | None:
     """Return what a key of a type takes, in words, where a value is of another type; otherwise None."""
     if of is float:
         # Whole numbers may be too large for a float.

@@ -108,9 +108,9 @@ def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterat
             f" Marine Cadastre, and {plain}: rename the columns to these"
         )
     places = [heads.index(column) for column in layout.columns]
-    wanted = "" if mmsi is None else str(mmsi)
+    mmsi_text = "" if mmsi is None else str(mmsi)
     # Files of a day have millions of lines: those of other vessels are passed over as they are.
-    lines = ((number, line) for number, line in enumerate(file, start=2) if wanted in line)
+    lines = ((number, line) for number, line in enumerate(file, start=2) if mmsi_text in line)
     for number, line in lines:
         cells = next(csv.reader([line]), [])
         if len(cells) <= max(places):

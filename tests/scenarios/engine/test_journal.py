@@ -199,7 +199,7 @@ def test_a_file_that_is_no_journal_is_refused_in_a_line(tmp_path):
     assert path.read_bytes() == b"no database at all" * 1000
 
 
-def test_a_disk_that_is_full_is_told_and_leaves_what_was_there(tmp_path):
+def test_a_full_disk_is_reported_and_leaves_what_was_there(tmp_path):
     path = tmp_path / "journal.sqlite"
     journal = Journal(path)
     # Room for so many pages of 4096 bytes is what a full disk leaves.

@@ -78,7 +78,7 @@ def test_a_report_of_one_flight_is_about_that_flight(runs, tmp_path, run, flight
     assert not [failure for failure in report.verdict.failures if "not flown yet" in failure]
 
 
-def test_a_flight_that_goes_another_way_is_told_with_what_has_changed(runs, tmp_path):
+def test_a_flight_that_goes_another_way_is_reported_with_what_has_changed(runs, tmp_path):
     copy = shutil.copytree(runs / "trials", tmp_path / "copy")
     manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
     # As if it had been flown from another distance by another version.
