@@ -3,7 +3,7 @@
 Flights are flown and recorded at the rate of the guidance: one beside a steady vessel in still air, which has the
 paper's composition, one that follows a plume in wind, by sensors and reports, and that one again as it searches for its
 plume, beside a slow and a fast ship. What the guidance was given in each is then sent to another one, step by step, all in
-turn for several rounds: it commands what was flown. A search is compared with the flight that is told its plume.
+turn for several rounds: it commands what was flown. A search is compared with a flight that is given its plume.
 """
 
 import io
@@ -58,7 +58,7 @@ FOLLOWING = Scenario(
 )
 
 _EVERY = 2
-"""Steps between those at which the search is told a place: of a flight that is recorded 10 times a second [-]."""
+"""Steps between those at which the search gets a position: of a flight that is recorded 10 times a second [-]."""
 
 _INTERVAL, _PARCEL = 4, 2
 """Steps between the readings of the fast sniffer, and readings that are passed on together [-]."""
@@ -67,7 +67,7 @@ Measured = Sequence[tuple[float, Any]]
 """Time, and what is measured then, in the form that the guidance takes."""
 
 PlumeReadings = Sequence[tuple[float, tuple[tuple[float, float], ...]] | None]
-"""For each step the altitude [m], and times [s] and CO2 [ppm] of the readings that have come; none where nobody is told."""
+"""For each step the altitude [m], and times [s] and CO2 [ppm] of the readings that have come; None where it gets nothing."""
 
 
 def report_guidance(rounds: int, setup: VehicleSetup) -> None:
@@ -109,7 +109,7 @@ def searching(vessel_speed: float, plume: str) -> Scenario:
 
 
 def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measured, PlumeReadings]:
-    """Return the plan of a flight, what its guidance measures at each step, and what a search would be told."""
+    """Return the plan of a flight, what its guidance measures at each step, and what a search would get."""
     work = FlightWork(experiments=(Experiment("bench", scenario),), histories=1, setup=setup, spreads=PredictedSpreads())
     measured: list[tuple[float, Any]] = []
     step = Guidance.step
@@ -125,7 +125,7 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
 
 
 def _plume_readings(history: pd.DataFrame) -> PlumeReadings:
-    """Return what a search is told at each step of a flight, in parcels as the sniffer passes them on."""
+    """Return what a search gets at each step of a flight, in parcels as the sniffer passes them on."""
     if "co2_reading_ppm" not in history:
         return []
     result: list[tuple[float, tuple[tuple[float, float], ...]] | None] = []
@@ -161,10 +161,10 @@ def _step_through(guidance: Guidance, measured: Measured, reports: list[Any], pa
         while reports and reports[-1][0] <= at and isinstance(target, ReportedTarget):
             target.report(reports.pop()[1])
         guidance.step(at, measurement)
-        told = passed_on[i] if passed_on else None
-        if told is not None and isinstance(axis, SearchedAxis):
-            axis.flown = told[0]
-            axis.heed(at, told[1])
+        passed = passed_on[i] if passed_on else None
+        if passed is not None and isinstance(axis, SearchedAxis):
+            axis.flown = passed[0]
+            axis.take_readings(at, passed[1])
 
 
 def main() -> None:

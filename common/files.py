@@ -55,7 +55,7 @@ def write_json(path: Path, value: Mapping[str, Any], *, indent: int | None = 1) 
     write_text(path, json_text(value, indent=indent))
 
 
-def json_text(value: Mapping[str, Any], *, indent: int | None = 1) -> str:
+def json_text(value: Mapping[str, Any], *, indent: int | None) -> str:
     """Return what ``write_json`` writes."""
     return json.dumps(value, indent=indent, allow_nan=False) + "\n"
 
@@ -74,7 +74,7 @@ def write_tree(source: Path, target: Path) -> None:
 
 
 def remove_reports(directory: Path) -> None:
-    """Remove reports and exports of a run that goes on, or of a design that is made anew: they would tell what is no longer so."""
+    """Remove reports and exports of a run that continues, or of a design that is made again: they are no longer true."""
     for name in (REPORT_HTML, REPORT_PDF):
         (directory / name).unlink(missing_ok=True)
     shutil.rmtree(directory / EXPORT, ignore_errors=True)

@@ -18,7 +18,7 @@ _SUFFIXES = {"image/png": ".png", "image/jpeg": ".jpg", "image/svg+xml": ".svg"}
 
 
 class PictureError(ValueError):
-    """A file that is no picture. The message is one line."""
+    """A file that is not a picture. The message is one line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +59,12 @@ def read_picture(path: Path) -> Picture:
         raise PictureError(f"'{path.name}' has {len(content) / 1e6:.1f} MB; at most {BYTES_MAX / 1e6:g} MB: give a smaller picture")
     media_type = _media_type(content)
     if media_type is None:
-        raise PictureError(f"'{path.name}' is no picture; give a whole PNG, JPEG or SVG file")
+        raise PictureError(f"'{path.name}' is not a picture; give a whole PNG, JPEG or SVG file")
     return Picture(content, media_type)
 
 
 def _media_type(content: bytes) -> str | None:
-    """Return the kind of a picture, or None of what is none."""
+    """Return the kind of a picture, or None for other content."""
     from PIL import Image
 
     try:

@@ -70,7 +70,7 @@ class Registry(Generic[Part]):
             yield
             return
         if name in self.names():
-            raise PluginError(f"{self.words} '{name}' is known already, and is not the object that was given; call yours otherwise")
+            raise PluginError(f"{self.words} '{name}' is known already, and is not the object that was given; rename yours")
         self._parts[name] = part
         try:
             yield

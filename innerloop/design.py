@@ -29,7 +29,7 @@ def command(
     no_report: Annotated[bool, typer.Option("--no-report", help="Leave out report.html and report.pdf.")] = False,
     reversals: Annotated[
         int | None,
-        typer.Option(min=1, max=1_000_000, help="Repeat the search for the worst reversal of a turn with so many, e.g. 10000."),
+        typer.Option(min=1, max=1_000_000, help="Repeat the search for the worst turn reversal with this many, e.g. 10000."),
     ] = None,
     overrides: Annotated[
         list[str] | None,
@@ -42,10 +42,14 @@ def command(
         typer.Option(metavar="DIR", help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to take AIRCRAFT from."),
     ] = None,
     list_aircraft: Annotated[
-        bool, typer.Option("--list", help="List every known aircraft, or those of --aircraft-dir: which fly, as far as is known.")
+        bool,
+        typer.Option(
+            "--list",
+            help="List every known aircraft, or those of --aircraft-dir, and which can be flown.",
+        ),
     ] = False,
     check: Annotated[
-        bool, typer.Option("--check", help="With --list: design those not designed before, to know of each: minutes.")
+        bool, typer.Option("--check", help="With --list: design every aircraft that was not designed before; takes minutes.")
     ] = False,
 ) -> None:
     """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a JSBSim root that flies it."""
@@ -140,10 +144,10 @@ def _with_repeated_search(found: "Designed", root: Path, reversals: int) -> "Rec
     """Return the design's record with what a search over so many reversals finds."""
     from innerloop.designs.long_search import repeat_search
 
-    def told(count: int, deviation: float) -> None:
+    def report_progress(count: int, deviation: float) -> None:
         print(f"{count} of {reversals} reversals, largest deviation {deviation:.2f} m", file=sys.stderr)
 
-    searched = repeat_search(found, root, reversals, done=told)
+    searched = repeat_search(found, root, reversals, done=report_progress)
     return found.record | {"turn_reversal": found.record["turn_reversal"] | {"repeated_search": searched}}
 
 

@@ -50,7 +50,8 @@ def command(
     resume: Annotated[bool, typer.Option("--resume", help="Continue the unfinished run in --out.")] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
     aircraft_dir: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to fly one of.")
+        Path | None,
+        typer.Option(metavar="DIR", help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to choose from."),
     ] = None,
     flightgear: Annotated[
         str | None, typer.Option(metavar="HOST:PORT", help="Replay a flight in real time, shown by FlightGear at this address.")

@@ -54,12 +54,12 @@ def check_user_aircraft(spec: AircraftSpec) -> None:
     if done.returncode == 0:
         return
     lines = done.stderr.decode(errors="replace").splitlines()
-    told = " ".join(" ".join(lines).split())
+    said = " ".join(" ".join(lines).split())
     if done.returncode == _REFUSED:
-        raise AircraftError(told)
+        raise AircraftError(said)
     if raised := _raised(lines):
         raise AircraftError(f"aircraft '{spec.name}': its model does not run: {raised}; correct {spec.files.file}")
-    reason = told.rpartition("what():")[2].strip() or f"exit status {done.returncode}"
+    reason = said.rpartition("what():")[2].strip() or f"exit status {done.returncode}"
     raise AircraftError(
         f"aircraft '{spec.name}': JSBSim ends the whole process with its model: {reason}; correct {spec.files.file}"
     )

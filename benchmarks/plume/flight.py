@@ -19,6 +19,7 @@ from measurement.gases import GASES
 from measurement.plume.air import MarineAir
 from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.sniffer import Sniffer, SnifferSpec
+from scenarios.planning.plume.axis import co2_sensor
 
 Array = npt.NDArray[np.float64]
 
@@ -89,18 +90,6 @@ class Flight:
     spread: float = math.nan
 
 
-def sensor_of(spec: SnifferSpec) -> GasSensor:
-    """Return the data sheet of a sniffer's CO2 channel."""
-    channel = spec.known("co2")
-    return GasSensor(
-        interval=1.0 / spec.rate_hz,
-        delay=channel.delay_s,
-        time_constant=channel.constants[0],
-        noise=channel.noise,
-        saturated=channel.range_high,
-    )
-
-
 def prior_of(case: Case, sensor: GasSensor, distance: float) -> PlumePrior:
     """Return what is expected of a ship of this class, without her stack and her load."""
     ship, fuel = ship_preset("container"), fuel_preset("mgo", 0.1)
@@ -164,7 +153,7 @@ def fly(
     knowing : whether the vehicle flies on the true axis, whatever it estimates
     """
     orbit = Orbit(math.hypot(*case.apparent))
-    sensor = sensor_of(spec)
+    sensor = co2_sensor(spec)
     flight = Flight(case, estimator(prior_of(case, sensor, orbit.distance)))
     simulation = _Simulation(case, spec, orbit, duration)
     searcher, filtered = search(), flight.estimator

@@ -203,7 +203,7 @@ def fastest_within(
 
 
 class _Task(NamedTuple):
-    """What ``fastest_within`` is asked, in its units; ``limit`` is omega_max but for tolerances."""
+    """The arguments of ``fastest_within``, in its units; ``limit`` is omega_max less tolerances."""
 
     speed: float
     limit: float

@@ -160,13 +160,13 @@ class DirectTracking:
         return self._approach.command(*self._joined_at(), last, additional_range=0.0) if self._approach else last
 
     def leave(self, fault: Fault) -> None:
-        """Refuse to leave: this mission knows no way out, and is not given a monitor that could ask for it.
+        """Refuse to leave: this mission has no departure, and is not given a monitor that could demand it.
 
         Raises
         ------
         ValueError : always
         """
-        raise ValueError(f"the vehicle has a fault, {fault.value}, and its mission knows no way out; follow the plume instead")
+        raise ValueError(f"the vehicle has a fault, {fault.value}, and its mission has no departure; follow the plume instead")
 
     def _joined_at(self) -> tuple[float, float]:
         """Return the centre of the orbit as it is joined, north and east of the vessel [m]."""

@@ -1,4 +1,4 @@
-"""Where a plume's axis is taken to be, and how high is flown to cross it: as it is predicted, or told."""
+"""Where a plume's axis is taken to be, and at which altitude it is crossed: by prediction, or as it is given."""
 
 import math
 from dataclasses import dataclass
@@ -95,7 +95,7 @@ class AxisParameters(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PredictedPlume:
-    """A plume whose axis is where wind, vessel and the rise of exhaust let it expect, or where the flight is told that it is.
+    """A plume whose axis is predicted from wind, vessel and the rise of exhaust, or given to the flight.
 
     Attributes
     ----------
@@ -114,27 +114,27 @@ class PredictedPlume:
 
 
 class PredictedAxis:
-    """The axis as it is predicted until it is told; attributes as of ``PlumeAxis``."""
+    """The predicted axis, until the true one is given; attributes as of ``PlumeAxis``."""
 
-    __slots__ = ("_height", "_told", "bearing", "climb", "demanded", "flown", "mode")
+    __slots__ = ("_height", "_true_axis", "bearing", "climb", "demanded", "flown", "mode")
 
     def __init__(self, parameters: PredictedPlume) -> None:
         self._height, self.climb, self.demanded = parameters.height, parameters.climb, parameters.altitude
-        self._told: tuple[float, float] | None = None
+        self._true_axis: tuple[float, float] | None = None
         self.bearing, self.flown, self.mode = 0.0, math.nan, Mode.TRACKING
 
-    def tell(self, height: float, course: float) -> None:
+    def set_true_axis(self, height: float, course: float) -> None:
         """Take the height above the sea [m] and the course [rad] of the axis at the centre of oscillation."""
-        self._told = height, course
+        self._true_axis = height, course
 
     def plan(self, time: float, situation: Situation, *, tracking: bool) -> None:  # noqa: ARG002 - of the Protocol
-        """Take what was told, or the height at the centre in the apparent wind, within the altitudes that are flown."""
+        """Take the given height, or the one predicted at the centre in the apparent wind, within the limits of the altitude."""
         height, centre = self._height, situation.centre
-        if self._told is None:
+        if self._true_axis is None:
             self.demanded = height.at(centre.distance, centre.speed_ratio * situation.speed)
             return
-        told, course = self._told
-        self.demanded = min(max(told, height.lowest), height.highest)
+        height_there, course = self._true_axis
+        self.demanded = min(max(height_there, height.lowest), height.highest)
         self.bearing = wrap(course - trail(situation.own, situation.target))
 
 

@@ -15,7 +15,7 @@ _STEP = 6.0
 """Between the heights that are weighed [m]: less than the spread of a plume."""
 
 _HORIZON = 8
-"""Passes that are looked ahead [-]."""
+"""Number of passes that the search plans ahead [-]."""
 
 _KNOWN = 0.3
 """Deviation of the height over the spread of a pass [-], below which nothing is gained by flying anywhere else."""
@@ -23,8 +23,11 @@ _KNOWN = 0.3
 _REACH, _PROBES = 1.6, np.linspace(0.0, 1.0, 9)
 """How far off the estimated height is flown to, over its deviation, and heights that are weighed [-, -]."""
 
+_RUNG = 15.0
+"""Between the heights of a ladder [m]."""
+
 _AHEAD = 3.0
-"""Passes that what is learned in this one is good for [-]: after those the others have told as much."""
+"""Passes over which the information of this one counts [-]: after those the later ones have given as much."""
 
 
 class Search(Protocol):
@@ -67,7 +70,7 @@ class HeightSearch:
         return self._hitting(estimator)
 
     def _hitting(self, estimator: PlumeEstimator) -> float:
-        """Return the height that lets expect the most hits: now, and later by what the pass says of the height."""
+        """Return the height with the most expected hits: now, and later by what the pass shows of the height."""
         height, deviation = estimator.height, estimator.height_deviation
         spread, meander = estimator.sigma_z, estimator.meander_z
         if deviation < _KNOWN * math.hypot(spread, meander):
@@ -100,20 +103,19 @@ class LadderSearch:
     Parameters
     ----------
     lowest, highest : altitudes that may be flown [m]
-    rung : between heights [m]
     """
 
-    __slots__ = ("_highest", "_lowest", "_rung", "_up")
+    __slots__ = ("_highest", "_lowest", "_up")
 
-    def __init__(self, *, lowest: float, highest: float, rung: float = 15.0) -> None:
-        self._lowest, self._highest, self._rung = lowest, highest, rung
+    def __init__(self, *, lowest: float, highest: float) -> None:
+        self._lowest, self._highest = lowest, highest
         self._up = True
 
     def next_altitude(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> float:  # noqa: ARG002 - of the Protocol
         """Return how high to cross next [m]; arguments as of ``Search``."""
         height = estimator.height
         if estimator.state is not PlumeState.FOUND:
-            if not self._lowest < altitude + (self._rung if self._up else -self._rung) < self._highest:
+            if not self._lowest < altitude + (_RUNG if self._up else -_RUNG) < self._highest:
                 self._up = not self._up
-            height = altitude + (self._rung if self._up else -self._rung)
+            height = altitude + (_RUNG if self._up else -_RUNG)
         return min(max(height, self._lowest), self._highest)

@@ -18,7 +18,7 @@ _BEARING_TIME = 15.0
 """Time in which the centre of oscillation follows the bearing that is estimated [s]: it is swung round the vessel gently."""
 
 _NOTED, _SILENT = 0.75, 2.0
-"""Time between readings beyond which the estimator is told a place in between, and beyond which it is told of silence [s]."""
+"""Time between readings beyond which the estimator gets a position in between, and beyond which it is informed of silence [s]."""
 
 _DECIDED = 10.0
 """Time for which a height that was chosen holds at least once the plume is found [s]: what is known of it changes more slowly."""
@@ -63,7 +63,7 @@ class SearchedPlume:
     climb : how the altitude follows
     expected : of ship and sensor
     climb_rate : that the vehicle climbs and sinks at [m/s]
-    ladder : whether a ladder of heights is climbed until it is found, instead of the height that tells most
+    ladder : whether a ladder of heights is flown until it is found, instead of the most informative height
     """
 
     height: AxisHeight
@@ -134,7 +134,7 @@ class SearchedAxis:
         """Return the probability that the plume can be crossed within the altitudes that are flown [-]; costly."""
         return self._estimator.measurable if self._estimator is not None else math.nan
 
-    def heed(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
+    def take_readings(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
         """Take note of the place now, and of what was read since the last readings came, each with its own time [s]."""
         situation = self._situation
         if self._estimator is None or situation is None:
@@ -170,7 +170,7 @@ class SearchedAxis:
         self.mode = _MODES[self._estimator.state] if self.sensor is SensorState.WORKING else Mode.SENSOR_FAILED
 
     def _note(self, at: float, reading: float) -> None:
-        """Tell the estimator the place at a time [s], and what was read there [ppm]."""
+        """Give the estimator the position at a time [s], and the reading there [ppm]."""
         situation, estimator = self._situation, self._estimator
         if situation is None or estimator is None:
             return

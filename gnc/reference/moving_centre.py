@@ -80,7 +80,7 @@ class MovingCentre:
     speed_ratio : nu, vessel through the air over the vehicle's speed [-]
     swing : what turning about the vessel adds to the velocity, to the right of the axis [m/s]
     in_place : whether its distance is what it should be
-    plume_known : whether the apparent wind is enough to tell the plume's direction
+    plume_known : whether the apparent wind is strong enough for the plume to have a known direction
     """
 
     __slots__ = (

@@ -21,7 +21,7 @@ PART = 200
 _PROCESSES = 2
 
 Done = Callable[[int, float], None]
-"""Is told how many reversals are flown, and the largest deviation so far [m]."""
+"""Called with the number of reversals flown, and the largest deviation so far [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +48,7 @@ def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) ->
     found : the design, whose record says with which response
     root : JSBSim root of its autopilot
     reversals : how many are flown
-    done : told after each part
+    done : called after each part
     """
     schedule, own = found.design.schedule, found.record["turn_reversal"]
     parts = [

@@ -4,10 +4,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from xml.sax.saxutils import escape, quoteattr
+from xml.sax.saxutils import escape
 
 from aircraft.dynamics.equilibrium import Trim
-from aircraft.errors import AircraftError, UnknownPropertyError
+from aircraft.errors import UnknownPropertyError
 from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.simulation.properties import (
     CRANK,
@@ -63,7 +63,7 @@ class Command:
     Attributes
     ----------
     time : when it is given, from release on [s]
-    name : JSBSim property that takes it, one of ``innerloop.jsbsim.system``
+    name : JSBSim property that takes it, one of ``innerloop.jsbsim.properties``
     value : [m/s, m or rad/s]
     note : the same in words
     """
@@ -74,37 +74,21 @@ class Command:
     note: str
 
 
-def demonstration(
-    envelope: Envelope,
-    start: Trim,
-    *,
-    heading_rate: float | None = None,
-    altitude_step: float | None = None,
-    airspeed_step: float | None = None,
-) -> tuple[Command, ...]:
+def demonstration(envelope: Envelope, start: Trim) -> tuple[Command, ...]:
     """Return commands that demonstrate the autopilot: turn right, climb, change speed, undo both, turn left.
+
+    The turns are flown at a quarter of the heading rate of the largest commanded bank. The altitude changes by the distance flown
+    in half a second, and the airspeed by a tenth or by half the distance to the farther end of the envelope, whichever is less,
+    towards that end.
 
     Parameters
     ----------
     envelope, start : where the aircraft may fly, and the level equilibrium it starts from
-    heading_rate : of both turns [rad/s], positive; by default a quarter of that of the largest commanded bank
-    altitude_step : [m]; by default the distance flown in half a second
-    airspeed_step : [m/s]; by default a tenth of the airspeed or half the distance to the farther end of the envelope,
-        whichever is less, towards that end
-
-    Raises
-    ------
-    AircraftError : the heading rate is not positive
     """
-    if heading_rate is None:
-        heading_rate = 0.25 * heading_rate_for_bank(envelope.bank_max, start.airspeed)
-    if not heading_rate > 0.0:
-        raise AircraftError(f"heading rate of the turns is {heading_rate} rad/s; it must be above 0, for the first is to the right")
-    if altitude_step is None:
-        altitude_step = 0.5 * start.airspeed
-    if airspeed_step is None:
-        below, above = start.airspeed - envelope.airspeed_min, envelope.airspeed_max - start.airspeed
-        airspeed_step = math.copysign(min(0.1 * start.airspeed, 0.5 * max(below, above)), above - below)
+    heading_rate = 0.25 * heading_rate_for_bank(envelope.bank_max, start.airspeed)
+    altitude_step = 0.5 * start.airspeed
+    below, above = start.airspeed - envelope.airspeed_min, envelope.airspeed_max - start.airspeed
+    airspeed_step = math.copysign(min(0.1 * start.airspeed, 0.5 * max(below, above)), above - below)
     turn = f"{math.degrees(heading_rate):.3g} degrees a second"
     return tuple(
         Command(time=time, name=name, value=value, note=note)
@@ -121,8 +105,8 @@ def demonstration(
     )
 
 
-def write_script(schedule: Schedule, root: Path, *, commands: Sequence[Command] | None = None) -> Path:
-    """Write a JSBSim script, and the initialisation file it starts from, into a root of
+def write_script(schedule: Schedule, root: Path) -> Path:
+    """Write a JSBSim script of ``demonstration``, and the initialisation file it starts from, into a root of
     ``innerloop.jsbsim.root.write_root``.
 
     The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock, from level flight at
@@ -132,22 +116,15 @@ def write_script(schedule: Schedule, root: Path, *, commands: Sequence[Command] 
     ----------
     schedule : the design
     root : JSBSim root with its autopilot
-    commands : by default ``demonstration``
 
     Returns
     -------
     Path : the script
-
-    Raises
-    ------
-    UnknownPropertyError, ReadOnlyPropertyError : the aircraft has no such property, or it takes no writes
-    AircraftError : a command is given before release, or a value is not finite
     """
     spec, start = schedule.spec, schedule.level(schedule.middle)
-    commands = demonstration(schedule.envelope, start) if commands is None else commands
+    commands = demonstration(schedule.envelope, start)
     fdm = Fdm(spec, root)
     fdm.place(start.state())
-    _check(fdm, commands)
     name = f"{spec.model}_autopilot"
     (root / "aircraft" / spec.model / f"{name}_init.xml").write_text(_INITIALISATION.format(name=name), encoding="utf-8")
     held, preparations = _preparations(fdm, schedule.period)
@@ -164,7 +141,7 @@ def write_script(schedule: Schedule, root: Path, *, commands: Sequence[Command] 
         name=name,
         model=spec.model,
         start=-held * TIME_STEP,
-        end=max((c.time for c in commands), default=0.0) + _AFTERWARDS,
+        end=commands[-1].time + _AFTERWARDS,
         step=TIME_STEP,
         rate=OUTPUT_RATE,
         before=_before(start, held * TIME_STEP),
@@ -214,16 +191,6 @@ def columns(fdm: Fdm) -> list[str]:
         engine += 1
 
 
-def _check(fdm: Fdm, commands: Sequence[Command]) -> None:
-    """Raise the errors of ``write_script``: JSBSim itself would stop in mid-flight, or ignore the mistake."""
-    for command in commands:
-        if not (math.isfinite(command.time) and command.time >= 0.0):
-            raise AircraftError(f"command {command.name} is given at {command.time} s; it must be at or after release, at 0 s")
-        fdm.writable_node(command.name)
-        if not math.isfinite(command.value):
-            raise AircraftError(f"script of '{fdm.spec.name}': {command.name} is set to {command.value}; it must be finite")
-
-
 def _before(start: Trim, held: float) -> str:
     """Return the properties that are set before JSBSim runs its initial state, for a body that is then ``held``
     [s]."""
@@ -244,9 +211,8 @@ def _event(note: str, step: int, values: Sequence[tuple[str, float]]) -> str:
     neighbours.
     """
     lines = "\n".join(f'      <set name="{name}" value="{float(value)!r}"/>' for name, value in values)
-    comment = note.replace("--", "- -")  # a comment in XML may not have two dashes
     condition = f"simulation/sim-time-sec ge {(step + 0.5) * TIME_STEP!r}"
-    return _EVENT.format(comment=comment, note=quoteattr(note), condition=condition, time=step * TIME_STEP, sets=lines)
+    return _EVENT.format(note=note, condition=condition, time=step * TIME_STEP, sets=lines)
 
 
 _INITIALISATION = """<?xml version="1.0"?>
@@ -288,8 +254,8 @@ _SCRIPT = """<?xml version="1.0"?>
 """
 
 _EVENT = """
-    <!-- At {time:g} s: {comment} -->
-    <event name={note}>
+    <!-- At {time:g} s: {note} -->
+    <event name="{note}">
       <condition>{condition}</condition>
 {sets}
       <notify/>

@@ -35,9 +35,9 @@ def main(arguments: list[str] | None = None) -> int:
         "--config",
         type=Path,
         metavar="TOML",
-        help="instrument, columns, limits; without it nothing is taken as known of the instrument",
+        help="instrument, columns, limits; without it the instrument counts as unknown",
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where files and report go; runs/measurement_FLIGHT unless given")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="directory of files and report; default runs/measurement_FLIGHT")
     parser.add_argument("--no-report", action="store_true", help="write no report")
     given = parser.parse_args(arguments)
     directory = given.out or Path("runs") / f"measurement_{given.flight.stem}"

@@ -100,10 +100,10 @@ def quiet(scatter: float, channel: Channel) -> tuple[str, ...]:
     noise = channel.noise if stated else NOISE_USUAL
     if scatter >= QUIET_SHARE * noise or channel.resolution > noise:
         return ()
-    told = f"scatters by {scatter:.2g} ppb from reading to reading" if scatter > 0.0 else "reads the same throughout"
+    found = f"scatters by {scatter:.2g} ppb from reading to reading" if scatter > 0.0 else "reads the same throughout"
     expected = f"its noise is {noise:g} ppb" if stated else f"the noise of such sensors is about {noise:g} ppb"
     return (
-        f"{channel.gas.upper()} {told}, and {expected}: it is in another unit (of ppm, give a [scale] of {channel.gas} = 1000.0),"
+        f"{channel.gas.upper()} {found}, and {expected}: it is in another unit (of ppm, give a [scale] of {channel.gas} = 1000.0),"
         " or its sensor is dead",
     )
 

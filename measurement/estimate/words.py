@@ -36,7 +36,7 @@ def content_words(fsc_percent: float, low_percent: float, high_percent: float, u
 
 
 def verdict_words(verdict: str, limit_percent: float, probability_above: float, quality: Quality | str = "A") -> str:
-    """Return a verdict with its limit and probability; that there is none of a record of quality C.
+    """Return a verdict with its limit and probability; for a record of quality C, that there is no verdict.
 
     Parameters
     ----------

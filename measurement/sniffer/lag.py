@@ -14,7 +14,7 @@ SECOND_POLE_MAX = 0.95
 """Largest second time constant over the first: the parallel form of two equal poles has no weights."""
 
 
-def time_constants(t90: float, second_pole: float = 0.0) -> tuple[float, ...]:
+def time_constants(t90: float, second_pole: float) -> tuple[float, ...]:
     """Return the time constants [s] of a response that reaches 90 % of a step after ``t90``.
 
     One pole: t90 / ln 10. Two poles: the second time constant is ``second_pole`` times the first.

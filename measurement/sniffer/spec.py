@@ -16,7 +16,7 @@ _SHORTEST = 0.2
 
 @dataclass(frozen=True, kw_only=True)
 class SnifferSpec:
-    """A sniffer as its data sheet and its calibration tell.
+    """A sniffer by its data sheet and its calibration.
 
     Attributes
     ----------

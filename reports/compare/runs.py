@@ -68,11 +68,6 @@ class Run:
         state = str(self.manifest.get("state", "unfinished"))
         return "killed" if state == "running" else state
 
-    def trial_of(self, flight_id: str) -> Trial:
-        """Return the trial of a flight."""
-        name = self.data.summary.set_index("flight_id")["trial"][flight_id]
-        return next(trial for trial in self.trials if trial.key == name)
-
 
 def read_runs(paths: Sequence[Path]) -> list[Run]:
     """Read the runs to be compared.

@@ -103,13 +103,12 @@ def short_of(rows: Iterable[Record], key: str, required: float) -> list[Record]:
     return [row for row in rows if row.get(key) is not None and row[key] < required]
 
 
-def down(value: float | None, places: int = 1) -> str:
+def down(value: float | None) -> str:
     """Return a margin rounded down, so that none looks as large as required that is not; one without a value is unlimited."""
     if value is None:
         return "∞"
-    scale = 10.0**places
     # The small fraction forgives what binary fractions lose: 5.7 stays 5.7.
-    return minus(f"{math.floor(value * scale + 1e-6) / scale:.{places}f}")
+    return minus(f"{math.floor(value * 10.0 + 1e-6) / 10.0:.1f}")
 
 
 def at_middle(record: Record, rows: Iterable[Record]) -> list[Record]:

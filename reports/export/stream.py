@@ -26,14 +26,13 @@ def stream_address(text: str) -> tuple[str, int]:
     return found[1], int(found[2])
 
 
-def stream_flight(flight: GeographicFlight, address: tuple[str, int], *, speed: float = 1.0) -> tuple[str, int, float]:
+def stream_flight(flight: GeographicFlight, address: tuple[str, int]) -> tuple[str, int, float]:
     """Send a flight, and return its name, the number of messages and its duration [s].
 
     Parameters
     ----------
     flight : as recorded
     address : host and port
-    speed : seconds of the flight in a second of the clock [-]
 
     Raises
     ------
@@ -43,7 +42,7 @@ def stream_flight(flight: GeographicFlight, address: tuple[str, int], *, speed: 
     began = time.monotonic()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
         for at, message in messages(flight):
-            if (ahead := (at - float(flight.time[0])) / speed - (time.monotonic() - began)) > 0.0:
+            if (ahead := (at - float(flight.time[0])) - (time.monotonic() - began)) > 0.0:
                 time.sleep(ahead)
             try:
                 link.sendto(message, address)

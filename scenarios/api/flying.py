@@ -53,13 +53,13 @@ def fly(
     from scenarios.studies.single_flight import SingleFlight
 
     loaded = load(scenario).set(**keys)
-    with lent(loaded.parts), _directory(out) as (directory, keeping), _shown(progress=progress) as tell:
+    with lent(loaded.parts), _directory(out) as (directory, keeping), _shown(progress=progress) as show:
         study = flights_of(loaded)
         name = flight_id or _only_flight(study, loaded)
         single = SingleFlight.of(study, name)
         if single is None:
             raise InputError(f"'{loaded.name}' has no flight '{name}'; its flights are {_names(study)}")
-        result = fly_study(single, directory, executor_factory=InProcessExecutor, resume=False, progress=tell)
+        result = fly_study(single, directory, executor_factory=InProcessExecutor, resume=False, progress=show)
         return _finished(result, keeping).flights[name]
 
 
@@ -100,9 +100,9 @@ def run(
     def executor(work: "Work") -> "Executor":
         return processes(LentWork(work, loaded.parts) if loaded.parts else work)
 
-    with lent(loaded.parts), _directory(out) as (directory, keeping), _shown(progress=progress) as tell:
+    with lent(loaded.parts), _directory(out) as (directory, keeping), _shown(progress=progress) as show:
         result = run_study(
-            loaded.config, loaded.name, directory, executor_factory=executor, progress=tell, overrides=loaded.changes
+            loaded.config, loaded.name, directory, executor_factory=executor, progress=show, overrides=loaded.changes
         )
         return _finished(result, keeping)
 
@@ -183,8 +183,8 @@ def _shown(*, progress: bool) -> Iterator["Progress"]:
         return
     from scenarios.engine.progress import progress_bar
 
-    with progress_bar() as tell:
-        yield tell
+    with progress_bar() as show:
+        yield show
 
 
 def _finished(result: "RunResult", keeping: Keeping) -> Run:

@@ -205,7 +205,7 @@ class _Namer:
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None
         if key == "aircraft" and name in stock_names():
-            raise InputError(f"aircraft is an object called '{name}', as one of JSBSim's own is; call yours otherwise")
+            raise InputError(f"aircraft is an object called '{name}', as one of JSBSim's own is; rename yours")
         given = Lent(key, name, Copies(part) if made and key in _COPIED else part)
         if self.found.setdefault((registry.kind, name), given).part != given.part:
             raise InputError(f"{key}: two objects are called '{name}'; give each a name of its own")

@@ -94,7 +94,7 @@ class Run:
         Parameters
         ----------
         path : of the file; nothing is written without one
-        all_flights : print every flight that can be picked on the screen, not the telling ones alone
+        all_flights : print every flight that can be picked on the screen, not only the most informative ones
 
         Raises
         ------

@@ -26,11 +26,11 @@ def described(name: str | None = None) -> list[str]:
     """
     if name is None:
         return list(_all_sections())
-    wanted = re.sub(r"\.\d+(?=\.|$)", "", name)
-    keys = [key for key in documented_keys() if key.key.replace(".0", "") == wanted or (wanted == "nu" and key.key == "sweep")]
-    sections = [section for section in documented_sections() if section.name and section.name.replace(".0", "") == wanted]
+    plain = re.sub(r"\.\d+(?=\.|$)", "", name)
+    keys = [key for key in documented_keys() if key.key.replace(".0", "") == plain or (plain == "nu" and key.key == "sweep")]
+    sections = [section for section in documented_sections() if section.name and section.name.replace(".0", "") == plain]
     if not keys and not sections:
-        guess = similar_key(wanted)
+        guess = similar_key(plain)
         remedy = f"did you mean '{guess}'?" if guess else "plume-flight describe lists the sections"
         raise InputError(f"unknown key '{name}'; {remedy}")
     lines = [line for section in sections for line in _section(section)]

@@ -35,12 +35,13 @@ def export(
 
 
 def estimate(
-    flight: Annotated[Path, typer.Argument(metavar="FLIGHT.csv", help="time_s, so2_ppb, co2_ppm, and what else is known.")],
+    flight: Annotated[Path, typer.Argument(metavar="FLIGHT.csv", help="Log with time_s, so2_ppb, co2_ppm, and optional columns.")],
     config: Annotated[
-        Path | None, typer.Option(metavar="FILE.toml", help="Instrument, columns, limits; without it nothing is known of them.")
+        Path | None,
+        typer.Option(metavar="FILE.toml", help="Instrument, columns, limits; default an unknown instrument."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Where files and report go.", show_default="runs/measurement_FLIGHT")
+        Path | None, typer.Option(metavar="DIR", help="Directory of files and report.", show_default="runs/measurement_FLIGHT")
     ] = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
 ) -> None:
@@ -55,7 +56,8 @@ def estimate(
 
 def describe(
     key: Annotated[
-        str | None, typer.Argument(metavar="KEY|SECTION", help="As in wind.speed_mps or wind; sections if left out.")
+        str | None,
+        typer.Argument(metavar="KEY|SECTION", help="Such as wind.speed_mps or wind; lists the sections if left out."),
     ] = None,
 ) -> None:
     """Say what a key of the scenario file means, its unit, range and default, and the studies that take it."""
@@ -70,7 +72,7 @@ def describe(
 
 
 def new(
-    file: Annotated[Path, typer.Argument(metavar="FILE.toml", help="The file to write; one that is there is left alone.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE.toml", help="The file to write; an existing file is not overwritten.")],
     source: Annotated[
         str, typer.Option("--from", metavar="NAME|FILE.toml", help="The scenario that it is made from.")
     ] = "sweep_nu",

@@ -90,7 +90,7 @@ class Journal:
         """Raise an InputError if a result is not as it was added."""
         columns = tuple(name for _, name, *_ in self._database.execute("PRAGMA table_info(results)"))
         if columns != _COLUMNS:
-            raise InputError(f"'{self._path}' is no journal of this version; start a new run in another --out")
+            raise InputError(f"'{self._path}' is not a journal of this version; start a new run in another --out")
         for *fields, checksum in self._database.execute(f"SELECT {', '.join(_COLUMNS)} FROM results"):
             if checksum != _checksum(*fields) or not _is_tables(fields[-1]):
                 raise damaged(self._path, f": the result of task {fields[0]} does not agree with its checksum")

@@ -73,7 +73,7 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
 
 
 def _different(values: Sequence[object]) -> Iterable[object]:
-    """Return values each once, told apart as they compare: lists and tables may be swept, too, and 5 is 5.0."""
+    """Return the values without repetitions, by comparison: lists and tables may be swept, too, and 5 equals 5.0."""
     return [value for i, value in enumerate(values) if value not in values[:i]]
 
 

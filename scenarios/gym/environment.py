@@ -149,7 +149,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
 
         Raises
         ------
-        InputError : an option is none, the scenario has no flight of this name, or it cannot be flown; or none of many at random
+        InputError : an option is unknown, the scenario has no flight of this name, or it cannot be flown; or none of many at random
             can be; one line
         """
         super().reset(seed=seed)

@@ -24,10 +24,10 @@ MEANINGS: dict[str, tuple[str, str, float]] = {
     "vessel_across_mps": ("velocity of the vessel to the right of the plume", "m/s", _SPEED),
     "wind_along_mps": ("velocity of the air along the plume, as the guidance estimates it", "m/s", _SPEED),
     "wind_across_mps": ("velocity of the air to the right of the plume, as the guidance estimates it", "m/s", _SPEED),
-    "reference_along_m": ("way to the reference along the plume", "m", _DISTANCE),
-    "reference_across_m": ("way to the reference to the right of the plume", "m", _DISTANCE),
+    "reference_along_m": ("distance to the reference along the plume", "m", _DISTANCE),
+    "reference_across_m": ("distance to the reference to the right of the plume", "m", _DISTANCE),
     "reference_cos": ("cosine of the reference's course through the air, from the plume's", "1", 1.0),
-    "reference_sin": ("sine of the same", "1", 1.0),
+    "reference_sin": ("sine of the reference's course through the air, from the plume's", "1", 1.0),
     "elapsed": ("time since the start over the longest that the flight may last", "1", 1.0),
 }
 """Entries of the observation in order, each with meaning, unit, and the bound of its size. Motion is true."""

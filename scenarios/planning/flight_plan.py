@@ -24,13 +24,13 @@ class Sensing:
     ----------
     received : reports of the vessel and when each is received [s]; none where the vessel is known exactly
     errors : of the sensors
-    reads_plume, told : whether a sniffer is read in flight, and whether the flight is told where the plume is
+    reads_plume, knows_axis : whether a sniffer is read in flight, and whether the flight is given the plume's true axis
     """
 
     received: list[tuple[float, VesselReport]] | None
     errors: SensorErrors
     reads_plume: bool = False
-    told: bool = False
+    knows_axis: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -138,7 +138,7 @@ def following_flight(
             received=received,
             errors=SensorErrors(scenario.sensors, steps=steps, time_step=1.0 / g.rate_hz, generator=generators.sensors),
             reads_plume=f.plume == "estimated" or flight.until == "verdict",
-            told=f.plume == "told",
+            knows_axis=f.plume == "told",
         ),
         oscillation=orbit,
         periods=periods,
@@ -205,7 +205,7 @@ def _with_intervals(scenario: Scenario, vessel: VesselTruth) -> Scenario:
 
 
 def _check_declared(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
-    """Raise an InfeasibleError for a vessel that does more than the keep-out guard is told, where it is not always known."""
+    """Raise an InfeasibleError for a vessel that exceeds what the keep-out guard assumes, where it is not always known."""
     # A steady vessel does at any time what she does at first.
     f, duration = scenario.following, 0.0 if isinstance(vessel, SteadyVessel) else scenario.flight.duration_max_s
     known = scenario.vessel_known and scenario.fault.kind != VESSEL_DATA

@@ -67,7 +67,7 @@ def documented_keys() -> list[DocumentedKey]:
 
 
 def similar_key(name: str) -> str | None:
-    """Return the key or section that is meant by a name that is neither: one that is spelt like it, or whose last word is."""
+    """Return the key or section that an unknown name stands for: one with a similar spelling, or with a similar last word."""
     keys = [documented.key for documented in documented_keys()]
     if close := nearest(name, [*(section.name for section in documented_sections()), *keys]):
         return close

@@ -159,7 +159,7 @@ def scenario_path(name: str, folder: Path | None = None, *, extended: bool = Fal
         return path
     if is_file((path.parent if path.name == FLIGHTS else path) / MANIFEST):
         run = Path(name).parent if path.name == FLIGHTS else Path(name)
-        raise InputError(f"'{run}' is a run, and no scenario; a flight of it is replayed by its name, as {run / FLIGHTS}/ID")
+        raise InputError(f"'{run}' is a run, not a scenario; to replay one of its flights, give {run / FLIGHTS}/ID")
     guess = did_you_mean(Path(name).stem if name.endswith(".toml") else name, known)
     what = f"no scenario file '{name}'" if name.endswith(".toml") else f"unknown scenario '{name}'"
     raise InputError(f"{what}{guess or ';'} give the path of a TOML file or one of: {', '.join(known)}")

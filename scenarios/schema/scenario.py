@@ -58,26 +58,26 @@ class Scenario(Section):
     title: str
     """What reports and lists call it."""
     description: str = ""
-    """In a sentence or two, for the head of the report."""
+    """One or two sentences at the top of the report."""
     aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = DEFAULT_AIRCRAFT
     """The aircraft, by its name (plume-flight design --list), by the folder of its JSBSim model, DIR/NAME, or FILE.py:NAME."""
     fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
-    """The aircraft in six degrees of freedom, the paper's kinematic vehicle, or one after the other."""
+    """Vehicle: the aircraft in six degrees of freedom, the paper's kinematic vehicle, or both."""
     seed: Seed = 1
-    """Of everything random; flights have seeds of their own, which follow from it [-]."""
+    """Seed of the study, from which every flight's own seed follows [-]."""
     flights: Annotated[int, Field(ge=1, le=FLIGHTS_MAX)] = 1
     """Flights of each point of the experiment, each with a seed and a sample of the random variables of its own [-]."""
     flight_seed: Seed | None = None
-    """Of start, air and noise; each flight has its own, from seed, name and number, if it is not given [-]."""
+    """Seed of start, air and noise of every flight; if not given, each flight has its own, from seed, name and number [-]."""
     histories: Annotated[int, Field(ge=0, le=100_000)] = 200
-    """Number of time histories to be kept, an even sample [-]. Those of flights that did not do what is required of them are kept
-    beside them; of missions that were not completed, that of the first of each trial."""
+    """Number of time histories to be kept, evenly spaced over the flights [-]. Those of flights that did not meet what is required
+    are kept as well; of missions that were not completed, that of the first of each trial."""
     speed_ratio: Range = (0.0, 1e9)
     """Flights whose nu leaves this range, at the start or after a manoeuvre, are sampled again [-]."""
     method: Literal["plain", "subset"] = "plain"
-    """How a Monte Carlo study samples: every flight alike, or by subset simulation, towards rare keep-out violations."""
+    """How a Monte Carlo study samples: plain, or by subset simulation, towards rare keep-out violations."""
     sampling: Sampling = "sobol"
-    """How samples are spread: evenly over all distributions at once, or over each, or not at all."""
+    """How samples are spread: evenly over all random variables together (sobol), over each of them, or not at all."""
     sweep: SweepConfig = SweepConfig()
     cases: tuple[CaseConfig, ...] = ()
     draws: tuple[DrawConfig, ...] = ()
@@ -86,7 +86,7 @@ class Scenario(Section):
     subset: SubsetConfig = SubsetConfig()
     search: SearchConfig = SearchConfig()
     laws: tuple[str, ...] = ()
-    """Laws that take part in an arena beside its own, each by its name or FILE.py:NAME."""
+    """Laws that take part in an arena in addition to its own, each by its name or FILE.py:NAME."""
     arena: ArenaConfig = ArenaConfig()
     patrol: PatrolConfig = PatrolConfig()
     place: PlaceConfig = PlaceConfig()
@@ -144,7 +144,7 @@ class Scenario(Section):
 
     @property
     def finds(self) -> bool:
-        """Return whether a plume is searched for, told, or measured until there is a verdict."""
+        """Return whether a plume is searched for, given, or measured until there is a verdict."""
         return self.following.plume != "predicted" or self.flight.until == "verdict"
 
     @property

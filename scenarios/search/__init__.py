@@ -1,1 +1,1 @@
-"""Search for the point of the unit cube with the least clearance: methods that ask for points and are told what came of them."""
+"""Search for the point of the unit cube with the least clearance: methods that propose points and receive the clearances."""

@@ -44,9 +44,9 @@ class ClosedLoop:
         self,
         plan: FlightPlan,
         vehicle: Vehicle,
-        payload: Sequence[Instrument] = (),
+        payload: Sequence[Instrument],
         *,
-        reader: GasReader | None = None,
+        reader: GasReader | None,
         every_step: bool = False,
     ) -> None:
         self.plan, self.vehicle, self._every_step = plan, vehicle, every_step
@@ -145,8 +145,8 @@ def _sensing(plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, reader: Gas
     if sensing is None or world is None:
         return None
     readings = None
-    if axis is not None and (reader is not None or sensing.told):
-        readings = PlumeReadings(reader, world, vehicle, axis, interval=plan.log_interval, told=sensing.told)
+    if axis is not None and (reader is not None or sensing.knows_axis):
+        readings = PlumeReadings(reader, world, vehicle, axis, interval=plan.log_interval, knows_axis=sensing.knows_axis)
     return OnboardSensing(sensing, world, vehicle, guidance, altitude=plan.altitude, readings=readings)
 
 

@@ -36,9 +36,7 @@ class Ending:
     outcome, message : in a word, and why in a sentence; nothing to say where it completed
     """
 
-    def __init__(
-        self, plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, settling: Settling, judge: Judge | None = None
-    ) -> None:
+    def __init__(self, plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, settling: Settling, judge: Judge | None) -> None:
         self._plan, self._vehicle, self._guidance, self._settling, self._judge = plan, vehicle, guidance, settling, judge
         self._ditched, self._fault, self._end = False, "", 0.0
 

@@ -18,7 +18,7 @@ _SELDOM = 15.0
 
 
 class PlumeReadings:
-    """Passes on what a sniffer reads, and what a flight is told of its plume.
+    """Passes on the readings of a sniffer, and the true axis of the plume to a flight that is given it.
 
     Parameters
     ----------
@@ -26,16 +26,16 @@ class PlumeReadings:
     world, vehicle : of the flight
     axis : of the plume, as the guidance has it
     interval : guidance steps between rows of the record, at which the sniffer's path is known
-    told : whether the guidance is told where the axis is
+    knows_axis : whether the guidance is given the true axis
     """
 
-    __slots__ = ("_axis", "_interval", "_reader", "_told", "_vehicle", "_world")
+    __slots__ = ("_axis", "_interval", "_knows_axis", "_reader", "_vehicle", "_world")
 
     def __init__(
-        self, reader: GasReader | None, world: World, vehicle: Vehicle, axis: PlumeAxis, *, interval: int, told: bool
+        self, reader: GasReader | None, world: World, vehicle: Vehicle, axis: PlumeAxis, *, interval: int, knows_axis: bool
     ) -> None:
         self._reader, self._world, self._vehicle, self._axis = reader, world, vehicle, axis
-        self._interval, self._told = interval, told
+        self._interval, self._knows_axis = interval, knows_axis
 
     def pass_on(self, step: int, time: float, motion: Motion, guidance: Guidance) -> None:
         """Pass on what has come until a step; the guidance has taken note of its own motion at it."""
@@ -44,8 +44,8 @@ class PlumeReadings:
             axis.flown = sample[0]
             readings = self._reader.follow(time, motion, sample) if self._reader is not None else ()
             if isinstance(axis, SearchedAxis):
-                axis.heed(time, readings)
-        if self._told and step % guidance.plan_interval == 0:
+                axis.take_readings(time, readings)
+        if self._knows_axis and step % guidance.plan_interval == 0:
             self._tell(time, guidance)
 
     def _tell(self, time: float, guidance: Guidance) -> None:
@@ -60,7 +60,7 @@ class PlumeReadings:
         across, above = float(plume.across[0]), float(plume.axis_height[0])
         if math.isfinite(above):
             bearing, distance = math.atan2(centre.y, centre.x), math.hypot(centre.x, centre.y)
-            self._axis.tell(above, bearing - math.atan2(across, distance))
+            self._axis.set_true_axis(above, bearing - math.atan2(across, distance))
 
 
 class PlumeBelief:

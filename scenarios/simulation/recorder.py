@@ -57,7 +57,7 @@ class Recorder:
         return reference.north, reference.east, reference.course, reference.heading_rate
 
     def record(self, time: float, motion: Motion, reference: Place, *, judged: bool) -> tuple[tuple[float, ...], bool]:
-        """Keep a row; return the vehicle's sample, and whether the flight has all its crossings, which ``judged`` samples tell.
+        """Keep a row; return the vehicle's sample, and whether the flight has all its crossings, by ``judged`` samples.
 
         Parameters
         ----------

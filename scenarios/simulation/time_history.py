@@ -20,19 +20,19 @@ INSTRUMENT_MEANINGS = {
         for gas in ("so2_ppb", "co2_ppm", "no_ppb", "no2_ppb")
         for name, text in (
             (gas, "true concentration along the path"),
-            (gas.replace("_", "_reading_"), "reading, which stands until the next"),
+            (gas.replace("_", "_reading_"), "reading, held until the next one"),
         )
     },
     "plume_across_m": "place across the plume's mean axis",
     "plume_above_m": "height above the plume's mean axis",
     "plume_fraction": "concentration over that in the centre of the plume",
-    "axis_height_estimated_m": "height of the plume's axis as believed",
-    "axis_height_deviation_m": "its standard deviation",
-    "axis_offset_estimated_m": "place of the axis across that predicted, as believed",
-    "axis_offset_deviation_m": "its standard deviation",
-    "axis_spread_estimated_m": "vertical spread of the plume as believed",
-    "axis_spread_across_estimated_m": "horizontal spread of the plume as believed",
-    "axis_measurable": "probability, as believed, that the plume can be crossed within the limits of the altitude",
+    "axis_height_estimated_m": "estimated height of the plume's axis",
+    "axis_height_deviation_m": "standard deviation of the estimated height",
+    "axis_offset_estimated_m": "estimated offset of the axis across the predicted one",
+    "axis_offset_deviation_m": "standard deviation of the estimated offset",
+    "axis_spread_estimated_m": "estimated vertical spread of the plume",
+    "axis_spread_across_estimated_m": "estimated horizontal spread of the plume",
+    "axis_measurable": "estimated probability that the plume can be crossed within the limits of the altitude",
     "axis_innovation": "mean normalised innovation squared of the passes, 1 where the filter is consistent",
 }
 """Of time histories, of a sniffer and of a search for the plume."""

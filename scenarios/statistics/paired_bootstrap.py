@@ -39,7 +39,7 @@ class Estimate:
 
     @property
     def as_good(self) -> bool:
-        """Return whether the flights do not tell it from the best."""
+        """Return whether the flights do not show a difference from the best."""
         return self.behind_low <= 0.0 <= self.behind_high
 
 

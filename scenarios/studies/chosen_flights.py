@@ -54,4 +54,4 @@ class ChosenFlightsStudy(FlightStudy):
         return next(journal.numbered(SUMMARY, first=len(self._tasks), below=below), None) is not None
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
-        """Write nothing: how well sulphur is measured is not told from flights that each follow from others."""
+        """Write nothing: flights that follow from others are not a sample that shows how well sulphur is measured."""

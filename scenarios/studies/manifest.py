@@ -41,7 +41,7 @@ def initial_manifest(scenario: AnyStudy, name: str, overrides: Sequence[str]) ->
 
     Raises
     ------
-    InputError : the logo of the reports is no picture
+    InputError : the logo of the reports is not a picture
     """
     config = flown_config(scenario)
     return {
@@ -69,7 +69,7 @@ def write_logo(report: ReportConfig, run: RunDirectory) -> None:
 
     Raises
     ------
-    InputError : it is no picture
+    InputError : it is not a picture
     """
     if logo := read_logo(report):
         run.write_bytes(f"{LOGO}{logo.suffix}", logo.content)

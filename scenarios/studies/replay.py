@@ -111,7 +111,7 @@ class Replay(SingleFlight):
         for name in (trial, *trials):
             # It becomes part of the names of files.
             if not is_file_name(name) or name not in trials:
-                raise InputError(f"'{self._from}' names a trial {name!r}, which is no name of a trial; do not use this run")
+                raise InputError(f"'{self._from}' names a trial {name!r}, which cannot be the name of a trial; do not use this run")
         scenarios = {name: checked({**config, "study": "flights"}, Scenario) for name, config in trials.items()}
         flown = Experiment(trial, scenarios[trial]).points
         refuse_changed(manifest.get("plugins", {}), plugins(point.scenario for point in flown))

@@ -110,7 +110,7 @@ def spec_of(scenario: Scenario) -> AircraftSpec | None:
 
 
 def design_of(spec: AircraftSpec, altitude: float) -> tuple[Designed | None, str]:
-    """Return the aircraft's autopilot at ``altitude`` [m], or nothing and why there is none."""
+    """Return the aircraft's autopilot at ``altitude`` [m], or nothing and the reason."""
     try:
         return designed(spec, altitude), ""
     except AircraftError as error:

@@ -60,8 +60,8 @@ def test_the_samples_of_a_logged_flight_have_the_columns_that_are_said():
 
 def test_columns_stand_with_their_units():
     rows = set(columns_page().splitlines())
-    assert "| `heading_rate_limit_rad_s` | rad/s | omega\\_max, at which commands are cut |" in rows
-    assert "| `crossing_count` |  | crossings of the plume, settled |" in rows
+    assert "| `heading_rate_limit_rad_s` | rad/s | omega\\_max, to which commands are limited |" in rows
+    assert "| `crossing_count` |  | crossings of the plume after settling |" in rows
 
 
 def test_every_command_and_every_option_is_on_its_page():

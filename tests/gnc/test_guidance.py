@@ -127,7 +127,7 @@ def test_the_guards_answer_is_what_is_commanded(guarded_by, answer):
 
 
 @pytest.mark.parametrize("lag", [0.0, 0.4])
-def test_the_guard_is_asked_about_the_motion_now_and_told_of_a_disc_without_width(guarded_by, lag):
+def test_the_guard_is_asked_about_the_motion_now_and_gets_a_disc_without_width(guarded_by, lag):
     guidance = guarded_by(RecordingGuard(0.0), lag=lag, vessel=(3.0, -2.0))
     guidance.step(5.0, motion(-300.0, 20.0, 0.7, SPEED + 0.5, 0.1))
     # Course and speed come back from the velocities: roundings.

@@ -109,7 +109,7 @@ def test_the_noise_of_whole_numbers_is_that_before_rounding_and_of_rounding():
         assert readings_noise(checked_record(readings, spec), spec)["co2"] == pytest.approx(expected, rel=0.1)
 
 
-def test_a_single_pass_that_the_record_cuts_off_is_told_as_that():
+def test_a_single_pass_that_the_record_cuts_off_is_reported_as_that():
     spec = plain_sniffer(so2_noise=1.0, co2_noise=1.0)
     readings = read(spec, crossings(0.25, duration=100.0, interval=200.0, first=80.0, meander=0.0))
     found = estimate(readings, spec, method="areas")

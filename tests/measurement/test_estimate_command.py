@@ -211,7 +211,7 @@ def test_a_file_in_utf_16_is_to_be_saved_in_utf_8(logged, capsys):
     assert capsys.readouterr().err == f"error: '{logged}' is not text in UTF-8; save it as CSV in UTF-8\n"
 
 
-def test_co2_without_its_background_is_told_as_that(logged, capsys):
+def test_co2_without_its_background_is_reported_as_that(logged, capsys):
     table = pd.read_csv(logged)
     table["co2_ppm"] -= 421.0
     table.to_csv(logged, index=False)

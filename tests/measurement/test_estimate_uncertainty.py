@@ -156,7 +156,7 @@ def test_gases_that_are_not_measured_widen_the_interval():
 
 
 @pytest.mark.parametrize(("emitted", "wider"), [(1.5, True), (0.25, False)])
-def test_without_a_stated_response_nox_tells_only_how_much_of_it_there_is(emitted, wider):
+def test_without_a_stated_response_nox_shows_only_how_much_of_it_there_is(emitted, wider):
     # The response is 0 with a standard deviation of 0.02: readings of NO correct nothing, and what they may have done is in
     # proportion to them. 1.5 times the 20.7 ppb/ppm of this ship are more than 18 +- 7.5, which are taken where NO is not measured,
     # and a quarter of them is less.

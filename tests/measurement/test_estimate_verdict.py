@@ -71,7 +71,7 @@ GOOD = {
         ({"fsc": math.nan, "deviation": math.nan}, "C", "the CO2 excess is not above its noise"),
     ],
 )
-def test_quality_is_told_with_its_reason(change, quality, reason):
+def test_quality_is_stated_with_its_reason(change, quality, reason):
     found, reasons = judged_quality(**{**GOOD, **change})
     assert found == quality
     assert reason in " ".join(reasons)
@@ -85,7 +85,7 @@ def test_high_sulphur_is_called_above_and_low_sulphur_below_half_a_percent():
     assert not any(e.verdicts[0].verdict == "above" for e in found[0.05])
 
 
-def test_an_estimate_is_told_over_time():
+def test_an_estimate_is_given_over_time():
     readings, spec = flight("electrochemical", 0.3, 2)
     table = over_time(readings, spec, elapsed_s=(5.0, 30.0, 60.0, 120.0, 300.0, 600.0))
     assert table["elapsed_s"].tolist() == [5.0, 30.0, 60.0, 120.0, 300.0]

@@ -165,7 +165,7 @@ def test_a_run_is_no_scenario_and_its_flights_are_replayed_by_name(tmp_path, run
     (tmp_path / "a").mkdir()
     (tmp_path / "a" / "manifest.json").write_text("{}", encoding="utf-8")
     for name in ("a", "a/flights"):
-        assert_refused(run_here(name), "'a' is a run, and no scenario; a flight of it is replayed by its name, as a/flights/ID")
+        assert_refused(run_here(name), "'a' is a run, not a scenario; to replay one of its flights, give a/flights/ID")
 
 
 def test_a_report_of_nothing_is_refused(tmp_path):

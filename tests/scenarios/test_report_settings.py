@@ -106,7 +106,7 @@ def test_a_logo_that_is_no_picture_is_refused_before_anything_is_flown(given, sc
         override = []
     ended = run_command("scenarios.run", scenario, "--out", tmp_path / "run", *override)
     assert ended.status == 2
-    assert ended.errors == "error: report.logo: 'text.png' is no picture; give a whole PNG, JPEG or SVG file\n"
+    assert ended.errors == "error: report.logo: 'text.png' is not a picture; give a whole PNG, JPEG or SVG file\n"
     assert not (tmp_path / "run").exists()
 
 

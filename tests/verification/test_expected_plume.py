@@ -21,19 +21,19 @@ from measurement.plume.spread import spreads
 EMISSION = emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), power=10e6)
 
 
-CO2_RATE = EMISSION.rates[GASES.index("co2")]
+def prior_of(of: Emission = EMISSION, *, load_deviation: float = 0.3, **situation: float) -> PlumePrior:
+    return expected_plume(
+        stack_diameter=of.stack_diameter, exhaust_speed=of.exhaust_speed, momentum_flux=of.momentum_flux,
+        buoyancy_flux=of.buoyancy_flux, co2_rate=of.rates[GASES.index("co2")], load_deviation=load_deviation, sensor=SENSOR,
+        source_deviation=5.0, lowest=20.0, highest=120.0, **situation,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("source", [20.0, 35.0, 60.0])
 @pytest.mark.parametrize(("apparent", "wind"), [(5.0, 7.0), (6.0, 12.0), (10.0, 10.0), (14.0, 5.0), (18.0, 8.0)])
 def test_height_spreads_and_peak_are_those_of_the_plume_model(apparent: float, wind: float, source: float) -> None:
     distance = 270.0
-    prior = expected_plume(
-        distance=distance, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.6, source_height=source, source_deviation=5.0,
-        stack_diameter=EMISSION.stack_diameter, exhaust_speed=EMISSION.exhaust_speed,
-        momentum_flux=EMISSION.momentum_flux, buoyancy_flux=EMISSION.buoyancy_flux, co2_rate=CO2_RATE,
-        load_deviation=0.3, sensor=SENSOR, lowest=20.0, highest=120.0,
-    )  # fmt: skip
+    prior = prior_of(distance=distance, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.6, source_height=source)
     age = distance / apparent
     of = spreads(EMISSION, MarineAir(wind_speed=wind), source, np.array([apparent]), age, PlumeSettings())
     true = {name: float(np.interp(age, 0.1 * np.arange(getattr(of, name).shape[1]), getattr(of, name)[0])) for name in (
@@ -47,7 +47,7 @@ def test_height_spreads_and_peak_are_those_of_the_plume_model(apparent: float, w
     ):  # fmt: skip
         assert abs(math.log(expected / true[name])) < limit, name
     assert prior.meander_z == pytest.approx(true["meander_z"], rel=0.3, abs=3.0)
-    peak = 1e6 * CO2_RATE / (2.0 * math.pi * apparent * true["relative_y"] * true["relative_z"] * 42.3)
+    peak = 1e6 * EMISSION.rates[GASES.index("co2")] / (2.0 * math.pi * apparent * true["relative_y"] * true["relative_z"] * 42.3)
     assert abs(math.log(prior.peak / peak)) < 0.3
 
 
@@ -73,12 +73,7 @@ def test_a_plume_that_is_not_searched_for_is_followed_at_the_height_of_the_plume
 def test_spreads_and_meander_are_carried_to_another_distance(apparent: float, wind: float, source: float) -> None:
     """From where an orbit is joined to where it has closed in, against the plume model."""
     far, near = 440.0, 270.0
-    prior = expected_plume(
-        distance=far, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.3, source_height=source, source_deviation=5.0,
-        stack_diameter=EMISSION.stack_diameter, exhaust_speed=EMISSION.exhaust_speed,
-        momentum_flux=EMISSION.momentum_flux, buoyancy_flux=EMISSION.buoyancy_flux, co2_rate=CO2_RATE,
-        load_deviation=0.3, sensor=SENSOR, lowest=20.0, highest=120.0,
-    )  # fmt: skip
+    prior = prior_of(distance=far, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.3, source_height=source)
     of = spreads(EMISSION, MarineAir(wind_speed=wind), source, np.array([apparent]), far / apparent + 1.0, PlumeSettings())
     ages = 0.1 * np.arange(of.height.shape[1])
     assert prior.widened(far, apparent) == pytest.approx(1.0)
@@ -95,12 +90,15 @@ def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load: float) -> N
     middle, other = (emission_of(ship, fuel, power=of * ship.power_max) for of in (0.45, load))
 
     def prior(of: Emission, load_deviation: float) -> PlumePrior:
-        return expected_plume(
-            distance=270.0, apparent_wind=6.0, wind_speed=8.0, wind_deviation=0.0, source_height=40.0, source_deviation=5.0,
-            stack_diameter=of.stack_diameter, exhaust_speed=of.exhaust_speed, momentum_flux=of.momentum_flux,
-            buoyancy_flux=of.buoyancy_flux, co2_rate=of.rates[GASES.index("co2")], load_deviation=load_deviation, sensor=SENSOR,
-            lowest=20.0, highest=120.0,
-        )  # fmt: skip
+        return prior_of(
+            of,
+            load_deviation=load_deviation,
+            distance=270.0,
+            apparent_wind=6.0,
+            wind_speed=8.0,
+            wind_deviation=0.0,
+            source_height=40.0,
+        )
 
     off = abs(math.log(other.rates[1] / middle.rates[1]))
     changed = abs(math.log(prior(other, 0.0).peak / prior(middle, 0.0).peak))

@@ -188,7 +188,7 @@ def _adapted_period(
 
 
 def _air_velocity_reference(p: NpfgParameters, bearing: Vector, wind: Vector, wind_speed: float, ground_speed_min: float) -> Vector:
-    """Return the velocity through the air that gives the wanted bearing over the ground, as far as the wind lets it [m/s]."""
+    """Return the velocity through the air that gives the demanded bearing over the ground, as far as the wind lets it [m/s]."""
     across, along = cross(wind, bearing), dot(wind, bearing)
     to_the_right = right_of(bearing)
 

@@ -14,23 +14,22 @@ from gnc.numeric import wrap
 from gnc.vectors import Vector, along, clip, course_of, cross, dot, minus, norm, plus, scaled
 
 
-def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: float = 0.0, clamp: bool = True) -> float:
+def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: float = 0.0) -> float:
     """Return the lateral acceleration, 2 v^2 sin(eta)/L1, positive to the right [m/s2]. A pure function.
+
+    It differs because eta is kept within a quarter of a turn: as printed, the command falls off again behind the vehicle.
 
     Parameters
     ----------
     position, velocity : of the vehicle, north and east [m, m/s]
     target : the point to steer at [m]; the range to it is L1
     range_min : floor of the range [m]
-    clamp : keep eta within a quarter of a turn; as printed the command falls off again behind the vehicle
     """
     to_target = minus(target, position)
     range_ = max(norm(to_target), range_min)
     if range_ == 0.0:
         return 0.0
-    eta = wrap(course_of(to_target) - course_of(velocity))
-    if clamp:
-        eta = clip(eta, -0.5 * math.pi, 0.5 * math.pi)
+    eta = clip(wrap(course_of(to_target) - course_of(velocity)), -0.5 * math.pi, 0.5 * math.pi)
     return 2.0 * dot(velocity, velocity) * math.sin(eta) / range_
 
 

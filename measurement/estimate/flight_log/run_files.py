@@ -45,14 +45,14 @@ SAMPLE_MEANINGS = {
     "co2_excess_ppm": "CO2 above its background, corrected, with the response of the slowest channel",
     "so2_excess_ppb": "SO2 above its background, likewise",
     "fit_ppb": "SO2 that the slope gives for this CO2",
-    "residual_ppb": "what SO2 is off that",
-    "north_m": "place, where the log has it",
-    "east_m": "place, where the log has it",
-    "height_m": "height, where the log has it",
-    "so2_true_ppb": "truth, of a simulated flight",
-    "co2_true_ppm": "truth, of a simulated flight",
+    "residual_ppb": "SO2 less that fit",
+    "north_m": "place, if it is in the log",
+    "east_m": "place, if it is in the log",
+    "height_m": "height, if it is in the log",
+    "so2_true_ppb": "true concentration, of a simulated flight",
+    "co2_true_ppm": "true concentration, of a simulated flight",
 }
-"""Columns of ``SAMPLES``, and what they are."""
+"""Columns of ``SAMPLES`` and their meanings."""
 
 SOURCE_HASH = "source_hash"
 """Entry of the manifest with the hash of the log's content."""
@@ -138,7 +138,7 @@ def write_run(
 
 
 def _remove_older(directory: Path) -> None:
-    """Remove what tells of an older estimate; its manifest last, and the new one is written when all is there."""
+    """Remove the files of an older estimate, its manifest last; the new manifest is written when all files are there."""
     if (directory / MANIFEST).exists():
         for name in REPORTS:
             (directory / name).unlink(missing_ok=True)

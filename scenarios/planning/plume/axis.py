@@ -12,6 +12,7 @@ from gnc.mission.searched_axis import Expectation, SearchedPlume
 from measurement.emission.emission import Emission
 from measurement.gases import GASES
 from measurement.sniffer.presets import sensor_preset
+from measurement.sniffer.spec import SnifferSpec
 from scenarios.instruments.sniffer import SnifferOnBoard
 from scenarios.schema.scenario import Scenario
 from scenarios.world.exhaust import emission
@@ -148,17 +149,21 @@ def _expectation(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, f
         co2_rate=middle.rates[CO2],
         load_deviation=float(np.std(np.log([of.rates[CO2] for of in loads]))) if f.load else _LOAD_ERROR,
         wind_deviation=_WIND_ERROR,
-        sensor=_co2_sensor(scenario),
+        sensor=co2_sensor(_sniffer(scenario)),
         lowest=limits[0],
         highest=limits[1],
     )
 
 
-def _co2_sensor(scenario: Scenario) -> GasSensor:
-    """Return the CO2 channel of the sniffer on board, by its data sheet."""
+def _sniffer(scenario: Scenario) -> SnifferSpec:
+    """Return the data sheet of the sniffer on board."""
     if "sniffer" not in scenario.payload.instruments:
         raise InfeasibleError("following.plume is 'estimated', and nothing measures it: put 'sniffer' into payload.instruments")
-    spec = sensor_preset(scenario.payload.settings(SnifferOnBoard).sensor)
+    return sensor_preset(scenario.payload.settings(SnifferOnBoard).sensor)
+
+
+def co2_sensor(spec: SnifferSpec) -> GasSensor:
+    """Return the CO2 channel of a sniffer, by its data sheet."""
     channel = spec.known("co2")
     return GasSensor(
         interval=1.0 / spec.rate_hz,

@@ -16,24 +16,24 @@ class Ensemble(Section):
     trajectories: Annotated[int, Field(ge=1, le=10_000_000)] = 10_000
     """Initial states, each flown with every law; a third each about a circling, oscillating and randomly turning reference [-]."""
     distance_max_m: Annotated[float, Field(gt=0.0, le=100_000.0)] = 5000.0
-    """Farthest start from the reference, sampled evenly over the disc [m]."""
+    """Largest distance of a start from the reference; starts are sampled uniformly over the disc [m]."""
     time_max_s: Annotated[float, Field(gt=0.0, le=1_000_000.0)] = 20_000.0
-    """Given up and kept as a counter-example after this time, or later where the averaged motion predicts slow convergence [s]."""
+    """A pursuit counts as a counter-example after this time, or later where the averaged motion predicts slow convergence [s]."""
     settling_band_m: Positive = 5.0
-    """Settled from the moment the distance to the reference stays below this [m]."""
+    """A pursuit has settled once its distance to the reference stays below this [m]."""
     samples: Annotated[int, Field(ge=0, le=1000)] = 6
-    """Trajectories whose time histories are kept beside those of the counter-examples [-]."""
+    """Number of trajectories whose time histories are kept, in addition to those of the counter-examples [-]."""
 
 
 class EnsembleGuidance(Section):
     """The laws and their parameters."""
 
     laws: Annotated[tuple[LawName, ...], Field(min_length=1)] = ("lyapunov", "cascade")
-    """Eq. (24); eq. (30); cascade_cut is (30) cut at omega_max as an aircraft flies it, of which the theory says nothing."""
+    """Steering laws: eq. (24); eq. (30); cascade_cut, which is (30) limited to omega_max: the theory does not cover it."""
     airspeed_mps: Annotated[float, Field(ge=1.0, le=1000.0)] = 19.42
     """V_r, speed of reference and vehicle [m/s]."""
     heading_rate_max_rad_s: Annotated[float, Field(gt=0.5)] = 0.503
-    """omega_max, where commands are cut; circles turn at up to 0.5, oscillating references spend all of it [rad/s]."""
+    """omega_max, to which commands are limited; circles turn at up to 0.5, oscillating references use all of it [rad/s]."""
     epsilon_per_m: Positive = 0.005
     """epsilon of the look-ahead, eq. (15) [1/m]."""
     look_ahead_m: Positive = 60.0
@@ -58,13 +58,13 @@ class ConvergenceScenario(Section):
     study: Literal["convergence"]
     """Many kinematic pursuits from random initial states."""
     title: str
-    """What reports and lists call it."""
+    """Title of the study in reports and lists."""
     description: str = ""
-    """In a sentence or two, for the head of the report."""
+    """One or two sentences at the top of the report."""
     fidelity: Literal["kinematic"] = "kinematic"
     """The paper's vehicle, eq. (1)."""
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1
-    """Of the initial states and of the references [-]."""
+    """Seed of the initial states and of the references [-]."""
     ensemble: Ensemble = Ensemble()
     guidance: EnsembleGuidance = EnsembleGuidance()
     report: ReportConfig = ReportConfig()

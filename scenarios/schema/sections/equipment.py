@@ -22,7 +22,7 @@ class VesselReportsConfig(Section):
     velocity_sigma_mps: NonNegative = 0.15
     """Error of each component of the velocity, one sigma [m/s]."""
     latency_max_s: NonNegative = 0.0
-    """Longest time from when a report is true to when it is received [s]."""
+    """Longest delay between the time that a report states and its reception [s]."""
     missing: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
     """Fraction of reports that are never received [-]."""
 
@@ -41,9 +41,9 @@ class SensorsConfig(Section):
     """Errors of the UAV's sensors. Biases are sampled for each flight, within these limits."""
 
     position_sigma_m: NonNegative = 0.0
-    """Error of each coordinate by satellite navigation, one sigma, wandering with a time constant of a minute [m]."""
+    """Error of each coordinate of satellite navigation, one sigma; it drifts with a time constant of a minute [m]."""
     velocity_sigma_mps: NonNegative = 0.0
-    """Noise of each velocity component by satellite navigation [m/s]."""
+    """Noise of each velocity component of satellite navigation [m/s]."""
     airspeed_sigma_mps: NonNegative = 0.0
     """Noise of the airspeed [m/s]."""
     airspeed_bias_mps: NonNegative = 0.0
@@ -58,16 +58,16 @@ class FaultConfig(Section):
     """A fault in flight."""
 
     kind: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.\-]+$")] = "none"
-    """none, vessel_data, satellite_navigation, sniffer_dead, sniffer_saturated, engine, or the name of an actuator of the aircraft
-    (the error lists them)."""
+    """Kind of fault: none, vessel_data, satellite_navigation, sniffer_dead, sniffer_saturated, engine, or the name of an actuator
+    of the aircraft (the error message for an unknown name lists them)."""
     at_s: tuple[NonNegative, NonNegative] = (100.0, 250.0)
-    """Earliest and latest time, sampled in between; or one number, the time [s]."""
+    """Earliest and latest time of the fault, which is sampled in between; or one number, the time itself [s]."""
     vessel_data_s: Positive = 60.0
     """How long vessel data are lost [s]."""
     satellite_navigation_s: Positive = 10.0
-    """How long satellite navigation is lost [s]; any other fault is for good."""
+    """How long satellite navigation is lost [s]; any other fault lasts to the end of the flight."""
     declared: tuple[str, ...] = ()
-    """Kinds that the keep-out guard and its margin allow for beside the flight's own, and beside those swept or sampled."""
+    """Kinds of fault that the keep-out guard and its margin allow for, besides the flight's own and those swept or sampled."""
 
     @field_validator("at_s", mode="before")
     @classmethod
@@ -82,10 +82,10 @@ class FaultConfig(Section):
 
 
 class PayloadConfig(PartSection):
-    """The instruments on board; each may bring keys of its own."""
+    """The instruments on board; each may add keys of its own."""
 
     instruments: tuple[str, ...] = ()
-    """Each by its name, as sniffer, or FILE.py:NAME; their readings are columns of the time history."""
+    """Instruments, each by its name, such as sniffer, or FILE.py:NAME; their readings are columns of the time history."""
 
     @model_validator(mode="before")
     @classmethod

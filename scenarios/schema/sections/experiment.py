@@ -17,17 +17,17 @@ FLIGHTS_MAX = 1_000_000
 """Largest number of flights of one scenario [-]."""
 
 CHAINS_MIN = 10
-"""Least number of flights that pass on to the next level: of fewer, one that is an exception would decide all that follows."""
+"""Least number of flights that pass on to the next level: with fewer, one exceptional flight would decide all that follows."""
 
 STUDY = "study"
-"""What flights that count have in the place of a comparison's name."""
+"""Name of the variant of flights that count in the verdict, where others have that of a comparison."""
 
 NU_MAX = 10.0
 """Largest speed ratio of a sweep [-]; from 1 on there is no solution, and the flight is a row that says so."""
 
 
 class SweepConfig(RootModel[dict[str, tuple[Any, ...]]]):
-    """Keys, each with the values that it takes; every combination is flown. ``nu`` stands for ``vessel.speed_ratio``."""
+    """Keys, each with a list of values; every combination is flown. ``nu`` stands for ``vessel.speed_ratio``."""
 
     root: dict[str, tuple[Any, ...]] = Field(default_factory=dict)
 
@@ -66,7 +66,7 @@ def _flat(values: dict[str, Any], before: str = "") -> list[tuple[str, Any]]:
 
 
 class VariantConfig(Section):
-    """A comparison: the same flights with some keys set otherwise."""
+    """A comparison: the same flights with other values of some keys."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     """Part of the names of its flights."""
@@ -75,26 +75,26 @@ class VariantConfig(Section):
 
 
 class ComparisonConfig(Section):
-    """Extra flights that show what a part is worth. They are reported apart and have no part in the verdict."""
+    """Extra flights that show the effect of a part. They are reported separately and do not count in the verdict."""
 
     nu: tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...] = ()
-    """Those of the swept speed ratios at which variants are flown; all flights if not given [-]."""
+    """Swept speed ratios at which the variants are flown; all of them if not given [-]."""
     flights: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
-    """Of each point of the experiment, how many flights are flown with each variant; all of them if not given [-]."""
+    """Number of flights at each point of the experiment that are flown with each variant; all of them if not given [-]."""
     variants: tuple[VariantConfig, ...] = ()
 
 
 class CaseConfig(Section):
-    """One flight of a study of cases, with some keys set otherwise; flown with each vehicle that ``fidelity`` names."""
+    """One flight of a study of cases, with its own values of some keys; flown with each vehicle that ``fidelity`` names."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     """Part of the names of its flights."""
     set: dict[str, object] = Field(default_factory=dict)
     """Keys with dots, and their values."""
     set_kinematic: dict[str, object] = Field(default_factory=dict)
-    """More keys, for the kinematic vehicle alone."""
+    """Keys with dots, and their values, for the kinematic vehicle only."""
     comparison: bool = False
-    """Reported apart, with no part in the verdict."""
+    """Whether it is reported separately and does not count in the verdict."""
 
 
 class DrawConfig(Section):
@@ -103,17 +103,17 @@ class DrawConfig(Section):
     key: str
     """Dotted key of the scenario; a number is an index into a list, as in vessel.manoeuvres.0.turn_deg."""
     uniform: Range | None = None
-    """Evenly between these [unit of the key]."""
+    """Lower and upper limit of a uniform distribution [unit of the key]."""
     normal: tuple[float, Positive] | None = None
-    """Mean and standard deviation [unit of the key]."""
+    """Mean and standard deviation of a normal distribution [unit of the key]."""
     weibull: tuple[Positive, Positive] | None = None
-    """Shape, a number, and scale, as wind speeds have them [unit of the key]."""
+    """Shape [-] and scale [unit of the key] of a Weibull distribution, as for wind speeds."""
     within: Range | None = None
     """Limits at which a normal or Weibull distribution is cut off [unit of the key]."""
     choice: Annotated[tuple[object, ...], Field(min_length=1)] | None = None
-    """One of these: in turn, so that each comes equally often, or at random by their weights."""
+    """List of values to choose from: each in turn, so that all occur equally often, or at random with the given weights."""
     weights: tuple[NonNegative, ...] | None = None
-    """Of the choices; their sum does not matter [-]."""
+    """Weights of the choices; they need not add up to 1 [-]."""
 
     @model_validator(mode="after")
     def _one(self) -> "DrawConfig":
@@ -135,13 +135,13 @@ class StatisticsConfig(Section):
     """Confidence of the figures of a Monte Carlo study, and when the study may stop."""
 
     confidence: Fraction = 0.95
-    """Of every interval [-]."""
+    """Confidence level of every interval [-]."""
     violation_upper: Fraction | None = None
-    """Stop once the probability of a keep-out violation is shown to be at most this [-]."""
+    """The study stops once the probability of a keep-out violation is shown to be at most this [-]."""
     distance_quantile_width_m: Positive | None = None
-    """Stop once the interval of the quantile of the closest approach is as narrow as this [m]."""
+    """The study stops once the interval of the quantile of the closest approach is as narrow as this [m]."""
     distance_quantile: Fraction = 0.01
-    """Which quantile that is [-]."""
+    """Quantile of the closest approach whose interval may stop the study [-]."""
 
     @property
     def stops(self) -> bool:
@@ -153,12 +153,12 @@ class SubsetConfig(Section):
     """Subset simulation: levels of flights, each starting from the nearest of the level before."""
 
     flights_per_level: Annotated[int, Field(ge=50, le=1_000_000)] = 500
-    """Flights of a level, those that pass on from the level before among them: 10 or more have to pass on, as do of 100 with the
-    default subset.conditional_probability [-]."""
+    """Flights of a level, including those that pass on from the level before. At least 10 have to pass on: with the default
+    subset.conditional_probability that takes 100 [-]."""
     conditional_probability: Annotated[float, Field(ge=0.01, le=0.5)] = 0.1
     """Fraction of a level's flights that pass on to the next: the nearest [-]."""
     levels_max: Annotated[int, Field(ge=1, le=50)] = 8
-    """Levels at most, the first one, a plain random sample, among them [-]."""
+    """Largest number of levels, including the first one, a plain random sample [-]."""
     repeats: Annotated[int, Field(ge=3, le=1000)] = 5
     """Independent simulations, whose scatter gives the confidence interval [-]."""
 
@@ -186,23 +186,23 @@ class SearchConfig(Section):
     """A search over the ranges of the random variables, by methods that take turns."""
 
     methods: Annotated[tuple[str, ...], Field(min_length=1)] = ("corners", "differential_evolution", "local", "cma")
-    """Search methods, in the order of their turns; each by its name or FILE.py:NAME."""
+    """Search methods, which take turns in this order; each by its name or FILE.py:NAME."""
     population: Annotated[int, Field(ge=8, le=10_000)] = 64
     """Flights of a turn, and members of differential evolution [-]."""
     generations: Annotated[int, Field(ge=0, le=10_000)] = 30
-    """Turns after the first, of all methods together [-]."""
+    """Number of turns after the first, summed over all methods [-]."""
     time_s: Positive | None = None
-    """Time after which no further batch is flown, instead of a number of generations [s]; a resumed run has it anew."""
+    """Time after which no further batch is flown, instead of a number of generations [s]; in a resumed run it starts again at 0."""
     restarts: Annotated[int, Field(ge=0, le=100_000)] = 100
-    """How often a method that is stuck begins anew, from another of the worst flights or from a random one [-]."""
+    """How often a method that no longer improves restarts, from another of the worst flights or from a random one [-]."""
     mutation: tuple[Positive, Positive] = (0.5, 1.0)
-    """Range of differential evolution's weight, sampled anew for each generation [-]."""
+    """Range of differential evolution's weight, which is sampled for each generation [-]."""
     recombination: Fraction = 0.7
-    """Probability with which differential evolution takes a key from the mutant [-]."""
+    """Crossover probability of differential evolution: that a key is taken from the mutant [-]."""
     kept: Annotated[int, Field(ge=1, le=1000)] = 10
-    """Worst flights, unlike one another, that are kept as scenario files and confirmed [-]."""
+    """Number of worst flights, unlike one another, that are kept as scenario files and confirmed [-]."""
     confirmations: Annotated[int, Field(ge=0, le=1000)] = 8
-    """Flights with fresh noise that repeat each of them [-]."""
+    """Number of flights with other noise that repeat each of the worst flights [-]."""
 
     @field_validator("methods")
     @classmethod
@@ -235,40 +235,40 @@ class ConditionConfig(Section):
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     """Part of the names of its flights."""
     title: str
-    """What the report calls it."""
+    """Title of the condition in the report."""
     set: dict[str, object] = Field(default_factory=dict)
     """Keys with dots, and their values."""
 
 
 class ArenaConfig(Section):
-    """Steering laws side by side: who takes part, in which conditions, and how each is tuned."""
+    """A comparison of steering laws: which take part, in which conditions, and how each is tuned."""
 
     tracking: tuple[str, ...] = ()
     """Laws that track the oscillating reference."""
     standoff: tuple[str, ...] = ()
     """Laws that circle the vessel."""
     conditions: tuple[ConditionConfig, ...] = ()
-    """Conditions, each a trial: the same starts, winds and turbulence for every law."""
+    """Conditions, each a trial, with the same starts, winds and turbulence for every law."""
     evaluations: Annotated[int, Field(ge=0, le=10_000)] = 12
-    """Settings that the tuner tries for each law, its default the first; 0 to fly the defaults [-]."""
+    """Number of settings that the tuner tries for each law, starting with its defaults; 0 to fly the defaults [-]."""
     tuning_flights: Annotated[int, Field(ge=1, le=1000)] = 4
-    """Flights of each setting, of the kinematic vehicle, with seeds that the comparison does not use [-]."""
+    """Number of tuning flights of each setting: kinematic vehicle, seeds that the comparison does not use [-]."""
     tuning_duration_s: Positive = 200.0
-    """Duration of these [s]."""
+    """Duration of a tuning flight [s]."""
     tuning_set: dict[str, object] = Field(default_factory=dict)
-    """Keys to set in them."""
+    """Keys of the tuning flights, and their values."""
     tuning_range: Annotated[float, Field(gt=1.0, le=1000.0)] = 4.0
-    """Every parameter is tried from its default over this to its default times this [-]."""
+    """Factor of the range of every parameter: it is tried from its default divided by this to its default times this [-]."""
     effort_weight_m_s: NonNegative = 20.0
-    """Error that a heading rate commanded in excess of the reference's counts as, in the tuner's cost [m per rad/s]."""
+    """Weight in the tuner's cost of the heading rate commanded in excess of the reference's, as a tracking error [m per rad/s]."""
     error_max_m: Positive = 100.0
-    """Error beyond which a setting is no worse to the tuner [m]."""
+    """Limit of the tracking error in the tuner's cost: a larger one costs no more [m]."""
     window_s: Positive = 150.0
-    """End of each flight on which it is measured, settled or not [s]."""
+    """Time before the end of each flight over which it is evaluated, whether it has settled or not [s]."""
     resamples: Annotated[int, Field(ge=100, le=1_000_000)] = 2000
-    """Resamples of the paired bootstrap [-]."""
+    """Number of resamples of the paired bootstrap [-]."""
     limits: tuple[tuple[float, float], ...] = ()
-    """Most crossings per minute that any path allows: pairs of nu [-] and crossings [1/min]; those solved for if empty."""
+    """Most crossings per minute that any path allows: pairs of nu [-] and crossings [1/min]; from the solved table if empty."""
 
 
 class TrialList(Section):
@@ -277,9 +277,9 @@ class TrialList(Section):
     study: Literal["trials"]
     """Scenarios that are flown and reported together."""
     title: str
-    """What reports and lists call it."""
+    """Title of the study in reports and lists."""
     description: str = ""
-    """In a sentence or two, for the head of the report."""
+    """One or two sentences at the top of the report."""
     trials: Annotated[tuple[str, ...], Field(min_length=1)]
     """Scenarios of flights, by their names in the catalog or the paths of their files, relative to that of the list."""
     share: Annotated[float, Field(gt=0.0, le=1.0)] = 1.0
@@ -289,5 +289,5 @@ class TrialList(Section):
     histories: Annotated[int, Field(ge=0, le=100_000)] = 350
     """Number of time histories to be kept [-]."""
     set: tuple[str, ...] = ()
-    """Keys to set in every trial, as key=value; overrides of the command line that are not keys of this list come here."""
+    """Keys to set in every trial, as key=value; overrides of the command line that are not keys of this list are added here."""
     report: ReportConfig = ReportConfig()

@@ -9,22 +9,22 @@ from gnc.mission.mode import Mode
 from scenarios.schema.sections.section import Angle, Limit, NonNegative, Positive, Section, check_ordered
 
 DITCHED = "ditched"
-"""Mode of a flight that came down on the water because of a fault, as its guidance meant to: its aircraft is lost."""
+"""Mode of a flight whose guidance, because of a fault, descended to the water: its aircraft is lost."""
 
 
 class StartConfig(Section):
-    """Where flights begin: a random place about the plume's axis, on any course, or a given one."""
+    """Where flights begin: at a given place and on a given course, or at random places about the plume's axis on any course."""
 
     distance_m: tuple[Positive, Positive] = (400.0, 800.0)
-    """Nearest and farthest distance from the vessel [m]."""
+    """Smallest and largest distance from the vessel, which is sampled in between [m]."""
     spread_deg: Annotated[float, Field(ge=0.0, le=180.0)] = 30.0
-    """Largest bearing from the plume's axis, either side [deg]."""
+    """Largest bearing from the plume's axis, to either side [deg]."""
     range_m: Positive | None = None
     """Distance from the vessel; random within distance_m if not given [m]."""
     aspect_deg: Angle | None = None
     """Bearing from the plume's axis, clockwise; random within spread_deg if not given [deg]."""
     course_deg: Angle | None = None
-    """Course through the air; any if not given [deg]."""
+    """Course through the air; random if not given [deg]."""
     place_m: tuple[float, float] | None = None
     """Place ahead and right of the vessel or, on a circle, of the reference's start; random if not given [m]."""
 
@@ -42,15 +42,16 @@ class FlightConfig(Section):
     crossings: Annotated[int, Field(ge=0, le=10_000)] = 30
     """Crossings to fly after settling; 0 to fly for the whole duration [-]."""
     after_settling_s: Positive | None = None
-    """How long to fly after settling, with crossings at least as many; only crossings count if not given [s]."""
+    """Time to fly after settling, and at least until the crossings are complete; only crossings count if not given [s]."""
     measured_s: Positive | None = None
-    """End of the flight over which instruments are evaluated, settled or not; from settling on if not given [s]."""
+    """Time before the end of the flight over which instruments are evaluated, settled or not; from settling on if not given [s]."""
     duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 1500.0
     """Longest flight [s]."""
     until: Literal["flown", "verdict"] = "flown"
-    """End when what is asked for is flown, or also when a sniffer's readings allow a verdict on the fuel, or never will."""
+    """When the flight ends: flown, with its crossings and its duration; verdict, also once the sniffer's readings allow a verdict
+    on the fuel, or cannot any more."""
     altitude_m: Positive | None = None
-    """Altitude at the start, for which the autopilot is designed; that of the funnel's mouth if not given [m]."""
+    """Altitude at the start, for which the autopilot is designed; the height of the funnel's mouth if not given [m]."""
     altitude_min_m: NonNegative = 20.0
     """Lowest altitude at which rising exhaust is crossed [m]."""
     altitude_max_m: Positive = 120.0
@@ -80,12 +81,12 @@ class FlightConfig(Section):
 
 
 class CriteriaConfig(Section):
-    """What a flight must show, beside keeping out and completing its mission; ``false`` for what is not judged."""
+    """Criteria of a flight, in addition to keeping out and completing its mission; ``false`` for what is not judged."""
 
     required: Literal["criteria", "keep_out"] = "criteria"
-    """What exit status 0 requires of the flight: every criterion, or keeping out alone, as where a fault is flown on purpose."""
+    """What exit status 0 requires of the flight: to meet every criterion, or only to keep out, as in tests of faults."""
     settles: bool = True
-    """Whether tracking, airspeed and altitude are judged after settling; beside a vessel every flight must settle all the same."""
+    """Whether tracking, airspeed and altitude are judged after settling; a flight beside a vessel must settle in either case."""
     tracking_error_rms_m: Limit = 1.5
     """Largest rms distance to the reference after settling [m]."""
     airspeed_error_rms_mps: Limit = 0.3
@@ -101,17 +102,17 @@ class CriteriaConfig(Section):
     crossing_distance_m: tuple[Positive, Positive] | None = None
     """Least and largest mean crossing distance from the vessel [m]."""
     law_beyond_heading_rate_max: bool = False
-    """Whether the law must ask for more than omega_max, to show that it does; how commands are limited is then not judged."""
+    """Whether the law must command more than omega_max, to show that it does; how commands are limited is then not judged."""
     law_within_heading_rate_max: bool = False
-    """Whether the law itself must ask for no more than omega_max, before commands are cut."""
+    """Whether the law itself, before commands are limited, must not command more than omega_max."""
     resumes_within_periods: Positive | None = None
     """Largest time from the end of the last manoeuvre to the next crossing, in periods of the oscillation [-]."""
     time_to_find_s: Positive | None = None
     """Largest time from reaching the orbit to the first reading of the plume [s]."""
     within_altitudes: bool = False
-    """Whether flight.altitude_min_m and altitude_max_m must never be left, but by an aircraft with a fault."""
+    """Whether altitude must stay within flight.altitude_min_m and altitude_max_m, except that of an aircraft with a fault."""
     modes_at_end: tuple[str, ...] = ()
-    """Modes in which it may end; any if empty."""
+    """Modes in which the flight may end; any if empty."""
 
     @model_validator(mode="after")
     def _ordered(self) -> "CriteriaConfig":
@@ -125,5 +126,5 @@ class CriteriaConfig(Section):
         known = [*(mode.value for mode in Mode), DITCHED]
         for mode in modes:
             if mode not in known:
-                raise ValueError(f"'{mode}' is no mode{did_you_mean(mode, known) or ';'} modes are {', '.join(known)}")
+                raise ValueError(f"'{mode}' is not a mode{did_you_mean(mode, known) or ';'} modes are {', '.join(known)}")
         return modes

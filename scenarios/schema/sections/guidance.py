@@ -38,12 +38,12 @@ class ReferenceConfig(Section):
 
 
 class GuidanceConfig(Section):
-    """The paper's outer loop. A steering law that is added brings keys of its own: the fields of its dataclass."""
+    """The paper's outer loop. A steering law may add keys of its own: the fields of its dataclass."""
 
     model_config = ConfigDict(extra="allow")
 
     mission: Literal["track", "follow", "standoff"] | None = None
-    """Track the paper's reference, known in advance, follow the vessel with a reference that is steered, or circle the vessel.
+    """Mission: track the paper's reference, known in advance; follow the vessel with a steered reference; standoff, circle her.
 
     If not given: track in still air where the vessel is steady and known exactly, else follow.
     """
@@ -51,25 +51,25 @@ class GuidanceConfig(Section):
     """Steering law: cascade, eq. (30), lyapunov, eq. (24), line_of_sight, the baseline, those of docs/explanation/arena.md, or
     FILE.py:NAME."""
     airspeed_mps: Annotated[float, Field(ge=5.0, le=300.0)] = 19.42
-    """V_r, speed of the reference and of the UAV [m/s]; the aircraft's own unless it is given."""
+    """V_r, speed of the reference and of the UAV [m/s]; the aircraft's own if not given."""
     bank_deg: Annotated[float, Field(gt=0.0, le=60.0)] = 45.0
-    """Bank whose coordinated turn sets omega_max = g tan(bank)/V_r [deg]; the aircraft's own unless it is given."""
+    """Bank whose coordinated turn sets omega_max = g tan(bank)/V_r [deg]; the aircraft's own if not given."""
     heading_rate_max_rad_s: Positive | None = None
-    """omega_max given directly [rad/s]; overrides bank_deg."""
+    """omega_max [rad/s]; overrides bank_deg."""
     reserve: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.015
-    """Fraction of omega_max that the reference leaves to feedback [-]; the paper leaves none."""
+    """Fraction of omega_max that the reference leaves to feedback [-]; 0 in the paper."""
     roll_rate_max_deg_s: Annotated[float, Field(gt=0.0, le=360.0)] = 40.0
-    """Roll rate that the reference may ask for [deg/s]."""
+    """Largest roll rate of the reference [deg/s]."""
     phase_deg: Angle = 0.0
     """Oscillation phase phi_0 [deg]."""
     placement: Literal["paper", "exact"] = "paper"
     """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside."""
     tracking_allowance_m: Annotated[float, Field(ge=0.0, le=10_000.0)] = 1.0
-    """Added to r_min in the placement: what the UAV may stray from the reference. The guard adds three quarters of it [m]."""
+    """Allowance for tracking errors, added to r_min in the placement; the guard adds three quarters of it [m]."""
     tuning: Literal["given", "bounded"] = "given"
-    """Look-ahead and steering_max as given, or those that converge fastest while no state asks for more than omega_max."""
+    """Look-ahead and steering_max: given, or bounded, those that converge fastest while no state demands more than omega_max."""
     bound_speed_margin_mps: NonNegative = 0.5
-    """The bound on commands holds while the aircraft's speed exceeds the largest commanded airspeed by no more than this [m/s]."""
+    """Largest excess of the aircraft's speed over the largest commanded airspeed for which the bound on commands holds [m/s]."""
     epsilon_per_m: Positive = 0.005
     """epsilon of the look-ahead, eq. (15) [1/m]."""
     look_ahead_m: Positive = 60.0
@@ -81,19 +81,19 @@ class GuidanceConfig(Section):
     lyapunov_gain_per_m2: Positive = 0.001
     """k_1 of eq. (24) [1/m2]."""
     command_limit: bool = True
-    """Cut commands at omega_max. Only a kinematic vehicle can do without: it turns as fast as it is commanded."""
+    """Limit commands to omega_max. Only a kinematic vehicle can do without: it turns as fast as it is commanded."""
     preview: bool = True
-    """Run the law ahead of time by the inner loop's measured lag."""
+    """Evaluate the law ahead of time, by the inner loop's measured lag."""
     airspeed_trim: bool = True
-    """Trim the commanded airspeed by the along-track error."""
+    """Correct the commanded airspeed by the along-track error."""
     airspeed_gain_per_s: Positive = 0.15
     """Commanded airspeed per along-track error [1/s]."""
     airspeed_trim_max_mps: Positive = 1.0
     """Largest change of commanded airspeed [m/s]."""
     keepout_guard: bool = True
-    """Turn away from the keep-out area, of which the paper's law knows nothing."""
+    """Guard the keep-out area: turn away from it, which the paper's law does not."""
     approach: bool = True
-    """Go round the vessel to the orbit and join it where it is nearest; the paper tracks its reference from the first step on."""
+    """Fly round the vessel to the orbit and join it at its nearest point; the paper tracks its reference from the first step on."""
     rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 20.0
     """Guidance rate [Hz]; must divide the 120 Hz of the simulation."""
 
@@ -114,8 +114,8 @@ class GuidanceConfig(Section):
                 guess = f"; did you mean 'guidance.{meant}'?" if meant else ""
                 others = f"; those of law '{self.law}' are {', '.join(keys)}"
                 raise ValueError(f"unknown key 'guidance.{name}'{guess or others}")
-            if (wanted := _wanted(types[name], value)) is not None:
-                raise ValueError(f"{name} is {value!r}; law '{self.law}' takes {wanted}, by default {keys[name]!r}")
+            if (expected := _expected(types[name], value)) is not None:
+                raise ValueError(f"{name} is {value!r}; law '{self.law}' takes {expected}, by default {keys[name]!r}")
         return self
 
     @property
@@ -182,8 +182,8 @@ def _type_of(declared: Any, default: object) -> type[Any] | None:
     return plain.get(named, float if isinstance(default, float) else None)
 
 
-def _wanted(of: type[Any] | None, value: Any) -> str | None:
-    """Return what a key of a type takes, in words, where a value is none; otherwise None."""
+def _expected(of: type[Any] | None, value: Any) -> str | None:
+    """Return what a key of a type takes, in words, where a value is of another type; otherwise None."""
     if of is float:
         # Whole numbers may be too large for a float.
         fits = type(value) in (int, float) and abs(value) <= sys.float_info.max
@@ -205,17 +205,17 @@ class FollowingConfig(Section):
     margin_min_m: NonNegative = 3.0
     """Smallest keep-out margin, in calm air and with exact knowledge [m]."""
     speed_ratio_max: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.97
-    """Speed ratio from which a vessel counts as one that outruns the UAV [-]."""
+    """Speed ratio from which the vessel is taken to outrun the UAV [-]."""
     apparent_wind_min_mps: Positive = 1.0
-    """Apparent wind below which a plume has no direction that could be known [m/s]."""
+    """Apparent wind below which the direction of a plume is not known [m/s]."""
     standoff_m: Positive = 100.0
-    """How much farther off than r_CO the centre of oscillation stays until the UAV tracks its reference [m]."""
+    """Distance by which the centre of oscillation stays beyond r_CO until the UAV tracks its reference [m]."""
     join_distance_m: Positive = 150.0
-    """Distance from the centre of oscillation at which the way there ends and tracking begins [m]."""
+    """Distance from the centre of oscillation at which the approach ends and tracking begins [m]."""
     tracked_m: Positive = 12.0
     """Distance from the reference that counts as tracked: the centre closes in [m]."""
     vessel_acceleration_mps2: NonNegative = 0.0
-    """Largest acceleration of the vessel, along its course and across it together: what it may do between reports [m/s2]."""
+    """Largest acceleration of the vessel between reports, along and across its course together [m/s2]."""
     vessel_speed_max_mps: Positive | None = None
     """Largest speed of the vessel over the ground; without limit if not given [m/s]."""
     speed_error_mps: NonNegative = 0.0
@@ -224,21 +224,22 @@ class FollowingConfig(Section):
     """Steering law, with its default parameters, whose tracking in turbulence the margin is planned for; if not given, the flight's
     own."""
     drift_rate_mps: NonNegative = 1.0
-    """How fast dead reckoning may go wrong without satellite navigation [m/s]."""
+    """Largest growth of the position error per time in dead reckoning, without satellite navigation [m/s]."""
     turn_deviation_m: NonNegative = 0.0
-    """By how much nearer than predicted a reversal of the turn may come; what the autopilot's record says if that is more [m]."""
+    """Largest distance by which a reversal of the turn may come nearer than predicted; the autopilot's record may raise it [m]."""
     plume: Literal["predicted", "estimated", "told"] = "predicted"
-    """How the axis of exhaust is known: predicted from load, wind and vessel, estimated from what a sniffer reads, or told."""
+    """How the axis of exhaust is known: predicted from load, wind and vessel, estimated from a sniffer's readings, or told: the
+    true one."""
     search: Literal["information", "ladder"] = "information"
-    """How exhaust is searched for: where most is learnt of it, or up and down a ladder of heights."""
+    """How exhaust is searched for: at the most informative height, or up and down a ladder of heights."""
     distance: Literal["closest", "best_measurement"] = "closest"
     """Where exhaust is crossed: as near as the keep-out area allows, or where the sulphur is known best after a minute."""
     source_height_m: tuple[Positive, Positive] | None = None
-    """Lowest and highest that the funnel's mouth may be for all that is known [m]; known exactly if not given."""
+    """Lowest and highest possible height of the funnel's mouth, as it is known on board [m]; known exactly if not given."""
     load: tuple[Share, Share] | None = None
-    """Least and largest load that the engine may have for all that is known; what the speed takes if not given [-]."""
+    """Lowest and highest possible load of the engine, as it is known on board; that at the vessel's speed if not given [-]."""
     climb_gradient: Annotated[float, Field(gt=0.0, le=0.3)] = 0.05
-    """Steepest climb and descent on the way to another height of the plume [-]."""
+    """Largest gradient of climb and descent to another height of the plume [-]."""
 
     @model_validator(mode="after")
     def _ordered(self) -> "FollowingConfig":

@@ -17,11 +17,11 @@ class ReportConfig(Section):
     """Title and sender of the reports. A run keeps its seed, and can be resumed, whatever stands here."""
 
     title: Words = ""
-    """Of the reports, if not that of the scenario."""
+    """Title of the reports; that of the scenario if not given."""
     author: Words = ""
-    """Who made the study."""
+    """Author of the study."""
     organisation: Words = ""
-    """For whom the author speaks."""
+    """Organisation of the author."""
     logo: Annotated[str, Field(max_length=4096)] = ""
     """A picture for page 1: a PNG, JPEG or SVG file, whose path is relative to the scenario file."""
 
@@ -31,7 +31,7 @@ def read_logo(report: ReportConfig) -> Picture | None:
 
     Raises
     ------
-    InputError : the file is no picture
+    InputError : the file is not a picture
     """
     try:
         return read_picture(Path(report.logo)) if report.logo else None
@@ -44,7 +44,7 @@ def report_entry(report: ReportConfig) -> dict[str, Any]:
 
     Raises
     ------
-    InputError : the logo is no picture
+    InputError : the logo is not a picture
     """
     logo = read_logo(report)
     kept = {"logo": f"{LOGO}{logo.suffix}", "logo_sha256": logo.sha256} if logo else {}

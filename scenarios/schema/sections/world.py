@@ -20,13 +20,13 @@ class ManoeuvreConfig(Section):
     """A change of the vessel's course or speed, at a steady rate."""
 
     at_s: NonNegative
-    """When it begins [s]."""
+    """Time at which the manoeuvre begins [s]."""
     turn_deg: Angle = 0.0
     """Change of course, positive to starboard [deg]."""
     turn_rate_deg_s: Annotated[float, Field(gt=0.0, le=5.0)] = 0.5
     """Rate of the turn [deg/s]."""
     speed_mps: Annotated[float, Field(ge=0.0, le=30.0)] | None = None
-    """Speed over the ground that it ends with; that before if not given [m/s]."""
+    """Speed over the ground at its end; unchanged if not given [m/s]."""
     acceleration_mps2: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
     """Rate of the change of speed [m/s2]."""
 
@@ -37,17 +37,17 @@ class VesselConfig(Section):
     speed_mps: Annotated[float, Field(ge=0.0, le=300.0)] = 8.0
     """Speed over the ground, before any manoeuvre [m/s]."""
     speed_ratio: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
-    """The same over the UAV's airspeed, nu in calm air [-]; it is used instead of speed_mps where it is given."""
+    """Speed over the ground over the UAV's airspeed, nu in calm air [-]; replaces speed_mps if given."""
     course_deg: Angle = 0.0
     """Course, clockwise from north [deg]."""
     track: str = "manoeuvres"
-    """Where it is over time: by its speed, course and manoeuvres, by a file of AIS reports (.csv, .nmea), or FILE.py:NAME."""
+    """Track of the vessel: by its speed, course and manoeuvres, from a file of AIS reports (.csv, .nmea), or FILE.py:NAME."""
     mmsi: Annotated[int, Field(ge=0, le=999_999_999)] | None = None
-    """Its identity in a file of AIS reports; not needed where that has one vessel alone [-]."""
+    """MMSI of the vessel in a file of AIS reports; not needed if the file has only one vessel [-]."""
     gap_max_s: Positive = 180.0
-    """Longest time without a report that the track from a file is bridged over [s]."""
+    """Longest gap between reports of a file over which the track is interpolated [s]."""
     manoeuvres: tuple[ManoeuvreConfig, ...] = ()
-    """Its manoeuvres, one after the other."""
+    """Manoeuvres of the vessel, in the order of their times."""
 
     @model_validator(mode="after")
     def _in_turn(self) -> "VesselConfig":
@@ -68,9 +68,9 @@ class PlaceConfig(Section):
     latitude_deg: Annotated[float, Field(ge=-90.0, le=90.0)] | None = None
     """Geodetic latitude of the vessel at the start [deg]."""
     longitude_deg: Annotated[float, Field(ge=-180.0, le=180.0)] | None = None
-    """Its longitude, east of Greenwich [deg]."""
+    """Longitude of the vessel at the start, east of Greenwich [deg]."""
     utc: datetime | None = None
-    """Time of the start, as in 2026-06-01T12:00:00Z; of a track from a file the first report's if not given."""
+    """Time of the start, as in 2026-06-01T12:00:00Z; for a track from a file, that of the first report if not given."""
 
     @field_validator("utc")
     @classmethod
@@ -112,13 +112,13 @@ class EmissionConfig(Section):
     """What comes out of the funnel."""
 
     ship: str | None = None
-    """The ship whose engine and funnel it has, one of measurement/emission/ships.toml; none without exhaust."""
+    """The ship that emits the exhaust, one of measurement/emission/ships.toml; no exhaust if not given."""
     fuel: str = "mgo"
-    """Its fuel, one of measurement/emission/fuels.toml."""
+    """Fuel of the ship, one of measurement/emission/fuels.toml."""
     sulphur_percent: Annotated[float, Field(ge=0.0, le=SULPHUR_MAX_PERCENT)] | None = None
-    """Sulphur in the fuel by mass; the fuel's usual if not given [%]."""
+    """Sulphur content of the fuel by mass; the usual one of that fuel if not given [%]."""
     load: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
-    """Load of the engine; what the speed takes if not given, which is what the guidance expects [-]."""
+    """Load of the engine; if not given, that at the vessel's speed, which is what the guidance expects [-]."""
 
     @field_validator("ship")
     @classmethod
@@ -140,26 +140,26 @@ class KeepoutConfig(Section):
     shape: Shape = "sphere"
     """A sphere, as in the paper, which is narrower above and below; or a cylinder, as wide at every height."""
     radius_m: Annotated[float, Field(ge=10.0, le=10_000.0)] = 200.0
-    """r_min, its radius [m]."""
+    """r_min, radius of the keep-out area [m]."""
 
 
 class WindConfig(Section):
-    """The mean wind: constant, or of a table; the same at every height, or with a profile. And what smoke meets."""
+    """The mean wind: constant, or from a table; the same at every height, or with a profile. And the air in which exhaust rises."""
 
     speed_mps: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
     """Wind speed [m/s]."""
     from_deg: Angle = 0.0
-    """Direction that it comes from, clockwise from north [deg]."""
+    """Direction that the wind comes from, clockwise from north [deg]."""
     temperature_c: Annotated[float, Field(ge=-40.0, le=50.0)] = 15.0
-    """Temperature of the air that exhaust rises in [degC]."""
+    """Temperature of the air in which exhaust rises [degC]."""
     stability_per_s: Annotated[float, Field(ge=0.0, le=0.1)] = 0.0
-    """Brunt-Vaisala frequency of the air that exhaust rises in; 0 for neutral air [1/s]."""
+    """Brunt-Vaisala frequency of the air in which exhaust rises; 0 for neutral air [1/s]."""
     table: str | None = None
     """A file with the wind over time, height or both: a table (.csv), or netCDF as of ERA5 (.nc)."""
     roughness_m: Annotated[float, Field(ge=1e-8, le=1.0)] | None = None
-    """Roughness length of a logarithmic profile over height, some 0.0002 over the sea; without one if not given [m]."""
+    """Roughness length of a logarithmic profile over height, about 0.0002 over the sea; no profile if not given [m]."""
     height_m: Annotated[float, Field(ge=2.0, le=500.0)] = 10.0
-    """Height above the sea at which the wind is as given, where it has a logarithmic profile [m]."""
+    """Height above the sea of the given wind, for a logarithmic profile [m]."""
 
     @field_validator("table")
     @classmethod
@@ -178,13 +178,13 @@ class TurbulenceConfig(Section):
     """Turbulence of MIL-F-8785C, and discrete gusts."""
 
     level: Literal["none", "light", "moderate", "severe"] = "none"
-    """Light, moderate and severe are 15, 30 and 45 knots of wind at 20 feet."""
+    """Severity of the turbulence; light, moderate and severe are 15, 30 and 45 knots of wind at 20 feet."""
     gusts: Annotated[int, Field(ge=0, le=100)] = 0
     """Number of 1-cosine gusts, at random times and from random directions [-]."""
     gust_speed_mps: NonNegative = 0.0
-    """Their largest speed [m/s]."""
+    """Peak speed of the gusts [m/s]."""
     gust_length_s: Positive = 4.0
-    """How long each takes to rise, and to fall [s]."""
+    """Time in which a gust rises, and in which it falls [s]."""
 
     @model_validator(mode="after")
     def _gusts(self) -> "TurbulenceConfig":
@@ -197,5 +197,5 @@ class TurbulenceConfig(Section):
 
     @property
     def calm(self) -> bool:
-        """Whether there is none."""
+        """Whether there is neither turbulence nor a gust."""
         return self.level == "none" and not self.gusts

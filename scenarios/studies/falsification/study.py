@@ -39,7 +39,7 @@ _SAME_POINT = 1e-9
 
 @study("falsify")
 class FalsificationStudy(ChosenFlightsStudy):
-    """Batches of flights, each where a search method proposes them; the worst are flown again with fresh noise.
+    """Batches of flights that search methods propose; the worst are repeated with other noise.
 
     Flights of the search are numbered from 0; after the largest number that one may have come the confirmations, in the order of
     the flights that they repeat, so that a run that is resumed finds them whatever it has flown in between.

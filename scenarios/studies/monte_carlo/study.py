@@ -45,8 +45,8 @@ class MonteCarloStudy(FlightStudy):
             )
         if scenario.flights > 1 and not (scenario.several_points or scenario.sampled_at_random):
             raise InputError(
-                f"flights is {scenario.flights}, and nothing random tells them apart: seeds, start and choices are given, so some"
-                " are copies, from which no probability follows; leave out flight_seed, or set study to 'flights'"
+                f"flights is {scenario.flights}, and nothing random differs between them: seeds, start and choices are given, so"
+                " some are copies, from which no probability follows; leave out flight_seed, or set study to 'flights'"
             )
         self._points = Points(scenario.sampling, dimension=len(scenario.draws), flights=scenario.flights, seed=scenario.seed)
         self._looks, self._stopped = 0, False

@@ -66,7 +66,7 @@ class PatrolWork(FlightWork):
     """Flies patrols; attributes are those of ``FlightWork``, with one experiment of as many flights as there are patrols."""
 
     def fly(self, task: Task) -> Result:
-        """Fly a patrol, then each of its ships told where her plume is, and find what an oracle would do."""
+        """Fly a patrol, then a flight beside each of its ships with the true axis of her plume, and find the oracle's order."""
         began = time.perf_counter()
         experiment = self.experiments[0]
         row: Row = {"flight_id": experiment.named(task.number)[0], "criteria_met": False}
@@ -177,7 +177,7 @@ class PatrolWork(FlightWork):
         return _Flown(row, pd.read_parquet(io.BytesIO(histories[0])) if histories else None)
 
     def _oracle(self, patrol: Patrol, ships: list[Row]) -> Row:
-        """Complete the ships' rows by what an oracle does: it knows how long each ship takes, told where her plume is or not."""
+        """Complete the ships' rows by the oracle's order: it knows how long each ship takes, with and without the true axis."""
         service, chance = [], []
         told = {"following.plume": "told", "flight.duration_max_s": self._scenario.patrol.patience_s, "start.range_m": self._reach}
         for ship, row in enumerate(ships):

@@ -131,7 +131,7 @@ def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterat
 
 
 def _of_one(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) -> tuple[int, list[AisRow]] | None:
-    """Return the rows of the vessel asked for, or of the only one; none if there are none."""
+    """Return the rows of the given vessel, or of the only one; an empty list if there are none."""
     found: list[AisRow] = []
     counts: Counter[int] = Counter()
     for identity, row in rows:

@@ -23,7 +23,7 @@ Array = npt.NDArray[np.float64]
 _AROUND = 600.0
 """Reports of this time before a flight and after it have a part in its smooth track [s]."""
 
-_HEARD_BEFORE = 60.0
+_KNOWN_BEFORE = 60.0
 """Reports of this time before a flight are known at its start [s], the last one before it in any case."""
 
 _AT_REST = 0.3
@@ -65,11 +65,11 @@ class AisVessel(TabledVessel):
         latitude_there, longitude_there = first.to_geodetic(origin[0], origin[1])
         self.place = Place(latitude=float(latitude_there), longitude=float(longitude_there), altitude=altitude, utc=start)
         place, velocity = _in_frame(self.place.frame, latitude, longitude, speed, course)
-        heard = min(-_HEARD_BEFORE, float(since[since <= 0.0][-1]))
+        earliest = min(-_KNOWN_BEFORE, float(since[since <= 0.0][-1]))
         self.reports = [
             VesselReport(float(t), float(p[0]), float(p[1]), float(v[0]), float(v[1]))
             for t, p, v in zip(since, place, velocity, strict=True)
-            if heard <= t <= duration
+            if earliest <= t <= duration
         ]
         smooth = smooth_motion(since, place, velocity).derivative()(np.minimum(track_times(duration + margin), duration))
         super().__init__(smooth, _course_of(smooth), _manoeuvres_end(smooth))

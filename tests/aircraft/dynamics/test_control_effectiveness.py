@@ -101,7 +101,7 @@ def test_controls_that_are_linearised_already_are_left_as_they_are(twin):
     ("effect", "command"),
     [(-1.5, -1.0), (-0.75, -0.5), (0.0, 0.0), (0.25, 0.5), (0.5, 1.0), (-3.0, -2.0), (1.0, 2.0)],  # past the ends as before them
 )
-def test_an_effect_is_told_as_the_command_that_has_it(effect, command):
+def test_an_effect_is_named_by_the_command_that_has_it(effect, command):
     assert KINKED.command(effect) == pytest.approx(command)
 
 

@@ -147,7 +147,7 @@ def test_without_sideslip_and_bank_pitch_is_angle_of_attack_plus_climb():
 
 
 @pytest.mark.parametrize("airspeed", [-3.0, 0.0, math.nan, math.inf])
-def test_an_airspeed_that_is_none_is_refused_in_one_line_that_names_it(x8_fdm, airspeed):
+def test_an_impossible_airspeed_is_refused_in_one_line_that_names_it(x8_fdm, airspeed):
     with pytest.raises(TrimError, match=rf"'x8'.* airspeed is {airspeed:g}|'x8'.* airspeed is {airspeed} m/s") as caught:
         trim(x8_fdm, airspeed=airspeed, altitude=100.0)
     assert "must be finite and above 0" in str(caught.value)

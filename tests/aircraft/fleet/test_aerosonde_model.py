@@ -84,12 +84,17 @@ def test_mass_and_inertia_are_the_published_ones(fdm):
         assert fdm.read(f"inertia/{name}-slugs_ft2") * NM_PER_LBF_FT == pytest.approx(published, rel=2e-4)
 
 
-@pytest.mark.parametrize(("airspeed", "throttle"), [(20.0, 0.5), (25.0, 0.6), (25.0, 0.77), (25.0, 1.0), (32.0, 1.0)])
-def test_the_propeller_settles_where_the_published_quadratic_says_and_pulls_as_much(fdm, airspeed, throttle):
+def settled(fdm, airspeed, throttle):
+    """Return density [kg/m3], speed [rad/s] and thrust [N] of the propeller that has settled."""
     with fdm.frozen():
         density = hold(fdm, airspeed, 0.0, 0.0, STILL, STILL, throttle)
         speed = fdm.read("propulsion/engine/propeller-rpm") * RAD_S_PER_RPM
-        thrust = fdm.read("propulsion/engine/thrust-lbs") * N_PER_LBF
+        return density, speed, fdm.read("propulsion/engine/thrust-lbs") * N_PER_LBF
+
+
+@pytest.mark.parametrize(("airspeed", "throttle"), [(20.0, 0.5), (25.0, 0.6), (25.0, 0.77), (25.0, 1.0), (32.0, 1.0)])
+def test_the_propeller_settles_where_the_published_quadratic_says_and_pulls_as_much(fdm, airspeed, throttle):
+    density, speed, thrust = settled(fdm, airspeed, throttle)
     # Interpolation in steps of 0.01 is 2.7e-6 of C_T and 0.4e-6 of C_Q off, and JSBSim's horsepower 1.3e-5 of the torque.
     assert speed == pytest.approx(bm.settled_propeller_speed(throttle, airspeed, density), rel=1e-5)
     unit = density * (speed / (2.0 * math.pi)) ** 2 * bm.PROPELLER_DIAMETER**4
@@ -98,10 +103,7 @@ def test_the_propeller_settles_where_the_published_quadratic_says_and_pulls_as_m
 
 @pytest.mark.parametrize(("airspeed", "throttle"), [(21.0, 0.3), (25.0, 0.05), (25.0, 0.2), (25.0, 0.4), (30.0, 0.1)])
 def test_with_little_throttle_the_propeller_windmills_and_brakes_as_published(fdm, airspeed, throttle):
-    with fdm.frozen():
-        density = hold(fdm, airspeed, 0.0, 0.0, STILL, STILL, throttle)
-        speed = fdm.read("propulsion/engine/propeller-rpm") * RAD_S_PER_RPM
-        thrust = fdm.read("propulsion/engine/thrust-lbs") * N_PER_LBF
+    density, speed, thrust = settled(fdm, airspeed, throttle)
     # Beyond an advance ratio of 1; with the throttle nearly closed 7.
     assert airspeed / (speed / (2.0 * math.pi) * bm.PROPELLER_DIAMETER) > 1.0
     # Steps of up to 0.1 J: (0.1 J)^2/8 of the second derivative, 0.216, is 0.25 % of 0.108 J^2.

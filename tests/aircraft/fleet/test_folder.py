@@ -216,7 +216,7 @@ def test_a_folder_without_a_model_or_with_two_is_refused(heavy, tmp_path):
     assert "'hea vy' is no name of an aircraft" in refused(tmp_path / "fleet" / "hea vy")
 
 
-def test_a_directory_tells_which_aircraft_it_holds(heavy, tmp_path):
+def test_a_directory_lists_the_aircraft_that_it_holds(heavy, tmp_path):
     fleet = tmp_path / "fleet"
     assert folder_names(fleet) == ["heavy"]
     assert folder_path(fleet, None) == folder_path(fleet, "heavy") == str(heavy)

@@ -37,7 +37,7 @@ def failable(tmp_path):
     # Half the hysteresis of the elevator's servo of JSBSim's Cessna, 0.05 rad in its file; this project's Aerosonde has none.
     [("aerosonde", 25.0, "fcs/aileron-pos-rad", 0.0), ("c172x", 55.0, "fcs/left-aileron-pos-rad", 0.025)],
 )
-def test_each_surface_goes_where_it_is_told_until_it_sticks_at_trim(failable, name, airspeed, aileron, play):
+def test_each_surface_follows_its_command_until_it_sticks_at_trim(failable, name, airspeed, aileron, play):
     fdm, faults = failable(name, airspeed)
     positions = {"elevator": "fcs/elevator-pos-rad", "aileron": aileron, "rudder": "fcs/rudder-pos-rad"}
     for surface, position in positions.items():
@@ -58,7 +58,7 @@ def test_each_surface_goes_where_it_is_told_until_it_sticks_at_trim(failable, na
 
 
 @pytest.mark.parametrize(("name", "airspeed"), [("aerosonde", 25.0), ("c172x", 55.0), ("T38", 200.0)])
-def test_a_lost_engine_of_any_kind_gives_no_thrust_until_it_is_mended(failable, name, airspeed):
+def test_a_lost_engine_of_any_kind_gives_no_thrust_until_it_is_repaired(failable, name, airspeed):
     fdm, faults = failable(name, airspeed)
     thrust = [f"propulsion/engine[{i}]/thrust-lbs" for i in range(len(fdm.spec.input("throttle").commands))]
     assert all(fdm.read(engine) > 0.1 for engine in thrust)

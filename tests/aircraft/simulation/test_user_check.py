@@ -18,7 +18,7 @@ MINE = replace(X8, name="mine", root=Path(__file__).parent)
 """
 
 
-def test_a_fault_in_the_root_of_a_python_files_aircraft_is_told_in_a_line(tmp_path):
+def test_a_fault_in_the_root_of_a_python_files_aircraft_is_reported_in_a_line(tmp_path):
     shutil.copytree(MODELS, tmp_path, dirs_exist_ok=True)
     model = tmp_path / "aircraft" / "x8" / "x8.xml"
     (tmp_path / "mine.py").write_text(MINE, encoding="utf-8")

@@ -4,12 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from cascade_cases import cartesian_v_1_rate, fly_law_30, gains, rates_max
+from cascade_cases import LAW_30_FLIGHTS, cartesian_v_1_rate, fly_law_30, gains, rates_max
 from gnc_cases import (
     LOOK_AHEAD,
     OSCILLATION,
     SPEED,
-    circling,
     courses,
     delta_steering,
     examples,
@@ -181,12 +180,7 @@ def test_distance_rises_right_behind_the_reference_as_soon_as_phi_is_not_zero(d,
 
 
 @examples(25)
-@given(
-    start=tracking_starts(phi_max=3.1),
-    gain=st.floats(0.1, 2.0),
-    rate_max=st.floats(0.1, 0.5),
-    reference_heading_rate=st.sampled_from([oscillating, circling]),
-)
+@given(**LAW_30_FLIGHTS)
 def test_along_flights_under_law_30_distance_does_not_rise_while_phi_is_within_phi_r(start, gain, rate_max, reference_heading_rate):
     _, states, distances = fly_law_30(start, reference_heading_rate, gain=gain, rate_max=rate_max, duration=30.0, interval=0.02)
     within = np.array([abs(state.phi) <= abs(state.phi_r) for state in states])

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from cascade_cases import cartesian_v_1_rate, fly_law_30, gains, rates_max
-from gnc_cases import LOOK_AHEAD, OSCILLATION, SPEED, circling, courses, examples, oscillating, relative, tracking_starts
+from cascade_cases import LAW_30_FLIGHTS, cartesian_v_1_rate, fly_law_30, gains, rates_max
+from gnc_cases import LOOK_AHEAD, OSCILLATION, SPEED, courses, examples, oscillating, relative, tracking_starts
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
@@ -64,12 +64,7 @@ def test_rho_reaches_its_largest_share_of_delta_right_behind_the_reference(epsil
 
 
 @examples(25)
-@given(
-    start=tracking_starts(phi_max=3.1),
-    gain=st.floats(0.1, 2.0),
-    rate_max=st.floats(0.1, 0.5),
-    reference_heading_rate=st.sampled_from([oscillating, circling]),
-)
+@given(**LAW_30_FLIGHTS)
 def test_along_flights_under_law_30_delta_stays_below_its_bound(start, gain, rate_max, reference_heading_rate):
     _, states, _ = fly_law_30(start, reference_heading_rate, gain=gain, rate_max=rate_max, duration=60.0, interval=0.25)
     # At every instant, for what is left to come from there; 1e-6 for the integration's 1e-8 over some hundred steps.

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from gnc_cases import SPEED, delta_steering, relative, tracking_motion
+from gnc_cases import SPEED, circling, delta_steering, oscillating, relative, tracking_motion, tracking_starts
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
@@ -11,6 +11,14 @@ from gnc.laws.cascade import cascade_law
 
 gains = st.floats(0.05, 5.0)
 rates_max = st.floats(0.05, 1.0)
+
+LAW_30_FLIGHTS = {
+    "start": tracking_starts(phi_max=3.1),
+    "gain": st.floats(0.1, 2.0),
+    "rate_max": st.floats(0.1, 0.5),
+    "reference_heading_rate": st.sampled_from([oscillating, circling]),
+}
+"""Starts, parameters and references of flights under law (30)."""
 
 
 def cascade_steering(gain, rate_max, reference_heading_rate):

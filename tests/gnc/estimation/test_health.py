@@ -52,7 +52,7 @@ def test_a_turn_that_is_not_flown_is_no_control(sign):
     assert health.fault is Fault.CONTROL_LOST
 
 
-def test_a_surface_that_stays_away_from_where_it_was_told_to_go_is_stuck_before_the_vehicle_has_turned():
+def test_a_surface_that_stays_away_from_its_command_is_stuck_before_the_vehicle_has_turned():
     health = make()
     # 0.3 (1 - e^(-t/0.1)) is above 0.1 from t = -0.1 ln(2/3) on.
     found = checks_until_a_fault(health, servo_error=0.3)

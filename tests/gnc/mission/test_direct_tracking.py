@@ -74,7 +74,7 @@ def test_without_a_way_it_tracks_from_the_first_step_on_and_overrides_nothing(mi
 
 
 def test_it_knows_no_way_out(mission):
-    with pytest.raises(ValueError, match="the vehicle has a fault, thrust lost, and its mission knows no way out"):
+    with pytest.raises(ValueError, match="the vehicle has a fault, thrust lost, and its mission has no departure"):
         mission.leave(Fault.THRUST_LOST)
 
 

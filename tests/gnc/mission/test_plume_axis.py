@@ -36,21 +36,21 @@ def test_a_vehicle_that_has_fallen_behind_is_led_back_up():
     assert flown == pytest.approx(80.0, abs=0.1)
 
 
-def test_a_plume_is_where_it_is_predicted_until_the_flight_is_told():
+def test_a_plume_is_where_it_is_predicted_until_the_true_axis_is_set():
     axis, around = PredictedPlume(height=RISING, altitude=60.0).begin(), situation(wind=(0.0, 3.0))
     axis.plan(0.0, around, tracking=False)
     assert axis.demanded == RISING.at(around.centre.distance, math.hypot(8.0, 3.0))
     assert (axis.bearing, axis.mode) == (0.0, Mode.TRACKING)
-    axis.tell(52.5, trail(around.own, around.target) + 0.1)
+    axis.set_true_axis(52.5, trail(around.own, around.target) + 0.1)
     axis.plan(0.5, around, tracking=True)
     assert axis.demanded == 52.5
     assert axis.bearing == pytest.approx(0.1, abs=1e-12)
 
 
-@pytest.mark.parametrize(("told", "flown"), [(300.0, 117.0), (3.0, 23.0)])
-def test_what_is_told_is_flown_within_the_limits_alone(told, flown):
+@pytest.mark.parametrize(("given", "flown"), [(300.0, 117.0), (3.0, 23.0)])
+def test_the_true_height_is_flown_within_the_limits_alone(given, flown):
     axis = PredictedPlume(height=RISING, altitude=60.0).begin()
-    axis.tell(told, math.pi)
+    axis.set_true_axis(given, math.pi)
     axis.plan(0.0, situation(), tracking=True)
     assert axis.demanded == flown
 

@@ -58,7 +58,7 @@ def flown(axis, *, height, duration, sensor=lambda _, ppm: ppm, distance=220.0, 
         axis.flown = altitude
         swings.append(reading(across - offset, altitude, height))
         late = swings[max(0, len(swings) - 1 - round(FAST.delay / STEP))]
-        axis.heed(time, [(time, sensor(time, late))] if i % 2 == 0 else [])
+        axis.take_readings(time, [(time, sensor(time, late))] if i % 2 == 0 else [])
         if i % round(PLAN_TIME / STEP) == 0:
             axis.plan(time, around, tracking=time > 2.0)
         modes += [axis.mode] if not modes or modes[-1] is not axis.mode else []
@@ -72,7 +72,7 @@ def noisy(time, ppm):
 
 def test_on_the_way_it_flies_at_the_height_that_is_predicted_and_believes_nothing():
     axis, around = SEARCHED.begin(), situation()
-    axis.heed(0.0, [(0.0, 420.0)])
+    axis.take_readings(0.0, [(0.0, 420.0)])
     axis.plan(0.0, around, tracking=False)
     assert axis.demanded == RISING.at(around.centre.distance, 8.0)
     assert math.isnan(axis.estimate.height)
@@ -111,7 +111,7 @@ def test_a_plume_above_the_limits_is_searched_for_within_them_and_found_to_be_ou
     ("sensor", "state"),
     [(lambda *_: 420.0, SensorState.STUCK), (lambda *_: 20000.0, SensorState.SATURATED)],
 )
-def test_a_sensor_that_fails_is_recognised_and_tells_nothing(sensor, state):
+def test_a_sensor_that_fails_is_recognised_and_adds_no_evidence(sensor, state):
     axis = SEARCHED.begin()
     modes = flown(axis, height=75.0, duration=40.0, sensor=sensor)
     assert modes[-1] is Mode.SENSOR_FAILED
@@ -132,7 +132,7 @@ def test_a_reading_counts_for_the_place_at_which_it_was_read():
             around.own.ground_north, around.own.ground_east = around.target.north - 220.0, -across
             waiting += [(time, noisy(time, reading(across, 60.0, 62.0)))] if i % 2 == 0 else []
             due = not late or i % 5 == 4
-            axis.heed(time, waiting if due else [])
+            axis.take_readings(time, waiting if due else [])
             waiting = [] if due else waiting
         both.append(axis.estimate)
     # Half a second late makes no difference but that of a straight line between places a tenth of a second apart.

@@ -5,7 +5,7 @@ import pytest
 from gnc_cases import SPEED, TIME_STEP, examples
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
+from orbit_cases import assert_a_point_that_turns_so_flies
 from scipy.optimize import brentq
 
 from common.physics.units import STANDARD_GRAVITY
@@ -87,16 +87,7 @@ def test_its_mean_velocity_is_that_of_the_vessel(nu, bank, roll_rate, reserve):
 @pytest.mark.parametrize("nu", [0.0, 0.5, 0.9, 0.995])
 def test_a_point_that_turns_so_flies_the_orbit(nu):
     orbit = design(nu)
-
-    def motion(time, state):
-        return SPEED * math.cos(state[2]), SPEED * math.sin(state[2]), orbit.heading_rate(orbit.omega_0 * time)
-
-    times = np.linspace(0.0, orbit.period, 40)
-    flown = solve_ivp(motion, (0.0, orbit.period), (0.0, 0.0, orbit.eta), t_eval=times, max_step=0.02, rtol=1e-9, atol=1e-9).y
-    along, right = orbit.offset(times)
-    # Steps of 0.02 s over corners of the roll rate of 0.7 rad/s^2: 1e-5 m each, and that of the path's spline.
-    assert along + nu * SPEED * times == pytest.approx(flown[0], rel=0.0, abs=1e-3)
-    assert right == pytest.approx(flown[1], rel=0.0, abs=1e-3)
+    assert_a_point_that_turns_so_flies(orbit, nu, start=(0.0, 0.0, orbit.eta))
     widths = [float(np.abs(part).max()) for part in orbit.offset(np.linspace(0.0, orbit.period, 40001))]
     # 40,000 points miss a peak by less than V omega (T/80,000)^2/2 = 2e-7 m.
     assert orbit.half_widths() == pytest.approx(widths, rel=0.0, abs=1e-5)

@@ -5,7 +5,7 @@ import pytest
 from gnc_cases import SPEED, TIME_STEP, examples
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
+from orbit_cases import assert_a_point_that_turns_so_flies
 
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
@@ -56,18 +56,8 @@ def test_no_roll_rate_makes_it_faster_than_the_bound_for_paths_that_go_round(nu)
 @pytest.mark.parametrize("nu", [0.0, 0.05, 0.25, 0.5])
 def test_a_point_that_turns_so_flies_the_orbit_and_meets_the_plume_every_half_turn(nu):
     orbit = design(nu)
-
-    def motion(time, state):
-        return SPEED * math.cos(state[2]), SPEED * math.sin(state[2]), orbit.heading_rate(orbit.omega_0 * time)
-
-    times = np.linspace(0.0, orbit.period, 41)
-    along, right = orbit.offset(times)
-    flown = solve_ivp(
-        motion, (0.0, orbit.period), (float(along[0]), float(right[0]), 0.0), t_eval=times, max_step=0.02, rtol=1e-9, atol=1e-9
-    ).y
-    # Steps of 0.02 s over corners of the roll rate, and the path's spline.
-    assert along + nu * SPEED * times == pytest.approx(flown[0], rel=0.0, abs=1e-3)
-    assert right == pytest.approx(flown[1], rel=0.0, abs=1e-3)
+    along, right = orbit.offset(np.zeros(1))
+    assert_a_point_that_turns_so_flies(orbit, nu, start=(float(along[0]), float(right[0]), 0.0))
     # On the plume's axis a quarter of a period before and after phase 0.
     crossings = orbit.offset(np.array([0.25, 0.75]) * orbit.period)[1]
     assert crossings == pytest.approx([0.0, 0.0], abs=1e-4)

@@ -163,7 +163,7 @@ def test_the_centre_is_at_its_distance(heading, elevation, distance):
 
 @pytest.mark.parametrize("radius", [-1.0, math.nan, math.inf])
 @pytest.mark.parametrize("rule", [distance_exact, distance_by_paper])
-def test_a_keep_out_radius_that_is_none_is_refused(rule, radius):
+def test_an_impossible_keep_out_radius_is_refused(rule, radius):
     with pytest.raises(InfeasibleError, match=r"keep-out radius is .* m; it must be finite and at least 0") as refusal:
         rule(paper_oscillation(0.5), PlumeAxis(heading=math.pi), radius)
     assert f"is {radius:g} m" in str(refusal.value)

@@ -10,7 +10,7 @@ from guard_cases import LAGS, RADIUS, TIME_STEP, aim_at_the_centre, make_guard, 
 
 
 @LAGS
-def test_it_allows_what_it_would_let_pass_and_is_none_the_wiser_for_having_been_asked(lag, delay):
+def test_it_allows_what_it_would_let_pass_and_asking_changes_nothing(lag, delay):
     velocity, answers = (0.3 * SPEED, 0.0), []
     guard, asked = make_guard(lag=lag, delay=delay), make_guard(lag=lag, delay=delay)
     state = (500.0, 40.0, math.pi, 0.0)

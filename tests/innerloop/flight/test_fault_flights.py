@@ -72,7 +72,7 @@ def test_a_throttle_that_sticks_stays_at_trim_and_the_turn_costs_airspeed_alone(
     assert log[-1, HEADING_RATE] == pytest.approx(0.3, abs=1e-3)
 
 
-def test_without_its_engine_it_glides_and_turns_at_the_commanded_airspeed_if_told_to_sink(x8_schedule, failable):
+def test_without_its_engine_it_glides_and_turns_at_the_commanded_airspeed_if_commanded_to_sink(x8_schedule, failable):
     start = x8_schedule.level(MIDDLE)
     log = fly(failable, start, 25.0, "engine", [("altitude", -1000.0)])
     failed = round(AT / TIME_STEP)

@@ -121,7 +121,7 @@ def test_a_design_flies_as_many_reversals_as_a_thousand_seconds_hold(bank_deg, a
     assert reversals_of_a_design(math.radians(bank_deg), airspeed) == expected
 
 
-def test_a_repeated_search_is_told_of_part_by_part_and_counts_all(designs, x8_root, monkeypatch):
+def test_a_repeated_search_reports_part_by_part_and_counts_all(designs, x8_root, monkeypatch):
     monkeypatch.setattr(long_search, "PART", 8)
     told = []
     found = repeat_search(designs("x8"), x8_root, 10, done=lambda count, deviation: told.append((count, deviation)))

@@ -50,7 +50,7 @@ def reversals(time):
     return 0.5 if time % 2.0 < 1.0 else -0.5
 
 
-def test_a_sound_elevon_is_always_where_it_was_told_to_be_a_moment_ago(x8_aircraft, x8_schedule):
+def test_a_sound_elevon_is_always_where_it_was_commanded_to_be_a_moment_ago(x8_aircraft, x8_schedule):
     weather = Weather(turbulence=TURBULENCE["severe"], seed=3)
     errors, _ = watched(x8_aircraft, release(x8_aircraft, x8_schedule, weather), reversals, 20.0)
     # What was told between two looks is not seen: 0.08 at most in 32 flights of 500 s through severe and light turbulence.

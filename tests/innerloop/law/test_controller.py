@@ -177,19 +177,19 @@ def test_the_flown_feedback_is_the_designed_gain_times_the_deviation(x8_schedule
 
 @pytest.mark.parametrize("name", [*(n for n in X8_SIZES if n != "roll"), "own roll"])
 def test_the_linear_description_has_the_flown_feedback(x8_schedule, x8_root, name):
-    found = x8_schedule.level(MIDDLE)
-    flown = slope_of_commands(x8_root, found, name)
-    system = linear_controller(ControlLaw(x8_schedule), found)
-    # As above. Banked by more than 0.3 mrad the tables bend: the description is that of the equilibrium's own side.
-    np.testing.assert_allclose(flown, system.D[:, system.input_labels.index(name.removeprefix("own "))], rtol=1e-3, atol=5e-4)
+    assert_the_feedback_is_flown(x8_schedule, x8_root, name)
 
 
 @pytest.mark.parametrize("name", [*(n for n in SIZES if n != "roll"), "own roll"])
 def test_the_linear_description_has_the_flown_feedback_with_a_rudder_too(aerosonde, name):
-    schedule, root = aerosonde
+    assert_the_feedback_is_flown(*aerosonde, name)
+
+
+def assert_the_feedback_is_flown(schedule, root, name):
     found = schedule.level(MIDDLE)
     flown = slope_of_commands(root, found, name, spec=schedule.spec)
     system = linear_controller(ControlLaw(schedule), found)
+    # As above. Banked by more than 0.3 mrad the tables bend: the description is that of the equilibrium's own side.
     np.testing.assert_allclose(flown, system.D[:, system.input_labels.index(name.removeprefix("own "))], rtol=1e-3, atol=5e-4)
 
 

@@ -83,5 +83,5 @@ def test_settings_out_of_range_are_refused(name, value):
         PlumeSettings(**{name: value})
 
 
-def test_the_least_apparent_wind_tells_whether_the_spreads_are_in_their_range():
+def test_the_least_apparent_wind_shows_whether_the_spreads_are_in_their_range():
     assert straight(1.5, 7.0).wind_min == pytest.approx(1.5)

@@ -97,7 +97,7 @@ def test_a_setting_that_reports_do_not_have_is_refused(override, said):
 def test_a_logo_that_is_no_picture_ends_the_command_with_status_2(run_path):
     (run_path / "text.png").write_text("no picture", encoding="utf-8")
     said = refused(run_path, "--set", f"report.logo={run_path / 'text.png'}")
-    assert said == "error: report.logo: 'text.png' is no picture; give a whole PNG, JPEG or SVG file\n"
+    assert said == "error: report.logo: 'text.png' is not a picture; give a whole PNG, JPEG or SVG file\n"
 
 
 def test_a_logo_that_the_run_has_lost_is_named_among_its_missing_files(run_path):

@@ -35,7 +35,7 @@ def test_beside_a_ship_from_a_file_it_keeps_out_and_crossings_resume(flown):
     assert crossings[-1] > 2710.0
 
 
-def test_the_vessel_is_heard_at_the_times_of_the_file_alone(flown):
+def test_the_vessel_is_received_at_the_times_of_the_file_alone(flown):
     flight = plan(scenario(vessel=DANISH, following=DECLARED, flight=LONG, wind={"speed_mps": 5.0, "from_deg": 60.0}))
     times = np.array([when for when, _ in flight.sensing.received])
     assert [report.time for _, report in flight.sensing.received] == times.tolist()

@@ -119,10 +119,10 @@ def test_a_key_is_described_with_unit_range_and_default():
 
 def test_keys_of_entries_of_parts_and_of_other_studies_are_described():
     assert described("vessel.manoeuvres.at_s") == described("vessel.manoeuvres.0.at_s")
-    assert "When it begins." in "".join(described("vessel.manoeuvres.at_s"))
+    assert "Time at which the manoeuvre begins." in "".join(described("vessel.manoeuvres.at_s"))
     assert "guidance.law 'npfg'" in "".join(described("guidance.npfg_period_s"))
     assert "".join(described("seed")).count("studies") == 3
-    assert "Keys, each with the values" in "".join(described("nu"))
+    assert "Keys, each with a list of values" in "".join(described("nu"))
 
 
 def test_sections_are_listed_and_described():

@@ -199,7 +199,7 @@ def test_a_file_that_is_no_journal_is_refused_in_a_line(tmp_path):
     assert path.read_bytes() == b"no database at all" * 1000
 
 
-def test_a_disk_that_is_full_is_told_and_leaves_what_was_there(tmp_path):
+def test_a_full_disk_is_reported_and_leaves_what_was_there(tmp_path):
     path = tmp_path / "journal.sqlite"
     journal = Journal(path)
     # Room for so many pages of 4096 bytes is what a full disk leaves.
@@ -262,7 +262,7 @@ def test_a_result_that_is_not_as_it_was_added_is_refused_in_a_line(tmp_path, sta
         assert journal.is_empty()
         journal.close()
         return
-    with pytest.raises(InputError, match=r"journal\.sqlite' is (damaged|no journal of this version)") as refused:
+    with pytest.raises(InputError, match=r"journal\.sqlite' is (damaged|not a journal of this version)") as refused:
         Journal(path, reading=reading)
     assert "\n" not in str(refused.value)
 

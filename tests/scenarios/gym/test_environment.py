@@ -191,9 +191,16 @@ def test_flights_with_other_limits_are_flown_within_their_own():
         assert env.unwrapped._episode.loop.vehicle.motion()[4] == pytest.approx(limit, rel=1e-3)
 
 
-def test_an_option_of_a_reset_that_there_is_not_is_refused(kinematic):
-    with pytest.raises(InputError, match="unknown option 'flightid' of reset; the only one is 'flight_id'"):
-        kinematic.reset(options={"flightid": "nu_0.30"})
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"flightid": "nu_0.30"}, "unknown option 'flightid' of reset; the only one is 'flight_id'"),
+        ({"flight_id": "nu_0.5"}, r"no flight 'nu_0\.5'; its flights are nu_0\.30, nu_0\.60"),
+    ],
+)
+def test_an_unknown_option_and_an_unknown_flight_are_refused_with_the_known_ones(kinematic, options, words):
+    with pytest.raises(InputError, match=words):
+        kinematic.reset(options=options)
 
 
 def test_the_space_holds_the_limits_that_flights_at_random_may_have():
@@ -226,11 +233,6 @@ def test_what_cannot_be_an_environment_is_refused_in_a_line(keys, words):
     with pytest.raises(InputError, match=words) as caught:
         gymnasium.make(ENVIRONMENT, keys=keys)
     assert "\n" not in str(caught.value)
-
-
-def test_an_unknown_flight_is_refused_with_the_names_of_those_there_are(kinematic):
-    with pytest.raises(InputError, match=r"no flight 'nu_0\.5'; its flights are nu_0\.30, nu_0\.60"):
-        kinematic.reset(options={"flight_id": "nu_0.5"})
 
 
 def test_flights_without_a_solution_are_passed_over_at_random_and_refused_by_name(monkeypatch):

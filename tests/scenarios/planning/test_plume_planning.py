@@ -43,7 +43,7 @@ def test_what_is_known_of_the_ship_is_the_middle_and_the_spread_of_the_ranges():
     assert axis.expected.load_deviation == pytest.approx(0.4, abs=0.05)
 
 
-def test_a_flight_that_is_told_knows_the_same_height_before_it_is_told():
+def test_a_flight_that_is_given_the_axis_knows_the_same_height_before():
     told, searched = (plume_axis(searching(f"following.plume={how}"), VESSEL) for how in ("told", "estimated"))
     assert isinstance(told, PredictedPlume)
     assert told.height == searched.height

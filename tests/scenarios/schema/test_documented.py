@@ -91,7 +91,7 @@ def test_studies_are_those_in_which_a_key_can_act():
 
 def test_a_level_of_subset_simulation_takes_as_many_flights_as_is_said_with_the_default_probability():
     subset = {"conditional_probability": SubsetConfig().conditional_probability}
-    assert "10 or more have to pass on, as do of 100 with the default subset.conditional_probability." in (
+    assert "At least 10 have to pass on: with the default subset.conditional_probability that takes 100." in (
         BY_KEY["subset.flights_per_level"].meaning
     )
     assert SubsetConfig(flights_per_level=100, **subset).passing == 10

@@ -98,24 +98,19 @@ def test_an_unknown_scenario_lists_the_known_ones():
         load_study("sweep_mu")
 
 
-def test_a_base_that_is_not_known_gets_the_nearest_of_the_bases_too(tmp_path):
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('title = "own"\nextends = "operatonal"\n', r"extends: unknown scenario 'operatonal'; did you mean 'operational'\?"),
+        ("title = \n", "not valid TOML"),
+        ("[sweep]\nnu = [0.5]\n", "key 'title' is missing"),
+    ],
+    ids=["unknown base", "not TOML", "key missing"],
+)
+def test_a_file_with_an_unknown_base_no_toml_or_a_missing_key_is_refused(tmp_path, text, words):
     path = tmp_path / "own.toml"
-    path.write_text('title = "own"\nextends = "operatonal"\n', encoding="utf-8")
-    with pytest.raises(InputError, match=r"extends: unknown scenario 'operatonal'; did you mean 'operational'\?"):
-        load_study(str(path))
-
-
-def test_a_file_that_is_not_toml_is_refused(tmp_path):
-    path = tmp_path / "broken.toml"
-    path.write_text("title = \n", encoding="utf-8")
-    with pytest.raises(InputError, match="not valid TOML"):
-        load_study(str(path))
-
-
-def test_a_file_without_a_needed_key_is_refused(tmp_path):
-    path = tmp_path / "short.toml"
-    path.write_text("[sweep]\nnu = [0.5]\n", encoding="utf-8")
-    with pytest.raises(InputError, match="key 'title' is missing"):
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=words):
         load_study(str(path))
 
 

@@ -54,7 +54,7 @@ START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
         ({"cases": [{"name": "one"}]}, False),
     ],
 )
-def test_flights_are_a_random_sample_where_nothing_but_chance_tells_them_apart(keys, at_random):
+def test_flights_are_a_random_sample_where_they_differ_by_chance_alone(keys, at_random):
     assert Scenario(title="own", **keys).sampled_at_random is at_random
 
 

@@ -94,7 +94,7 @@ def test_a_sniffer_that_dies_is_recognised_and_the_flight_leaves_without_a_verdi
     assert row["keepout_violations"] == 0
 
 
-def test_a_flight_that_is_told_crosses_the_axis_at_its_height():
+def test_a_flight_that_is_given_the_axis_crosses_it_at_its_height():
     row, history = flown("following.plume=told")
     assert row["outcome"] == "completed"
     settled = (history["time_s"] > row["settling_time_s"] + 30.0) & (history["plume_across_m"].abs() < 10.0)

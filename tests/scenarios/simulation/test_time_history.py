@@ -66,6 +66,6 @@ def test_columns_of_the_instruments_are_written_with_their_meanings():
     assert [schema.field(name).metadata[b"meaning"].decode() for name in columns] == [
         "time since the start",
         "true concentration along the path",
-        "reading, which stands until the next",
-        "height of the plume's axis as believed",
+        "reading, held until the next one",
+        "estimated height of the plume's axis",
     ]

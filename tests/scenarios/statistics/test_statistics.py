@@ -102,7 +102,7 @@ def test_quantiles_are_those_of_the_flights_that_have_the_figure(study, no_indic
     assert distance - RADIUS == pytest.approx(clearance, abs=1e-12)
 
 
-def test_a_tail_of_a_thousandth_is_told_only_where_there_are_flights_enough(no_indices):
+def test_a_tail_of_a_thousandth_is_stated_only_where_there_are_flights_enough(no_indices):
     # 0.999^n is at most 0.025 from n = ln(0.025) / ln(0.999), 3687.04, on.
     enough = statistics_of(*study_rows(3688))["figures"]["clearance_m"]["quantiles"]
     few = statistics_of(*study_rows(3687))["figures"]["clearance_m"]["quantiles"]

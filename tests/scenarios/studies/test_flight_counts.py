@@ -113,7 +113,7 @@ def test_a_handful_of_flights_bounds_no_probability():
         ("C", "open", "no verdict on the limit of 0.10 %: quality C gives none"),
     ],
 )
-def test_the_sulphur_of_one_flight_is_told_with_its_interval_and_of_several_by_their_verdicts(quality, verdict, words):
+def test_the_sulphur_of_one_flight_is_stated_with_its_interval_and_of_several_by_their_verdicts(quality, verdict, words):
     row = {
         "outcome": "completed", "kept_out": True, "criteria_met": True, "fsc_percent": 0.2, "fsc_low_percent": 0.12,
         "fsc_high_percent": 0.28, "sulphur_limit_percent": 0.1, "probability_above": 0.94 if verdict == "open" else 0.99,

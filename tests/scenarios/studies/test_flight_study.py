@@ -190,7 +190,7 @@ def test_bad_trials_are_refused_in_one_line_before_anything_is_written(line, wor
     assert not (tmp_path / "run").exists()
 
 
-def test_what_the_aircraft_cannot_do_is_told_in_one_line(listed, tmp_path, monkeypatch):
+def test_what_the_aircraft_cannot_do_is_reported_in_one_line(listed, tmp_path, monkeypatch):
     def refused(*_args, **_keys):
         raise AircraftError("does not turn right: lower the bank")
 
@@ -206,7 +206,7 @@ def test_trials_that_need_different_autopilots_are_refused(tmp_path):
         run(listed, tmp_path / "run")
 
 
-def test_what_happened_is_told_in_lines(listed, tmp_path):
+def test_what_happened_is_reported_in_lines(listed, tmp_path):
     lines = run(listed, tmp_path / "run", "share=0.1", "vessel.speed_mps=19.4", "speed_ratio=[0, 9]").summary.lines
     assert lines[:3] == [
         "flights: 2 planned, 0 flown, 0 completed, 0 met every criterion",

@@ -132,7 +132,7 @@ def test_a_study_that_never_knows_enough_flies_all_that_was_planned(frequent_loo
 
 def test_copies_of_flights_are_refused_as_no_probability_follows_from_them(tmp_path):
     chosen = 'draws=[{key="wind.speed_mps",choice=[0.2,0.5]}]'
-    with pytest.raises(InputError, match=r"flights is 8, and nothing random tells them apart.*set study to 'flights'"):
+    with pytest.raises(InputError, match=r"flights is 8, and nothing random differs between them.*set study to 'flights'"):
         run(tmp_path / "run", "flights=8", "flight_seed=5", chosen)
     assert run(tmp_path / "one", "flights=1", "flight_seed=5", chosen).summary.done == 1
     assert run(tmp_path / "seeds", "flights=2", chosen).summary.done == 2

@@ -78,7 +78,7 @@ def test_a_report_of_one_flight_is_about_that_flight(runs, tmp_path, run, flight
     assert not [failure for failure in report.verdict.failures if "not flown yet" in failure]
 
 
-def test_a_flight_that_goes_another_way_is_told_with_what_has_changed(runs, tmp_path):
+def test_a_flight_that_goes_another_way_is_reported_with_what_has_changed(runs, tmp_path):
     copy = shutil.copytree(runs / "trials", tmp_path / "copy")
     manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
     # As if it had been flown from another distance by another version.
@@ -142,7 +142,7 @@ def test_a_run_whose_trial_is_no_name_of_a_file_is_not_replayed(runs, tmp_path, 
     (copy / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
     tampered(copy, {"trial": trial, "flight_id": "planted"})
     before = files_below(tmp_path)
-    with pytest.raises(InputError, match=r"names a trial .*, which is no name of a trial; do not use this run") as refused:
+    with pytest.raises(InputError, match=r"names a trial .*, which cannot be the name of a trial; do not use this run") as refused:
         replay(copy / "flights" / "planted", tmp_path / "a" / "b" / "again")
     assert "\n" not in str(refused.value)
     assert files_below(tmp_path) == before
