@@ -79,6 +79,29 @@ class WindField:
         """Return north and east velocity of the air [m/s] at times [s] and heights [m], which are broadcast together."""
         return self._interpolated(self._velocity, time, height)
 
+    def largest_change(self, interval: float, duration: float, heights: Sequence[float]) -> float:
+        """Return by how much the velocity of the air changes at most within an interval, between time 0 and a duration [m/s].
+
+        Parameters
+        ----------
+        interval, duration : [s]
+        heights : at each of which it is looked at [m]
+        """
+        if len(self._times) == 1:
+            return 0.0
+        nodes = np.array([time for time in self._times if 0.0 < time < duration])
+        # Between two times of the grid it is linear: a largest change begins or ends at one of them, or at an end of the flight.
+        times = np.unique(np.clip([0.0, duration, *nodes, *(nodes - interval), *(nodes + interval)], 0.0, duration))
+        north, east = self.at(times[:, None], np.array(heights))
+        largest = 0.0
+        for apart in range(1, len(times)):
+            near = times[apart:] - times[:-apart] <= interval
+            if not near.any():
+                break
+            change = np.hypot(north[apart:] - north[:-apart], east[apart:] - east[:-apart])
+            largest = max(largest, float(change[near].max()))
+        return largest
+
     def displacement(self, time: npt.ArrayLike, height: npt.ArrayLike) -> tuple[Array, Array]:
         """Return how far the air at some heights [m] has moved north and east from time 0 to some times [s], in metres.
 

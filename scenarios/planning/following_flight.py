@@ -7,7 +7,7 @@ from common.times import utc_text
 from gnc.airspeed.pace_hold import PaceHold
 from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
-from gnc.estimation.reachable_set import VesselLimits, tube
+from gnc.estimation.reachable_set import ReachableSet, VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
@@ -26,6 +26,7 @@ from scenarios.planning.guidance import (
     speed_hold,
     tracking_parameters,
     turn_time,
+    wind_change,
 )
 from scenarios.planning.limits import PLAN_PERIOD, omega_max
 from scenarios.planning.plume.axis import axis_height, plume_axis
@@ -79,7 +80,8 @@ def following_flight(
     _check_declared(scenario, vessel, limits)
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
-    guarded = guard_parameters(scenario, setup, radius, turbulence=level)
+    air = mean_wind(scenario, vessel)
+    guarded = guard_parameters(scenario, setup, radius, turbulence=level, wind_change=wind_change(scenario, air))
     widest = widest_tube(limits, scenario.reports, plan_period=PLAN_PERIOD)
     oscillation = oscillation_at(g, scenario.reference, nu)
     if scenario.stands_off:
@@ -101,20 +103,21 @@ def following_flight(
         periods, mission = _following(scenario, setup, margin, vessel, further)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
-    weather = sampled_weather(scenario, mean_wind(scenario, vessel), generators.world)
+    weather = sampled_weather(scenario, air, generators.world)
     covered = flight.duration_max_s + TRACK_MARGIN
     exhaust = exhaust_of(scenario, vessel, plume, weather.wind, duration=covered, generator=own_generator(noise, EXHAUST))
     outage = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else no_outage()
-    guard = None
-    if g.keepout_guard:
-        guard = guarded
-        first = VesselReport(0.0, *vessel.motion(0.0))
-        blowing = weather.wind.now(0.0, scenario.plume.source_height_m)
-        check_start(start, guard, tube(first, limits, 0.0), wind=blowing, airspeed=g.airspeed_mps, keepout_radius=radius)
     received = None
     if not scenario.vessel_known:
         duration = flight.duration_max_s
         received = received_reports(scenario.reports, vessel, duration=duration, outage=outage, generator=generators.reports)
+    guard = guarded if g.keepout_guard else None
+    # What the guard knows at the start: a report of a file may be minutes old by then, and any may be wrong.
+    known = ReachableSet(limits)
+    for report in _first_reports(vessel, received):
+        known.report(report)
+    blowing = air.now(0.0, scenario.altitude)
+    check_start(start, guard, known.tubes(0.0), wind=blowing, airspeed=g.airspeed_mps, keepout_radius=radius)
     steps = round(flight.duration_max_s * g.rate_hz) + 2
     return FlightPlan.of(
         scenario,
@@ -145,6 +148,13 @@ def following_flight(
         margin=margin,
         apparent_wind=wind,
     )
+
+
+def _first_reports(vessel: VesselTruth, received: list[tuple[float, VesselReport]] | None) -> list[VesselReport]:
+    """Return the reports that the flight begins with; of a vessel that is known exactly, her motion."""
+    if received is None:
+        return [VesselReport(0.0, *vessel.motion(0.0))]
+    return [report for at, report in received if at <= 0.0]
 
 
 def _following(
@@ -205,12 +215,14 @@ def _with_intervals(scenario: Scenario, vessel: VesselTruth) -> Scenario:
 
 
 def _check_declared(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
-    """Raise an InfeasibleError for a vessel that exceeds what the keep-out guard assumes, where it is not always known."""
+    """Raise an InfeasibleError for a vessel that does more than is declared to the keep-out guard.
+
+    Also where she is known exactly: what she does during a turn away is not known when the turn begins.
+    """
+    if not scenario.guidance.keepout_guard:
+        return
     # A steady vessel does at any time what she does at first.
     f, duration = scenario.following, 0.0 if isinstance(vessel, SteadyVessel) else scenario.flight.duration_max_s
-    known = scenario.vessel_known and scenario.fault.kind != VESSEL_DATA
-    if known or not scenario.guidance.keepout_guard:
-        return
     acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
     other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""
     if acceleration > f.vessel_acceleration_mps2:

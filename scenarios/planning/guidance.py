@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
+from aircraft.atmosphere.wind import WindField
 from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
 from gnc.estimation.navigation import NavigationParameters
 from gnc.mission.approach import ApproachParameters
@@ -37,6 +38,9 @@ AIRSPEED_SIGMA, COURSE_SIGMA = 0.5, 0.03
 WIND_DRIFT, WIND_PRIOR = 0.02, 10.0
 """By how much the wind may change in the root of a second, and how large it may be before any measurement [m/s]."""
 
+WIND_FOLLOWED = 20.0
+"""Time within which the estimated wind follows a change [s]: of a wind that turns steadily it is behind by less."""
+
 ROUND_BY = 0.8
 """By how many turn radii a way round the keep-out area stays farther off than what counts as blocked [-]."""
 
@@ -60,8 +64,13 @@ def guidance_lag(scenario: Scenario, setup: VehicleSetup) -> float:
     return setup.lag + 0.5 / scenario.guidance.rate_hz
 
 
-def guard_parameters(scenario: Scenario, setup: VehicleSetup, radius: float, *, turbulence: float = 0.0) -> GuardParameters:
-    """Return the guard that keeps a radius [m], and what is kept for turbulence [m], about wherever the vessel may be."""
+def guard_parameters(
+    scenario: Scenario, setup: VehicleSetup, radius: float, *, turbulence: float = 0.0, wind_change: float = 0.0
+) -> GuardParameters:
+    """Return the guard that keeps a radius [m], and what is kept for turbulence [m], about wherever the vessel may be.
+
+    The wind that is estimated may be in error by ``wind_change`` [m/s], since it changes.
+    """
     f, air = scenario.following, scenario.turbulence
     return GuardParameters(
         radius=radius + turbulence,
@@ -72,11 +81,19 @@ def guard_parameters(scenario: Scenario, setup: VehicleSetup, radius: float, *, 
         slow_lag=setup.lag,
         time_step=1.0 / scenario.guidance.rate_hz,
         # A gust may begin at any moment; and one that blows turns with the vehicle in the prediction, but not in the air.
-        speed_error=f.speed_error_mps + air.gust_speed_mps if scenario.follows else 0.0,
+        speed_error=f.speed_error_mps + air.gust_speed_mps + wind_change if scenario.follows else 0.0,
         drift_rate=f.drift_rate_mps if scenario.follows and SATELLITES in scenario.declared_faults else 0.0,
         turbulence=turbulence,
         turn_speed=setup.turning_airspeed(omega_max(scenario.guidance)),
     )
+
+
+def wind_change(scenario: Scenario, wind: WindField) -> float:
+    """Return by how much the wind at the heights that are flown changes at most until its estimate has followed [m/s]."""
+    flight, heights = scenario.flight, [scenario.altitude]
+    if scenario.emission.ship is not None and scenario.following.plume != "predicted":
+        heights += [flight.altitude_min_m, flight.altitude_max_m]
+    return wind.largest_change(WIND_FOLLOWED, flight.duration_max_s, heights)
 
 
 def turn_time(scenario: Scenario, reversal: TurnReversalResponse) -> float:

@@ -1,6 +1,7 @@
 """Where flights begin, and which starts are refused."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -49,7 +50,7 @@ def placed(ahead: float, right: float, course: float) -> tuple[float, float]:
 def check_start(
     start: Start,
     guard: GuardParameters | None,
-    vessel: Tube,
+    vessel: Sequence[Tube],
     *,
     wind: tuple[float, float],
     airspeed: float,
@@ -60,7 +61,7 @@ def check_start(
     Parameters
     ----------
     start, guard : the start, and the guard that would have to keep out; any start is accepted without
-    vessel : where it may be
+    vessel : discs in each of which it is for certain, at time 0
     wind : north and east [m/s]
     airspeed : of the UAV [m/s]
     keepout_radius : r_min [m]
@@ -72,13 +73,14 @@ def check_start(
     if guard is None:
         return
     keeping = keepout_guard(guard)
-    keeping.tubes = (vessel,)
+    keeping.tubes = vessel
     own = KnownMotion(ground_north=start.north, ground_east=start.east, course=start.course, wind_north=wind[0], wind_east=wind[1])
-    clearance = keeping.clearance(vessel.time, own, airspeed)
+    clearance = keeping.clearance(0.0, own, airspeed)
     if clearance < 0.0:
         raise InfeasibleError(
             f"the start lies {math.hypot(start.north, start.east):.1f} m from the vessel on course"
             f" {math.degrees(start.course):.0f} deg, where the best turn away comes within"
-            f" {guard.radius + clearance:.1f} m of where it may be; keepout.radius_m is {keepout_radius:g} m, and the guard"
-            f" has to keep {guard.radius:.1f} m: start farther away (start.distance_m) or on another course (start.course_deg)"
+            f" {max(0.0, guard.radius + clearance):.1f} m of where it may be; keepout.radius_m is {keepout_radius:g} m, and"
+            f" the guard has to keep {guard.radius:.1f} m: start farther away (start.distance_m) or on another course"
+            " (start.course_deg)"
         )

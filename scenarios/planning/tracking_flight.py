@@ -75,7 +75,7 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
             # One that goes round at the largest bank leaves the guard little: it moves off by what the guard needs.
             distance += max(0.0, orbit_distance(guard, known, oscillation) - nearest) / math.cos(axis.elevation)
             ahead, right, above = centre_of_oscillation(distance, axis)
-        check_start(start, guard, known, wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius)
+        check_start(start, guard, (known,), wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius)
     orbit = joined_orbit(scenario, oscillation, course)
     joining = None
     if g.approach:

@@ -116,5 +116,7 @@ def write_scenario(folder, lines, text=None):
 
 
 def line_of(key, name):
-    """Return the line of a scenario file that names a part."""
+    """Return the lines of a scenario file that name a part, and declare what it does."""
+    if key == "vessel.track":
+        return f'{key} = "{name}"\nfollowing.vessel_acceleration_mps2 = 0.05\n'
     return f'{key} = ["{name}"]\n' if key == "payload" else f'{key} = "{name}"\n'

@@ -74,7 +74,8 @@ def test_a_flight_for_a_while_completes_if_it_settles_and_crosses(changed, outco
 
 def test_manoeuvres_that_begin_after_the_end_of_the_flight_are_counted():
     vessel = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 60.0, "turn_deg": 10.0}, {"at_s": 90.0, "turn_deg": 10.0}]}
-    row = fly(start=ASTERN, vessel=vessel, flight={"crossings": 0, "duration_max_s": 90.0}).row
+    declared = {"vessel_acceleration_mps2": 0.1}
+    row = fly(start=ASTERN, vessel=vessel, following=declared, flight={"crossings": 0, "duration_max_s": 90.0}).row
     assert row["manoeuvres_unflown"] == 1
     assert "manoeuvres_unflown" not in fly(start=ASTERN, flight={"crossings": 0, "duration_max_s": 20.0}).row
 

@@ -17,7 +17,7 @@ from gnc.vectors import Vector, along, clip, course_of, cross, dot, minus, norm,
 def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: float = 0.0) -> float:
     """Return the lateral acceleration, 2 v^2 sin(eta)/L1, positive to the right [m/s2]. A pure function.
 
-    It differs because eta is kept within a quarter of a turn: as printed, the command falls off again behind the vehicle.
+    Unlike the printed form it keeps eta within a quarter of a turn: as printed, the command falls off again behind the vehicle.
 
     Parameters
     ----------

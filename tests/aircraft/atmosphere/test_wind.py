@@ -20,6 +20,24 @@ CHANGING = WindField(
 )
 
 
+def test_its_largest_change_within_an_interval_is_that_of_every_pair_of_times():
+    wind = WindField([[[0.0, 0.0]], [[0.0, 0.0]], [[6.0, 0.0]], [[6.0, -8.0]]], times=(0.0, 100.0, 110.0, 190.0))
+    time = np.linspace(0.0, 180.0, 1801)
+    north, east = wind.at(time, 10.0)
+    for interval in (5.0, 20.0, 300.0):
+        near = np.abs(np.subtract.outer(time, time)) <= interval + 1e-9
+        apart = np.hypot(np.subtract.outer(north, north), np.subtract.outer(east, east))[near].max()
+        assert wind.largest_change(interval, 180.0, [10.0]) == pytest.approx(apart, abs=1e-9)
+    # 0.6 m/s each second for 10 s, then 0.1 for 10 s across.
+    assert wind.largest_change(20.0, 180.0, [10.0]) == pytest.approx(math.hypot(6.0, 1.0))
+    # What comes after the flight does not count, and nothing changes where the table has one time.
+    assert wind.largest_change(20.0, 90.0, [10.0]) == 0.0
+    assert over_the_sea(np.array([[5.0, 0.0]]), [0.0], roughness=2e-4, height=10.0).largest_change(20.0, 90.0, [10.0, 100.0]) == 0.0
+    # At any of the heights: at 100 m it changes by (4, 8) m/s in 100 s, at 10 m by (4, 2).
+    assert CHANGING.largest_change(50.0, 190.0, [10.0]) == pytest.approx(0.5 * math.hypot(4.0, 2.0))
+    assert CHANGING.largest_change(50.0, 190.0, [10.0, 100.0]) == pytest.approx(0.5 * math.hypot(4.0, 8.0))
+
+
 def test_it_is_the_table_at_its_points_and_linear_between_them():
     assert CHANGING.now(100.0, 10.0) == (2.0, -1.0)
     assert CHANGING.now(200.0, 100.0) == (8.0, 5.0)

@@ -25,7 +25,7 @@ INTERVAL = 10.0
 def plan():
     manoeuvre = {"at_s": 40.0, "turn_deg": 10.0, "turn_rate_deg_s": 1.0}
     vessel = {"speed_mps": 8.0, "manoeuvres": [manoeuvre]}
-    return planned(scenario(vessel=vessel))
+    return planned(scenario(vessel=vessel, following={"vessel_acceleration_mps2": 0.15}))
 
 
 @pytest.fixture(scope="module")

@@ -43,13 +43,49 @@ def test_what_is_declared_of_the_vessel_is_what_its_discs_are_made_of():
     assert plan(scenario()).guidance.vessel.limits.speed_max == math.inf
 
 
-def test_a_steady_vessel_that_is_faster_than_declared_is_refused_unless_she_is_always_known():
+def test_a_steady_vessel_that_is_faster_than_declared_is_refused():
     changes = {"reports": {"interval_s": (2.0, 10.0)}}
     with pytest.raises(InfeasibleError, match=r"moves at up to 7\.99 m/s .*vessel_speed_max_mps = 7, on which .* relies: declare"):
         plan(scenario(following={"vessel_speed_max_mps": 7.0}, **changes))
     # Her own speed is no more than that.
     plan(scenario(following={"vessel_speed_max_mps": 8.0}, **changes))
-    plan(scenario(following={"vessel_speed_max_mps": 7.0}))
+
+
+def test_a_vessel_that_is_known_exactly_does_no_more_than_is_declared_either():
+    braking = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 40.0, "speed_mps": 0.0, "acceleration_mps2": 0.25}]}
+    with pytest.raises(InfeasibleError, match=r"accelerates by 0\.25 m/s2.*vessel_acceleration_mps2 = 0, on which"):
+        plan(scenario(vessel=braking))
+    plan(scenario(vessel=braking, following={"vessel_acceleration_mps2": 0.25}))
+    # Without a guard nothing relies on it.
+    plan(scenario(vessel=braking, guidance={"keepout_guard": False}))
+
+
+def test_a_wind_that_changes_is_an_error_of_the_estimated_one(tmp_path):
+    table = tmp_path / "wind.csv"
+    table.write_text(
+        "time_utc,speed_mps,from_deg\n2026-06-01T12:00:00Z,0,0\n2026-06-01T12:10:00Z,6,0\n2026-06-01T14:00:00Z,6,0\n",
+        encoding="utf-8",
+    )
+    changing = plan(scenario(wind={"table": str(table)}, following={"speed_error_mps": 0.5}))
+    # 6 m/s in 600 s, for the 20 s that the estimate takes.
+    assert changing.guidance.guard.speed_error == pytest.approx(0.5 + 0.2)
+    assert plan(scenario(wind={"speed_mps": 9.0}, following={"speed_error_mps": 0.5})).guidance.guard.speed_error == 0.5
+
+
+def test_a_start_is_judged_by_the_wind_at_its_own_height():
+    # Abeam to the east of a ship that heads north, on course for her, with 12.2 m/s from astern of the UAV at 120 m, and 9 at 10 m:
+    # what is refused does not depend on the height of the funnel.
+    given = {
+        "start": {"place_m": [0.0, 235.0], "course_deg": -90.0}, "flight": {"altitude_m": 120.0}, "keepout": {"shape": "cylinder"},
+        "guidance": {"airspeed_mps": SPEED},
+    }  # fmt: skip
+    wind = {"speed_mps": 9.0, "from_deg": 90.0, "roughness_m": 0.01}
+    words = set()
+    for height in (10.0, 60.0):
+        with pytest.raises(InfeasibleError, match="where the best turn away comes within") as refused:
+            plan(scenario(wind=wind, plume={"source_height_m": height}, **given))
+        words.add(str(refused.value))
+    assert len(words) == 1
 
 
 def test_dead_reckoning_is_reckoned_with_where_satellite_navigation_is_declared_to_fail():

@@ -187,7 +187,7 @@ def test_its_report_says_what_was_found(found, tmp_path):
 
 
 def test_how_well_sulphur_is_measured_is_not_stated_from_flights_that_were_searched_for(search, tmp_path):
-    sniffing = ('payload.instruments=["sniffer"]', "emission.ship=container", "search.generations=0")
+    sniffing = ('payload.instruments=["sniffer"]', "emission.ship=container", "plume.model=fluctuating", "search.generations=0")
     assert run(search, tmp_path / "run", *sniffing).summary.done
     assert "fsc_percent" in pd.read_csv(tmp_path / "run" / "summary.csv")
     assert not (tmp_path / "run" / "sulphur.json").exists()
