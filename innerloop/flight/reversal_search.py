@@ -70,7 +70,7 @@ class ReversalSearch:
     reversals : flown [-]
     deviation : largest, over the change of heading rate as a fraction of a full reversal [m]
     deviations : largest of each aircraft [m]; minus infinity of one that flew none
-    usual : that 99 of 100 reversals of the first half, which do not climb, stay below [m]
+    usual : 99 % quantile of the first half of the reversals, which do not climb [m]
     command_before : heading-rate command just before the worst, over omega_max to the side of the turn [-]
     airspeed_before : airspeed at its beginning [m/s]
     """

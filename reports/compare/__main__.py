@@ -102,8 +102,8 @@ def _print(runs: "Sequence[Run]", compared: "Sequence[Compared]") -> None:
             console.print(console_table(title, table))
     for of in compared:
         console.print(f"\n{of.pairs.other.letter}: {' '.join(pairing_sentences(of.pairs))}", markup=False, highlight=False)
-        if of.differing:
-            console.print(console_table("Differences of the flights of each pair", difference_table(of.pairs, of.found)))
+        if of.differing and (differences := difference_table(of.pairs, of.found)).rows:
+            console.print(console_table("Differences of the flights of each pair", differences))
     console.print(f"\n{headline(compared)}", markup=False, highlight=False)
 
 

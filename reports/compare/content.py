@@ -110,7 +110,8 @@ def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
     blocks: list[Block] = [Text(" ".join(pairing_sentences(pairs)))]
     if compared.differing:
         table = changed_table(pairs)
-        blocks += [Text(_difference_sentences(compared)), difference_table(pairs, compared.found)]
+        differences = difference_table(pairs, compared.found)
+        blocks += [Text(_difference_sentences(compared)), differences] if differences.rows else []
         if table is not None:
             number = count(changed(pairs))
             first = f", of which the first {LISTED_MAX} are listed" if number > LISTED_MAX else ""

@@ -118,6 +118,16 @@ class Card(NamedTuple):
     met: bool | None = None
 
     @property
+    def required(self) -> str:
+        """Return what is required of it, for a table."""
+        return self.limit or "–"
+
+    @property
+    def result(self) -> str:
+        """Return whether that is met, for a table."""
+        return "–" if self.met is None else "met" if self.met else "not met"
+
+    @property
     def judgement(self) -> str:
         """Return what its criterion says, in words and with a sign: colour alone says nothing in grey."""
         if self.met is None:
@@ -134,6 +144,11 @@ class UndecidedCard(Card):
     """A measured figure of which it stays open on which side of its limit it lies."""
 
     @property
+    def result(self) -> str:
+        """Return that it is open."""
+        return "open"
+
+    @property
     def judgement(self) -> str:
         """Return that it is open, and what is required."""
         return f"? open, required {self.limit}"
@@ -146,6 +161,16 @@ class UndecidedCard(Card):
 
 class FuelCard(Card):
     """A verdict on a fuel's limit, which is no criterion of the flight that measured it."""
+
+    @property
+    def required(self) -> str:
+        """Return that nothing is required of the flight."""
+        return "–"
+
+    @property
+    def result(self) -> str:
+        """Return on which side of the limit the fuel is."""
+        return "below" if self.met else "above"
 
     @property
     def judgement(self) -> str:

@@ -33,10 +33,7 @@ def parameter_table(run: RunData, sampled: Mapping[str, str] | None = None) -> T
 
 def figure_table(verdict: Verdict) -> Table:
     """Return every figure that a verdict rests on; page 1 has the most important."""
-    rows = [
-        [card.name, card.value, card.limit or "–", "–" if card.met is None else "met" if card.met else "not met"]
-        for card in verdict.figures
-    ]
+    rows = [[card.name, card.value, card.required, card.result] for card in verdict.figures]
     return Table(
         head=["Figure", "Value", "Required", ""],
         rows=rows,

@@ -52,7 +52,7 @@ def sulphur_cards(run: RunData) -> list[Card]:
     bias, inside = _bias_and_coverage(measured)
     return [
         Card("Bias of the sulphur content, mean of flights", number(bias, "{:+.4f} %")),
-        Card("Flights whose 95 % interval holds the truth", percent(inside)),
+        Card("Flights whose 95 % interval holds what a perfect instrument reads", percent(inside)),
     ]
 
 
@@ -90,8 +90,8 @@ def sulphur_headline(run: RunData) -> str:
     bias, inside = _bias_and_coverage(measured)
     of = "" if len(measured) == len(sniffed) else f" of {len(sniffed):,}"
     return (
-        f"Fuel sulphur from {len(measured):,}{of} flights: mean error {number(bias, '{:+.4f} %')}, the 95 % interval holds the"
-        f" truth in {percent(inside)} of them; {called_so}"
+        f"Fuel sulphur from {len(measured):,}{of} flights: mean difference from a perfect instrument"
+        f" {number(bias, '{:+.4f} %')}, whose reading lies within the 95 % interval in {percent(inside)} of them; {called_so}"
     )
 
 

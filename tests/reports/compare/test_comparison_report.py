@@ -11,9 +11,10 @@ from report_parts import assert_axes_read_quantity_and_unit, blocks_of
 from reports.compare.content import compare, comparison_content, headline
 from reports.compare.runs import read_runs
 from reports.compare.table_of_pairs import write_differences
-from reports.document.blocks import Table, Text
+from reports.document.blocks import Section, Table, Text
 from reports.document.chart import Chart
 from reports.render import matplotlib_charts, plotly_charts
+from reports.render.pdf import write_pdf
 from reports.run.time_history import about_the_plume
 
 
@@ -179,6 +180,20 @@ def test_a_flight_that_met_in_neither_run_and_cannot_be_flown_any_more_is_worse(
     # Two flights have the figure in B, three in A: a sum over other flights is no difference.
     assert cells["Plume crossings after settling, all flights"] == ["9", "6", "–"]
     assert {cells[name][2] for name in cells if "[" in name} == {"–"}
+
+
+def test_a_run_in_which_nothing_was_flown_is_compared_without_a_table_of_differences(first, same, tmp_path):
+    runs = read_runs([first, same])
+    rows = runs[1].data.summary
+    known = rows.select_dtypes("number").columns.drop(["seed"])
+    rows[known] = np.nan
+    rows["outcome"], rows["message"], rows["kept_out"] = "infeasible", "too fast", False
+    report = comparison_content(runs, compare(runs))
+    assert not [table for table in blocks_of(report, Table, "flightsb") if not table.rows]
+    # Typst takes a table without rows, too.
+    empty = Section(anchor="none", title="None", blocks=[Table(head=["A", "B"], rows=[], widths=[1.0, 1.0], caption="None.")])
+    write_pdf(replace(report, sections=[*report.sections, empty]), tmp_path / "compare.pdf")
+    assert (tmp_path / "compare.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_several_runs_are_each_compared_with_the_first(first, larger, same):

@@ -91,7 +91,8 @@ def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_are
         plain,
     )
     assert re.match(
-        r"Fuel sulphur from 12 flights: mean error [+−]0\.\d{4} %, the 95 % interval holds the truth in \d.* of them; \d+ above",
+        r"Fuel sulphur from 12 flights: mean difference from a perfect instrument [+−]0\.\d{4} %, whose reading lies within the"
+        r" 95 % interval in \d.* of them; \d+ above",
         several.verdict.headline.replace("\N{NO-BREAK SPACE}", " "),
     )
 

@@ -168,6 +168,12 @@ def test_a_patrol_says_which_ship_it_failed_at_and_why(values, message):
     assert (found["message"], found["criteria_met"]) == (message, False)
 
 
+def test_a_ship_beside_which_nothing_was_flown_is_not_served():
+    refused = {"ship": 1, "position": 1, "verdict": "open", "correct": False, "outcome": "infeasible", "message": "too near"}
+    found = figures(ship(0), refused, ship(2))
+    assert (found["ships"], found["served"], found["open"], found["kept_out"]) == (3, 2, 0, True)
+
+
 def test_a_study_that_never_took_off_is_not_met(tmp_path):
     # The ship is kilometres away, and there are 5 s more than a flight beside her takes.
     far = ("patrol.ships=1", "patrol.area_m=60000", "patrol.endurance_s=170", "patrol.patience_s=30")
