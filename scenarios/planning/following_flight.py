@@ -42,7 +42,7 @@ from scenarios.world.ais_reports import no_outage, received_reports
 from scenarios.world.exhaust import exhaust_of
 from scenarios.world.faults import VESSEL_DATA, sampled_fault
 from scenarios.world.noise import EXHAUST, Noise, own_generator, streams
-from scenarios.world.vessel import SteadyVessel, VesselTruth, largest_acceleration, largest_speed
+from scenarios.world.vessel import SteadyVessel, VesselTruth, largest_acceleration, largest_inconsistency, largest_speed
 from scenarios.world.weather import sampled_weather
 from scenarios.world.world import (
     TRACK_MARGIN,
@@ -54,6 +54,9 @@ from scenarios.world.world import (
     plume_of,
     vessel_of,
 )
+
+_INCONSISTENCY_MAX = 0.02
+"""By how much the velocity of a track of one's own may differ from the rate of its places [m/s]: by rounding, and no more."""
 
 Spreads = Callable[[Scenario], SpreadTable | None]
 """Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air."""
@@ -236,6 +239,11 @@ def _check_declared(scenario: Scenario, vessel: VesselTruth, limits: VesselLimit
             f"the vessel moves at up to {speed:.3g} m/s over the ground; it is declared to stay within"
             f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
             f" {other or 'sail more slowly'}"
+        )
+    if (off := largest_inconsistency(vessel, duration)) > _INCONSISTENCY_MAX:
+        raise InfeasibleError(
+            f"vessel.track '{scenario.vessel.track}': its places move at another velocity than motion() returns, by up to {off:.3g}"
+            " m/s; let the velocity be the derivative of the place: the keep-out guard relies on it"
         )
     if isinstance(vessel, AisVessel):
         _check_reports(vessel, limits)

@@ -186,6 +186,17 @@ def largest_speed(vessel: VesselTruth, duration: float) -> float:
     return (1.0 - _ROUNDING) * float(np.hypot(*velocity.T).max())
 
 
+def largest_inconsistency(vessel: VesselTruth, duration: float) -> float:
+    """Return by how much the rate of a track's places differs from its velocity at most [m/s]; 0 where both come from one table."""
+    if isinstance(vessel, SteadyVessel | TabledVessel):
+        return 0.0
+    motion = np.array([vessel.motion(time) for time in track_times(duration).tolist()])
+    rate, velocity = np.diff(motion[:, :2], axis=0) / TRACK_STEP, motion[:, 2:]
+    # Between two samples of a velocity that changes evenly the mean may be off by a quarter of the change.
+    off = np.hypot(*(rate - 0.5 * (velocity[1:] + velocity[:-1])).T) - 0.25 * np.hypot(*np.diff(velocity, axis=0).T)
+    return max(0.0, float(off.max()))
+
+
 def track_times(duration: float) -> Array:
     """Return the times at which a track is tabled [s], somewhat beyond ``duration``."""
     return np.asarray(TRACK_STEP * np.arange(math.ceil(duration / TRACK_STEP) + 3), dtype=np.float64)

@@ -104,6 +104,11 @@ def test_bad_input_is_one_line(arguments, words, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_what_is_swept_is_described_as_the_key_that_it_is():
+    assert console("describe", "sweep.wind.speed_mps").out == console("describe", "wind.speed_mps").out
+    assert console("describe", "sweep.nu").out == console("describe", "nu").out
+
+
 def test_a_key_is_described_with_unit_range_and_default():
     found = console("describe", "wind.speed_mps").out
     for words in (

@@ -7,7 +7,15 @@ import pytest
 
 from gnc.errors import InfeasibleError
 from scenarios.schema.sections.world import VesselConfig
-from scenarios.world.vessel import TRACK_STEP, ManoeuvringVessel, SteadyVessel, check_manoeuvres, sampled, track_times
+from scenarios.world.vessel import (
+    TRACK_STEP,
+    ManoeuvringVessel,
+    SteadyVessel,
+    check_manoeuvres,
+    largest_inconsistency,
+    sampled,
+    track_times,
+)
 
 
 def track(vessel, duration=600.0):
@@ -98,3 +106,27 @@ def test_manoeuvres_that_overlap_are_refused(second, words):
         return
     with pytest.raises(InfeasibleError, match=words):
         check_manoeuvres(config, config.speed_mps)
+
+
+class Weaving:
+    """A track whose places are the integral of its velocity, and drift off by ``drift`` [m/s] besides."""
+
+    manoeuvres_end = math.nan
+
+    def __init__(self, drift):
+        self.drift = drift
+
+    def motion(self, time):
+        east = 40.0 * (1.0 - math.cos(0.05 * time))
+        return 8.0 * time + self.drift * max(0.0, time - 100.0), east, 8.0, 2.0 * math.sin(0.05 * time)
+
+    def course(self, time):
+        return 0.0
+
+
+def test_places_that_do_not_follow_from_the_velocity_are_noticed():
+    assert largest_inconsistency(Weaving(0.0), 200.0) < 1e-4
+    assert largest_inconsistency(Weaving(-0.3), 200.0) == pytest.approx(0.3, abs=2e-3)
+    # As long as the flight does not last until then, nothing shows.
+    assert largest_inconsistency(Weaving(-0.3), 90.0) < 1e-4
+    assert largest_inconsistency(track({"speed_mps": 8.0}), 200.0) == 0.0
