@@ -120,7 +120,7 @@ class Weaving:
         east = 40.0 * (1.0 - math.cos(0.05 * time))
         return 8.0 * time + self.drift * max(0.0, time - 100.0), east, 8.0, 2.0 * math.sin(0.05 * time)
 
-    def course(self, time):
+    def course(self, _time):
         return 0.0
 
 
