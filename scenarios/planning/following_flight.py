@@ -80,7 +80,7 @@ def following_flight(
     _check_plume(scenario, wind)
     nu = wind.at_start / g.airspeed_mps
     limits = vessel_limits(scenario, turn_time(scenario, setup.reversal))
-    _check_declared(scenario, vessel, limits)
+    _check_vessel(scenario, vessel, limits)
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
     air = mean_wind(scenario, vessel)
@@ -217,7 +217,14 @@ def _with_intervals(scenario: Scenario, vessel: VesselTruth) -> Scenario:
     return scenario.model_copy(update={"reports": reports})
 
 
-def _check_declared(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
+def _check_vessel(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
+    """Raise an InfeasibleError for a vessel, or reports of a file, that are beyond what is declared to the keep-out guard."""
+    check_declared(scenario, vessel)
+    if isinstance(vessel, AisVessel) and scenario.guidance.keepout_guard:
+        _check_reports(vessel, limits)
+
+
+def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
     """Raise an InfeasibleError for a vessel that does more than is declared to the keep-out guard.
 
     Also where she is known exactly: what she does during a turn away is not known when the turn begins.
@@ -245,8 +252,6 @@ def _check_declared(scenario: Scenario, vessel: VesselTruth, limits: VesselLimit
             f"vessel.track '{scenario.vessel.track}': its places move at another velocity than motion() returns, by up to {off:.3g}"
             " m/s; let the velocity be the derivative of the place: the keep-out guard relies on it"
         )
-    if isinstance(vessel, AisVessel):
-        _check_reports(vessel, limits)
 
 
 def _check_reports(vessel: AisVessel, limits: VesselLimits) -> None:

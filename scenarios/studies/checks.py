@@ -18,6 +18,7 @@ from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws
 from scenarios.experiment.requests import Experiment
+from scenarios.planning.following_flight import check_declared
 from scenarios.planning.limits import check_flyable
 from scenarios.planning.plume.axis import flown_altitudes
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRACKS
@@ -148,11 +149,14 @@ def _check_fault(scenario: Scenario) -> None:
 
 
 def _check_vessel(scenario: Scenario) -> None:
-    """Refuse manoeuvres that overlap in every flight."""
+    """Refuse manoeuvres that overlap, or are beyond what is declared, in every flight."""
     if not _vessel_known(scenario):
         return
+    declared = not any(draw.key.startswith("following.") for draw in scenario.draws)
     try:
         check_manoeuvres(scenario.vessel, scenario.vessel_speed)
+        if scenario.vessel.manoeuvres and declared:
+            check_declared(scenario, vessel_of(scenario))
     except InfeasibleError as error:
         raise InputError(str(error)) from None
 

@@ -119,6 +119,13 @@ def test_help_and_list_answer():
             ["flight.altitude_min_m and altitude_max_m are 100 and 105 m", "give them 16 m or more between them"],
         ),
         (
+            ["sweep_nu", "--set", "vessel.manoeuvres=[{at_s=100, turn_deg=90}]"],
+            [
+                "the vessel accelerates by",
+                "following.vessel_acceleration_mps2 = 0, on which the keep-out guard relies: declare more",
+            ],
+        ),
+        (
             ["sea_faults", "--set", "fault.declared=['engin']"],
             ["fault.declared has 'engin'; did you mean 'engine'? what can fail is "],
         ),
