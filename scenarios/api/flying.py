@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 
 from scenarios.api.objects import LentWork, check_picklable, lent
 from scenarios.api.results import Flight, Run
-from scenarios.api.scenario import Given, Scenario, load
+from scenarios.api.scenario import Given, Scenario, load, sweeps_nu
 from scenarios.errors import InputError
-from scenarios.schema.load import load_document, sweeps_speed_ratio
 
 if TYPE_CHECKING:
     from scenarios.engine.executor import Executor
@@ -128,7 +127,7 @@ def flights_of(loaded: Scenario) -> "FlightStudy":
 def _only_flight(study: "FlightStudy", loaded: Scenario) -> str:
     """Return the name of the only flight of a study."""
     if study.planned > 1:
-        single = " set nu to a single number," if sweeps_speed_ratio(load_document(loaded.source, loaded.changes)) else ""
+        single = " set nu to a single number," if sweeps_nu(loaded) else ""
         raise InputError(
             f"'{loaded.name}' has {study.planned} flights; name one of them by flight_id ({_names(study)}),{single} or use run"
         )

@@ -79,8 +79,7 @@ class Scenario:
             return {"sweep.nu": nu}
         if not isinstance(nu, int | float) or isinstance(nu, bool):
             raise InputError(f"nu is {nu!r}; give a number, as in nu=0.5, or a list of numbers")
-        swept = sweeps_speed_ratio(load_document(self.source, self.changes))
-        return {"sweep.nu": [nu]} if swept else {"vessel.speed_ratio": nu}
+        return {"sweep.nu": [nu]} if sweeps_nu(self) else {"vessel.speed_ratio": nu}
 
     def __getitem__(self, key: str) -> Any:
         """Return the value of a dotted key.
@@ -103,6 +102,11 @@ class Scenario:
         """Return name, title and changes as a table, for a notebook."""
         rows = [("name", self.name), ("study", self.config.study), ("title", self.title)]
         return table([*rows, *(tuple(change.split("=", maxsplit=1)) for change in self.changes)])
+
+
+def sweeps_nu(scenario: Scenario) -> bool:
+    """Return whether a scenario sets the speed ratio in its sweep or in its cases."""
+    return sweeps_speed_ratio(load_document(scenario.source, scenario.changes))
 
 
 def load(scenario: Given | Scenario, /, *, name: str | None = None, **keys: object) -> Scenario:

@@ -28,7 +28,7 @@ def described(name: str | None = None) -> list[str]:
         return list(_all_sections())
     plain = re.sub(r"\.\d+(?=\.|$)", "", name)
     # What is swept is a key of its own, and nu is one of sweep alone.
-    plain = plain.removeprefix("sweep.") if plain.startswith("sweep.") else plain
+    plain = plain.removeprefix("sweep.")
     keys = [key for key in documented_keys() if key.key.replace(".0", "") == plain or (plain == "nu" and key.key == "sweep")]
     sections = [section for section in documented_sections() if section.name and section.name.replace(".0", "") == plain]
     if not keys and not sections:

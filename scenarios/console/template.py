@@ -128,18 +128,17 @@ def _of_parts(section: DocumentedSection, values: Mapping[str, Any], config: Bas
     """Yield the keys of the parts that a section names, beside those of the schema."""
     known = {key.key.rpartition(".")[2] for key in section.keys}
     part = getattr(config, section.name, None) if section.name else None
-    defaults = dict(getattr(part, "law_keys", None) or getattr(part, "part_keys", {}))
+    own = getattr(part, "law_keys", None) or getattr(part, "part_keys", {})
     documented = {key.key: key for key in documented_part_keys() if key.key.rpartition(".")[0] == section.name}
-    defaults = {key.key.rpartition(".")[2]: key.default for key in documented.values()} | defaults
-    for name in dict.fromkeys([*defaults, *(name for name in values if name not in known)]):
-        key = documented.get(f"{section.name}.{name}")
-        if name in known or (name not in defaults and not key):
+    defaults = {key.key.rpartition(".")[2]: key.default for key in documented.values()} | dict(own)
+    for name, default in defaults.items():
+        if name in known:
             continue
-        if key:
+        if key := documented.get(f"{section.name}.{name}"):
             yield from _comment(
                 f"{key.meaning} ({key.range}{f' [{key.unit}]' if key.unit else ''}; of {' or '.join(key.conditions)})"
             )
-        shown = f"{name} = {as_toml(values.get(name, defaults.get(name)))}"
+        shown = f"{name} = {as_toml(values.get(name, default))}"
         yield from (shown if name in values else f"# {shown}", "")
 
 

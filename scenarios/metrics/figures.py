@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from aircraft.atmosphere.wind import CALM
 from common.times import utc_text
-from gnc.mission.mode import Mode
+from gnc.mission.mode import LEAVING, Mode
 from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import closest_approach, keepout_figures
@@ -19,9 +19,6 @@ from scenarios.world.place import Place
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-
-_LEAVING = [mode.number for mode in (Mode.GLIDING, Mode.TERMINATING, Mode.DEPARTING)]
-"""Modes in which the vehicle leaves for good: it tracks no reference, and its commands are others'."""
 
 
 def plan_row(plan: FlightPlan) -> Row:
@@ -119,7 +116,7 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     settled = time >= record.settled_at
     if np.count_nonzero(settled) < 2:
         settled = np.zeros_like(settled)
-    beside = settled & ~np.isin(column("mode"), _LEAVING)
+    beside = settled & ~np.isin(column("mode"), [mode.number for mode in LEAVING])
     if beside.any():
         row |= _tracking_figures(plan, record, beside, to_reference[beside])
     row["settling_time_s"] = record.settled_at

@@ -87,10 +87,10 @@ def explanation(error: ValidationError, kind: type[BaseModel]) -> str:
 
 def _explained(key: str, entry: ErrorDetails, kind: type[BaseModel]) -> str:
     error_type, value = entry["type"], entry["input"]
-    *parents, last = key.split(".")
     if error_type == "extra_forbidden":
         return f"unknown key '{key}'{suggestion(kind, key)}"
     if error_type == "missing":
+        *parents, last = key.split(".")
         if last.isdecimal():
             return f"{'.'.join(parents)} has too few values; give one more, as in [400, 800]"
         return f"key '{key}' is missing; add it to the scenario"

@@ -5,7 +5,7 @@ import math
 from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import Motion
 from gnc.guidance import Guidance
-from gnc.mission.mode import Mode
+from gnc.mission.mode import LOST, Mode
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.schema.sections.flight import DITCHED
 from scenarios.simulation.judge import Judge
@@ -15,9 +15,6 @@ from scenarios.vehicles.vehicle import Vehicle
 
 _ON_THE_WATER = 2.0
 """Altitude below which a gliding vehicle has come down [m]."""
-
-_LOST = (Mode.GLIDING, Mode.TERMINATING)
-"""Modes from which an aircraft does not come back: it glides, or flies away from the vessel, until it is down."""
 
 _GIVEN_UP = (Mode.OUTRUN, Mode.NO_PLUME)
 """Modes in which the plume is no longer crossed; a flight that holds off resumes with the next report."""
@@ -68,7 +65,7 @@ class Ending:
         mode = self._guidance.mission.mode
         if self._fault:
             return Outcome.DIVERGED
-        if self._ditched or mode in _LOST:
+        if self._ditched or mode in LOST:
             return Outcome.AIRCRAFT_LOST
         if self._plan.world is None or self.enough.startswith("verdict"):
             return Outcome.COMPLETED

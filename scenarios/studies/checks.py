@@ -167,7 +167,7 @@ def _vessel_known(scenario: Scenario) -> bool:
 
 
 def _check_parts(scenario: Scenario) -> None:
-    sampled = any(draw.key.startswith(("emission.", "plume.model")) for draw in scenario.draws)
+    sampled = any(draw.key.startswith("emission.") for draw in scenario.draws)
     if "sniffer" in scenario.payload.instruments and scenario.emission.ship is None and not sampled:
         raise InputError("payload.instruments has a sniffer, and there is no exhaust: set emission.ship, or leave the sniffer out")
     for key, name in part_names(scenario):
@@ -176,6 +176,9 @@ def _check_parts(scenario: Scenario) -> None:
                 PART_REGISTRIES[key].get(name)
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None
-    smoke = hasattr(PLUME_MODELS.get(scenario.plume.model), Smoke.dispersion.__name__)
-    if scenario.emission.ship is not None and not sampled and not smoke:
+    if scenario.emission.ship is None or sampled or any(draw.key == "plume.model" for draw in scenario.draws):
+        return
+    model = PLUME_MODELS.get(scenario.plume.model)
+    # Of what another callable makes it shows in planning.
+    if isinstance(model, type) and not issubclass(model, Smoke):
         raise InputError(without_smoke(scenario))

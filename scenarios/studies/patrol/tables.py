@@ -94,7 +94,7 @@ def patrol_figures(ships: Sequence[Row], stretches: Sequence[Row], *, endurance:
     endurance : of the UAV [s]
     keepout_radius : r_min [m]
     """
-    # A service whose start was refused, or that failed, is none.
+    # A ship beside which nothing was flown, as a start was refused, is not served.
     served = [row for row in ships if "position" in row and "keepout_violations" in row]
     judged = [row for row in served if row["verdict"] != "open"]
     duration = max((row["ends_s"] for row in stretches), default=0.0)
