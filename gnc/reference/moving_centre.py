@@ -38,6 +38,9 @@ _VESSEL_SPEED_MIN = 0.1
 _EXCESS_SPEED_MIN = 0.05
 """Least fraction of V_r that the vehicle is taken to have over the vessel [-]: also outrun, it corrects the distance."""
 
+_SWING_MEMORY = 40.0
+"""Time over which a swing is averaged [s]: the scatter of a vessel's reports averages out, and a wind that turns does not."""
+
 _CENTRE_SPEED_MIN = 0.01
 """Speed that the centre is given at least where its direction is computed from it [m/s]: at rest it has none."""
 
@@ -78,21 +81,24 @@ class MovingCentre:
     axis : course along which the plume trails, in that frame [rad]
     distance : r_CO [m]
     speed_ratio : nu, vessel through the air over the vehicle's speed [-]
+    receding : rate of its distance [m/s]
     swing : what turning about the vessel adds to the velocity, to the right of the axis [m/s]
+    steady_swing : as much of it as has gone on for a while [m/s]
     in_place : whether its distance is what it should be
     plume_known : whether the apparent wind is strong enough for the plume to have a known direction
     """
 
     __slots__ = (
-        "_parameters", "_started", "axis", "distance", "in_place", "plume_known", "speed_ratio", "swing", "velocity_east",
-        "velocity_north", "x", "y",
+        "_mean_swing", "_parameters", "_started", "axis", "distance", "in_place", "plume_known", "receding", "speed_ratio",
+        "steady_swing", "swing", "velocity_east", "velocity_north", "x", "y",
     )  # fmt: skip
 
     def __init__(self, parameters: CentreParameters) -> None:
         self._parameters = parameters
         self._started = False
         self.axis = math.pi
-        self.distance = self.x = self.y = self.velocity_north = self.velocity_east = self.speed_ratio = self.swing = 0.0
+        self.distance = self.x = self.y = self.velocity_north = self.velocity_east = self.speed_ratio = 0.0
+        self.receding = self.swing = self.steady_swing = self._mean_swing = 0.0
         self.plume_known = self.in_place = True
 
     def move(
@@ -155,10 +161,13 @@ class MovingCentre:
             recede = max(recede, min(recede + additional_rate, most))
         self.axis = wrap(self.axis + turn * time_step)
         self.distance += recede * time_step
+        self.receding = recede
         self.in_place = abs(target - self.distance) < _IN_PLACE * target
         cos_a, sin_a = math.cos(self.axis), math.sin(self.axis)
         self.x, self.y = self.distance * cos_a, self.distance * sin_a
         self.swing = turn * self.distance
+        self._mean_swing += (self.swing - self._mean_swing) * time_step / (time_step + _SWING_MEMORY)
+        self.steady_swing = min(max(self._mean_swing, min(self.swing, 0.0)), max(self.swing, 0.0))
         self.velocity_north = air_north + recede * cos_a - turn * self.y
         self.velocity_east = air_east + recede * sin_a + turn * self.x
 

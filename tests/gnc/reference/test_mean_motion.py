@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 
+from gnc.numeric import wrap
 from gnc.reference.mean_motion import mean_motion, motion_course
 from gnc.reference.shapes.sinusoid import SinusoidSwing
 from gnc.reference.steered import SteeredReference
@@ -50,6 +51,35 @@ def test_a_slow_orbit_follows_a_fast_swing_and_little_of_a_slow_one():
     # Six are a plume that goes over to the other side: nine tenths of them are followed, beside what the centre moves outwards.
     fast = moved(0.1, turn=-6.0 / moved(0.1).distance)
     assert math.tan(demanded(fast)[0]) == pytest.approx(0.9 * math.tan(motion_course(fast)), rel=0.01)
+
+
+def test_a_slow_orbit_follows_a_small_swing_that_goes_on():
+    # A vessel at rest in a wind of 2 m/s that turns by 0.3 deg/s: her plume's middle moves by 1.6 m/s across.
+    centre, (wind, turn) = make(), (2.0, math.radians(0.3))
+    for k in range(400):
+        angle = turn * k * PLAN_TIME
+        move(centre, (0.0, 0.0), wind=(-wind * math.cos(angle), -wind * math.sin(angle)), time_step=PLAN_TIME)
+        course = demanded(centre)[0]
+        if k == 20:
+            assert abs(wrap(course - motion_course(centre))) > 0.2
+    assert abs(centre.swing) == pytest.approx(turn * centre.distance, rel=0.01)
+    assert course == pytest.approx(motion_course(centre), abs=0.02)
+    # When the wind stops turning, the orbit does not go on.
+    for _ in range(120):
+        move(centre, (0.0, 0.0), wind=(-wind * math.cos(angle), -wind * math.sin(angle)), time_step=PLAN_TIME)
+    assert abs(centre.steady_swing) < 0.2
+
+
+@pytest.mark.parametrize("nu", [0.06, 0.1, 0.2])
+def test_an_orbit_that_recedes_from_a_slow_vessel_backs_away_and_does_not_turn_round(nu):
+    centre = moved(nu)
+    course, ratio = demanded(centre)
+    move(centre, (nu * SPEED, 0.0), additional_range=200.0, time_step=0.0)
+    assert centre.velocity_north < 0.0
+    receding = demanded(centre)
+    assert receding[0] == pytest.approx(course, abs=1e-9)
+    assert receding[1] == pytest.approx(centre.velocity_north / SPEED, rel=1e-9)
+    assert ratio > 0.0
 
 
 @pytest.mark.parametrize("off", [(30.0, 0.0), (0.0, 30.0), (-20.0, -25.0)])
