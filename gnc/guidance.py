@@ -89,9 +89,10 @@ class Guidance:
         reference = tracker.reference
         ahead_of = reference.course
         along = (reference.north - north) * math.cos(ahead_of) + (reference.east - east) * math.sin(ahead_of)
+        last = tracker.heading_rate_command
         command = tracker.step(north, east, course, own.speed, own.heading_rate)
         leaving, held, keep_out = overriding and mission.leaving, False, self._keep_out
-        command, pace = (mission.command(), mission.airspeed) if overriding else (command, self._pace(along))
+        command, pace = (mission.command(last), mission.airspeed) if overriding else (command, self._pace(along))
         if keep_out is not None:
             command, pace, held = keep_out.limit(command, pace, time, own, leaving=leaving)
             self.guarding = keep_out.guard.intervening
@@ -100,8 +101,9 @@ class Guidance:
         limit = self._limit
         if not -limit <= command <= limit:
             command = math.copysign(limit, command)
+            tracker.heading_rate_command = turning = command * own.air_ratio
             if keep_out is not None:
-                keep_out.overruled(command * own.air_ratio)
+                keep_out.overruled(turning)
         self.heading_rate_command = command
         self.airspeed_command = pace if leaving or (overriding and not held) else self._airspeed(pace, own, held)
         if leaving:

@@ -154,10 +154,11 @@ class DirectTracking:
         self.in_place = not (self.overriding or self._closing)
         self.mode = Mode.APPROACH if self.overriding else Mode.TRACKING
 
-    def command(self) -> float:
-        """Return the heading rate that leads to where the orbit is joined, round the vessel [rad/s]."""
-        last = self.tracker.heading_rate_command
-        return self._approach.command(*self._joined_at(), last, additional_range=0.0) if self._approach else last
+    def command(self, last_command: float) -> float:
+        """Return the heading rate that leads to where the orbit is joined, round the vessel [rad/s]; the law's without a way."""
+        if self._approach is None:
+            return self.tracker.heading_rate_command
+        return self._approach.command(*self._joined_at(), last_command, additional_range=0.0)
 
     def leave(self, fault: Fault) -> None:
         """Refuse to leave: this mission has no departure, and is not given a monitor that could demand it.

@@ -100,8 +100,8 @@ class Mission(Protocol):
     def plan(self, time: float) -> None:
         """Look at own motion and target, and decide what to do."""
 
-    def command(self) -> float:
-        """Return the heading rate to fly while overriding [rad/s]."""
+    def command(self, last_command: float) -> float:
+        """Return the heading rate to fly while overriding, after the last one that was flown [rad/s]."""
 
     def leave(self, fault: Fault) -> None:
         """Leave the vessel for good, because of a fault of the vehicle."""

@@ -142,13 +142,13 @@ class PlumeFollowing:
         """Leave the vessel for good at this altitude: there is no more to be done here."""
         self.departing = True
 
-    def command(self) -> float:
+    def command(self, last_command: float) -> float:
         """Return the heading rate that leads to the centre of oscillation, round the vessel, or away from it [rad/s]."""
-        own, target, centre, last = self._own, self._target, self.centre, self.tracker.heading_rate_command
+        own, target, centre = self._own, self._target, self.centre
         if self.leaving or self.departing:
             x, y = own.ground_north - target.north, own.ground_east - target.east
-            return self._egress.command(x, y, self._approach.course_ahead(last), own.heading_rate)
-        return self._approach.command(centre.x, centre.y, last, additional_range=self._orbit_range)
+            return self._egress.command(x, y, self._approach.course_ahead(last_command), own.heading_rate)
+        return self._approach.command(centre.x, centre.y, last_command, additional_range=self._orbit_range)
 
     def plan(self, time: float) -> None:
         """Move the centre, steer the reference, and decide what to do."""

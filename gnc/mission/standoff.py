@@ -199,11 +199,11 @@ class StandoffOrbit:
             height = p.height.at(p.radius, ratio * p.speed)
             self.altitude = p.climb.step(self.altitude, height, p.speed, self._plan_time)
 
-    def command(self) -> float:
+    def command(self, last_command: float) -> float:
         """Return the heading rate that leads away from the vessel [rad/s]."""
         own, target = self._own, self._target
         x, y = own.ground_north - target.north, own.ground_east - target.east
-        course = own.course + 0.5 * self._lag * (own.heading_rate + self.tracker.heading_rate_command)
+        course = own.course + 0.5 * self._lag * (own.heading_rate + last_command)
         return self._egress.command(x, y, course, own.heading_rate)
 
     def leave(self, fault: Fault) -> None:

@@ -287,7 +287,10 @@ class KeepoutGuard:
         return math.copysign(min(abs(left) / self._time_step, self._rate), left)
 
     def _best_turn(self, situations: Sequence[Situation]) -> tuple[float, float, tuple[Motion, ...], Tube]:
-        """Return slack [m], side, motions and disc of the turn away to fly: the one that was safe, or the best if it is not."""
+        """Return slack [m], side, motions and disc of the turn away to fly: one that keeps off, or that to the side that was safe.
+
+        That one is flown as long as declared errors explain what it lacks, and the better one if they do not.
+        """
         found: list[tuple[float, float, tuple[Motion, ...], Tube]] = []
         for motions, tube in situations:
             for side in (self._side, -self._side) if self._side else (1.0, -1.0):
@@ -296,4 +299,7 @@ class KeepoutGuard:
                 found.append((slack, side, motions, tube))
                 if self._side and slack >= 0.0:
                     return found[-1]
+        was_safe = max((entry for entry in found if entry[1] == self._side), key=lambda entry: entry[0], default=None)
+        if was_safe is not None and was_safe[0] >= -self._explained:
+            return was_safe
         return max(found, key=lambda entry: entry[:2])

@@ -22,13 +22,15 @@ from scenarios.planning.guidance import (
     THRUST_LOST_FRACTION,
     following_parameters,
     guard_parameters,
+    guidance_lag,
     navigation_parameters,
+    plan_interval,
     speed_hold,
     tracking_parameters,
     turn_time,
     wind_change,
 )
-from scenarios.planning.limits import PLAN_PERIOD, omega_max
+from scenarios.planning.limits import omega_max
 from scenarios.planning.plume.axis import axis_height, plume_axis
 from scenarios.planning.plume.distance import additional_distance
 from scenarios.planning.reference import orbits, oscillation_at, swing_of
@@ -85,7 +87,7 @@ def following_flight(
     radius = scenario.keepout.radius_m
     air = mean_wind(scenario, vessel)
     guarded = guard_parameters(scenario, setup, radius, turbulence=level, wind_change=wind_change(scenario, air))
-    widest = widest_tube(limits, scenario.reports, plan_period=PLAN_PERIOD)
+    widest = widest_tube(limits, scenario.reports, plan_period=plan_interval(scenario) / g.rate_hz)
     oscillation = oscillation_at(g, scenario.reference, nu)
     if scenario.stands_off:
         nearest = circle_distance(guarded, widest, g.airspeed_mps, nu * g.airspeed_mps)
@@ -203,7 +205,7 @@ def _guidance(
             airspeed_error=THRUST_LOST_FRACTION * (g.airspeed_mps - hold.airspeed_min),
             speed=g.airspeed_mps,
             heading_rate_max=omega_max(g),
-            lag=tracking.lag,
+            lag=guidance_lag(scenario, setup),
             time_step=tracking.time_step,
         ),
     )

@@ -119,7 +119,7 @@ def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> Navigation
     if scenario.turbulence.level != "none":
         height = scenario.plume.source_height_m
         sigma = intensities(height, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
-        gust = sigma * math.sqrt(2.0 * scale_lengths(height)[0] / g.airspeed_mps / PLAN_PERIOD)
+        gust = sigma * math.sqrt(2.0 * scale_lengths(height)[0] / g.airspeed_mps * g.rate_hz / plan_interval(scenario))
     return NavigationParameters(
         crab_banks=setup.crab_banks,
         crab_offsets=setup.crab_offsets,

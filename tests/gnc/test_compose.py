@@ -148,6 +148,7 @@ def test_no_command_exceeds_its_bound_in_gusts_from_behind():
     # It was in the way, and the guidance goes on from what is flown.
     assert guidance.own.air_ratio < 0.9
     assert abs(guidance.heading_rate_command) == HEADING_RATE_MAX
+    assert guidance.mission.tracker.heading_rate_command == guidance.heading_rate_command * guidance.own.air_ratio
 
 
 def test_flights_share_nothing():

@@ -43,8 +43,10 @@ class OnItsWay:
 
     def __init__(self, mission, airspeed):
         self.tracker, self.altitude, self.airspeed, self.plan = mission.tracker, mission.altitude, airspeed, mission.plan
+        self.told = []
 
-    def command(self):
+    def command(self, last_command):
+        self.told.append(last_command)
         return 0.1
 
 
@@ -219,3 +221,12 @@ def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
     assert np.min(flight.to_vessel) >= 200.75
     # Settled within the half metre that the commands' being held leaves; see test_tracker.py.
     assert np.max(flight.distance[-600:]) < 0.5
+
+
+def test_a_mission_that_overrides_is_told_what_was_flown_and_not_what_the_law_demands_meanwhile():
+    guidance = make_guidance(make_reference(paper_oscillation(0.5)), lag=0.4)
+    guidance.mission = OnItsWay(guidance.mission, SPEED)
+    for step in range(3):
+        guidance.step(step * TIME_STEP, motion(-300.0, 0.0, 2.0))
+    assert abs(guidance.mission.tracker.heading_rate_demand - 0.1) > 0.1
+    assert guidance.mission.told == [0.0, 0.1, 0.1]

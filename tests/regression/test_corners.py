@@ -53,7 +53,7 @@ def test_an_aircraft_that_is_gaining_speed_turns_away_as_predicted(tmp_path):
     # the aircraft was commanded 1.2 m/s more. Of the 3.1 m by which a reversal may deviate a steady turn is allowed a fifth.
     keys = {
         "guidance.law": "park_l1", "vessel.speed_mps": 12.546, "wind.speed_mps": 2.1341, "wind.from_deg": 351.656,
-        "start.range_m": 515.547, "start.aspect_deg": 87.511, "start.course_deg": 60.313, "flight_seed": 598176553,
+        "start.range_m": 320, "start.aspect_deg": 87.511, "start.course_deg": 60.313, "flight_seed": 598176553,
         "flight.duration_max_s": 150, "flight.crossings": 0,
     }  # fmt: skip
     study = load_study("sea_wind", ["draws=[]", "flights=1", *(f"{key}={value}" for key, value in keys.items())])

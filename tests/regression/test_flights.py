@@ -88,8 +88,8 @@ def test_from_anywhere_about_the_ship_nothing_enters(fly, seed, nu, approach, du
     words = ["start.spread_deg=180", f"seed={seed}", f"flight.duration_max_s={duration}", f"guidance.approach={approach}"]
     row, _ = fly(*words, nu=nu)
     assert row["keepout_violations"] == 0
-    # The way round the vessel needs the guard seldom, and here only from the first; the paper's tracking does from each of them.
-    assert row["guard_interventions"] > 0
+    # The paper's tracking needs the guard from each of them, the way round the vessel from none.
+    assert (row["guard_interventions"] > 0) == (approach == "false")
 
 
 @pytest.mark.parametrize("course", [-150, 30])

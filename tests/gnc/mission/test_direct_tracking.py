@@ -67,7 +67,7 @@ def settles(flight):
 def test_without_a_way_it_tracks_from_the_first_step_on_and_overrides_nothing(mission):
     assert mission.started
     mission.plan(0.0)
-    assert (mission.mode, mission.overriding, mission.leaving, mission.command()) == (Mode.TRACKING, False, False, 0.0)
+    assert (mission.mode, mission.overriding, mission.leaving, mission.command(0.2)) == (Mode.TRACKING, False, False, 0.0)
     assert (mission.altitude, mission.centre_error, mission.in_place) == (62.0, 0.0, True)
     # Its reference is placed beforehand: it knows no centre of its own.
     assert all(math.isnan(value) for value in mission.centre)
