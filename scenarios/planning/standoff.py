@@ -65,7 +65,7 @@ class VesselCircle:
 
     @property
     def amplitude(self) -> float:
-        """Largest heading rate through the air, right before the vessel: (1 + nu) times the rate in still air, squared [rad/s]."""
+        """Largest heading rate through the air [rad/s]: (1 + nu)^2 times that in still air, where it flies against the vessel's course."""
         return (1.0 + self.nu) ** 2 * self.speed / self.radius
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:

@@ -68,12 +68,14 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
         known = Tube(0.0, 0.0, 0.0, v_north, v_east)
         # The guard must leave the orbit alone, and what the UAV may stray from it.
         nearest = math.hypot(ahead, right) - oscillation.half_widths()[0] - g.tracking_allowance_m
-        if oscillation.symmetric:
-            # The paper's rule places it.
-            guard = tolerable(guard, known, oscillation, nearest)
-        else:
-            # One that goes round at the largest bank leaves the guard little: it moves off by what the guard needs.
-            distance += max(0.0, orbit_distance(guard, known, oscillation) - nearest) / math.cos(axis.elevation)
+        direction = math.cos(axis.heading), math.sin(axis.heading)
+        by_paper = oscillation.symmetric and g.placement == "paper"
+        if by_paper:
+            # It stays where the paper's rule places it, if it can.
+            guard = tolerable(guard, known, oscillation, nearest, direction)
+        if not by_paper or guard.deviation == 0.0:
+            # One that lies nearer, or goes round at the largest bank, moves off by what the guard needs.
+            distance += max(0.0, orbit_distance(guard, known, oscillation, direction) - nearest) / math.cos(axis.elevation)
             ahead, right, above = centre_of_oscillation(distance, axis)
         check_start(start, guard, (known,), wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius)
     orbit = joined_orbit(scenario, oscillation, course)
