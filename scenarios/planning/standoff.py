@@ -65,7 +65,7 @@ class VesselCircle:
 
     @property
     def amplitude(self) -> float:
-        """Largest heading rate through the air [rad/s]: (1 + nu)^2 times that in still air, where it flies against the vessel's course."""
+        """Largest heading rate through the air, flown against the vessel: (1 + nu)^2 times that in still air [rad/s]."""
         return (1.0 + self.nu) ** 2 * self.speed / self.radius
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
