@@ -17,6 +17,9 @@ Array = npt.NDArray[np.float64]
 _LOWEST = 1e-9
 """Height below which there is no wind of its own [m]: its logarithm goes to minus infinity."""
 
+_ROUNDING = 1e-9
+"""Part of a distance by which two points may be farther apart and count as near [-]: the sum of two numbers is rounded."""
+
 _PROFILE_TOP = 1000.0
 """Height up to which a logarithmic profile goes on; above it the wind is that at it [m]."""
 
@@ -89,18 +92,23 @@ class WindField:
         """
         if len(self._times) == 1:
             return 0.0
-        nodes = np.array([time for time in self._times if 0.0 < time < duration])
-        # Between two times of the grid it is linear: a largest change begins or ends at one of them, or at an end of the flight.
-        times = np.unique(np.clip([0.0, duration, *nodes, *(nodes - interval), *(nodes + interval)], 0.0, duration))
-        north, east = self.at(times[:, None], np.array(heights))
-        largest = 0.0
-        for apart in range(1, len(times)):
-            near = times[apart:] - times[:-apart] <= interval
-            if not near.any():
-                break
-            change = np.hypot(north[apart:] - north[:-apart], east[apart:] - east[:-apart])
-            largest = max(largest, float(change[near].max()))
-        return largest
+        times = _looked_at(self._times, 0.0, duration, interval)
+        return _largest_step(times, *self.at(times[:, None], np.array(heights)), interval)
+
+    def largest_shear(self, apart: float, lowest: float, highest: float, duration: float) -> float:
+        """Return by how much the velocity of the air differs at most between two heights, at a time from 0 to a duration [m/s].
+
+        Parameters
+        ----------
+        apart : largest distance of the two heights [m]
+        lowest, highest : that they have [m]
+        duration : [s]
+        """
+        if len(self._heights) == 1:
+            return 0.0
+        heights = _looked_at([math.exp(height) for height in self._heights], lowest, highest, apart)
+        times = np.array([0.0, duration, *(time for time in self._times if 0.0 < time < duration)])
+        return _largest_step(heights, *self.at(times, heights[:, None]), apart)
 
     def displacement(self, time: npt.ArrayLike, height: npt.ArrayLike) -> tuple[Array, Array]:
         """Return how far the air at some heights [m] has moved north and east from time 0 to some times [s], in metres.
@@ -190,6 +198,24 @@ def windy_run(fdm: Fdm, wind: WindField, run: Callable[[], object]) -> Callable[
         return run()
 
     return blown
+
+
+def _looked_at(nodes: Sequence[float], first: float, last: float, apart: float) -> Array:
+    """Return where a largest change within a distance begins or ends: between nodes it is steady, and at most as large."""
+    inner = np.array([node for node in nodes if first < node < last])
+    return np.unique(np.clip([first, last, *inner, *(inner - apart), *(inner + apart), first + apart, last - apart], first, last))
+
+
+def _largest_step(points: Array, north: Array, east: Array, apart: float) -> float:
+    """Return the largest change [m/s] of velocities at points, shape (n, m), between any two that are so near to each other."""
+    largest = 0.0
+    for step in range(1, len(points)):
+        near = points[step:] - points[:-step] <= apart + _ROUNDING * abs(apart)
+        if not near.any():
+            break
+        change = np.hypot(north[step:] - north[:-step], east[step:] - east[:-step])
+        largest = max(largest, float(change[near].max()))
+    return largest
 
 
 def _between(points: list[float], value: float) -> tuple[int, int, float]:

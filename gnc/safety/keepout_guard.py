@@ -58,8 +58,8 @@ class KeepoutGuard:
 
     __slots__ = (
         "_drift_rate", "_explained", "_free_steps", "_given", "_kept_off", "_lag", "_note", "_note_rate", "_prediction",
-        "_quarter_turn", "_radius", "_rate", "_side", "_speed_error", "_time_step", "_turn_speed", "_turn_time", "_until_acting",
-        "intervening", "interventions", "lost", "tubes",
+        "_quarter_turn", "_radius", "_rate", "_resolution", "_side", "_speed_error", "_time_step", "_turn_speed", "_turn_time",
+        "_until_acting", "intervening", "interventions", "lost", "tubes",
     )  # fmt: skip
 
     def __init__(
@@ -80,28 +80,20 @@ class KeepoutGuard:
         self._radius, self._turn_speed = radius, turn_speed
         self._rate, self._time_step, self._quarter_turn = heading_rate_max, time_step, 0.5 * math.pi / heading_rate_max
         self._lag, self._until_acting = lag, delay
-        self._given = GivenCommands(
-            lag=lag,
-            delay=delay,
-            slow_lag=delay + lag if slow_lag is None else slow_lag,
-            time_step=time_step,
-            heading_rate_max=heading_rate_max,
-        )
+        slow = delay + lag if slow_lag is None else slow_lag
+        self._given = GivenCommands(lag=lag, delay=delay, slow_lag=slow, time_step=time_step, heading_rate_max=heading_rate_max)
         self._note, self._note_rate = self._given.since.append, self._given.rates.append
         # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
         self._speed_error, self._drift_rate = speed_error + drift_rate, drift_rate
         self._prediction = TurnPrediction(
-            heading_rate_max=heading_rate_max,
-            lag=self._lag,
-            delay=self._until_acting,
-            time_step=time_step,
-            deviation=deviation,
-            turn_speed=turn_speed,
+            heading_rate_max=heading_rate_max, lag=lag, delay=delay, time_step=time_step, deviation=deviation, turn_speed=turn_speed
         )
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
         self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * self._lag + self._until_acting + time_step
         # What the declared errors may take from the slack of a turn that was safe.
         self._explained = deviation + self._speed_error * self._turn_time + turbulence
+        # Within a step, too, the path bends: it is predicted to the step's end.
+        self._resolution = max(_RESOLUTION, 1.0 - math.cos(min(math.pi, 0.5 * heading_rate_max * time_step)))
         self._side, self._free_steps = 0.0, 0
         self._kept_off: Tube | None = None
         self.tubes: Sequence[Tube] = ()
@@ -235,7 +227,7 @@ class KeepoutGuard:
     def _free_by_turning_away(self, command: float, motions: tuple[Motion, ...]) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
         starts = self._after(command, motions)
-        floor = _RESOLUTION * motions[0][5] / self._rate
+        floor = self._resolution * motions[0][5] / self._rate
         for side in (nearer := nearer_side(*starts[0][:3]), -nearer):
             slack, free = self._slack(side, starts, motions, floor)
             if slack >= floor:
@@ -261,7 +253,7 @@ class KeepoutGuard:
         slack, side, motions, tube = self._best_turn(situations)
         self._side = side
         turn = self._turn(side, motions[0])
-        floor = _RESOLUTION * motions[0][5] / self._rate
+        floor = self._resolution * motions[0][5] / self._rate
         self.lost = slack < -self._explained - floor
         if slack < 0.0:
             return turn

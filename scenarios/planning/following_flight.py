@@ -17,6 +17,7 @@ from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tr
 from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
 from scenarios.planning.bounded_steering import given_steering
+from scenarios.planning.dead_reckoning import drift_rate
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
     THRUST_LOST_FRACTION,
@@ -86,7 +87,14 @@ def following_flight(
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
     air = mean_wind(scenario, vessel)
-    guarded = guard_parameters(scenario, setup, radius, turbulence=level, wind_change=wind_change(scenario, air))
+    guarded = guard_parameters(
+        scenario,
+        setup,
+        radius,
+        turbulence=level,
+        wind_change=wind_change(scenario, air),
+        drift_rate=drift_rate(scenario, air, turn_time(scenario, setup.reversal)),
+    )
     widest = widest_tube(limits, scenario.reports, plan_period=plan_interval(scenario) / g.rate_hz)
     oscillation = oscillation_at(g, scenario.reference, nu)
     if scenario.stands_off:
@@ -105,7 +113,7 @@ def following_flight(
     else:
         nearest, orbit = radius + margin.total + oscillation.half_widths()[0], oscillation
         further = additional_distance(scenario, vessel, nearest, wind.at_start)
-        periods, mission = _following(scenario, setup, margin, vessel, further)
+        periods, mission = _following(scenario, setup, margin, vessel, further, guarded.drift_rate)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, air, generators.world)
@@ -163,9 +171,12 @@ def _first_reports(vessel: VesselTruth, received: list[tuple[float, VesselReport
 
 
 def _following(
-    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, vessel: VesselTruth, further: float
+    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, vessel: VesselTruth, further: float, drifting: float
 ) -> tuple[tuple[float, ...], FollowingParameters]:
-    """Return the periods of the orbit over nu [s], and how the plume is followed, farther off than need be by a distance [m]."""
+    """Return the periods of the orbit over nu [s], and how the plume is followed, farther off than need be by a distance [m].
+
+    Dead reckoning may be ``drifting`` [m/s].
+    """
     # Before its orbits: a shape that cannot be steered says so, whatever else it cannot do beside a fast vessel.
     swing = swing_of(scenario.guidance, scenario.reference)
     periods, widths = orbits(scenario.guidance, scenario.reference, scenario.following.speed_ratio_max)
@@ -178,6 +189,7 @@ def _following(
         swing=swing,
         vessel_course=vessel.course(0.0),
         additional_distance=further,
+        drift_rate=drifting,
     )
 
 

@@ -21,7 +21,6 @@ from scenarios.planning.limits import PLAN_PERIOD, omega_max
 from scenarios.planning.reference import shape_of
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
-from scenarios.world.faults import SATELLITES
 
 STALE_MIN = 2.0
 """Shortest age at which vessel data count as stale [s]."""
@@ -40,6 +39,12 @@ WIND_DRIFT, WIND_PRIOR = 0.02, 10.0
 
 WIND_FOLLOWED = 20.0
 """Time within which the estimated wind follows a change [s]: of a wind that turns steadily it is behind by less."""
+
+_NOISE_DEVIATIONS = 3.0
+"""Standard deviations of the noise of velocities that are allowed for [-]."""
+
+_NOISE_OF_WIND = 0.12
+"""What the wind's filter leaves of the noise of a single measurement [-]: sqrt(k/2) of its gain k = 0.028 in still air."""
 
 ROUND_BY = 0.8
 """By how many turn radii a way round the keep-out area stays farther off than what counts as blocked [-]."""
@@ -65,13 +70,25 @@ def guidance_lag(scenario: Scenario, setup: VehicleSetup) -> float:
 
 
 def guard_parameters(
-    scenario: Scenario, setup: VehicleSetup, radius: float, *, turbulence: float = 0.0, wind_change: float = 0.0
+    scenario: Scenario,
+    setup: VehicleSetup,
+    radius: float,
+    *,
+    turbulence: float = 0.0,
+    wind_change: float = 0.0,
+    drift_rate: float = 0.0,
 ) -> GuardParameters:
-    """Return the guard that keeps a radius [m], and what is kept for turbulence [m], about wherever the vessel may be.
+    """Return the guard that keeps a radius about wherever the vessel may be.
 
-    The wind that is estimated may be in error by ``wind_change`` [m/s], since it changes.
+    Parameters
+    ----------
+    scenario, setup : the flight, and its vehicle
+    radius, turbulence : to keep, and to keep beside for turbulence [m]
+    wind_change : by which the estimated wind may be in error, since it changes [m/s]
+    drift_rate : how fast dead reckoning may go wrong [m/s]
     """
     f, air = scenario.following, scenario.turbulence
+    speed_error = max(f.speed_error_mps, _noise(scenario)) + air.gust_speed_mps + wind_change
     return GuardParameters(
         radius=radius + turbulence,
         deviation=max(setup.response_error, f.turn_deviation_m if scenario.follows else 0.0),
@@ -81,19 +98,40 @@ def guard_parameters(
         slow_lag=setup.lag,
         time_step=1.0 / scenario.guidance.rate_hz,
         # A gust may begin at any moment; and one that blows turns with the vehicle in the prediction, but not in the air.
-        speed_error=f.speed_error_mps + air.gust_speed_mps + wind_change if scenario.follows else 0.0,
-        drift_rate=f.drift_rate_mps if scenario.follows and SATELLITES in scenario.declared_faults else 0.0,
+        speed_error=speed_error if scenario.follows else 0.0,
+        drift_rate=drift_rate,
         turbulence=turbulence,
         turn_speed=setup.turning_airspeed(omega_max(scenario.guidance)),
     )
 
 
+def _noise(scenario: Scenario) -> float:
+    """Return by how much the noise of its sensors may make the vehicle's own velocity wrong at a step [m/s].
+
+    The guard is asked at each step, and goes by the one at which the noise makes a command look safe.
+    """
+    sensors = scenario.sensors
+    by_wind = math.hypot(sensors.airspeed_sigma_mps, scenario.guidance.airspeed_mps * math.radians(sensors.heading_sigma_deg))
+    return _NOISE_DEVIATIONS * math.hypot(sensors.velocity_sigma_mps, _NOISE_OF_WIND * by_wind)
+
+
 def wind_change(scenario: Scenario, wind: WindField) -> float:
-    """Return by how much the wind at the heights that are flown changes at most until its estimate has followed [m/s]."""
-    flight, heights = scenario.flight, [scenario.altitude]
-    if scenario.emission.ship is not None and scenario.following.plume != "predicted":
-        heights += [flight.altitude_min_m, flight.altitude_max_m]
-    return wind.largest_change(WIND_FOLLOWED, flight.duration_max_s, heights)
+    """Return by how much the wind that is flown in changes at most until its estimate has followed [m/s].
+
+    It changes with time, and with the height of a vehicle that climbs to that of rising exhaust.
+    """
+    g, flight = scenario.guidance, scenario.flight
+    heights = flown_heights(scenario)
+    climbed = scenario.following.climb_gradient * g.airspeed_mps * WIND_FOLLOWED
+    shear = wind.largest_shear(climbed, min(heights), max(heights), flight.duration_max_s)
+    return wind.largest_change(WIND_FOLLOWED, flight.duration_max_s, heights) + shear
+
+
+def flown_heights(scenario: Scenario) -> list[float]:
+    """Return the heights that the flight is planned for; of rising exhaust the lowest and the highest, too [m]."""
+    if scenario.emission.ship is None:
+        return [scenario.altitude]
+    return [scenario.altitude, scenario.flight.altitude_min_m, scenario.flight.altitude_max_m]
 
 
 def turn_time(scenario: Scenario, reversal: TurnReversalResponse) -> float:
@@ -160,6 +198,7 @@ def following_parameters(
     swing: Swing,
     vessel_course: float,
     additional_distance: float,
+    drift_rate: float,
 ) -> FollowingParameters:
     """Return how the plume of a moving vessel is followed.
 
@@ -172,6 +211,7 @@ def following_parameters(
     swing : courses of the reference, by its shape
     vessel_course : at the start [rad]
     additional_distance : from the vessel, beyond what keeps out [m]
+    drift_rate : how fast dead reckoning may go wrong [m/s]
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports
     fastest, radius = omega_max(g), scenario.keepout.radius_m
@@ -199,7 +239,7 @@ def following_parameters(
         stale=max(STALE_MIN, reports.interval_s[1] + reports.latency_max_s),
         reach=margin.reach,
         reach_time=turn_time(scenario, setup.reversal),
-        drift_rate=f.drift_rate_mps,
+        drift_rate=drift_rate,
         plan_interval=plan_interval(scenario),
         axis=axis,
     )

@@ -68,10 +68,18 @@ def check_start(
 
     Raises
     ------
-    InfeasibleError : the best turn away comes too close
+    InfeasibleError : the best turn away comes too close, or the vehicle lags so much that it does not lead away
     """
     if guard is None:
         return
+    fastest = max(math.hypot(tube.velocity_north - wind[0], tube.velocity_east - wind[1]) for tube in vessel)
+    away = airspeed * math.cos(min(math.pi, guard.heading_rate_max * guard.lag))
+    if away <= fastest < airspeed:
+        raise InfeasibleError(
+            f"a UAV that turns at {guard.heading_rate_max:.3g} rad/s and lags by {guard.lag:.3g} s overshoots, and then leaves at"
+            f" only {away:.1f} of its {airspeed:.1f} m/s, beside a vessel with {fastest:.1f} m/s through the air: give it a shorter"
+            " lag (kinematic.heading_rate_lag_s) or slower turns (guidance.bank_deg)"
+        )
     keeping = keepout_guard(guard)
     keeping.tubes = vessel
     own = KnownMotion(ground_north=start.north, ground_east=start.east, course=start.course, wind_north=wind[0], wind_east=wind[1])

@@ -199,13 +199,16 @@ class Scenario(Section):
         if self.circles and self.criteria.required == "keep_out":
             raise ValueError("criteria.required is 'keep_out', and a circle has no area to keep out of; set it to 'criteria'")
         if self.fidelity == "six_dof" and not self.guidance.command_limit:
-            raise ValueError(
-                "guidance.command_limit is false; the aircraft cannot turn as fast as that: set fidelity to 'kinematic'"
-            )
+            raise ValueError("guidance.command_limit is false; an aircraft cannot turn so fast: set fidelity to 'kinematic'")
         if not (self.guidance.command_limit or self.follows or self.circles) and self.guidance.approach:
             raise ValueError(
                 "guidance.command_limit is false and guidance.approach true; the way to the orbit has turns at the limit:"
                 " set guidance.approach to false"
+            )
+        if not self.guidance.command_limit and self.guidance.keepout_guard and self.kinematic.heading_rate_lag_s > 0.0:
+            raise ValueError(
+                "guidance.command_limit is false with kinematic.heading_rate_lag_s; the keep-out guard predicts one with a lag"
+                " within the limit alone: leave one of them out, or set guidance.keepout_guard to false"
             )
         if self.fidelity == "kinematic" and not self.turbulence.calm:
             raise ValueError(

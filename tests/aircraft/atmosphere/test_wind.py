@@ -38,6 +38,19 @@ def test_its_largest_change_within_an_interval_is_that_of_every_pair_of_times():
     assert CHANGING.largest_change(50.0, 190.0, [10.0, 100.0]) == pytest.approx(0.5 * math.hypot(4.0, 8.0))
 
 
+def test_its_largest_shear_is_that_of_every_pair_of_heights():
+    wind = WindField([[[8.0, 0.0], [8.0, 0.0], [-10.0, 0.0], [-10.0, 4.0]]], heights=(1.0, 38.0, 45.0, 200.0))
+    height = np.linspace(20.0, 120.0, 2001)
+    north, east = wind.at(0.0, height)
+    for apart in (3.0, 18.0, 500.0):
+        near = np.abs(np.subtract.outer(height, height)) <= apart + 1e-9
+        sheared = np.hypot(np.subtract.outer(north, north), np.subtract.outer(east, east))[near].max()
+        assert wind.largest_shear(apart, 20.0, 120.0, 60.0) == pytest.approx(sheared, abs=0.01)
+    # At any time of the flight; and none where one height is flown, or the table has one.
+    assert CHANGING.largest_shear(90.0, 10.0, 100.0, 500.0) > CHANGING.largest_shear(90.0, 10.0, 100.0, 100.0)
+    assert wind.largest_shear(18.0, 60.0, 60.0, 60.0) == WindField([3.0, 0.0]).largest_shear(18.0, 20.0, 120.0, 60.0) == 0.0
+
+
 def test_it_is_the_table_at_its_points_and_linear_between_them():
     assert CHANGING.now(100.0, 10.0) == (2.0, -1.0)
     assert CHANGING.now(200.0, 100.0) == (8.0, 5.0)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from flight_cases import plan, scenario
 
+from gnc.errors import InfeasibleError
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.bounded_steering import farthest_start
 from scenarios.schema.load import load_study
@@ -108,3 +109,12 @@ def test_starts_depend_on_the_seed_and_nu_alone():
     assert at == base["nu_0.50_no_preview", "no_preview"]
     assert at != seeds("seed=2")["nu_0.50", "study"]
     assert len({seed for (_, variant), seed in base.items() if variant == "study"}) == 20
+
+
+def test_a_vehicle_that_lags_so_much_that_a_turn_away_does_not_lead_away_is_not_flown():
+    # At 0.5 rad/s and 4 s late it overshoots by two radians: it came within 28 m of a ship to be kept 50 m from.
+    with pytest.raises(
+        InfeasibleError, match=r"lags by 4 s overshoots, and then leaves at only -.* of its .*: give it a shorter lag"
+    ):
+        plan(tracking(kinematic={"heading_rate_lag_s": 4.0}))
+    plan(tracking(kinematic={"heading_rate_lag_s": 0.4}))

@@ -69,6 +69,8 @@ def test_commands_may_be_left_uncut():
 
 
 def test_an_orbit_that_is_joined_needs_commands_that_are_cut():
+    with pytest.raises(InputError, match=r"command_limit is false with kinematic.heading_rate_lag_s; .*: leave one of them out"):
+        plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false", "kinematic.heading_rate_lag_s=0.4")
     with pytest.raises(InputError, match=r"command_limit is false and guidance.approach true.*: set guidance.approach to false"):
         plan("fidelity=kinematic", "guidance.command_limit=false")
 

@@ -1,0 +1,63 @@
+"""Corners of air and sensors in which flights came within r_min, as a sceptic found them: each was declared, and not reckoned with.
+
+The commands are those of the search, with fewer flights.
+"""
+
+import pandas as pd
+import pytest
+
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+
+NOWHERE = ["draws=[]", "flight.crossings=0", "fidelity=kinematic"]
+REVERSED = """time_utc,speed_mps,from_deg
+2026-06-01T11:00:00Z,8,0
+2026-06-01T12:02:00Z,8,0
+2026-06-01T12:03:00Z,0,0
+2026-06-01T12:03:01Z,0.1,180
+2026-06-01T12:04:00Z,8,180
+2026-06-01T12:30:00Z,8,180
+"""
+SHEARED = "height_m,speed_mps,from_deg\n1,8,0\n38,8,0\n45,10,180\n200,10,180\n"
+
+
+def flown(tmp_path, *overrides, table=None):
+    """Return the rows of a run of ``sea_wind``."""
+    if table is not None:
+        (tmp_path / "wind.csv").write_text(table)
+        overrides = (*overrides, f"wind.table={tmp_path / 'wind.csv'}")
+    study = load_study("sea_wind", [*NOWHERE, *overrides])
+    run_study(study, "sea_wind", tmp_path / "run")
+    return pd.read_csv(tmp_path / "run" / "summary.csv")
+
+
+@pytest.mark.parametrize("outage", [60, 150])
+def test_satellites_are_lost_while_the_wind_turns_round(tmp_path, outage):
+    # 12 of 12 flights had come in, as near as 57 and 4 m: dead reckoning went wrong by 4.7 m/s, and 1 m/s was allowed for.
+    rows = flown(
+        tmp_path, "flights=2", "vessel.speed_mps=4", "place.utc=2026-06-01T12:00:00Z", "fault.kind=satellite_navigation",
+        f"fault.satellite_navigation_s={outage}", "fault.at_s=120", "flight.duration_max_s=400", table=REVERSED,
+    )  # fmt: skip
+    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+
+
+def test_the_wind_turns_round_between_two_heights_that_exhaust_is_followed_to(tmp_path):
+    # 2 of 8 had come in, as near as 190.7 m.
+    rows = flown(
+        tmp_path, "flights=8", "flight.duration_max_s=120", "vessel.speed_mps=3", "plume.model=fluctuating",
+        "emission.ship=container", "plume.source_height_m=35", table=SHEARED,
+    )  # fmt: skip
+    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+
+
+@pytest.mark.parametrize(
+    "noise", ["velocity_sigma_mps=1", "airspeed_sigma_mps=1", "heading_sigma_deg=5"], ids=["velocity", "airspeed", "heading"]
+)
+def test_noise_of_the_own_velocity_does_not_make_commands_look_safe(tmp_path, noise):
+    # A law that circles within r_min: the guard decides at each step, and went by the lucky ones (185.8, 198.8 and 199.6 m).
+    rows = flown(
+        tmp_path, "flights=1", "flight.duration_max_s=250", "vessel.speed_mps=4", "wind.speed_mps=4", "guidance.mission=standoff",
+        "reference.standoff_radius_m=120", "guidance.law=park_l1", f"sensors.{noise}",
+    )  # fmt: skip
+    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+    assert rows["guard_interventions"].sum() > 0

@@ -1,0 +1,66 @@
+"""How fast dead reckoning is taken to go wrong: what is declared, and what the air of the scenario adds."""
+
+import math
+
+import numpy as np
+import pytest
+from flight_cases import plan, scenario
+
+from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
+from aircraft.atmosphere.wind import CALM, WindField
+from scenarios.planning.dead_reckoning import drift_rate
+
+TURN, OUTAGE = 7.0, 60.0
+FAULT = {"kind": "satellite_navigation", "at_s": (80.0, 80.0), "satellite_navigation_s": OUTAGE}
+
+
+def rate(wind=CALM, **changes):
+    return drift_rate(scenario(fault=FAULT, **changes), wind, TURN)
+
+
+def in_air(**turbulence):
+    return rate(turbulence=turbulence, fidelity="six_dof") - rate()
+
+
+def test_in_steady_air_it_is_what_is_declared_and_without_a_loss_there_is_none():
+    assert rate(following={"drift_rate_mps": 1.7}) == 1.7
+    assert drift_rate(scenario(), CALM, TURN) == 0.0
+
+
+def test_guard_and_mission_reckon_with_the_same_rate():
+    guidance = plan(scenario(fault=FAULT, following={"drift_rate_mps": 1.7})).guidance
+    assert guidance.guard.drift_rate == guidance.mission.drift_rate == 1.7
+
+
+def test_a_wind_that_changes_adds_its_largest_change_in_an_outage_and_until_its_estimate_has_followed():
+    # 0.1 m/s each second for 300 s: in 60 s and the 20 s before 8 m/s.
+    changing = WindField([[[0.0, 0.0]], [[30.0, 0.0]]], times=(0.0, 300.0))
+    assert rate(changing) == pytest.approx(1.0 + 8.0)
+
+
+@pytest.mark.parametrize(("speed", "rise", "count"), [(8.0, 4.0, 7), (5.0, 10.0, 3), (8.0, 30.0, 1)])
+def test_gusts_displace_by_no_more_than_is_reckoned_with(speed, rise, count):
+    time = np.linspace(0.0, OUTAGE, 6001)
+    gust = np.where(time <= 2.0 * rise * count, 0.5 * speed * (1.0 - np.cos(math.pi * time / rise)), 0.0)
+    moved = np.concatenate([[0.0], np.cumsum(0.5 * (gust[1:] + gust[:-1]) * np.diff(time))])
+    added = in_air(gusts=count, gust_speed_mps=speed, gust_length_s=rise)
+    for begins in range(0, 6000, 100):
+        since = moved[begins:] - moved[begins]
+        assert (since <= added * (time[: len(since)] + TURN)).all()
+    # The wind is taken to be what is left of a gust that the estimate has followed, and none may blow: no more than both.
+    assert added <= 2.0 * speed
+
+
+@pytest.mark.parametrize("level", ["light", "moderate"])
+def test_turbulence_displaces_by_more_than_is_reckoned_with_about_as_often_as_three_deviations(level):
+    height, speed, step = 60.0, scenario().guidance.airspeed_mps, 0.1
+    sigma, correlated = intensities(height, TURBULENCE[level].wind_at_20ft)[0], scale_lengths(height)[0] / speed
+    noise, kept = np.random.default_rng(1), math.exp(-step / correlated)
+    velocity, moved, exceeded = sigma * noise.standard_normal(20_000), np.zeros(20_000), []
+    added = in_air(level=level)
+    for n in range(1, round(OUTAGE / step) + 1):
+        velocity = kept * velocity + sigma * math.sqrt(1.0 - kept**2) * noise.standard_normal(velocity.size)
+        moved += step * velocity
+        exceeded.append(np.mean(np.abs(moved) > added * (n * step + TURN)))
+    # Of a normal distribution 0.27 % lie beyond three deviations: so many at the worst age, and fewer at any other.
+    assert 0.001 < max(exceeded) < 0.004
