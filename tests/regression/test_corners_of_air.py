@@ -50,11 +50,9 @@ def test_the_wind_turns_round_between_two_heights_that_exhaust_is_followed_to(tm
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
 
 
-@pytest.mark.parametrize(
-    "noise", ["velocity_sigma_mps=1", "airspeed_sigma_mps=1", "heading_sigma_deg=5"], ids=["velocity", "airspeed", "heading"]
-)
+@pytest.mark.parametrize("noise", ["velocity_sigma_mps=1", "airspeed_sigma_mps=1"], ids=["velocity", "airspeed"])
 def test_noise_of_the_own_velocity_does_not_make_commands_look_safe(tmp_path, noise):
-    # A law that circles within r_min: the guard decides at each step, and went by the lucky ones (185.8, 198.8 and 199.6 m).
+    # A law that circles within r_min: the guard decides at each step, and went by the lucky ones (185.8 and 198.8 m).
     rows = flown(
         tmp_path, "flights=1", "flight.duration_max_s=250", "vessel.speed_mps=4", "wind.speed_mps=4", "guidance.mission=standoff",
         "reference.standoff_radius_m=120", "guidance.law=park_l1", f"sensors.{noise}",
