@@ -69,11 +69,6 @@ class Health:
         self._last_airspeed = 0.0
         self.fault = Fault.NONE
 
-    @property
-    def fault_detected(self) -> bool:
-        """Return whether a fault has been detected."""
-        return self.fault is not Fault.NONE
-
     def check(self, lack: float, airspeed: float, heading_rate: float, command: float, servo_error: float) -> Fault:
         """Return the fault that has been detected, if any.
 
@@ -93,7 +88,7 @@ class Health:
         self._mean_gain = decay * self._mean_gain + (1.0 - decay) * gained
         self._mean_error = decay * self._mean_error + (1.0 - decay) * abs(heading_rate - self._expected)
         self._mean_servo_error = servo_decay * self._mean_servo_error + (1.0 - servo_decay) * servo_error
-        if not self.fault_detected:
+        if self.fault is Fault.NONE:
             if self._mean_servo_error > self._servo_error:
                 self.fault = Fault.ACTUATOR_STUCK
             elif self._mean_lack > self._airspeed_error and self._mean_gain < 0.0:
