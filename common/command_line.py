@@ -1,16 +1,19 @@
 """Command lines of the project: typer for the options, one line for an error."""
 
 import io
+import os
 import sys
 from collections.abc import Callable, Mapping
-from typing import Annotated
+from typing import Annotated, NoReturn, TextIO
 
 import typer
 
 PROGRAM = "plume-flight"
 """Name of the console command."""
 
-BAD_INPUT, INTERRUPTED = 2, 130
+BAD_INPUT, INTERRUPTED, UNREAD = 2, 130, 141
+"""Exit statuses: of input that is refused, and of a command that Ctrl-C ended or that lost the reader of its output: 128 and the
+number of the signal, as in a shell."""
 
 _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """Base class of the errors that typer raises for bad options, which it does not export."""
@@ -25,10 +28,7 @@ def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]]
     name : of the command line
     version : what ``--version`` prints, of a command line with several commands
     """
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            # Names may have letters that a terminal does not.
-            stream.reconfigure(errors="backslashreplace")
+    sys.stdout, sys.stderr = map(_Output.instead_of, (sys.stdout, sys.stderr))
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     for word, one in command.items() if isinstance(command, Mapping) else [(None, command)]:
         app.command(word)(one)
@@ -43,7 +43,46 @@ def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]]
     except typer.Abort:
         print("interrupted", file=sys.stderr)
         status = INTERRUPTED
+    # Here, and not while the interpreter ends, where a reader that is gone would be an exception.
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
     sys.exit(status or 0)
+
+
+class _Output(io.TextIOWrapper):
+    """An output whose reader may be gone before its end, as ``head`` is: the command then ends without a word.
+
+    Not with an OSError, which commands take for a file that cannot be written.
+    """
+
+    @staticmethod
+    def instead_of(stream: TextIO) -> TextIO:
+        """Return what to write to instead of a standard stream; the stream itself where a program or a test has replaced it."""
+        if not isinstance(stream, io.TextIOWrapper):
+            return stream
+        # Names may have letters that a terminal does not.
+        stream.reconfigure(errors="backslashreplace")
+        if stream not in (sys.__stdout__, sys.__stderr__):
+            return stream
+        return _Output(stream.buffer, stream.encoding, stream.errors, line_buffering=stream.line_buffering)
+
+    def write(self, text: str) -> int:
+        try:
+            return super().write(text)
+        except BrokenPipeError:
+            self._end()
+
+    def flush(self) -> None:
+        try:
+            super().flush()
+        except BrokenPipeError:
+            self._end()
+
+    def _end(self) -> NoReturn:
+        # What is left to write has a place to go to, or the interpreter would try once more.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, self.fileno())
+        raise SystemExit(UNREAD)
 
 
 def _with_version(text: str) -> Callable[..., None]:

@@ -25,7 +25,10 @@ def command(
         str | None, typer.Argument(metavar="AIRCRAFT", help="The aircraft to design for, e.g. x8, c172x, DIR/NAME or FILE.py:NAME.")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Directory for the design; default runs/design-AIRCRAFT.")] = None,
-    altitude: Annotated[float, typer.Option(min=10.0, max=5000.0, help="Design altitude in metres.")] = 100.0,
+    altitude: Annotated[
+        float,
+        typer.Option(min=10.0, max=5000.0, help="Design altitude in metres; each altitude that was flown has a design of its own."),
+    ] = 100.0,
     no_report: Annotated[bool, typer.Option("--no-report", help="Leave out report.html and report.pdf.")] = False,
     reversals: Annotated[
         int | None,
@@ -92,7 +95,8 @@ def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
     except KeyboardInterrupt:
         print("interrupted; finished designs are cached, and the next --list continues from there", file=sys.stderr)
         raise typer.Exit(INTERRUPTED) from None
-    more = f"; {waiting} were not designed before: --list --check designs them, which takes minutes" if waiting else ""
+    before = f"{waiting} {'was' if waiting == 1 else 'were'} not designed before for {altitude:g} m"
+    more = f"; {before}: --list --check does so, which takes minutes, and says which can be flown" if waiting else ""
     print(f"{flying} can be flown{more}", file=sys.stderr)
 
 

@@ -39,7 +39,9 @@ def look_up(name: str, altitude: float) -> Discovered:
     except AircraftError:
         # Its reason needs no design.
         return examine(name, altitude)
-    return examine(name, altitude) if known else Discovered(name=name, title=spec.title, flies=None, text="not designed before")
+    if known:
+        return examine(name, altitude)
+    return Discovered(name=name, title=spec.title, flies=None, text=f"not designed before for {altitude:g} m")
 
 
 def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Discovered]:

@@ -90,8 +90,8 @@ def test_the_directory_is_designed_for_and_listed(flown, heavy, tmp_path):
     assert run_command("innerloop.design", "--list", "--check", *place).out == listed.out
     # At another height nothing is designed for a list.
     elsewhere = run_command("innerloop.design", "--list", *place[:2], "--altitude", 777)
-    assert elsewhere.out.split(maxsplit=2) == ["?", str(heavy), "not designed before\n"]
-    assert "0 can be flown; 1 were not designed before: --list --check designs them" in elsewhere.errors
+    assert elsewhere.out.split(maxsplit=2) == ["?", str(heavy), "not designed before for 777 m\n"]
+    assert "0 can be flown; 1 was not designed before for 777 m: --list --check does so" in elsewhere.errors
     assert_refused(run_command("innerloop.design", "--check", *place), "--check is for --list")
 
 
