@@ -115,7 +115,7 @@ def paired(first: Run, other: Run) -> Pairs:
     places = pd.concat(found).sort_values("place_x")
     same = len(set(left[0]["name"]) & set(left[1]["name"]))
     if not len(places):
-        what = f"{same} agree in name but not in seed; give both the same --seed" if same else "no name is in both"
+        what = _why_none(left[0], left[1], same)
         one, two = (
             f"'{run.data.path}' ({len(table)} flight{'s' * (len(table) != 1)})"
             for run, table in zip((first, other), rows, strict=True)
@@ -125,6 +125,20 @@ def paired(first: Run, other: Run) -> Pairs:
         table.iloc[places[place]].reset_index(drop=True) for table, place in zip(rows, ("place_x", "place_y"), strict=True)
     )
     return Pairs(first=first, other=other, before=before, after=after, same_name=same)
+
+
+def _why_none(one: pd.DataFrame, two: pd.DataFrame, same: int) -> str:
+    """Return why no flight is in both runs, and what to do; ``same`` is the number of names that are."""
+    if not same:
+        return "no name is in both"
+    what = f"{same} agree{'s' * (same == 1)} in name but not in seed"
+    if set(one["trial"]) & set(two["trial"]):
+        return f"{what}; give both the same --seed"
+    names = " and ".join(f"'{table['trial'].iloc[0]}'" for table in (one, two))
+    return (
+        f"{what}: seeds follow from --seed and from the scenario's name, here {names}; fly one scenario both times, with --set for"
+        " what is to differ, or give both the same flight_seed"
+    )
 
 
 def _identities(rows: pd.DataFrame) -> pd.DataFrame:
