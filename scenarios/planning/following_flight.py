@@ -295,7 +295,9 @@ def _check_plume(scenario: Scenario, wind: ApparentWind) -> None:
             f" {speed:g} m/s follows up to nu = {f.speed_ratio_max:g}: fly faster, or in less apparent wind"
         )
     if scenario.plume_by_wind and wind.at_start < f.apparent_wind_min_mps:
+        # Exhaust trails with the wind, whatever direction the plume is given.
+        given = ", or the plume a direction (plume.direction=given)" if scenario.emission.ship is None else ""
         raise InfeasibleError(
-            f"the apparent wind is {wind.at_start:.2f} m/s; below {f.apparent_wind_min_mps:g} the plume has no"
-            " direction: give wind or vessel another speed, or the plume a direction (plume.direction=given)"
+            f"the apparent wind is {wind.at_start:.2f} m/s; below {f.apparent_wind_min_mps:g} m/s the plume has no direction:"
+            f" give wind or vessel another speed{given}"
         )

@@ -101,6 +101,7 @@ class ClosedLoop:
                     break
             command, airspeed = yield command, guidance.airspeed_command
             advance(command, airspeed - airspeed_error)
+        ending.guarded = bool(guarding)
         rows = recorder.rows()
         return FlightRecord(
             outcome=ending.outcome,

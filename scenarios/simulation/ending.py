@@ -30,12 +30,13 @@ class Ending:
 
     Attributes
     ----------
+    guarded : whether the keep-out guard changed a command in the flight; the loop says so at its end
     outcome, message : in a word, and why in a sentence; nothing to say where it completed
     """
 
     def __init__(self, plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, settling: Settling, judge: Judge | None) -> None:
         self._plan, self._vehicle, self._guidance, self._settling, self._judge = plan, vehicle, guidance, settling, judge
-        self._ditched, self._fault, self._end = False, "", 0.0
+        self._ditched, self._fault, self._end, self.guarded = False, "", 0.0, False
 
     def reached(self, time: float, motion: Motion, sample: tuple[float, ...], *, complete: bool) -> bool:
         """Return whether the flight is over at a sample; ``complete`` says whether it has all crossings that are asked for."""
@@ -110,9 +111,7 @@ class Ending:
         if math.isnan(settling.at):
             flown = "did not settle"
             if settling.tracked >= plan.settling_period:
-                flown = (
-                    f"tracked its reference for {settling.tracked:.0f} s, but its orbit was not in its place, so it did not settle"
-                )
+                flown = f"tracked its reference for {settling.tracked:.0f} s, but {self._orbit()}, so it did not settle"
         elif self._missing:
             flown = f"flew {plan.after_settling - self._missing:.0f} of {plan.after_settling:g} s after settling"
         elif plan.crossings or not settling.crossings:
@@ -120,7 +119,17 @@ class Ending:
         else:
             return f"ended {mode.value} after {settling.crossings} crossings: the plume was no longer crossed"
         ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""
+        guard = ", start closer, or see whether the guard holds it off (guidance.keepout_guard)"
         return (
-            f"{flown} within {plan.duration_max:g} s{ended}: allow more time (flight.duration_max_s),"
-            " start closer, or see whether the guard holds it off (guidance.keepout_guard)"
+            f"{flown} within {plan.duration_max:g} s{ended}: allow more time (flight.duration_max_s)"
+            f"{guard if self.guarded else ', or start closer'}"
         )
+
+    def _orbit(self) -> str:
+        """Return how the orbit stood to its place at the end of a flight that tracked it and did not settle."""
+        off, most = self._settling.centre_error, self._settling.centre_band
+        if off == math.inf:
+            return "its orbit was still closing in on its place"
+        if off >= most:
+            return f"its orbit was {off:.0f} m from its place at the end, where less than {most:g} m count as there"
+        return "its orbit was not in its place for a whole period"

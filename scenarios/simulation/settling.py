@@ -24,12 +24,13 @@ class Settling:
     at : when the flight had settled, not a number as long as that does not show [s]
     crossings : flown since
     tracked : longest time for which the vehicle stayed near its reference before that, wherever the orbit was [s]
+    centre_error, centre_band : distance of the orbit's centre from its place at the last sample, infinite while it is still closing
+        in, and below what it counts as there [m]
     """
 
     __slots__ = (
         "_after",
         "_band",
-        "_centre_band",
         "_complete",
         "_demanded",
         "_near_since",
@@ -38,16 +39,18 @@ class Settling:
         "_side",
         "_since",
         "at",
+        "centre_band",
+        "centre_error",
         "crossings",
         "tracked",
     )
 
     def __init__(self, *, band: float, period: float, crossings: int, after: float = math.inf) -> None:
-        self._band, self._centre_band, self._period, self._demanded = band, _CENTRE_BANDS * band, period, crossings
+        self._band, self.centre_band, self._period, self._demanded = band, _CENTRE_BANDS * band, period, crossings
         self._after = after
         self._since, self._side, self._complete, self._open = math.inf, 0.0, False, True
         self._near_since = math.inf
-        self.at, self.crossings, self.tracked = math.nan, 0, 0.0
+        self.at, self.crossings, self.tracked, self.centre_error = math.nan, 0, 0.0, math.inf
 
     def update(self, time: float, tracking_error: float, centre_error: float, x: float, y: float, axis: float) -> bool:
         """Take note of a sample; return whether the flight had flown all that it is to fly by the last one.
@@ -60,12 +63,13 @@ class Settling:
         x, y : north and east of the vessel [m]
         axis : course along which the plume trails [rad]
         """
+        self.centre_error = centre_error
         cos_a, sin_a = math.cos(axis), math.sin(axis)
         before, self._side = self._side, cos_a * y - sin_a * x
         if self._open:
             self._near_since = min(self._near_since, time) if tracking_error < self._band else math.inf
             self.tracked = max(self.tracked, time - self._near_since)
-        if self._open and (tracking_error >= self._band or centre_error >= self._centre_band):
+        if self._open and (tracking_error >= self._band or centre_error >= self.centre_band):
             self._since, self.crossings = math.inf, 0
         elif self._since == math.inf:
             self._since = time

@@ -22,8 +22,10 @@ from scenarios.metrics.columns import INPUT_COLUMNS, SUMMARY_COLUMNS
             },
             "the vessel moves at up to 19.5 m/s through the air",
         ),
-        ({"vessel": {"speed_mps": 0.0}}, "the apparent wind is 0.00 m/s; below 1 the plume has no direction"),
-        ({"wind": {"speed_mps": 8.0, "from_deg": 180.0}}, "the apparent wind is 0.00 m/s"),
+        ({"vessel": {"speed_mps": 0.0}}, "the apparent wind is 0.00 m/s; below 1 m/s the plume has no direction"),
+        ({"wind": {"speed_mps": 8.0, "from_deg": 180.0}}, "another speed, or the plume a direction (plume.direction=given)"),
+        # Exhaust goes with the wind in any case.
+        ({"wind": {"speed_mps": 8.0, "from_deg": 180.0}, "emission": {"ship": "container"}}, "another speed"),
     ],
 )
 def test_what_cannot_be_flown_is_an_infeasible_row_with_one_clear_line(changes, words):
@@ -31,6 +33,7 @@ def test_what_cannot_be_flown_is_an_infeasible_row_with_one_clear_line(changes, 
     assert (result.row["outcome"], result.row["criteria_met"]) == ("infeasible", False)
     assert words in result.row["message"]
     assert "\n" not in result.row["message"]
+    assert not ("emission" in changes and "plume.direction" in result.row["message"])
     assert set(result.row) <= set(SUMMARY_COLUMNS)
     assert result.history is None
 

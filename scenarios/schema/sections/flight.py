@@ -46,7 +46,8 @@ class FlightConfig(Section):
     measured_s: Positive | None = None
     """Time before the end of the flight over which instruments are evaluated, settled or not; from settling on if not given [s]."""
     duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 1500.0
-    """Longest flight [s]."""
+    """Longest flight [s]; gusts, reports and the noise of sensors and exhaust are sampled for the whole of it, so another value
+    changes them from the start on, with the same seed, too."""
     until: Literal["flown", "verdict"] = "flown"
     """When the flight ends: flown, with its crossings and its duration; verdict, also once the sniffer's readings allow a verdict
     on the fuel, or cannot any more."""

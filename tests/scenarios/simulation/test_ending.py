@@ -27,6 +27,8 @@ def ended(
     after=math.inf,
     enough=None,
     tracked=0.0,
+    centre_error=math.inf,
+    guarded=False,
 ):
     """Return how a flight ended at 300 s."""
     plan = SimpleNamespace(
@@ -36,7 +38,9 @@ def ended(
     guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mission=SimpleNamespace(mode=mode))
     guidance.target = SimpleNamespace(north=0.0, east=0.0)
     judge = SimpleNamespace(enough=enough, over=lambda *_: True, words=f"{enough and enough.value}: it left") if enough else None
-    ending = Ending(plan, vehicle, guidance, SimpleNamespace(at=settled, crossings=flown, tracked=tracked), judge)
+    settling = SimpleNamespace(at=settled, crossings=flown, tracked=tracked, centre_error=centre_error, centre_band=15.0)
+    ending = Ending(plan, vehicle, guidance, settling, judge)
+    ending.guarded = guarded
     ending.reached(300.0, (0.0, 0.0, 0.0, 0.0, 0.0), sample, complete=0 < asked <= flown)
     return ending
 
@@ -55,8 +59,20 @@ def ended(
         (
             {"settled": math.nan, "tracked": 242.0},
             Outcome.NOT_SETTLED,
-            "tracked its reference for 242 s, but its orbit was not in its place, so it did not settle within 300 s",
+            "tracked its reference for 242 s, but its orbit was still closing in on its place, so it did not settle within 300 s",
         ),
+        (
+            {"settled": math.nan, "tracked": 242.0, "centre_error": 21.3},
+            Outcome.NOT_SETTLED,
+            "but its orbit was 21 m from its place at the end, where less than 15 m count as there, so it did not settle",
+        ),
+        (
+            {"settled": math.nan, "tracked": 242.0, "centre_error": 3.0},
+            Outcome.NOT_SETTLED,
+            "but its orbit was not in its place for a whole period, so it did not settle",
+        ),
+        ({"settled": math.nan}, Outcome.NOT_SETTLED, "(flight.duration_max_s), or start closer"),
+        ({"settled": math.nan, "guarded": True}, Outcome.NOT_SETTLED, "start closer, or see whether the guard holds it off"),
         ({"settled": math.nan, "mode": Mode.OUTRUN}, Outcome.NOT_SETTLED, "did not settle within 300 s, and ended outrun"),
         ({"flown": 0}, Outcome.INCOMPLETE, "flew 0 crossings after settling within 300 s"),
         ({"asked": 30}, Outcome.INCOMPLETE, "flew 12 of 30 crossings after settling within 300 s"),
@@ -86,3 +102,5 @@ def test_a_flight_completes_only_with_its_aircraft_and_its_mission(flight, outco
     assert ending.outcome is outcome
     assert words in ending.message
     assert bool(ending.message) == (outcome is not Outcome.COMPLETED)
+    # A cause that does not apply is not named.
+    assert ("the guard" in ending.message) <= bool(flight.get("guarded"))
