@@ -127,6 +127,10 @@ class Journal:
         """Return the number of items that are done."""
         return int(self._database.execute("SELECT COALESCE(SUM(items), 0) FROM results WHERE NOT lost").fetchone()[0])
 
+    def without_items(self) -> int:
+        """Return the number of results that are done and count no item."""
+        return int(self._database.execute("SELECT COUNT(*) FROM results WHERE NOT lost AND items = 0").fetchone()[0])
+
     def numbered(self, table: str, *, first: int = 0, below: int = _LARGEST) -> Iterator[tuple[int, Row]]:
         """Yield task number and row of a table, by ascending task number from ``first`` to below ``below``."""
         query = "SELECT number, tables FROM results WHERE number >= ? AND number < ? ORDER BY number"

@@ -61,6 +61,10 @@ class Study(Protocol):
     def planned(self) -> int:
         """Return the largest possible number of items."""
 
+    @property
+    def beside(self) -> int:
+        """Return how many results that are no items there are beside them, as of comparisons; progress counts them, too."""
+
     def initial_manifest(self) -> dict[str, Any]:
         """Return the manifest as written before the first task."""
 
@@ -234,8 +238,14 @@ class _Execution:
         return not self._begun and self._before.get("state") == _COMPLETE and not self._run.gone
 
     def _executing(self, executor: Executor) -> Fly:
-        before, done = self._journal.done(), self._journal.items()
-        self._progress("flying", done, self._study.planned)
+        before, done, beside = self._journal.done(), self._journal.items(), self._journal.without_items()
+
+        def report() -> None:
+            # What tunes a law before its flights is neither an item nor beside them.
+            possible = self._study.beside
+            self._progress("flying", done + min(beside, possible), self._study.planned + possible)
+
+        report()
 
         def waiting(tasks: Iterable[Task]) -> Iterator[Task]:
             for task in tasks:
@@ -244,15 +254,15 @@ class _Execution:
                     yield task
 
         def fly(tasks: Iterable[Task]) -> None:
-            nonlocal done
+            nonlocal done, beside
             for result in executor.fly(waiting(tasks)):
                 # Files first: a result counts as done when it is in the journal.
                 for name, content in result.files.items():
                     self._run.write_bytes(name, content)
                 if not result.task.recorded:
                     self._journal.add(result)
-                    done += result.items
-                    self._progress("flying", done, self._study.planned)
+                    done, beside = done + result.items, beside + (result.items == 0)
+                    report()
 
         return fly
 

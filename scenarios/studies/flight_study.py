@@ -1,6 +1,7 @@
 """Flights of one scenario, or of a list of trials, as a study."""
 
 from array import array
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -42,7 +43,7 @@ from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
 from scenarios.planning.theory.speed_ratio import theory_over_speed_ratio
 from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.experiment import TrialList
+from scenarios.schema.sections.experiment import STUDY, TrialList
 from scenarios.simulation.time_history import UNFINISHED
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
 from scenarios.statistics.sulphur import sulphur_statistics
@@ -148,6 +149,11 @@ class FlightStudy:
     def planned(self) -> int:
         """Number of flights, comparisons apart."""
         return sum(self.flights.values())
+
+    @property
+    def beside(self) -> int:
+        """Number of flights of comparisons."""
+        return sum(experiment.flights - experiment.counted for experiment in self.experiments.values())
 
     @property
     def _numbers(self) -> int:
@@ -259,6 +265,7 @@ class FlightStudy:
         lines.append(f"flights: {whole.line()}")
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
+        lines += self._comparison_lines(journal)
         lines += whole.sulphur_lines()
         if whole.flown > whole.without_area and all(self._sampled_at_random().values()):
             lines.append(self.bound_line(whole, journal))
@@ -269,3 +276,14 @@ class FlightStudy:
             lines=lines,
             manifest=whole.manifest() | self._sizes() | {"guidance_lag_s": self._manifest.get("guidance_lag_s")},
         )
+
+    def _comparison_lines(self, journal: Journal) -> list[str]:
+        """Return a line for each comparison: its flights, which do not count."""
+        variants = (point for experiment in self.experiments.values() for point in experiment.points if point.variant != STUDY)
+        planned = Counter[str]()
+        for point in variants:
+            planned[point.variant] += point.flights
+        counts = {variant: FlightCounts(planned=flights) for variant, flights in planned.items()}
+        for row in journal.rows(COMPARISON) if counts else ():
+            counts[row["variant"]].add(row)
+        return [f"  comparison {variant}, not counted above: {of.line()}" for variant, of in counts.items()]

@@ -24,7 +24,7 @@ class SingleFlight:
     """
 
     what = "flights"
-    planned = 1
+    planned, beside = 1, 0
 
     def __init__(self, study: Study, task: Task, *, flight_id: str, trial: str, table: str) -> None:
         self._study, self._task, self._flight_id, self._trial, self._table = study, task, flight_id, trial, table

@@ -74,7 +74,7 @@ class SquareStudy:
 
     def __init__(self, work, batches=(range(8),), recorded=(), config_hash="a"):
         self._work, self._batches, self._recorded, self.config_hash = work, batches, recorded, config_hash
-        self.planned = sum(map(len, batches))
+        self.planned, self.beside = sum(map(len, batches)), 0
         self.seen = []
 
     def initial_manifest(self):

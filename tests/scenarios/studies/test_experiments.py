@@ -17,9 +17,9 @@ KINEMATIC = (*SLOW_STEPS, "comparison.variants=[]", "flight.crossings=2")
 BOTH_LAWS = '[{name="line_of_sight", set={"guidance.law"="line_of_sight"}}, {name="lyapunov", set={"guidance.law"="lyapunov"}}]'
 
 
-def flown(out, name, *overrides, outcome="completed"):
+def flown(out, name, *overrides, outcome="completed", **beside):
     """Fly a study; return its rows, all with one outcome and outside the keep-out area."""
-    run_study(load_study(name, overrides), name, out, overrides=overrides, executor_factory=InProcessExecutor)
+    run_study(load_study(name, overrides), name, out, overrides=overrides, executor_factory=InProcessExecutor, **beside)
     rows = rows_of(out)
     for row in rows:
         assert (row["outcome"], row["keepout_violations"]) == (outcome, 0), row["message"]
@@ -126,7 +126,11 @@ def test_seeds_of_flights_are_swept():
 
 def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_path):
     keys = ["flights=3", f"comparison.variants={BOTH_LAWS}", "comparison.flights=2"]
-    rows = flown(tmp_path / "run", "sea_wind", *SLOW_STEPS, "flight.crossings=1", *keys)
+    told = []
+    given = ("sea_wind", *SLOW_STEPS, "flight.crossings=1", *keys)
+    rows = flown(tmp_path / "run", *given, progress=lambda *report: told.append(report))
+    # They take their time, too.
+    assert told[1:] == [("flying", done, 7) for done in range(8)]
     variants = rows_of(tmp_path / "run", "comparison.csv")
     assert [row["variant"] for row in rows] == ["study"] * 3
     assert [row["variant"] for row in variants] == ["line_of_sight"] * 2 + ["lyapunov"] * 2
@@ -138,6 +142,11 @@ def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_
     assert not any("beside" in row for row in rows)
     manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
     assert manifest["flights_planned"] == 3
+    study = load_study(given[0], given[1:])
+    again = run_study(study, "sea_wind", tmp_path / "run", overrides=given[1:], executor_factory=InProcessExecutor, resume=True)
+    for line, pair in zip(again.summary.lines[1:], (variants[:2], variants[2:]), strict=False):
+        done = sum(row["outcome"] == "completed" for row in pair)
+        assert line.startswith(f"  comparison {pair[0]['variant']}, not counted above: 2 planned, 2 flown, {done} completed")
 
 
 SAMPLED = (*SLOW_STEPS, "turbulence={}", "flights=4", "flight.duration_max_s=10", "histories=0")
