@@ -77,7 +77,10 @@ def new(
         str, typer.Option("--from", metavar="NAME|FILE.toml", help="The scenario that it is made from.")
     ] = "sweep_nu",
 ) -> None:
-    """Write a scenario file with every key, its meaning, unit, range and default, that flies as another scenario does."""
+    """Write a scenario file with every key, its meaning, unit, range and default, and with the values of another scenario.
+
+    Its flights have other seeds, which follow from the name of the file, unless nu is swept or the file is called as the scenario.
+    """
     from scenarios.console.template import write_template
     from scenarios.errors import InputError
 

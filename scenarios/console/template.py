@@ -29,7 +29,7 @@ The seeds of flights follow from the name of this file, unless nu is swept: call
 
 
 def write_template(path: Path, name: str) -> None:
-    """Write a complete scenario file that flies as another scenario does; a file that is there is left as it is.
+    """Write a complete scenario file with the values of another scenario; a file that is there is left as it is.
 
     Parameters
     ----------

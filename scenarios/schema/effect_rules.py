@@ -183,7 +183,7 @@ RULES = (
     Rule(keys=("flight.measured_s",), acts=lambda s: bool(s.payload.instruments), user="instruments: set payload.instruments",
          depends=("payload.instruments",)),
     Rule(keys=("wind.speed_mps", "wind.from_deg"), acts=lambda s: s.wind.table is None,
-         user="a wind without a table: leave this key or wind.table out", depends=("wind.table",)),
+         user="a wind that is not read from a table: leave out this key, or wind.table", depends=("wind.table",)),
     Rule(keys=("wind.from_deg",), acts=lambda s: s.wind.blows, user="wind: set wind.speed_mps",
          depends=("wind.speed_mps",)),
     Rule(keys=("wind.roughness_m",), acts=lambda s: s.wind.blows, user="wind: set wind.speed_mps or wind.table",

@@ -27,9 +27,10 @@ ERRORS = {
 def summary(analysis: Analysis, name: str) -> Iterator[str]:
     """Yield the lines of a summary of a flight called ``name``."""
     found, figures = analysis.estimate, analysis.estimate.figures
+    passes = "1 pass" if figures.passes == 1 else f"{figures.passes} passes"
     every = f" every {figures.interval_s:.1f} s" if figures.passes > 1 else ""
     yield f"{name}, with: {analysis.instrument.title}"
-    yield f"{figures.duration_s:.0f} s, {figures.passes} passes{every}, CO2 signal to noise {figures.co2_snr:.0f}"
+    yield f"{figures.duration_s:.0f} s, {passes}{every}, CO2 signal to noise {figures.co2_snr:.0f}"
     yield result(found)
     if math.isfinite(found.total_percent):
         yield f"standard uncertainty (1 sigma) {found.total_percent:.4f} %, of which"
