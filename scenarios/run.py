@@ -164,12 +164,12 @@ def _run(
             # That of other runs is among the overrides.
             again += ["--aircraft-dir", str(aircraft_dir)] if aircraft_dir is not None else []
             again += ["--flightgear", flightgear] if flightgear is not None else []
+        again += ["--no-report"] if no_report else []
         again = ["plume-flight", "run", name, *again, "--out", str(directory), "--resume"]
         kept = f"{result.summary.done} of {result.planned} {result.what} are done and kept"
         print(f"interrupted; {kept}. Continue with: {shlex.join(again)}", file=sys.stderr)
         return INTERRUPTED
-    reported = all((directory / name).is_file() for name in (REPORT_HTML, REPORT_PDF))
-    status = MET if no_report or (reported and not result.changed) else _report(directory)
+    status = _report(directory, changed=result.changed, wanted=not no_report)
     return status or (MET if result.all_met else NOT_MET)
 
 
@@ -187,8 +187,16 @@ def _viewer(address: str | None, *, replayed: bool) -> tuple[str, int] | None:
     return host, int(port)
 
 
-def _report(directory: Path) -> int:
-    """Write the reports; return the exit status."""
+def _report(directory: Path, *, changed: bool, wanted: bool) -> int:
+    """Write the reports, if they are wanted and not there as they are to be; return the exit status."""
+    reports = [directory / name for name in (REPORT_HTML, REPORT_PDF)]
+    there = [] if changed else [path for path in reports if path.is_file()]
+    if not changed:
+        print("nothing was left to fly: the run was complete")
+    if not wanted or there == reports:
+        for path in there:
+            print(f"report: {path}")
+        return MET
     from reports.build import build_reports
     from reports.errors import ReportError
 

@@ -93,7 +93,7 @@ def test_help_and_list_answer():
         ([], ["no scenario given", "sweep_nu"]),
         (["sweep_mu"], ["unknown scenario 'sweep_mu'"]),
         (["sweep_nu", "--set", "keepout.radius=5"], ["unknown key 'keepout.radius'"]),
-        (["sweep_nu", "--set", "keepout.radius_m=-1"], ["keepout.radius_m", "-1", "greater than or equal to 10"]),
+        (["sweep_nu", "--set", "keepout.radius_m=-1"], ["keepout.radius_m is -1; it must be at least 10 m"]),
         (["sweep_nu", "--set", "guidance.airspeed_mps=nan"], ["guidance.airspeed_mps", "nan"]),
         (["sweep_nu", "--set", "guidance.airspeed_mps=60"], ["guidance.airspeed_mps is 60", "Skywalker X8 flies 15.0 to 25.0 m/s"]),
         (["sweep_nu", "--set", "aircraft=zeppelin"], ["unknown aircraft 'zeppelin'", "plume-flight design --list"]),
@@ -245,10 +245,10 @@ def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(tmp_pat
 
     monkeypatch.setattr("scenarios.engine.runner.fly_study", interrupted)
     monkeypatch.setattr("scenarios.studies.replay.Replay", lambda name, viewer, **given: (name, viewer, given))
-    ended = run_here(flight, "--aircraft-dir", "my fleet", "--flightgear", "localhost:5550", "--out", out)
+    ended = run_here(flight, "--aircraft-dir", "my fleet", "--flightgear", "localhost:5550", "--out", out, "--no-report")
     assert ended.returncode == 130
     program, command, *arguments = shlex.split(ended.stderr.rpartition("Continue with: ")[2])
-    assert (program, command) == ("plume-flight", "run")
+    assert (program, command, "--no-report" in arguments) == ("plume-flight", "run", True)
     run_here(*arguments)
     (study, directory, _), (again, there, resume) = calls
     assert study == again == (str(flight), ("localhost", 5550), {"aircraft_dir": Path("my fleet")})

@@ -68,6 +68,11 @@ def test_a_run_is_flown_reported_and_exported(file, tmp_path):
     assert (ended.status, "results: " in ended.out) == (0, True)
     assert console("report", out).status == 0
     assert (out / "report.html").is_file()
+    again = console("run", file, "--out", out, "--jobs", "1", "--resume").out.splitlines()
+    assert again[-3:] == [
+        "nothing was left to fly: the run was complete",
+        *(f"report: {out}/report.{end}" for end in ("html", "pdf")),
+    ]
     ended = console("export", out, "--to", "geojson,tracks_csv", "--flight", "nu_0.50")
     assert ended.out.count("export: ") == 2
     assert json.loads((out / "export" / "short.nu_0.50.geojson").read_text(encoding="utf-8"))["type"] == "FeatureCollection"
@@ -93,6 +98,10 @@ def test_a_log_is_estimated_as_by_the_program_that_stands_alone(tmp_path, capsys
         (("report", "."), ("holds no run",)),
         (("design", "x9"), ("unknown aircraft 'x9'",)),
         (("describe", "wind.sped_mps"), ("unknown key 'wind.sped_mps'; did you mean 'wind.speed_mps'?",)),
+        (
+            ("describe", "guidance.lead_s"),
+            ("did you mean 'guidance.law'? A key of a part of your own (FILE.py:NAME) is described in",),
+        ),
         (("describe", "gravity_of_the_situation"), ("unknown key", "plume-flight describe lists the sections")),
         (("new", "mine.toml", "--from", "sweep_un"), ("did you mean 'sweep_nu'?",)),
         (("new", "missing/mine.toml"), ("'missing/mine.toml' cannot be written",)),
@@ -117,7 +126,7 @@ def test_a_key_is_described_with_unit_range_and_default():
         "m/s",
         "default   0.0",
         "monte_carlo",
-        "acts with a wind without a table",
+        "acts with a wind that is not read from a table",
     ):
         assert words in found
 
@@ -128,6 +137,7 @@ def test_keys_of_entries_of_parts_and_of_other_studies_are_described():
     assert "guidance.law 'npfg'" in "".join(described("guidance.npfg_period_s"))
     assert "".join(described("seed")).count("studies") == 3
     assert "Keys, each with a list of values" in "".join(described("nu"))
+    assert "alphasense_a4 or alphasense_b4 or electrochemical or fast or laser" in "".join(described("payload.sensor"))
 
 
 def test_sections_are_listed_and_described():
