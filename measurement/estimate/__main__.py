@@ -1,7 +1,9 @@
 """Command line: ``python -m measurement.estimate FLIGHT.csv`` estimates the fuel sulphur content of a logged flight."""
 
 import argparse
+import contextlib
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 from measurement.errors import MeasurementError
@@ -44,12 +46,14 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         refuse_another_run(directory)
         config = read_config(given.config) if given.config else LogConfig()
-        flight = read_flight(given.flight, config)
+        with _naming(given.flight):
+            flight = read_flight(given.flight, config)
         if given.out is None:
             refuse_another_log(directory, given.flight)
-        analysis = analyse(
-            flight.readings, config.instrument, method=config.method, carbon=config.carbon, limits_percent=config.limits_percent
-        )
+        with _naming(given.flight):
+            analysis = analyse(
+                flight.readings, config.instrument, method=config.method, carbon=config.carbon, limits_percent=config.limits_percent
+            )
         write_run(directory, flight, analysis, given.flight, given.config, _command(arguments))
     except MeasurementError as error:
         line = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in str(error))
@@ -58,6 +62,16 @@ def main(arguments: list[str] | None = None) -> int:
     print(*summary(analysis, given.flight.name), *unused(flight.readings, config.instrument), sep="\n")
     print(f"files: {directory}" if given.no_report else build_report(directory))
     return 0
+
+
+@contextlib.contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Name the file in a refusal of what is in it, where that does not."""
+    try:
+        yield
+    except MeasurementError as error:
+        where = "" if str(path) in str(error) else f"'{path}': "
+        raise MeasurementError(f"{where}{error}") from None
 
 
 def _command(arguments: list[str] | None) -> list[str]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from scenarios.errors import InputError
 from scenarios.schema.documented import DocumentedSection, documented_keys, documented_sections, similar_key
-from scenarios.schema.documented_parts import DocumentedKey
+from scenarios.schema.documented_parts import PART_SECTIONS, DocumentedKey
 from scenarios.schema.overrides import as_toml
 
 _WIDTH = 100
@@ -34,6 +34,8 @@ def described(name: str | None = None) -> list[str]:
     if not keys and not sections:
         guess = similar_key(plain)
         remedy = f"did you mean '{guess}'?" if guess else "plume-flight describe lists the sections"
+        if plain.partition(".")[0] in PART_SECTIONS and "." in plain:
+            remedy += " A key of a part of your own (FILE.py:NAME) is described in its file."
         raise InputError(f"unknown key '{name}'; {remedy}")
     lines = [line for section in sections for line in _section(section)]
     return [*lines, *(line for key in keys for line in _key(key))]

@@ -1,18 +1,19 @@
 """A sniffer on board: what it reads of the exhaust, in flight or after it, and what that says of the fuel."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from common.run_layout import SULPHUR_TABLE
+from common.spelling import did_you_mean
 from gnc.errors import InfeasibleError
 from gnc.estimation.own_motion import Motion
 from measurement.emission.fuel import expected_fsc
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS
-from measurement.sniffer.presets import sensor_preset
+from measurement.sniffer.presets import sensor_preset, sensor_presets
 from measurement.sniffer.sniffer import Readings, Sniffer
 from scenarios.instruments.air_samples import PLACE_COLUMNS, RATE_COLUMNS, TIME_STEP, AirSampler, AirSamples
 from scenarios.instruments.fuel_estimate import FIGURES, TABLES, fuel_estimate
@@ -31,6 +32,15 @@ _PASSED_ON = 0.45
 """Time between readings that are passed on in flight, at least [s]: those of a faster sniffer come together."""
 
 
+_NOT_FLOWN = "unspecified"
+"""Preset of a log's instrument of which nothing is known: there is no noise to sample."""
+
+
+def flown_presets() -> tuple[str, ...]:
+    """Return the names of the sniffers that can be flown."""
+    return tuple(name for name in sensor_presets() if name != _NOT_FLOWN)
+
+
 @dataclass(frozen=True, kw_only=True)
 class SnifferSettings:
     """Keys of the sniffer.
@@ -44,16 +54,18 @@ class SnifferSettings:
     dynamic_pressure_fraction : of the dynamic pressure that the inlet passes on to the sensors [-]
     """
 
-    sensor: str = "electrochemical"
+    sensor: str = field(default="electrochemical", metadata={"choices": flown_presets})
     exact: bool = False
     limit_percent: float = 0.1
     dynamic_pressure_fraction: float = 0.2
 
     def __post_init__(self) -> None:
-        sensor_preset(self.sensor)
+        if self.sensor not in (known := flown_presets()):
+            guess = did_you_mean(self.sensor, known) or ";"
+            raise MeasurementError(f"sensor is {self.sensor!r}{guess} there are {', '.join(known)}")
         if not 0.0 < self.limit_percent <= 5.0:
             raise MeasurementError(
-                f"limit_percent is {self.limit_percent:g}; give above 0 to 5, as 0.1 in an emission control area"
+                f"limit_percent is {self.limit_percent:g}; give above 0 to 5 % m/m, as 0.1 in an emission control area"
             )
         if not 0.0 <= self.dynamic_pressure_fraction <= 1.0:
             raise MeasurementError(f"dynamic_pressure_fraction is {self.dynamic_pressure_fraction:g}; give 0 to 1")

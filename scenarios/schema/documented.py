@@ -15,11 +15,11 @@ from pydantic.fields import FieldInfo
 from pydantic_core import to_jsonable_python
 
 from common.spelling import nearest
-from scenarios.schema.documented_parts import FLIGHT_STUDIES, DocumentedKey, documented_part_keys, line, split_unit
+from scenarios.schema.documented_parts import FLIGHT_STUDIES, DocumentedKey, documented_part_keys
 from scenarios.schema.effect import named_by, unused
 from scenarios.schema.effect_rules import RULES
 from scenarios.schema.experiment_checks import ONE_POINT
-from scenarios.schema.keys import models_in
+from scenarios.schema.keys import line, models_in, split_unit
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.convergence import ConvergenceScenario
 from scenarios.schema.sections.experiment import DrawConfig, TrialList
@@ -69,8 +69,10 @@ def documented_keys() -> list[DocumentedKey]:
 def similar_key(name: str) -> str | None:
     """Return the key or section that an unknown name stands for: one with a similar spelling, or with a similar last word."""
     keys = [documented.key for documented in documented_keys()]
-    if close := nearest(name, [*(section.name for section in documented_sections()), *keys]):
-        return close
+    of_flights = [documented.key for documented in documented_keys() if documented.studies != ("convergence",)]
+    for known in ([*(section.name for section in documented_sections()), *of_flights], keys):
+        if close := nearest(name, known):
+            return close
     by_last_word = {key.rpartition(".")[2]: key for key in reversed(keys)}
     close = nearest(name.rpartition(".")[2], by_last_word)
     return by_last_word[close] if close else None

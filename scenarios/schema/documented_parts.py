@@ -9,6 +9,7 @@ from typing import Any
 from common.registry import Registry, announced
 from gnc.laws.steering_law import STEERING_LAWS
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS
+from scenarios.schema.keys import line, split_unit
 from scenarios.schema.sections.guidance import GuidanceConfig
 
 FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol")
@@ -51,6 +52,9 @@ _REGISTRIES: dict[str, Registry[Any]] = {
 }
 """Keys that name parts which bring keys, and where the parts are found."""
 
+PART_SECTIONS = tuple(key.partition(".")[0] for key in _REGISTRIES)
+"""Sections that take keys which parts bring."""
+
 
 @functools.cache
 def documented_part_keys() -> tuple[DocumentedKey, ...]:
@@ -87,11 +91,12 @@ def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
     meaning, unit = split_unit(described)
     number = type(of.default) in (int, float)
     ranges: dict[type[Any], str] = {bool: "true or false", str: "text"}
+    choices = of.metadata["choices"]() if "choices" in of.metadata else ()
     return DocumentedKey(
         key=key,
         meaning=meaning,
         unit=unit if number else "",
-        range=ranges.get(type(of.default), "a number"),
+        range=" or ".join(choices) or ranges.get(type(of.default), "a number"),
         default=of.default,
         required=False,
         studies=FLIGHT_STUDIES,
@@ -109,14 +114,3 @@ def _described(made: type[Any]) -> dict[str, str]:
             names, colon, described = entry.partition(" : ")
             found |= dict.fromkeys(names.split(", "), line(described)) if colon else {}
     return found
-
-
-def split_unit(description: str) -> tuple[str, str]:
-    """Split "Meaning [unit]; more." into the meaning and the unit; empty without one."""
-    found = re.search(r"\s*\[([^\]]+)\]", description)
-    return (description, "") if found is None else (description[: found.start()] + description[found.end() :], found[1])
-
-
-def line(text: str) -> str:
-    """Return a text of several lines as one, without the marks of a docstring."""
-    return " ".join(text.replace("``", "").split())

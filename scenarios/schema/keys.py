@@ -2,7 +2,7 @@
 
 import re
 import typing
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel, RootModel, ValidationError
@@ -11,6 +11,7 @@ from pydantic_core import ErrorDetails
 
 from common.dotted_keys import at_or_below
 from common.spelling import did_you_mean, nearest
+from scenarios.schema.sections.wrong_value import must_be
 
 _SPEEDS = {"vessel.speed_mps", "vessel.speed_ratio"}
 """Keys that give the vessel's speed, each in its own way."""
@@ -97,7 +98,13 @@ def _explained(key: str, entry: ErrorDetails, kind: type[BaseModel]) -> str:
     text = entry["msg"].removeprefix("Value error, ")
     where = f"{key}: " if key else ""
     if error_type == "value_error":
-        return text if text.startswith("unknown key") else f"{where}{text}"
+        return (
+            text
+            if text.startswith("unknown key")
+            else f"{where.replace(': ', '.') if _begins_with_key(text, value) else where}{text}"
+        )
+    if demanded := must_be(entry, key=key, **_of_field(kind, key)):
+        return f"{key} is {value!r}; {demanded}"
     remedy = f"; {text[0].lower()}{text[1:]}"
     if error_type == "tuple_type":
         remedy = "; give a list in brackets, as in [0.5] or [400, 800]"
@@ -109,6 +116,34 @@ def _explained(key: str, entry: ErrorDetails, kind: type[BaseModel]) -> str:
         guess = did_you_mean(str(value), re.findall(r"'([^']+)'", text))
         remedy = f"{guess or ';'} it must be {text.removeprefix('Input should be ')}"
     return f"{where}value is {value!r}{remedy}"
+
+
+def _begins_with_key(text: str, section: object) -> bool:
+    """Return whether a text about a section says what one of its keys is."""
+    word, found, _ = text.partition(" is ")
+    return bool(found) and isinstance(section, Mapping) and word in section
+
+
+def _of_field(kind: type[BaseModel], key: str) -> dict[str, Any]:
+    """Return unit and default of a dotted key, as far as the schema has it."""
+    model: type[BaseModel] | None = kind
+    field: FieldInfo | None = None
+    for part in key.split("."):
+        if not part.isdecimal():
+            field = model.model_fields.get(part) if model else None
+            model = next(models_in(field.annotation), (None, False))[0] if field else None
+    return {"unit": split_unit(line(field.description or ""))[1], "default": field.default} if field else {}
+
+
+def split_unit(description: str) -> tuple[str, str]:
+    """Split "Meaning [unit]; more." into the meaning and the unit; empty without one."""
+    found = re.search(r"\s*\[([^\]]+)\]", description)
+    return (description, "") if found is None else (description[: found.start()] + description[found.end() :], found[1])
+
+
+def line(text: str) -> str:
+    """Return a text of several lines as one, without the marks of a docstring."""
+    return " ".join(text.replace("``", "").split())
 
 
 def _example(kind: type[BaseModel], section: str) -> str:

@@ -82,7 +82,10 @@ def load_study(name: str | Document, overrides: Sequence[str] = (), *, refusing:
         picture
     """
     document = load_document(name, overrides)
-    scenario: AnyStudy = checked(document, _kind(document))
+    try:
+        scenario: AnyStudy = checked(document, _kind(document))
+    except InputError as error:
+        raise InputError(f"{_where_wrong(name, str(error))}{error}") from None
     if refusing and isinstance(scenario, Scenario):
         # Keys of the file have to act in what the file alone says: an override may well put one of them aside.
         own, whole = _given(name)
@@ -90,6 +93,18 @@ def load_study(name: str | Document, overrides: Sequence[str] = (), *, refusing:
         refuse_unused(scenario, {parse_override(override)[0] for override in overrides}, overriding=True)
     read_logo(scenario.report)
     return scenario
+
+
+def _where_wrong(name: str | Document, message: str) -> str:
+    """Return a user's file as the beginning of a message about a scenario, where the same is wrong without any override."""
+    if not isinstance(name, str) or name in catalog():
+        return ""
+    _, alone = _given(name)
+    try:
+        checked(alone, _kind(alone))
+    except InputError as error:
+        return f"{name}: " if str(error) == message else ""
+    return ""
 
 
 def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Document:

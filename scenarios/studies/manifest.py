@@ -17,8 +17,9 @@ from common.run_layout import FORMAT, LOGO
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.schema.documented_parts import DIMENSIONLESS, DocumentedKey, documented_part_keys, line, split_unit
+from scenarios.schema.documented_parts import DIMENSIONLESS, DocumentedKey, documented_part_keys
 from scenarios.schema.effect import unused
+from scenarios.schema.keys import line, split_unit
 from scenarios.schema.load import AnyStudy
 from scenarios.schema.parts import names_file, names_folder, part_names
 from scenarios.schema.scenario import Scenario

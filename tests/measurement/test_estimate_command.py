@@ -130,9 +130,11 @@ def test_seconds_since_1970_are_written_in_full(logged):
 @pytest.mark.parametrize(
     ("config", "message"),
     [
-        ("instrument = 'nose'", "instrument is 'nose'; there are alphasense_a4"),
+        ("instrument = 'nose'", "instrument.toml': instrument is 'nose'; there are alphasense_a4"),
         ("instrument = 3", "instrument is 3; give the name of a preset"),
-        ("colour = 1", "has the key 'colour'; it may have carbon"),
+        ("instrument = 'laserr'", "instrument is 'laserr'; did you mean 'laser'? there are alphasense_a4"),
+        ("limit_percent = 0.1", "has the key 'limit_percent'; did you mean 'limits_percent'? it may have carbon"),
+        ("zone = 1", "has the key 'zone'; it may have carbon"),
         ("carbon = 'much'", "carbon is 'much'"),
         ("method = 'magic'", "method is 'magic'"),
         ("limits_percent = 0.1", "limits_percent is 0.1; give a list"),
@@ -142,7 +144,7 @@ def test_seconds_since_1970_are_written_in_full(logged):
         ("[columns]\ntime = 'when'", "has no time column 'when'"),
         ("[columns]\ntime = 'when'", 'correct time = "when" in [columns] of the configuration'),
         ("[scale]\nso2 = 0", "scale of so2 is 0; it must be positive"),
-        ("[scale]\nco2 = 0.01", "CO2 has a median of 4"),
+        ("[scale]\nco2 = 0.01", "flight.csv': CO2 has a median of 4"),
         ("missing = -9999", "missing is -9999; give a list of numbers, as in [-9999]"),
         ("[", "is not TOML"),
     ],
@@ -166,7 +168,7 @@ def test_configurations_with_mistakes_are_refused_in_one_line(logged, capsys, co
         ("time_s,so2_ppb,co2_ppm\n1,2,420\n2,inf,420\n", "column 'so2_ppb' is infinite in row 3"),
         ("time_s,so2_ppb,co2_ppm\n1,two,420\n", "column 'so2_ppb' has 'two' in row 2; it must hold numbers"),
         ("time_s,so2_ppb,co2_ppm\nsoon,2,420\n", "time 'soon' in column 'time_s' cannot be read"),
-        ("time_s,so2_ppb,co2_ppm\n1,2,420\n", "the record has 1 samples; it needs at least 8"),
+        ("time_s,so2_ppb,co2_ppm\n1,2,420\n", "flight.csv': the record has 1 samples; it needs at least 8"),
         ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,4\n" for t in range(99)), "CO2 has a median of 4 ppm"),
         ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,420,7\n" for t in range(9)), "more values than its head line has names"),
         (

@@ -10,6 +10,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError, model_validator
 from common.registry import PluginError
 from common.spelling import did_you_mean
 from scenarios.schema.sections.section import Section, refuse_truth_values
+from scenarios.schema.sections.wrong_value import must_be
 
 
 class PartSection(Section):
@@ -68,7 +69,8 @@ class PartSection(Section):
             first = error.errors()[0]
             key = ".".join(map(str, first["loc"]))
             text = first["msg"].removeprefix("Value error, ")
-            raise ValueError(f"{key} is {first['input']!r}; {text[0].lower()}{text[1:]}" if key else text) from None
+            demanded = must_be(first, key=key, default=self.part_keys.get(key)) or f"{text[0].lower()}{text[1:]}"
+            raise ValueError(f"{key} is {first['input']!r}; {demanded}" if key else text) from None
 
     def keys_lost_with(self, changed: Mapping[str, object]) -> list[str]:
         """Return the keys given here that no part takes any more when fields of the section are changed."""

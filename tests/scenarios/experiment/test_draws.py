@@ -86,15 +86,15 @@ def test_speed_ratios_that_no_draw_has_are_refused_in_a_line():
     ("draw", "words"),
     [
         ({"key": "wind.sped_mps", "uniform": [0.0, 1.0]}, "unknown key 'wind.sped_mps'"),
-        ({"key": "vessel.speed_mps", "uniform": [5.0, 500.0]}, "vessel.speed_mps: value is 500.0"),
-        ({"key": "vessel.speed_mps", "uniform": [-5.0, 10.0]}, "vessel.speed_mps: value is -5.0"),
+        ({"key": "vessel.speed_mps", "uniform": [5.0, 500.0]}, "vessel.speed_mps is 500.0"),
+        ({"key": "vessel.speed_mps", "uniform": [-5.0, 10.0]}, "vessel.speed_mps is -5.0"),
         # Only the third flight would have met it.
         ({"key": "plume.direction", "choice": ["given", "apparent_wind", "up"]}, "plume.direction: value is 'up'"),
         ({"key": "title.first", "choice": ["a"]}, "'title' is a value, not a section"),
         # 8 m/s on average, but a normal distribution has no end.
-        ({"key": "vessel.speed_mps", "normal": [8.0, 2.0]}, "vessel.speed_mps: value is -"),
+        ({"key": "vessel.speed_mps", "normal": [8.0, 2.0]}, "vessel.speed_mps is -"),
         # Some 4e-12 of it lies beyond 41 m/s: rounding takes a little from the limit.
-        ({"key": "wind.speed_mps", "weibull": [2.0, 8.0], "within": [0.0, 41.0]}, "wind.speed_mps: value is 40.9999"),
+        ({"key": "wind.speed_mps", "weibull": [2.0, 8.0], "within": [0.0, 41.0]}, "wind.speed_mps is 40.9999"),
         (
             {"key": "vessel.manoeuvres.0.turn_deg", "uniform": [-90.0, 90.0]},
             r"vessel\.manoeuvres has no entries; add one with --set 'vessel\.manoeuvres=\[\{at_s=100, turn_deg=-90\.0\}\]'",

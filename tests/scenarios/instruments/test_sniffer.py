@@ -121,12 +121,15 @@ def test_a_flight_without_payload_is_flown_alike(slow):
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("payload.sensor=nose", "payload: instrument is 'nose'; there are alphasense_a4"),
-        ("payload.limit_percent=0", "limit_percent is 0"),
+        ("payload.sensor=nose", "payload.sensor is 'nose'; there are alphasense_a4"),
+        ("payload.sensor=laserr", "payload.sensor is 'laserr'; did you mean 'laser'? there are alphasense_a4"),
+        ("payload.sensor=unspecified", "payload.sensor is 'unspecified'; there are alphasense_a4"),
+        ("payload.limit_percent=0", "payload.limit_percent is 0"),
+        ("payload.limit_percent=0.1%", "payload.limit_percent is '0.1%'; it must be a number, e.g. limit_percent=0.1"),
         ("payload.sensr=fast", "payload: key 'sensr' is not known; did you mean 'sensor'?"),
         ("emission.ship=canoe", "emission.ship: ship 'canoe' is not known; there are container"),
         ("emission.fuel=coal", "fuel 'coal' is not known; there are mgo"),
-        ("emission.sulphur_percent=7", "emission.sulphur_percent: value is 7"),
+        ("emission.sulphur_percent=7", "emission.sulphur_percent is 7; it must be at most 5 %"),
         ("plume.richardson=5", "plume setting richardson is 5"),
         ("flight.altitude_min_m=200", "altitude_min_m is 200 m and altitude_max_m 120 m"),
     ],

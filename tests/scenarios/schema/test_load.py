@@ -29,27 +29,41 @@ def test_overrides_set_any_key(override, value):
     assert getattr(load_study("sweep_nu", [override]).guidance, key) == value
 
 
+def test_what_is_wrong_in_a_file_names_the_file_and_what_is_wrong_in_an_override_does_not(tmp_path):
+    file = tmp_path / "own.toml"
+    file.write_text('title = "t"\n[winds]\nspeed_mps = 5.0\n', encoding="utf-8")
+    with pytest.raises(InputError, match=r"own\.toml: unknown key 'winds'; did you mean 'wind'\?$"):
+        load_study(str(file), ["seed=3"])
+    file.write_text('title = "t"\n', encoding="utf-8")
+    with pytest.raises(InputError, match=r"^unknown key 'winds'"):
+        load_study(str(file), ["winds.speed_mps=5"])
+
+
 @pytest.mark.parametrize(
     ("override", "words"),
     [
         ("keepout.radius=5", ["unknown key 'keepout.radius'"]),
         ("nonsense=5", ["unknown key 'nonsense'"]),
-        ("keepout.radius_m=-5", ["keepout.radius_m", "-5", "greater than or equal to 10"]),
-        ("keepout.radius_m=nan", ["keepout.radius_m", "nan", "finite"]),
+        ("keepout.radius_m=-5", ["keepout.radius_m", "is -5; it must be at least 10 m"]),
+        ("keepout.radius_m=nan", ["keepout.radius_m", "nan", "a finite number in m"]),
         ("keepout.radius_m=inf", ["keepout.radius_m", "inf"]),
         ("keepout.radius_m=wide", ["keepout.radius_m", "'wide'", "number"]),
         ("keepout.radius_m.x=1", ["keepout.radius_m.x", "not a section"]),
-        ("criteria.crossing_interval_error=no", ["criteria.crossing_interval_error: value is 'no'", "number", ", or false"]),
+        ("criteria.crossing_interval_error=no", ["criteria.crossing_interval_error is 'no'", "number", ", or false"]),
+        ("wind.speed_mps=5kn", ["wind.speed_mps is '5kn'; it must be a number in m/s, e.g. wind.speed_mps=5"]),
+        ("wind.speed_mps=50", ["wind.speed_mps is 50; it must be at most 40 m/s"]),
+        ("emission.load=85", ["emission.load is 85; it must be at most 1: a fraction, e.g. 0.85"]),
+        ("guidance.preview=maybe", ["guidance.preview is 'maybe'; it must be true or false"]),
         ("wind=5", ["wind: value is 5; it is a section with keys of its own: set one of them, as in wind.speed_mps=..."]),
         ("guidance.law=magic", ["guidance.law", "'magic'", "cascade"]),
         ("guidance.rate_hz=50", ["rate_hz is 50 Hz", "must divide 120 Hz", "e.g. 40"]),
         # Nothing could be logged at so low a rate: flight.log_rate_hz divides it, and is at least 5.
-        ("guidance.rate_hz=4", ["guidance.rate_hz", "value is 4", "greater than or equal to 5"]),
+        ("guidance.rate_hz=4", ["guidance.rate_hz is 4; it must be at least 5 Hz"]),
         ("flight.log_rate_hz=7", ["log_rate_hz is 7 Hz", "must divide 20 Hz"]),
         ("start.distance_m=[800, 400]", ["distance_m", "first value must not exceed its second"]),
         ("sweep.nu=[]", ["sweep: nu has no values", "at least one"]),
-        ("sweep.nu=[0.5, -0.1]", ["sweep: nu is -0.1", "between 0 and 10"]),
-        ("flight.crossings=2.5", ["flight.crossings", "2.5"]),
+        ("sweep.nu=[0.5, -0.1]", ["sweep.nu is -0.1", "between 0 and 10"]),
+        ("flight.crossings=2.5", ["flight.crossings is 2.5; it must be a whole number"]),
         ("seed=-1", ["seed", "-1"]),
         ("guidance.preview", ["not of the form key=value"]),
         ("sweep.nu=[half]", ["sweep.nu=[half]", "not valid TOML", "quoted"]),

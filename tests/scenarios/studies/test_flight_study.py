@@ -166,7 +166,7 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
         ('trials = ["sea_wind"]\nset = "share=1"', "set: value is 'share=1'; give a list in brackets"),
         ('trials = ["sea_wind"]\nset = ["colour"]', "'colour' is not of the form key=value"),
         ('trials = ["sea_wind"]\nset = ["vessel.colour=1"]', "unknown key 'vessel.colour'"),
-        ('trials = ["sea_wind"]\nshare = 0.0', "share: value is 0.0"),
+        ('trials = ["sea_wind"]\nshare = 0.0', "share is 0.0"),
         (
             'trials = ["sea_wind"]\nset = ["fidelity=kinematic", "fault.kind=engine"]',
             "fault.kind is 'engine'; .*what can fail is none, satellite_navigation, sniffer_dead, sniffer_saturated, vessel_data",

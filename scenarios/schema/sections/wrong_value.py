@@ -1,0 +1,54 @@
+"""What the value of a key must be, in words: a number in its unit or within its limit, a truth value, a time."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+_LIMITS = {
+    "less_than_equal": ("le", "at most"),
+    "less_than": ("lt", "below"),
+    "greater_than_equal": ("ge", "at least"),
+    "greater_than": ("gt", "above"),
+}
+"""What pydantic calls a limit that is not kept, the limit's name, and what to say of it."""
+
+_NO_NUMBER = re.compile(r"float_(parsing|type)|finite_number")
+_NOT_WHOLE = re.compile(r"int_(parsing|type|from_float)")
+_OTHERS = {"bool": "it must be true or false", "datetime": "it must be a time, as 2026-06-01T12:00:00Z"}
+"""What pydantic's names of errors begin with, up to the first underscore, and what to say."""
+
+_LEADING_NUMBER = re.compile(r"\s*([-+]?\d+(\.\d+)?)")
+
+_PERCENT, _SURELY_PERCENT = 100.0, 2.0
+"""Percent in a whole, and the least value in the place of a fraction that is taken for percent."""
+
+
+def must_be(error: Mapping[str, Any], *, key: str, unit: str = "", default: object = None) -> str | None:
+    """Return what a value must be, as "it must be at most 40 m/s"; None for an error of another kind.
+
+    Parameters
+    ----------
+    error : of pydantic
+    key : as it is written in a file or on the command line
+    unit : of the key, empty or ``-`` without one
+    default : of the key, an example where the value has no number in it
+    """
+    unit = "" if unit == "-" else unit
+    kind, value = error["type"], error["input"]
+    if _NO_NUMBER.fullmatch(kind):
+        leading = _LEADING_NUMBER.match(value) if isinstance(value, str) else None
+        given = leading[1] if leading else f"{default:g}" if isinstance(default, float) else ""
+        finite = "finite " if kind == "finite_number" else ""
+        return f"it must be a {finite}number{f' in {unit}' if unit else ''}{f', e.g. {key}={given}' if given else ''}"
+    if _NOT_WHOLE.fullmatch(kind):
+        return "it must be a whole number"
+    if kind not in _LIMITS:
+        return _OTHERS.get(kind.partition("_")[0])
+    name, words = _LIMITS[kind]
+    limit = error["ctx"][name]
+    percent = isinstance(value, int | float) and _SURELY_PERCENT <= value <= _PERCENT
+    fraction = percent and not unit and limit == 1 and name in ("le", "lt")
+    number = f"{limit:,}" if isinstance(limit, int) else f"{limit:g}"
+    return (
+        f"it must be {words} {number}{f' {unit}' if unit else ''}{f': a fraction, e.g. {value / _PERCENT:g}' if fraction else ''}"
+    )
