@@ -32,13 +32,13 @@ def parameter_table(run: RunData, sampled: Mapping[str, str] | None = None) -> T
 
 
 def figure_table(verdict: Verdict) -> Table:
-    """Return every figure that a verdict rests on; page 1 has the most important."""
+    """Return every figure of a verdict; page 1 has the most important."""
     rows = [[card.name, card.value, card.required, card.result] for card in verdict.figures]
     return Table(
         head=["Figure", "Value", "Required", ""],
         rows=rows,
         widths=[3.0, 1.4, 1.4, 0.6],
-        caption="Every figure that the verdict rests on, and what is required of it.",
+        caption="Every figure of the verdict; a dash where nothing is required of it.",
     )
 
 

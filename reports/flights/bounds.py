@@ -3,7 +3,7 @@
 import pandas as pd
 
 from common.intervals import CONFIDENCE, TELLING, upper_bound
-from reports.run.columns import completed, count, kept_out, measured
+from reports.run.columns import completed, count, kept_out, measured, violated
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
@@ -19,6 +19,16 @@ def violation_bound(run: RunData, trials: list[Trial]) -> tuple[float, float] | 
     return _bound(run.summary) if sampled(trials) else None
 
 
+def counted_as_violations(rows: pd.DataFrame) -> str:
+    """Return, in a sentence, which flights the bound counts as violations though none is known of them; no word without such."""
+    unknown = _beside(rows)
+    unknown = unknown[~kept_out(unknown) & ~violated(unknown)]
+    unflown = len(unknown) - len(measured(unknown))
+    kinds = {"not flown": unflown, "not observed to their end": len(unknown) - unflown}
+    told = " and ".join(f"{number:,} that {'were' if number > 1 else 'was'} {kind}" for kind, number in kinds.items() if number)
+    return f" As nobody knows of {told}, the bound counts {'them' if len(unknown) > 1 else 'it'} as violated." if told else ""
+
+
 def trial_bound(trial: Trial) -> float | None:
     """Return that of one trial, with the confidence of all bounds."""
     found = _bound(trial.rows) if trial.sampled_at_random else None
@@ -31,9 +41,13 @@ def sampled(trials: list[Trial]) -> bool:
 
 
 def _bound(rows: pd.DataFrame) -> tuple[float, float] | None:
-    # A flight about a point, without a vessel, has nothing to keep out of.
-    beside = rows[~completed(rows) | rows["min_distance_m"].notna()]
+    beside = _beside(rows)
     return _telling(upper_bound(count(~kept_out(beside)), len(beside)), CONFIDENCE) if len(measured(rows)) else None
+
+
+def _beside(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the flights beside a vessel: one about a point has nothing to keep out of."""
+    return rows[~completed(rows) | rows["min_distance_m"].notna()]
 
 
 def _telling(bound: float, confidence: float) -> tuple[float, float] | None:

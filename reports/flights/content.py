@@ -41,10 +41,12 @@ def flights_content(run: RunData) -> Findings:
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
     ]
+    flown = measured(run.summary)
     return Findings(
-        flown=f"{flights_in_words(run, measured(run.summary))}.",
+        flown=f"{flights_in_words(run, flown)}.",
         verdict=flight_verdict(run, trials),
-        picture=closest_and_typical(trials) or _picture(sections),
+        # Without a flight the first figure would be that of an aircraft that did not fly.
+        picture=(closest_and_typical(trials) or _picture(sections)) if len(flown) else None,
         sections=sections,
     )
 
@@ -58,7 +60,7 @@ def _picture(sections: list[Section]) -> Chart | None:
 def _overview(trials: list[Trial]) -> Section:
     criteria = criteria_table(trials)
     if len(trials) == 1:
-        return Section(anchor="trials", title="Criteria and the worst measured values", nav_title="Criteria", blocks=[criteria])
+        return Section(anchor="trials", title="Criteria", blocks=[criteria])
     meaning = (
         "Completed: the aircraft came through, settled, and flew the crossings that were asked for, or one at least. Met: it kept"
         " out, completed, and met every other criterion. Kept out: known to have kept out to its end. Distances are from the"

@@ -3,13 +3,13 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import pandas as pd
 
 from reports.document.tables import limit, parameter_value, span
-from reports.run.columns import Array, column, completed, count, interval_error
+from reports.run.columns import Array, Mask, column, completed, count, interval_error
 from reports.run.trials import Trial
 
 
@@ -47,6 +47,13 @@ class _Measure:
     values: Callable[[pd.DataFrame], Array]
     unit: str
     scale: float = 1.0
+
+
+class _Failed(TypedDict):
+    """Flights that failed a criterion, or have no such figure; and those of them that were flown."""
+
+    failed: int
+    flown_failed: int
 
 
 def _column(name: str) -> Callable[[pd.DataFrame], Array]:
@@ -132,7 +139,7 @@ def _between(trial: Trial, key: str, limits: Sequence[float], measure: _Measure)
         what=measure.what,
         limit=f"{low:g} to {high:g} {measure.unit}",
         worst=f"{span(measured, '{:.4g}')} {measure.unit}" if np.isfinite(measured).any() else "none measured",
-        failed=count(~((low <= measured) & (measured <= high))),
+        **_failed(~((low <= measured) & (measured <= high)), trial.rows),
     )
 
 
@@ -147,7 +154,7 @@ def _demand(trial: Trial, key: str) -> Criterion:
         what="Heading rate that the law demands, largest of a flight",
         limit=_DEMAND[key],
         worst=f"{worst:.3f} ω_max" if len(known) else "none measured",
-        failed=count(~met),
+        **_failed(~met, trial.rows),
     )
 
 
@@ -155,19 +162,22 @@ def _figure(rows: pd.DataFrame, key: str, value: float, measure: _Measure) -> Cr
     measured = measure.values(rows)
     known = measured[np.isfinite(measured)]
     worst = float(known.max()) if len(known) else float("nan")
-    failed = ~(measured <= value)
     words = f"{_rounded(measure.scale * worst, measure.scale * value):.3g} {measure.unit}" if len(known) else "none measured"
     return Criterion(
         key=key,
         what=measure.what,
         limit=f"≤ {limit(measure.scale * value)} {measure.unit}",
         worst=words,
-        failed=count(failed),
+        **_failed(~(measured <= value), rows),
         fraction=worst / value if value else float("nan"),
         # To take rows of a table of a hundred columns costs more than all else here.
         missing=_without(rows[~np.isfinite(measured)]) if len(known) < len(measured) else "",
-        flown_failed=count(failed & rows["min_distance_m"].notna().to_numpy()),
     )
+
+
+def _failed(failed: Mask, rows: pd.DataFrame) -> _Failed:
+    """Return how many flights failed a criterion, and how many of those that were flown."""
+    return {"failed": count(failed), "flown_failed": count(failed & rows["min_distance_m"].notna().to_numpy())}
 
 
 def _without(rows: pd.DataFrame) -> str:
@@ -199,7 +209,7 @@ def _mission(trial: Trial) -> Criterion:
         else f"Completes its mission: settles, and flies {f'{crossings} crossings' if crossings else 'a crossing at least'}",
         limit="each flight",
         worst="; ".join(words) or "none flown",
-        failed=count(~done),
+        **_failed(~done, trial.rows),
     )
 
 
@@ -211,7 +221,7 @@ def _modes(trial: Trial, modes: list[str]) -> Criterion:
         what="Mode at the end",
         limit=" or ".join(modes),
         worst=counted(others) if len(others) else "no other",
-        failed=len(others),
+        **_failed(~ends.isin(modes).to_numpy(), trial.rows),
     )
 
 

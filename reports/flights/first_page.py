@@ -1,6 +1,6 @@
 """What page 1 says of flights: what was flown in a sentence, and the tracks of the closest flight and of a typical one."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -28,7 +28,7 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     """Return what was flown: flights and hours, vehicle, vessel and air; without a full stop."""
     if not len(flown):
         return "No flight was flown"
-    flights = f"{len(flown):,} flight{'s' * (len(flown) > 1)} ({hours(flown)}) of {vehicle_flown(run)}"
+    flights = f"{len(flown):,} flight{'s' * (len(flown) > 1)} ({simulated(flown)}) of {vehicle_flown(run)}"
     vessel = column(flown, "vessel_speed_mps")
     if not np.isfinite(vessel).any():
         return f"{flights}, about a circle without a vessel"
@@ -42,9 +42,11 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     return f"{flights}, beside a vessel at {_range(vessel)} m/s{' at the start' * bool(manoeuvres)}, in {air}{gusty}"
 
 
-def hours(flown: pd.DataFrame) -> str:
-    """Return how long all flights took together."""
+def simulated(flown: pd.DataFrame) -> str:
+    """Return how long all flights took together; less than an hour is told in minutes."""
     time = total(flown, "duration_s") / SECONDS_PER_HOUR
+    if time < 1.0:
+        return f"{60.0 * time:.2g} min simulated"
     return f"{time:,.0f} h simulated" if time >= 100.0 else f"{time:.2g} h simulated"
 
 
@@ -79,13 +81,13 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
         (trial, row, f"{what}: {distance}" if long else f"{what}: {name}, {distance}")
         for (trial, row, distance), (what, name) in zip(shown, names.items(), strict=True)
     ]
-    told = _told(recorded, median=median, several=len(shown) > 1)
-    told += "".join(f" {what}: {name}." for what, name in names.items()) if long else ""
+    told = _told(recorded, names if long else dict.fromkeys(names, ""), median=median)
     return track_picture(shown, told=told * (len(flights) > 1))
 
 
-def _told(recorded: Mask, *, median: bool, several: bool) -> str:
-    """Return which flights are shown, given which have a time history, and whether the typical one is at the median."""
+def _told(recorded: Mask, names: Mapping[str, str], *, median: bool) -> str:
+    """Return which flights are shown, with those names that are not empty, and whether the typical one is at the median."""
     of = "" if recorded.all() else " of those with a time history"
     near = "the one whose closest approach is the median" if median else "of these the one nearest to the median of all flights"
-    return f" Closest: the flight with the closest approach{of}.{f' Typical: {near}.' * several}"
+    meanings = {"Closest": f"the flight with the closest approach{of}", "Typical": near}
+    return "".join(f" {what}: {f'{name}, ' if name else ''}{meanings[what]}." for what, name in names.items())

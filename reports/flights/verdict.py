@@ -8,11 +8,11 @@ import pandas as pd
 
 from common.intervals import percent
 from reports.document.blocks import Card, Verdict
-from reports.document.tables import in_symbols, number
-from reports.flights.bounds import sampled, violation_bound
-from reports.flights.criteria import MEASURED, Criterion, criteria_of
-from reports.flights.first_page import hours
+from reports.flights.bounds import counted_as_violations, sampled, violation_bound
+from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of
+from reports.flights.first_page import simulated
 from reports.flights.names import told_name
+from reports.flights.trials.failures import failure_lines
 from reports.measurement.flights import sulphur_below, sulphur_cards, sulphur_headline
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
 from reports.run.columns import (
@@ -33,14 +33,11 @@ from reports.run.flight_config import keepout_shape
 from reports.run.run_data import RunData
 from reports.run.trials import SHAPES, Trial, measured_from
 
-_NAMED_MAX = 3
-"""Flights of a trial that failed a criterion and that the verdict names one by one."""
-
-_SEVERAL = {False: ", ", True: "; "}
-"""Between the names of flights, whether or not these have commas of their own."""
-
 ROUNDING = 1e-9
 """What binary fractions may add to a figure that is limited by design [-]."""
+
+_ALLOWED = "not required of every flight"
+"""What is said of an outcome where some flights are required to keep out, and no more."""
 
 _COMMAND, _DEMAND = (f"Heading rate {what}, largest, as a ratio to ω_max" for what in ("commanded", "demanded"))
 """Names of figures."""
@@ -65,20 +62,21 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
         # What must never happen stands before what was measured.
         headline=". ".join(headlines if holds else headlines[::-1]),
         detail=_detail(run, trials, flown, planned),
-        failures=[*(line for trial in trials for line in _not_met(trial)), *_noteworthy(flown)],
+        failures=[*(line for trial in trials for line in failure_lines(trial)), *_noteworthy(flown)],
         figures=[*sulphur_cards(run), *_bound_figure(run, trials), *_figures(trials, flown, planned)],
     )
 
 
 def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
     if not len(flown):
-        return "Nothing was flown"
+        ends = run.summary["outcome"][~completed(run.summary)].astype(str).str.replace("_", " ")
+        return f"Nothing was flown{f': of {planned:,}, {counted(ends)}' if len(ends) else ''}"
     rows, flights = run.summary, f"{len(flown):,} flight{'s' if len(flown) > 1 else ''}"
     led, bound = _subset(run), violation_bound(run, trials)
     violations, inside = total(flown, "keepout_violations"), count(violated(flown))
     if violations and led is None:
         return f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
-    shown = f": at most {percent(bound[0])} of such flights at {percent(bound[1])} confidence" if bound else ""
+    shown = f": at most {percent(bound[0])} of such flights violate the area, at {percent(bound[1])} confidence" if bound else ""
     counts = {
         "lost the aircraft": count(lost(rows)),
         "did not complete the mission": count(~completed(flown) & ~lost(flown)),
@@ -87,9 +85,9 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
         "not flown yet": planned - len(rows),
     }
     others = [f"{number_of:,} {what}" for what, number_of in counts.items() if number_of]
-    kept = f"No keep-out violation in {flights} ({hours(flown)}){shown}"
+    kept = f"No keep-out violation in {flights} ({simulated(flown)}){shown}"
     if led is not None and bound:
-        kept = f"{subset_headline(led)}; {inside:,} of its {flights} ({hours(flown)}) violated the keep-out area"
+        kept = f"{subset_headline(led)}; {inside:,} of its {flights} ({simulated(flown)}) violated the keep-out area"
     elif violations:
         kept = f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
     if np.any(lost(rows) & ~passed(rows)):
@@ -120,7 +118,7 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
     elif bound:
         sentences.append(
             f"With {percent(bound[1])} confidence a flight sampled as these were violates the keep-out area with a probability of"
-            f" at most {percent(bound[0])}, on average and in this simulation."
+            f" at most {percent(bound[0])}, on average and in this simulation.{counted_as_violations(rows)}"
         )
     elif len(flown) and (run.statistics is not None or sampled(trials)):
         few = "A single flight sets" if len(flown) == 1 else "So few flights set"
@@ -156,32 +154,6 @@ def _closest(trials: list[Trial], flown: pd.DataFrame) -> str:
     return f"{words}."
 
 
-def _not_met(trial: Trial) -> list[str]:
-    """Return which flights of a trial failed a criterion: each of a few, else by criterion; then flights not flown yet."""
-    rows = trial.rows
-    others, missing = rows[~met(rows)], trial.planned - len(rows)
-    lines = [f"{trial.title}: {missing} of {trial.planned} not flown yet"] if missing else []
-    if len(others) <= _NAMED_MAX:
-        reasons: dict[str, list[str]] = {}
-        for _, row in others.iterrows():
-            reasons.setdefault(_reason(row), []).append(told_name(trial, row))
-        return [*(f"{_SEVERAL[bool(trial.swept)].join(flights)}: {reason}" for reason, flights in reasons.items()), *lines]
-    inside, depth = count(violated(rows)), largest(column(rows, "keepout_depth_m"))
-    parts = [f"{inside} violated the keep-out area, by up to {number(depth, '{:.1f} m')}"] if inside else []
-    failed = [criterion for criterion in criteria_of(trial) if criterion.failed]
-    parts += [
-        f"{c.failed} did not complete the mission" if c.key == "mission" else f"{c.failed}: {c.what}, {c.limit}" for c in failed
-    ]
-    why = f" ({'; '.join(parts)})" if parts else ""
-    return [f"{trial.title}: {len(others)} of {len(rows)} flights failed a criterion{why}", *lines]
-
-
-def _reason(row: "pd.Series[Any]") -> str:
-    """Return why a flight failed a criterion; that it did not settle its message says already."""
-    ended = "" if row["outcome"] == "not_settled" else str(row["outcome"]).replace("_", " ")
-    return "; ".join(words for words in (ended, in_symbols(str(row["message"]))) if words)
-
-
 def _noteworthy(flown: pd.DataFrame) -> list[str]:
     """Return what a reader has to know of the flights, whether or not a criterion asks for it."""
     lines = []
@@ -206,22 +178,28 @@ def _bound_figure(run: RunData, trials: list[Trial]) -> list[Card]:
 
 
 def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Card]:
-    nearest = flown.iloc[int(np.argmin(clearance(flown)))] if len(flown) else None
+    if not len(flown):
+        return [
+            Card("Keep-out violations", "none flown", "not judged"),
+            Card("Flights flown", f"0 of {planned:,}", "all", met=False),
+        ]
+    nearest = flown.iloc[int(np.argmin(clearance(flown)))]
     limits = column(flown, "heading_rate_limit_rad_s")
     command = largest(column(flown, "heading_rate_command_max_rad_s") / limits)
     guarded, unable = count(column(flown, "guard_interventions") > 0.0), count(column(flown, "guard_lost_s") > 0.0)
     crossings, violations = total(flown, "crossing_count"), total(flown, "keepout_violations")
-    done, apart = count(completed(flown)), np.any(passed(flown) & ~met(flown))
+    done, kept, gone = count(completed(flown)), count(kept_out(flown)), count(lost(flown))
+    # Of some flights it may be required to keep out, and no more.
+    allowed = (_ALLOWED,) if np.any(passed(flown) & ~met(flown)) else ()
     worst = [_worst([criterion for trial in trials for criterion in criteria_of(trial)], key) for key in MEASURED]
     figures = [
-        Card("Keep-out violations", f"{violations:,}", "0", len(flown) > 0 and violations == 0),
+        Card("Keep-out violations", f"{violations:,}", "0", violations == 0),
         _closest_figure(trials, nearest),
-        # Of some flights it may be required to keep out, and no more.
-        Card("Missions completed", f"{done:,} of {planned:,}", *(() if apart else ("all", done == planned))),
+        Card("Missions completed", f"{done:,} of {planned:,}", *(allowed or ("all", done == planned))),
         *(figure for figure in worst if figure),
-        Card(f"Flights flown, {hours(flown)}", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
-        Card("Flights that kept out", f"{count(kept_out(flown)):,} of {len(flown):,}"),
-        Card("Aircraft lost", f"{count(lost(flown)):,}"),
+        Card(f"Flights flown, {simulated(flown)}", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
+        Card("Flights that kept out", f"{kept:,} of {len(flown):,}", "all", kept == len(flown)),
+        Card("Aircraft lost", f"{gone:,}", *(allowed or ("0", gone == 0))),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
         *_tracking(flown),
         Card(_COMMAND, "none") if command is None else Card(_COMMAND, f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
@@ -239,11 +217,9 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
     return figures
 
 
-def _closest_figure(trials: list[Trial], nearest: "pd.Series[Any] | None") -> Card:
+def _closest_figure(trials: list[Trial], nearest: "pd.Series[Any]") -> Card:
     shapes = {trial.shape for trial in trials}
     name = f"Closest approach, {trials[0].measured_from}" if len(shapes) == 1 and shapes <= set(SHAPES) else "Closest approach"
-    if nearest is None:
-        return Card(name, "none")
     distance, radius = float(nearest["min_distance_m"]), float(nearest["keepout_radius_m"])
     return Card(name, _distance(distance, radius), f"≥ {radius:g} m", distance >= radius)
 
@@ -261,6 +237,8 @@ def _tracking(flown: pd.DataFrame) -> list[Card]:
     known = errors[np.isfinite(errors)]
     if not len(known):
         return []
+    if len(known) == 1:
+        return [Card("Tracking error, rms after settling", f"{known[0]:.3g} m")]
     high = float(np.quantile(known, _QUANTILE))
     name = f"Tracking error, rms after settling: {percent(_QUANTILE)} quantile of the flights, and their largest"
     return [Card(name, f"{high:.3g} m, largest {known.max():.3g} m")]

@@ -126,7 +126,7 @@ def criteria_table(trials: list[Trial]) -> Table:
     for trial in trials:
         listed = criteria_of(trial)
         # Flights that were not flown are told beside the figure, as on page 1, and fail the mission alone.
-        failed = [c.flown_failed if c.missing else c.failed for c in listed]
+        failed = [c.failed if c.key == "mission" else c.flown_failed for c in listed]
         rows += [
             [trial.title, c.what, c.limit, "; ".join(filter(None, (c.worst, c.missing))), f"{n}"]
             for c, n in zip(listed, failed, strict=True)

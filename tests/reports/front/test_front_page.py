@@ -79,7 +79,7 @@ def card(report, name):
 def test_page_1_says_when_and_what_was_flown_and_shows_the_closest_flight_and_a_typical_one(report):
     assert re.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC", report.letterhead.when)
     assert re.fullmatch(
-        r"5 flights \(0\.\d+ h simulated\) of the kinematic vehicle, eq\. \(1\), beside a vessel at 8 m/s, in still air\.",
+        r"5 flights \(\d\.\d min simulated\) of the kinematic vehicle, eq\. \(1\), beside a vessel at 8 m/s, in still air\.",
         report.flown,
     )
     titles = [panel.title for panel in report.picture.panels]
@@ -222,11 +222,11 @@ def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(run
     picture = closest_and_typical(read_trials(run))
     typical = min(nearest, key=lambda rank: abs(distances[rank] - distances[2]))
     closest = min(set(range(5)) - set(gone))
-    told = "Closest: the flight with the closest approach" + (" of those with a time history." if gone else ".")
+    told = "the flight with the closest approach" + (" of those with a time history." if gone else ".")
     assert told in picture.caption
     if closest == typical:
         # One flight is both: all its tracks are shown, and below them its name.
-        assert re.search(r" Closest: Flight \d\.$", picture.caption)
+        assert re.search(r" Closest: Flight \d, the flight with the closest approach[^.]*\.$", picture.caption)
         assert "Typical" not in picture.caption
     else:
         shown = [float(re.search(r"([\d.]+) m$", panel.title)[1]) for panel in picture.panels]
@@ -253,4 +253,5 @@ def test_long_names_of_flights_stand_below_the_picture(run_path, monkeypatch):
     for with_name, without in zip(named.panels, bare.panels, strict=True):
         what, name, distance = re.fullmatch(r"(\w+): (Flight \d), (.+ m)", with_name.title).groups()
         assert without.title == f"{what}: {distance}"
-        assert f"{what}: {name}." in bare.caption
+        assert f" {what}: {name}, the " in bare.caption
+        assert bare.caption.count(f"{what}:") == 1

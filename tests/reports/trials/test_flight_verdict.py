@@ -66,7 +66,7 @@ def test_where_a_fault_is_flown_on_purpose_a_lost_aircraft_is_shown_and_keeping_
         "required to keep out, not to complete: 1 kept out, 0 completed. The exit status is about the first."
         in report.verdict.detail
     )
-    assert ("Aircraft lost", "1", "", None) in report.verdict.figures
+    assert ("Aircraft lost", "1", "not required of every flight", None) in report.verdict.figures
     assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "2"]
 
 
@@ -96,6 +96,31 @@ def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_fig
     (row,) = (row for row in rows_of(report, "Steady") if row[2].endswith(" m; 1 flight has no figure: not flown"))
     # As on page 1: it fails the mission, and not what could not be measured.
     assert row[3] == "0"
+
+
+def test_flights_that_were_not_flown_are_counted_apart_from_those_that_failed_a_criterion(run):
+    rows, failed = run.summary.iloc[[0]], {"criteria_met": False, "crossing_interval_mean_s": 99.0, "message": "off"}
+    judged = [NOT_FLOWN] * 5 + [failed] * 4 + [{}]
+    many = [rows.assign(flight_id=f"steady_{i:05}", **values) for i, values in enumerate(judged)]
+    manifest = json.loads(json.dumps(run.manifest)) | {"flights_planned": 10, "trial_flights": {"steady": 10, "turns": 0}}
+    report = content(replace(run, summary=pd.concat(many, ignore_index=True), manifest=manifest))
+    assert report.verdict.failures == [
+        "Steady: 4 of 5 flights flown failed a criterion (4: Mean crossing interval off π/ω₀, ≤ 3.21 %)",
+        "Steady: 5 of 10 not flown; the first, steady_00000: infeasible: too fast a vessel",
+    ]
+    assert "As nobody knows of 5 that were not flown, the bound counts them as violated." not in report.verdict.detail
+
+
+def test_of_a_run_in_which_nothing_was_flown_no_figure_is_met_and_no_picture_shown(run):
+    nothing = replace(run, summary=run.summary.assign(**NOT_FLOWN))
+    report = content(nothing)
+    assert report.verdict.headline == "Nothing was flown: of 4, 4 infeasible"
+    assert [tuple(card) for card in report.verdict.figures] == [
+        ("Keep-out violations", "none flown", "not judged", None),
+        ("Flights flown", "0 of 4", "all", False),
+    ]
+    assert report.picture is None
+    assert not report.verdict.holds
 
 
 def test_a_flight_that_was_flown_and_has_no_figure_fails_the_criterion_on_it(run):
@@ -129,7 +154,9 @@ def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
     eight = replace(run, summary=pd.concat([run.summary, again], ignore_index=True), manifest=run.manifest | {"flights_planned": 8})
     verdict = content(eight).verdict
     # Clopper and Pearson, none of eight: 1 - 0.05^(1/8).
-    assert "at most 31.2 % of such flights at 95 % confidence" in verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
+    assert "at most 31.2 % of such flights violate the area, at 95 % confidence" in verdict.headline.replace(
+        "\N{NO-BREAK SPACE}", " "
+    )
     texts = [verdict.headline, verdict.detail, *verdict.failures, *(text for figure in verdict.figures for text in figure[:3])]
     assert not any(re.search(r"\bsafe", text, re.IGNORECASE) for text in texts)
     # Those of a search are no random sample: no bound follows from them.
@@ -143,10 +170,12 @@ def test_a_flight_that_could_not_be_flown_counts_as_a_violation_in_the_bound(run
     rows = with_values(run, 1, **NOT_FLOWN).summary
     others = [run.summary.assign(flight_id=[f"{name}_{i}" for name in run.summary["flight_id"]]) for i in range(3)]
     sixteen = replace(run, summary=pd.concat([rows, *others], ignore_index=True), manifest=run.manifest | {"flights_planned": 16})
-    headline = content(sixteen).verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
+    verdict = content(sixteen).verdict
+    headline = verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
     # Clopper and Pearson, one of sixteen: (1 - p)^16 + 16 p (1 - p)^15 = 0.05; none of fifteen would be 18.1 %.
-    assert "at most 26.4 % of such flights at 95 % confidence" in headline
+    assert "at most 26.4 % of such flights violate the area, at 95 % confidence" in headline
     assert headline.endswith("of 16, 1 could not be flown")
+    assert "As nobody knows of 1 that was not flown, the bound counts it as violated." in verdict.detail
 
 
 def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
@@ -168,6 +197,13 @@ def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
         "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",
         "In 1 flight a manoeuvre of the vessel begins after the end of the flight, and was never flown.",
     ]
+
+
+def test_of_one_flight_there_is_no_quantile_of_the_tracking_error(run):
+    alone = content(replace(run, summary=run.summary.iloc[:1])).verdict
+    (tracking,) = (card for card in alone.figures if card.name.startswith("Tracking error"))
+    assert tracking.name == "Tracking error, rms after settling"
+    assert re.fullmatch(r"[\d.e-]+ m", tracking.value)
 
 
 def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run):
