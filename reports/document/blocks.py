@@ -144,14 +144,19 @@ class UndecidedCard(Card):
     """A measured figure of which it stays open on which side of its limit it lies."""
 
     @property
+    def required(self) -> str:
+        """Return that nothing is required of the flight."""
+        return "–"
+
+    @property
     def result(self) -> str:
         """Return that it is open."""
         return "open"
 
     @property
     def judgement(self) -> str:
-        """Return that it is open, and what is required."""
-        return f"? open, required {self.limit}"
+        """Return that it is open for which limit."""
+        return f"? open for the limit of {self.limit}"
 
     @property
     def tone(self) -> str:

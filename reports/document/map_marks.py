@@ -105,9 +105,17 @@ def on_map(
         at = right - 0.03 * width - 0.5 * size
         lines += arrow(at, middle, north, size, Meaning.SHIP)
         notes.append(Note(x=at - 0.7 * size, y=middle, text="N", align="right"))
+    # What lies outside has no entry in the legend.
+    seen = [line for line in panel.lines if _within(line.x, left, right) and _within(line.y, bottom, top)]
     return replace(
-        panel, lines=[*panel.lines, *lines], notes=[*panel.notes, *notes], equal=True, x_range=(left, right), y_range=(bottom, top)
+        panel, lines=[*seen, *lines], notes=[*panel.notes, *notes], equal=True, x_range=(left, right), y_range=(bottom, top)
     )
+
+
+def _within(values: Array, low: float, high: float) -> bool:
+    """Return whether a curve reaches into a range; one without any number does, as it hides nothing."""
+    known = values[np.isfinite(values)]
+    return not len(known) or bool(known.max() >= low and known.min() <= high)
 
 
 def _view(

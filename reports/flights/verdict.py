@@ -13,7 +13,7 @@ from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of
 from reports.flights.first_page import simulated
 from reports.flights.names import told_name
 from reports.flights.trials.failures import failure_lines
-from reports.measurement.flights import sulphur_below, sulphur_cards, sulphur_headline
+from reports.measurement.flights import sulphur_above, sulphur_below, sulphur_cards, sulphur_headline
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
 from reports.run.columns import (
     clearance,
@@ -49,18 +49,19 @@ _QUANTILE = 0.99
 def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     """Judge a run by its summary.
 
-    It fails if no flight was flown, if one violated the keep-out area, or if one lost its aircraft that was required to complete.
+    It fails if no flight was flown, if one violated the keep-out area, if one lost its aircraft that was required to complete,
+    or if the fuel of an only flight is called above its limit.
     It is complete if every planned flight met every criterion, and the fuel of an only flight is called below its limit.
     """
     rows, flown = run.summary, measured(run.summary)
     planned = int(run.manifest["flights_planned"])
-    holds = len(flown) > 0 and total(flown, "keepout_violations") == 0 and not np.any(lost(rows) & ~passed(rows))
+    kept = len(flown) > 0 and total(flown, "keepout_violations") == 0 and not np.any(lost(rows) & ~passed(rows))
     headlines = [words for words in (sulphur_headline(run), _headline(run, trials, flown, planned)) if words]
     return Verdict(
-        holds=holds,
+        holds=kept and not sulphur_above(run),
         complete=count(met(rows)) == planned and sulphur_below(run),
         # What must never happen stands before what was measured.
-        headline=". ".join(headlines if holds else headlines[::-1]),
+        headline=". ".join(headlines if kept else headlines[::-1]),
         detail=_detail(run, trials, flown, planned),
         failures=[*(line for trial in trials for line in failure_lines(trial)), *_noteworthy(flown)],
         figures=[*sulphur_cards(run), *_bound_figure(run, trials), *_figures(trials, flown, planned)],

@@ -9,7 +9,7 @@ from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.panels import around, level
-from reports.measurement.data import Record, errors, finite, over_time, thinned, value
+from reports.measurement.data import SINCE, Record, errors, finite, over_time, thinned, value
 from reports.run.columns import Array, column
 
 POINTS_MAX = 2500
@@ -32,8 +32,14 @@ _LONG = 4.0
 """Length of a track over its width from which on its plan is not drawn to one scale."""
 
 
-def over_time_chart(record: Record) -> Chart | None:
-    """Return the sulphur content and its 95 % interval over time, with the limits; None where there never was an estimate."""
+def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
+    """Return the sulphur content and its 95 % interval over time, with the limits; None where there never was an estimate.
+
+    Parameters
+    ----------
+    record : of the estimate
+    since : what the time is counted from, in words that go on "since"
+    """
     table = over_time(record)
     if len(table) < 2:
         return None
@@ -52,7 +58,7 @@ def over_time_chart(record: Record) -> Chart | None:
         lines.append(level(time, value(record, "true_percent"), "a perfect instrument", "black"))
     # An estimate may be below 0, though its interval is cut there.
     y_range = (1.25 * min(0.0, float(np.min(found))), top)
-    panel = Panel(x_label="Time since the start [s]", y_label=_FSC, lines=lines, y_range=y_range, x_range=(0.0, float(time[-1])))
+    panel = Panel(x_label=f"Time since {since} [s]", y_label=_FSC, lines=lines, y_range=y_range, x_range=(0.0, float(time[-1])))
     caption = "Fuel sulphur content from all readings up to a time, with its 95 % interval."
     return Chart(name="fsc-over-time", caption=caption, panels=[panel], panel_height=0.21)
 
@@ -85,12 +91,12 @@ def budget_chart(record: Record) -> Chart | None:
     )
 
 
-def channels_chart(samples: pd.DataFrame) -> Chart:
+def channels_chart(samples: pd.DataFrame, x_label: str = _TIME) -> Chart:
     """Return readings over time, with the truth where it is known, and SO2 at the common response with what CO2 explains of it."""
     rows = thinned(samples, POINTS_MAX)
     time = column(rows, "time_s")
     panels = [
-        Panel(x_label=_TIME, y_label=f"{name} [{unit}]", lines=_readings(rows, time, gas, unit))
+        Panel(x_label=x_label, y_label=f"{name} [{unit}]", lines=_readings(rows, time, gas, unit))
         for gas, name, unit in (("co2", "CO2", "ppm"), ("so2", "SO2", "ppb"))
     ]
     nox = [
@@ -99,12 +105,12 @@ def channels_chart(samples: pd.DataFrame) -> Chart:
         if f"{gas}_ppb" in rows
     ]
     if nox:
-        panels.append(Panel(x_label=_TIME, y_label="NOx [ppb]", lines=nox))
+        panels.append(Panel(x_label=x_label, y_label="NOx [ppb]", lines=nox))
     equal = [
         Line(x=time, y=column(rows, "so2_excess_ppb"), label="SO2, corrected and equalised", colour="orange"),
         Line(x=time, y=column(rows, "fit_ppb"), label="what CO2 explains", colour="black"),
     ]
-    panels.append(Panel(x_label=_TIME, y_label="ΔSO2 [ppb]", lines=equal))
+    panels.append(Panel(x_label=x_label, y_label="ΔSO2 [ppb]", lines=equal))
     caption = "Readings. Bottom right: SO2 without background, corrected, at the slowest response, and CO2 at it times the slope."
     return Chart(name="channels", caption=caption, panels=panels, columns=2, share_x=True, panel_height=0.125)
 

@@ -17,6 +17,10 @@ Record = dict[str, Any]
 """What ``estimate.json`` holds: ``estimate``, ``other``, ``over_time``, ``time_to_verdict_s``, ``instrument``, ``true_percent``."""
 
 
+SINCE = "the record began"
+"""What the time of an estimate is counted from, where nothing else is said."""
+
+
 def read_estimate(run: RunData) -> Record:
     """Return the estimate of a measured flight.
 

@@ -150,8 +150,11 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
     height, above, co2 = (column(rows, name) for name in ("altitude_m", "plume_above_m", "co2_ppm"))
     right, along = about_the_plume(rows)
     distance = np.hypot(right, along)
-    order = np.argsort(distance)
-    axis = Line(x=distance[order], y=(height - above)[order], label="plume's axis", colour=Meaning.PLUME, style="dots")
+    crossed = np.flatnonzero(np.diff(np.signbit(right)))
+    axis = Line(
+        x=distance[crossed], y=(height - above)[crossed], label="plume's mean axis, where it was crossed", colour="orange",
+        style="diamonds",
+    )  # fmt: skip
     track = Line(x=right, y=along, label="", colour=Meaning.FLOWN, style="points", values=co2)
     panels = [
         ship_panel(about, [track], title="Seen from the ship", shown=[track]),
@@ -159,11 +162,11 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
             x_label="Distance from the ship [m]",
             y_label="Height [m]",
             title="In height",
-            lines=[axis, Line(x=distance, y=height, label="", colour=Meaning.FLOWN, style="points", values=co2)],
+            lines=[Line(x=distance, y=height, label="", colour=Meaning.FLOWN, style="points", values=co2), axis],
         ),
     ]
     caption = (
-        "CO2 along the track by its colour, as it was, and the height of the plume's mean axis where it was crossed."
+        "CO2 along the track by its colour, as it was; on the right with the height of the plume's mean axis where it was crossed."
         f" {ship_words(about)}"
     )
     return Chart(name="sulphur-track", caption=caption, panels=panels, columns=2, panel_height=0.4, scale_label="CO2 [ppm]")

@@ -6,9 +6,8 @@ import numpy as np
 import pandas as pd
 
 from common.intervals import percent
-from measurement.estimate.words import content_words, counted_verdicts, probability, verdict_words
-from measurement.gases import limit_words
-from reports.document.blocks import Block, Card, FuelCard, Heading, Section, Text, UndecidedCard
+from measurement.estimate.words import content_words, counted_verdicts, verdict_words
+from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.document.chart import Chart
 from reports.document.tables import number
 from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
@@ -16,6 +15,7 @@ from reports.measurement.data import Record
 from reports.measurement.flight_charts import error_chart, operating_curve, sulphur_track_chart, trajectory_chart
 from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table, interval_words
 from reports.measurement.tables import over_time_table, result_table
+from reports.measurement.verdict import CONTENT_NAME, INTERVAL_NAME, fuel_card
 from reports.run.columns import column
 from reports.run.flight_config import flight_config
 from reports.run.run_data import RunData
@@ -45,9 +45,14 @@ def sulphur_cards(run: RunData) -> list[Card]:
     if len(measured) == 1:
         row = measured.iloc[0]
         return [
-            Card("Sulphur in the fuel", number(row["fsc_percent"], "{:z.3f} %")),
-            Card("95 % interval of it", f"{interval_words(row)} %"),
-            _verdict_card(row),
+            Card(CONTENT_NAME, number(row["fsc_percent"], "{:z.3f} %")),
+            Card(INTERVAL_NAME, f"{interval_words(row)} %"),
+            fuel_card(
+                float(row["sulphur_limit_percent"]),
+                str(row["sulphur_verdict"]),
+                float(row["probability_above"]),
+                str(row["sulphur_quality"]),
+            ),
         ]
     bias, inside = _bias_and_coverage(measured)
     return [
@@ -56,15 +61,10 @@ def sulphur_cards(run: RunData) -> list[Card]:
     ]
 
 
-def _verdict_card(row: "pd.Series[Any]") -> Card:
-    limit, called = limit_words(float(row["sulphur_limit_percent"])), str(row["sulphur_verdict"])
-    words = f"{called}, {probability(float(row['probability_above']))}"
-    if row["sulphur_quality"] == "C":
-        words = "no verdict: quality C"
-    title = f"Verdict on {limit}, and probability of more"
-    if called == "open":
-        return UndecidedCard(title, words, f"≤ {limit}")
-    return FuelCard(title, words, limit, called == "below")
+def sulphur_above(run: RunData) -> bool:
+    """Return whether the only flight that measured the fuel called it above its limit, as red in a run as in an estimate."""
+    measured = _measured(run)
+    return len(measured) == 1 and measured.iloc[0]["sulphur_verdict"] == "above"
 
 
 def sulphur_below(run: RunData) -> bool:
@@ -146,21 +146,27 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
         flight_id = str(row["flight_id"])
         record, history = run.evaluation(flight_id), run.history(flight_id)
         if record is not None and history is not None:
-            samples = _samples(record, history)
+            samples, since = _samples(record, history), _since(run, row)
             blocks: list[Block | None] = [
                 Text(_told(row) if len(measured) == 1 else f"{flight_id}. {_told(row)}"),
                 result_table(record),
                 _track(run, row, history),
-                over_time_chart(record),
-                over_time_table(record),
+                over_time_chart(record, since),
+                over_time_table(record, since),
                 budget_chart(record),
-                channels_chart(samples),
+                channels_chart(samples, "Time since the start of the flight [s]"),
                 regression_chart(samples, record),
             ]
             title = "Fuel sulphur content" if len(measured) == 1 else "Measurement of one flight"
             shown = [block for block in blocks if block is not None]
             return Section(anchor="measurement", title=title, nav_title="Measurement", blocks=shown)
     return None
+
+
+def _since(run: RunData, row: "pd.Series[Any]") -> str:
+    """Return what the time of an estimate is counted from: it begins where readings are evaluated."""
+    window = flight_config(run, row).get("flight", {}).get("measured_s")
+    return "the flight settled" if window is None else "the evaluation began"
 
 
 def _track(run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> Chart | None:

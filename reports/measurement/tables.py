@@ -6,7 +6,7 @@ from measurement.estimate.passes import SNR_LEAST
 from measurement.gases import limit_words
 from reports.document.blocks import Table
 from reports.document.tables import number
-from reports.measurement.data import Record
+from reports.measurement.data import SINCE, Record
 
 _PERCENT = "{:.3f} %"
 
@@ -32,8 +32,8 @@ def result_table(record: Record) -> Table:
     return Table(caption="The result by each method.", head=head, rows=rows, widths=[1.8, 1.2, 0.8, 1.9, 1.5, 0.7])
 
 
-def over_time_table(record: Record) -> Table | None:
-    """Return what was known after each of ``REPORTED_S``, and at the end."""
+def over_time_table(record: Record, since: str = SINCE) -> Table | None:
+    """Return what was known after each of ``REPORTED_S``, and at the end; ``since`` says what the time is counted from."""
     table = pd.DataFrame(record["over_time"])
     if not len(table):
         return None
@@ -60,8 +60,8 @@ def over_time_table(record: Record) -> Table | None:
         *(f"Limit {limit_words(float(v))}" for v in limits),
     ]
     caption = (
-        f"What was known after so much time. A pass is a peak of CO2 of {SNR_LEAST:g} times its noise: where smoke meanders, not"
-        " every crossing of the plume's axis meets it."
+        f"What was known so long after {since}. A pass is a peak of CO2 of {SNR_LEAST:g} times its noise: where smoke"
+        " meanders, not every crossing of the plume's axis meets it."
     )
     return Table(caption=caption, head=head, rows=rows, widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)])
 

@@ -5,9 +5,12 @@ from typing import Any
 from measurement.estimate.verdict import BELOW, OPEN
 from measurement.estimate.words import content_words, probability, verdict_words
 from measurement.gases import FUEL_SULPHUR_MOST, limit_words
-from reports.document.blocks import Card, FuelCard, Verdict
+from reports.document.blocks import Card, FuelCard, UndecidedCard, Verdict
 from reports.document.tables import number
 from reports.measurement.data import Record, value
+
+CONTENT_NAME, INTERVAL_NAME = "Fuel sulphur content", "Fuel sulphur content, 95 % interval"
+"""Names of the tiles of a result."""
 
 
 def measurement_verdict(record: Record) -> Verdict:
@@ -59,12 +62,18 @@ def _short(share: float) -> str:
     return probability(share).replace("more than", ">").replace("less than", "<")
 
 
-def _chance(verdict: Record, quality: str) -> Card:
+def fuel_card(limit_percent: float, side: str, probability_above: float, quality: str) -> Card:
     """Return the tile of a limit: how probable it is that the fuel is above it, and the verdict if there is one."""
-    limit, side = limit_words(float(verdict["limit_percent"])), verdict["verdict"]
-    told = "no verdict" if quality == "C" else _short(value(verdict, "probability_above"))
-    name = f"Probability above {limit}"
-    return Card(name, told) if side == OPEN else FuelCard(name, told, limit, side == BELOW)
+    limit = limit_words(limit_percent)
+    name = f"Probability above the limit of {limit}"
+    if quality == "C":
+        return Card(name, "no verdict: quality C")
+    told = _short(probability_above)
+    return UndecidedCard(name, told, limit) if side == OPEN else FuelCard(name, told, limit, side == BELOW)
+
+
+def _chance(verdict: Record, quality: str) -> Card:
+    return fuel_card(float(verdict["limit_percent"]), verdict["verdict"], value(verdict, "probability_above"), quality)
 
 
 def _figures(record: Record) -> list[Card]:
@@ -76,8 +85,8 @@ def _figures(record: Record) -> list[Card]:
     ]
     true = record.get("true_percent")
     return [
-        Card("Fuel sulphur content", number(found["fsc_percent"] if _known(found) else None, "{:.3f} %")),
-        Card("95 % interval of it", _interval(found) if _known(found) else "–"),
+        Card(CONTENT_NAME, number(found["fsc_percent"] if _known(found) else None, "{:.3f} %")),
+        Card(INTERVAL_NAME, _interval(found) if _known(found) else "–"),
         *chances,
         Card("Quality", str(found["quality"])),
         *times,

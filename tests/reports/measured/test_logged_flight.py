@@ -99,7 +99,7 @@ def test_a_result_is_told_with_its_interval_at_95_percent_and_every_spread_says_
     found = record["estimate"]
     interval = f"{found['low_percent']:.3f} to {found['high_percent']:.3f} %"
     assert f"{found['fsc_percent']:.3f} % m/m, 95 % interval {interval}, from" in told.detail
-    assert ("95 % interval of it", interval, "", None) in told.figures
+    assert ("Fuel sulphur content, 95 % interval", interval, "", None) in told.figures
     assert "±" not in told.detail
     report = content(read_run(run_directory))
     for table in blocks_of(report, Table, "result"):
@@ -122,7 +122,7 @@ def test_quality_c_gives_no_verdict_in_words_either(record):
     told = measurement_verdict(record)
     assert told.headline == "No verdict on the limit of 0.10 %: quality C gives none"
     assert "No verdict on the limit of 0.50 %: quality C gives none." in told.detail
-    assert ("Probability above 0.10 %", "no verdict", "", None) in told.figures
+    assert ("Probability above the limit of 0.10 %", "no verdict: quality C", "", None) in told.figures
     assert not told.complete
 
 
@@ -131,7 +131,7 @@ def test_limits_are_told_with_all_their_decimals(record):
     record["time_to_verdict_s"] = {"0.125": 40.0}
     told = measurement_verdict(record)
     assert "the limit of 0.125 %" in told.headline
-    assert {"Probability above 0.125 %", "Time to a verdict on 0.125 %"} <= {card[0] for card in told.figures}
+    assert {"Probability above the limit of 0.125 %", "Time to a verdict on 0.125 %"} <= {card[0] for card in told.figures}
     for row in record["over_time"]:
         row["verdict_0.125"] = "above"
     assert "Limit 0.125 %" in over_time_table(record).head

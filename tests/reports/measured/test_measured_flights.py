@@ -58,11 +58,27 @@ def test_one_flight_is_told_with_result_probability_and_limit(one):
     assert re.match(rf"The fuel's sulphur content is {CONTENT}: .* limit of 0\.10 %; prob", told)
     assert "The fuel's own content is 0.100 %, of which a perfect instrument reads 0.097 %." in told
     name, value, *_ = one.verdict.figures[0]
-    assert name.startswith("Sulphur in the fuel")
+    assert name.startswith("Fuel sulphur content")
     assert re.fullmatch(r"0\.\d{3} %", value)
-    assert one.verdict.figures[1][0] == "95 % interval of it"
+    assert one.verdict.figures[1][0] == "Fuel sulphur content, 95 % interval"
     assert re.fullmatch(r"0\.\d{3} to 0\.\d{3} %", one.verdict.figures[1][1])
     assert "sulphur" not in {section.anchor for section in one.sections}
+
+
+def test_the_time_of_an_estimate_and_of_a_flight_say_what_they_are_counted_from(one):
+    charts = named_charts(one)
+    assert charts["fsc-over-time"].panels[0].x_label == "Time since the flight settled [s]"
+    assert {panel.x_label for panel in charts["channels"].panels} == {"Time since the start of the flight [s]"}
+    (table,) = (block for block in blocks_of(one, Table, "measurement") if block.head[0] == "After")
+    assert table.caption.startswith("What was known so long after the flight settled.")
+
+
+def test_a_track_from_near_has_no_legend_for_what_lies_outside_and_shows_the_axis_where_it_was_crossed(one):
+    chart = named_charts(one)["sulphur-track"]
+    assert "ship, to scale" not in chart.labels
+    track, axis = chart.panels[1].lines
+    assert axis.label == "plume's mean axis, where it was crossed"
+    assert 0 < len(axis.x) < 0.2 * len(track.x)
 
 
 def test_several_flights_are_judged_as_a_method(several):
@@ -110,7 +126,7 @@ ROW = {
     [
         ("above", "✗ above the limit of 0.10 %", "missed"),
         ("below", "✓ below the limit of 0.10 %", "met"),
-        ("open", "? open, required ≤ 0.10 %", "open"),
+        ("open", "? open for the limit of 0.10 %", "open"),
     ],
 )
 def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(called, judgement, tone):
@@ -119,6 +135,8 @@ def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(c
     card = flights.sulphur_cards(run)[2]
     assert (card.judgement.replace("\N{NO-BREAK SPACE}", " "), card.tone) == (judgement, tone)
     assert flights.sulphur_below(run) == (called == "below")
+    # Red, as the verdict of an estimate of the same fuel is.
+    assert flights.sulphur_above(run) == (called == "above")
     assert ("open for the limit" in flights.sulphur_headline(run)) == (called == "open")
 
 
@@ -132,7 +150,7 @@ def test_a_probability_is_never_told_as_certain():
     assert told.startswith("The fuel's sulphur content is 0.500 %, 95 % interval 0.461 to 0.539 %: above the limit of 0.10 %; ")
     assert "probability above it: more than 99.9 %. Quality A." in told
     card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([ROW])))[2]
-    assert card[:2] == ("Verdict on 0.10 %, and probability of more", "above, more than 99.9 %")
+    assert card[:2] == ("Probability above the limit of 0.10 %", "> 99.9 %")
 
 
 def test_a_content_below_0_is_told_with_the_interval_that_its_verdict_rests_on():
