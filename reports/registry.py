@@ -59,7 +59,7 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     refuse_other_version(run, needed)
     head = letterhead(run, settings or {})
     found = made(run)
-    figures = Section(anchor="figures", title="Key figures", nav_title="Figures", blocks=_figures(found.verdict))
+    figures = Section(anchor="figures", title="Key figures", blocks=_figures(found.verdict))
     # What is missing is known once everything has been asked for; it stands first.
     shown = [_without(found.picture, section) for section in found.sections]
     sections = [*missing_sections(run), figures, *shown, provenance_section(run, head)]

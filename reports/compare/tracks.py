@@ -176,8 +176,8 @@ def _errors(flown: list[_Flight]) -> Panel:
     top = 10.0 * max(float(np.nanmax(error)) for error in errors)
     return Panel(
         x_label="Time [s]",
-        y_label="Off track [m]",
-        title="Distance to the reference",
+        y_label="Tracking error [m]",
+        title="Tracking error",
         lines=[flight.over_time(error) for flight, error in zip(flown, errors, strict=True)],
         log_y=True,
         y_range=(_ERROR_MIN, top),

@@ -1,5 +1,6 @@
 """Comparisons: the same flights from the same starts, with a part changed."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -51,7 +52,7 @@ def comparison_section(run: RunData, trials: list[Trial]) -> Section:
 def _pairs(rows: pd.DataFrame, compared: pd.DataFrame) -> pd.DataFrame:
     """Return compared flights and those of the study; ``base`` is the name of the study's flight of each pair."""
     bases = study_flight(compared)
-    names = [str(variant).replace("_", " ") for variant in compared["variant"]]
+    names = [str(variant).replace("_", " ").replace("keepout", "keep-out") for variant in compared["variant"]]
     study = rows[rows["flight_id"].isin(bases)]
     study = study.assign(base=study["flight_id"], variant=AS_IN_THE_STUDY)
     return pd.concat([study, compared.assign(base=bases, variant=names)]).sort_values("base", kind="stable")
@@ -69,14 +70,18 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
     }
     looks[AS_IN_THE_STUDY] = (Meaning.FLOWN, "solid")
     panels: list[Panel] = []
+    without: dict[tuple[str, str], list[str]] = {}
     for _, flights in pairs.groupby("base", sort=False):
         # Named as the study's flight, also where that is not in the summary.
         first = flights.iloc[0].copy()
         first["flight_id"] = first["base"]
         # The study's own flight lies over the others.
         ordered = flights.sort_values("variant", key=lambda names: names == AS_IN_THE_STUDY, kind="stable")
-        lines = [line for _, row in ordered.iterrows() for line in _error_line(trial.run, row, looks[row["variant"]], shown)]
+        drawn = [(row, _error_line(trial.run, row, looks[row["variant"]], shown)) for _, row in ordered.iterrows()]
+        lines = [line for _, found in drawn for line in found]
         if lines and len(panels) < _FLIGHTS_MAX:
+            for row in (row for row, found in drawn if not found):
+                without.setdefault((str(row["variant"]), _why(row)), []).append(flight_name(trial, first))
             panels.append(
                 Panel(
                     x_label="Time since settling [s]",
@@ -87,9 +92,27 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
                     y_range=(0.0, band),
                 )
             )
-    caption = f"Distance to the reference from settling on, of flights of the study and with parts changed.{cut_words(panels)}"
+    caption = (
+        "Tracking error, the distance to the reference, from settling on, of flights of the study and with parts"
+        f" changed.{_missing(without, len(panels))}{cut_words(panels)}"
+    )
     name = f"{trial.name}-comparison"
     return Chart(name=name, caption=caption, panels=panels, panel_height=min(0.34, _HEIGHT / len(panels))) if panels else None
+
+
+def _why(row: "pd.Series[Any]") -> str:
+    """Return why a flight has no curve: it never settled, or else has no time history."""
+    ended = str(row["outcome"]).replace("_", " ")
+    return ended.replace("not settled", "never settled") if pd.isna(row["settling_time_s"]) else "no time history"
+
+
+def _missing(without: Mapping[tuple[str, str], Sequence[str]], panels: int) -> str:
+    """Return which variants have no curve and why, and in which panels unless in all."""
+    told = []
+    for (variant, why), names in without.items():
+        where = f" at {', '.join(names)}" if len(names) < panels else ""
+        told.append(f"{variant}{where} ({why})")
+    return f" Without a curve: {'; '.join(told)}." if told else ""
 
 
 def _error_line(run: RunData, row: "pd.Series[Any]", look: tuple[str, Style], duration: float) -> list[Line]:

@@ -45,10 +45,19 @@ def flight_section(trials: list[Trial]) -> Section:
             "Of each trial the flights with the deepest keep-out violation and with a criterion that is not met, if there are such;"
             " of those with a time history the closest approach, and the one nearest to the median of all closest approaches."
             if len(flights) > 1
-            else "The only flight; page 1 shows its track."
+            else _only(trials)
         )
     blocks: list[Block] = [Text(text), FlightPicker(flights=flights)]
     return Section(anchor="flights", title="Single flights", nav_title="Single flights", blocks=blocks if flights else [])
+
+
+def _only(trials: list[Trial]) -> str:
+    """Return what is said above a flight that is shown alone."""
+    (trial,) = [trial for trial in trials if len(trial.rows)][:1] or trials[:1]
+    if sum(len(trial.rows) for trial in trials) > 1:
+        return "The flight that is shown stands for the others."
+    shown = bool(trial.run.with_history(trial.flown).any())
+    return f"The only flight{'; Figure 1 shows its track' * shown}."
 
 
 def _of_sweep(trial: Trial, row: "pd.Series[Any]", why: str) -> FlightContent:

@@ -54,8 +54,8 @@ class _Histories:
         columns = 2 if len(panels) <= _TWO_COLUMNS else 3
         return Chart(
             name="histories",
-            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()} Dashed in the panel of the"
-            " heading rate: ω_max." + (" Tinted: the keep-out guard changed commands." if bands else ""),
+            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{self._tracking_words()}"
+            " Dashed in the panel of the heading rate: ω_max." + (" Tinted: the keep-out guard changed commands." if bands else ""),
             panels=panels,
             columns=columns,
             share_x=True,
@@ -107,7 +107,12 @@ class _Histories:
     def _tracking_panel(self) -> Panel:
         error = np.maximum(tracking_error(self._view.samples), _ERROR_MIN)
         top = 10.0 ** max(1, math.ceil(math.log10(float(error.max()))))
-        return Panel(x_label=_TIME, y_label="Off track [m]", lines=[self._line(error)], log_y=True, y_range=(_ERROR_MIN, top))
+        return Panel(x_label=_TIME, y_label="Tracking error [m]", lines=[self._line(error)], log_y=True, y_range=(_ERROR_MIN, top))
+
+    def _tracking_words(self) -> str:
+        """Return that small tracking errors are drawn at the floor of their axis, where there are such."""
+        below = np.any(tracking_error(self._view.samples) < _ERROR_MIN)
+        return f" Tracking errors below {_ERROR_MIN:g} m are drawn at {_ERROR_MIN:g} m." if below else ""
 
     def _wind_panel(self) -> Panel | None:
         north, east = self._column("wind_north_mps"), self._column("wind_east_mps")

@@ -33,7 +33,7 @@ def sulphur_sections(run: RunData) -> list[Section]:
     shown = _flight(run, measured)
     if shown is not None and len(measured) == 1:
         return [shown]
-    whole = Section(anchor="sulphur", title="Fuel sulphur content", nav_title="Sulphur", blocks=_blocks(run, measured))
+    whole = Section(anchor="sulphur", title="Fuel sulphur content", blocks=_blocks(run, measured))
     return [whole, shown] if shown is not None else [whole]
 
 
@@ -159,7 +159,7 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
             ]
             title = "Fuel sulphur content" if len(measured) == 1 else "Measurement of one flight"
             shown = [block for block in blocks if block is not None]
-            return Section(anchor="measurement", title=title, nav_title="Measurement", blocks=shown)
+            return Section(anchor="measurement", title=title, blocks=shown)
     return None
 
 

@@ -82,9 +82,12 @@ def _panels(picture: Chart) -> list[Chart]:
 
 
 def _flights(picker: FlightPicker) -> tuple[str, str]:
-    """Return the figures of all flights and, once each, the curves in them: time is that of every history of a flight."""
+    """Return the figures of all flights, with their captions, and, once each, the curves in them.
+
+    Time is that of every history of a flight.
+    """
     curves: dict[str, int] = {}
-    figures = {flight.flight_id: [draw(chart) for chart in flight.charts] for flight in picker.flights}
+    figures = {flight.flight_id: [draw(chart) | {"caption": chart.caption} for chart in flight.charts] for flight in picker.flights}
     for trace, axis in product((trace for drawn in figures.values() for figure in drawn for trace in figure["data"]), ("x", "y")):
         if trace[axis]:
             trace[axis] = curves.setdefault(trace[axis]["bdata"], len(curves))

@@ -1,5 +1,6 @@
 """Every kind of block, on the screen and in print."""
 
+import json
 import re
 
 import numpy as np
@@ -78,6 +79,14 @@ def test_a_picker_offers_flights_by_their_labels_and_a_report_without_one_has_no
     text = html_of([FlightPicker(flights=flights)], tmp_path)
     assert re.findall(r'<option value="(\w)">(.*?)</option>', text) == [("a", "label a"), ("b", "label b")]
     assert "<option" not in html_of([Text("none")], tmp_path)
+
+
+def test_figures_of_a_flight_have_their_captions_on_the_screen_too(tmp_path):
+    flight = FlightContent(flight_id="a", label="a", title="Page a", charts=[a_chart("same")])
+    text = html_of([FlightPicker(flights=[flight])], tmp_path)
+    figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text)[1])
+    assert [figure["caption"] for figure in figures["a"]] == [a_chart("same").caption]
+    assert "words.textContent = figure.caption" in text
 
 
 def test_every_block_is_printed_and_each_flight_has_a_heading(tmp_path):

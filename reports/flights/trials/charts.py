@@ -90,7 +90,7 @@ def _over_keys(trial: Trial, keys: Sequence[str], name: str) -> list[Chart]:
         f" whole flight, {trial.measured_from}. A column for each key: flights of other values of the other keys stand above each"
         " other."
     )
-    errors = "Distance to the reference after settling, and settling time, over the same keys."
+    errors = "Tracking error, the distance to the reference, after settling, and settling time, over the same keys."
     rows = {
         ("crossings", crossings): [[over.interval() for over in every], [over.distances() for over in every]],
         ("errors", errors): [
@@ -125,7 +125,8 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
             [over.distances()], 0.42,
         ),
         _chart(
-            trial, f"{name}-errors", "Errors after settling: distance to the reference; airspeed and altitude off their commands.",
+            trial, f"{name}-errors",
+            "Errors after settling: tracking error, the distance to the reference; airspeed and altitude off their commands.",
             [
                 over.figure(*_TRACKING),
                 over.figure("airspeed_error_rms_mps", "Airspeed error, rms [m/s]"),

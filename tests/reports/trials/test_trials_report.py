@@ -15,7 +15,6 @@ from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
 from reports.document.blocks import Table, Text
-from reports.document.chart import Chart
 from reports.document.tables import ending, parameter_value
 from reports.errors import ReportError
 from reports.flights.trials.panels_over import PanelsOver, by_violation
@@ -225,23 +224,6 @@ def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
     listed = {parameter["key"]: parameter for parameter in json.loads(json.dumps(parameters(scenario)))}
     assert listed["vessel.manoeuvres"]["value"][0]["turn_deg"] == 20.0
     assert listed["vessel.manoeuvres"]["default"] == []
-
-
-@BRIEF
-def test_many_comparisons_have_a_row_for_each_variant(run):
-    rows = pd.concat([run.summary[run.summary["trial"] == "steady"]] * 20, ignore_index=True)
-    rows["flight_id"] = [f"steady_{i:05d}" for i in range(len(rows))]
-    compared = rows.assign(flight_id=rows["flight_id"] + "_no_preview", variant="no_preview", beside=rows["flight_id"])
-    report = content(replace(run, summary=pd.concat([rows, run.summary[run.summary["trial"] == "turns"]]), comparison=compared))
-    (table,) = blocks_of(report, Table, "comparison")
-    assert [row[:3] for row in table.rows] == [["as in the study", "40", "0"], ["no preview", "40", "0"]]
-
-
-@BRIEF
-def test_a_comparison_is_named_as_the_flight_of_the_study_also_where_that_is_not_in_the_summary(run):
-    compared = run.summary.iloc[[0]].assign(variant="no_preview", beside="steady_00007")
-    charts = blocks_of(content(replace(run, comparison=compared)), Chart, "comparison")
-    assert [panel.title for chart in charts for panel in chart.panels] == ["Flight 7"]
 
 
 @pytest.mark.parametrize(
