@@ -17,7 +17,7 @@ from reports.document.ship_map import ship_panel, ship_words
 from reports.run.columns import Array, column
 from reports.run.flight_config import Config, flight_config
 from reports.run.surroundings import Surroundings, surroundings
-from reports.run.time_history import about_the_plume, keepout_distance, thinned, tracking_error
+from reports.run.time_history import ERROR_MIN, about_the_plume, floor_words, keepout_distance, thinned, tracking_error
 
 _JUDGED = ("clearance_m", "crossing_interval_error", "tracking_error_rms_m", "settling_time_s")
 """Figures by which a flight differs much or little."""
@@ -30,9 +30,6 @@ _FAR = 1.6
 
 _ASPECT = 1.1
 """Width of a map over its height [-]."""
-
-_ERROR_MIN = 0.1
-"""Floor of the tracking error's logarithmic axis [m]."""
 
 _COLOURS = ("blue", "orange")
 """Of the first run and of the other."""
@@ -92,7 +89,7 @@ def _chart(pairs: Pairs, place: int, why: str) -> Chart | None:
     panels = [_whole(flown, about), _settled(flown, about), _distances(flown)] if about else [_over_the_ground(flown)]
     return Chart(
         name=f"changed{pairs.other.letter}",
-        caption=f"The flight that differs most, {pairs.names[place]}: {why}."
+        caption=f"The flight that differs most, {pairs.names[place]}: {why}.{floor_words(flight.history for flight in flown)}"
         + (f" {ship_words(about)} Ship, plume, wind and north are as in {pairs.first.letter}." if about else ""),
         panels=[in_kilometres(panel) for panel in (*panels, _errors(flown))],
         columns=2,
@@ -172,7 +169,7 @@ def _distances(flown: list[_Flight]) -> Panel:
 
 
 def _errors(flown: list[_Flight]) -> Panel:
-    errors = [np.maximum(tracking_error(flight.history), _ERROR_MIN) for flight in flown]
+    errors = [np.maximum(tracking_error(flight.history), ERROR_MIN) for flight in flown]
     top = 10.0 * max(float(np.nanmax(error)) for error in errors)
     return Panel(
         x_label="Time [s]",
@@ -180,5 +177,5 @@ def _errors(flown: list[_Flight]) -> Panel:
         title="Tracking error",
         lines=[flight.over_time(error) for flight, error in zip(flown, errors, strict=True)],
         log_y=True,
-        y_range=(_ERROR_MIN, top),
+        y_range=(ERROR_MIN, top),
     )

@@ -14,14 +14,11 @@ from reports.flights.names import flight_name
 from reports.flights.tracks import track_chart
 from reports.run.columns import NOTICEABLE, Array, column
 from reports.run.flight_config import keepout_shape, source_height
-from reports.run.time_history import tracking_error
+from reports.run.time_history import ERROR_MIN, floor_words, tracking_error
 from reports.run.trials import measured_from
 
 _NEAR, _FAR, _USUAL = 0.95, 1.6, 1.2
 """Distances that the time history shows: nearest and farthest over r_min, and farthest over the median after settling [-]."""
-
-_ERROR_MIN = 0.1
-"""Floor of the tracking error's logarithmic axis [m]."""
 
 _HIDDEN = 0.2
 """Height within which a flight that stays there hides a level [m]."""
@@ -52,9 +49,10 @@ class _Histories:
         trial, bands = self._view.trial, self._view.bands()
         panels = [replace(in_kilometres(panel), bands=bands) for panel in (make() for make in makers) if panel is not None]
         columns = 2 if len(panels) <= _TWO_COLUMNS else 3
+        small = floor_words([self._view.samples])
         return Chart(
             name="histories",
-            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{self._tracking_words()}"
+            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{small}"
             " Dashed in the panel of the heading rate: ω_max." + (" Tinted: the keep-out guard changed commands." if bands else ""),
             panels=panels,
             columns=columns,
@@ -105,14 +103,9 @@ class _Histories:
         return min(_NEAR * radius, nearest - 2.0), max(_FAR * radius, 1.1 * nearest, _USUAL * usual)
 
     def _tracking_panel(self) -> Panel:
-        error = np.maximum(tracking_error(self._view.samples), _ERROR_MIN)
+        error = np.maximum(tracking_error(self._view.samples), ERROR_MIN)
         top = 10.0 ** max(1, math.ceil(math.log10(float(error.max()))))
-        return Panel(x_label=_TIME, y_label="Tracking error [m]", lines=[self._line(error)], log_y=True, y_range=(_ERROR_MIN, top))
-
-    def _tracking_words(self) -> str:
-        """Return that small tracking errors are drawn at the floor of their axis, where there are such."""
-        below = np.any(tracking_error(self._view.samples) < _ERROR_MIN)
-        return f" Tracking errors below {_ERROR_MIN:g} m are drawn at {_ERROR_MIN:g} m." if below else ""
+        return Panel(x_label=_TIME, y_label="Tracking error [m]", lines=[self._line(error)], log_y=True, y_range=(ERROR_MIN, top))
 
     def _wind_panel(self) -> Panel | None:
         north, east = self._column("wind_north_mps"), self._column("wind_east_mps")

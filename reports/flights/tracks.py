@@ -45,6 +45,13 @@ _ABOVE = 0.08
 _AWAY = 1.0
 """Way of the ship over the size of the track about her, from which there is a panel over the ground."""
 
+_FILLED, _HIGHER, _GROUND = 0.5, 1.5, 0.19
+"""Part of that panel's width that the tracks fill at least, or else it is higher, by this factor; and its height, over the width of
+the page."""
+
+_WAY = "ship's track"
+"""What the legend calls the way of a ship over the ground."""
+
 _PICTURE = "picture"
 """Name of the large picture."""
 
@@ -92,7 +99,7 @@ class _Tracks:
         about = self.about
         if about is None:
             return Chart(name="tracks", caption=_words([about]), panels=[in_kilometres(self.ground())], panel_height=0.42)
-        near, ground = self._near(about, aspect), self.ground() if self._way() is not None else None
+        near, (ground, height) = self._near(about, aspect), self._below()
         panels = [self._whole(about, "The whole flight", aspect if near else _WIDE), *([near] if near else [])]
         over = " Below, over the ground, with ship, keep-out area and plume as they were at the closest approach." if ground else ""
         return Chart(
@@ -101,7 +108,7 @@ class _Tracks:
             panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
             columns=len(panels),
             panel_height=0.35,
-            last_height=0.19 if ground else 0.0,
+            last_height=height,
         )
 
     def picture(self, title: str) -> Panel:
@@ -140,8 +147,19 @@ class _Tracks:
         title = f"The last {view.ends[1] - begin:.0f} s"
         return ship_panel(about, lines, title=title, shown=[track, reference], aspect=aspect)
 
-    def ground(self, title: str = "") -> Panel:
-        """Return the flight over the ground: along the way of a ship that goes far, else with north up the page."""
+    def _below(self) -> tuple[Panel | None, float]:
+        """Return the flight over the ground, along the way of a ship that goes far, and its height; nothing of any other."""
+        if self._way() is None:
+            return None, 0.0
+        panel = self.ground()
+        places = np.concatenate([line.x for line in panel.lines if line.label in ("flown", _WAY)])
+        left, right = panel.x_range or (-math.inf, math.inf)
+        if float(np.ptp(places)) >= _FILLED * (right - left):
+            return panel, _GROUND
+        return self.ground(flat=_FLAT / _HIGHER), _GROUND * _HIGHER
+
+    def ground(self, title: str = "", flat: float = _FLAT) -> Panel:
+        """Return the flight over the ground: flat, along the way of a ship that goes far; else with north up the page."""
         view, about, way = self.view, self.about, self._way()
         up = way or 0.0
 
@@ -152,7 +170,7 @@ class _Tracks:
         if about is not None:
             (x, y), track = place(view.closest, "vessel_"), place(view.samples, "vessel_")
             lines += ship_lines(about, up, float(x[0]), float(y[0]))
-            lines.append(Line(x=track[0], y=track[1], label="ship's track", colour=Meaning.SHIP, style="thin"))
+            lines.append(Line(x=track[0], y=track[1], label=_WAY, colour=Meaning.SHIP, style="thin"))
         lines += [
             *view.guarded(place),
             view.line(place, view.samples, "flown", Meaning.FLOWN),
@@ -164,7 +182,7 @@ class _Tracks:
         labels = ("East [m]", "North [m]") if way is None else ("Along the ship's way [m]", "To port [m]")
         panel = Panel(x_label=labels[0], y_label=labels[1], title=title, lines=[*lines, *marked], notes=notes)
         wind = None if about is None else (about.wind[0], about.wind[1] - up)
-        return on_map(panel, north=-up, wind=wind, aspect=_WIDE if way is None else _FLAT)
+        return on_map(panel, north=-up, wind=wind, aspect=_WIDE if way is None else flat)
 
     def _way(self) -> float | None:
         """Return the course that puts the ship's way across the page [rad]; None where she does not go far."""

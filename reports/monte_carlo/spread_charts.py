@@ -4,9 +4,11 @@ from typing import Any
 
 import numpy as np
 
+from common.intervals import percent
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.document.panels import histogram
+from reports.document.tables import number
 from reports.monte_carlo.names import CLEARANCE, FIGURES
 from reports.run.columns import Array, clearance, column, interval_error
 from reports.run.run_data import RunData
@@ -31,8 +33,9 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     kept = Chart(
         name="clearance",
         caption="Closest approach of each flight beyond r_min. Left: flights counted, the farthest half per cent in the last bar."
-        " Right: fraction of flights that came as near or nearer, with the intervals of its quantiles; the scale is logarithmic to"
-        " show the few nearest.",
+        " Right: fraction of flights that came as near or nearer, with the intervals of its quantiles. Its ordinate is logarithmic"
+        f" to show the few nearest, and its abscissa ends at the nearest {percent(_NEARER)} of the flights: the farthest came to"
+        f" {number(np.nanmax(near), '{:.0f} m')}.",
         panels=[counted_near, _tail(near, statistics)],
         columns=2,
         panel_height=0.4,

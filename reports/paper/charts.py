@@ -105,7 +105,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         _side_by_side(
             run, ["sim3"], figure_8, name="fig8", aspect=4.6, labels=("East [m]", "North [m]"), shown_after=100.0, columns=1,
             panel_height=0.2,
-            caption="The paper's figure 8: over the ground. The UAV starts at a random place behind the vessel. Diamonds: plume"
+            caption="The paper's figure 8: over the ground. The UAV starts at a random place behind the ship. Diamonds: plume"
             " crossings after settling, of which the first hundred seconds are shown; ship, plume and keep-out area at the end of"
             " them.",
         ),

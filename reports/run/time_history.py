@@ -1,6 +1,7 @@
 """What figures take from a flight's time history."""
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 import pandas as pd
@@ -11,6 +12,9 @@ from reports.run.flight_config import Config, keepout_shape, source_height
 _AT_REST = 0.01
 """Speed below which a vessel's heading is not that of its motion [m/s]."""
 
+ERROR_MIN = 0.1
+"""Floor of logarithmic axes of the tracking error [m]."""
+
 _LOST = 2.0
 """Value of the column ``guard`` where the guard cannot hold its own radius; it is 1 where it changes commands, and else 0."""
 
@@ -20,6 +24,12 @@ def tracking_error(history: pd.DataFrame) -> Array:
     north, east = (column(history, f"reference_{axis}") - column(history, axis) for axis in ("north_m", "east_m"))
     error: Array = np.hypot(north, east)
     return error
+
+
+def floor_words(histories: Iterable[pd.DataFrame]) -> str:
+    """Return that small tracking errors are drawn at the floor of their axis, as a sentence with a space before it, if any are."""
+    below = any(bool(np.any(tracking_error(history) < ERROR_MIN)) for history in histories)
+    return f" Tracking errors below {ERROR_MIN:g} m are drawn at {ERROR_MIN:g} m." if below else ""
 
 
 def keepout_distance(history: pd.DataFrame, config: Config) -> Array:

@@ -116,7 +116,7 @@ def test_of_a_study_without_any_measurement_nothing_is_claimed():
     run = run_of(rows, inputs)
     assert bound_in_words(run.statistics).startswith("No flight was measured")
     assert not any(charts_of(section) for section in monte_carlo_sections(run))
-    assert content(run).verdict.headline == "Nothing was flown"
+    assert content(run).verdict.headline == "Nothing was flown: of 5, 5 failed"
 
 
 def test_every_figure_has_its_quantiles_with_intervals_and_counts_who_has_none(run, sections):
@@ -144,7 +144,10 @@ def test_every_axis_of_a_study_reads_quantity_and_unit_and_both_drawers_draw_all
 
 
 def test_the_nearest_flight_is_in_the_histogram_and_at_the_foot_of_the_curve(run, sections):
-    counted, tail = charts_of(sections["spread"])["clearance"].panels
+    chart = charts_of(sections["spread"])["clearance"]
+    counted, tail = chart.panels
+    far = np.nanmax(run.summary["min_distance_m"] - run.summary["keepout_radius_m"])
+    assert chart.caption.endswith(f"ends at the nearest 90\N{NO-BREAK SPACE}% of the flights: the farthest came to {far:.0f} m.")
     # The first edge of the first bar, and the first point of the curve: one flight in 249.
     assert lines_of(counted)["flights"].x[0] == pytest.approx(-0.5, abs=1e-9)
     curve = lines_of(tail)["flights"]

@@ -130,9 +130,14 @@ def test_the_ground_lies_along_the_way_of_a_ship_that_goes_far(run):
     # The ship goes north at 5 to 14 m/s for some two minutes, and the track about her is some hundred metres wide.
     trial = read_trials(run)[0]
     charts = [flight_charts(flight_view(trial, row))[0] for _, row in trial.rows.iterrows()]
-    ground = [chart.panels[-1] for chart in charts if chart.last_height]
-    for panel in ground:
+    high = [chart for chart in charts if chart.last_height]
+    for chart in high:
+        panel = chart.panels[-1]
+        # What would fill less than half of the width has a higher panel, of the same metres each way.
+        (left, right), (bottom, top) = panel.x_range, panel.y_range
+        assert (right - left) / (top - bottom) == pytest.approx(4.8 * 0.19 / chart.last_height)
+        assert chart.last_height in (0.19, pytest.approx(0.285))
         (way,) = (line for line in panel.lines if line.label == "ship's track")
         assert way.y == pytest.approx(np.zeros(len(way.y)), abs=1e-6)
         assert np.all(np.diff(way.x) >= 0.0)
-    assert ground
+    assert high

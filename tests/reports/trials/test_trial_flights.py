@@ -158,3 +158,13 @@ def test_the_level_of_the_funnel_is_drawn_where_the_flight_does_not_hide_it(run,
     histories = flight_charts(FlightView(trial, row, history))[1]
     (height,) = [panel for panel in histories.panels if panel.y_label == "Height [m]"]
     assert ("funnel" in {line.label for line in height.lines}) == drawn
+
+
+def test_tracking_errors_that_are_drawn_at_the_floor_of_their_axis_are_said(run):
+    trial = read_trials(run)[0]
+    row = trial.rows.iloc[0]
+    history = run.history(str(row["flight_id"]))
+    off = history.assign(reference_north_m=history["north_m"] + 0.2, reference_east_m=history["east_m"])
+    words = [flight_charts(FlightView(trial, row, of))[1].caption for of in (off, off.assign(reference_north_m=off["north_m"]))]
+    said = " Tracking errors below 0.1 m are drawn at 0.1 m."
+    assert [said in caption for caption in words] == [False, True]
