@@ -187,7 +187,7 @@ def _errors(trial: Trial) -> list[Chart]:
         vessel = histogram(series, "Error of the vessel's position [m]")
     panels = {
         "mean crossing interval": over.interval_error() if trial.criteria.get("crossing_interval_error") else None,
-        "distance to the reference": over.figure(*_TRACKING),
+        "tracking error": over.figure(*_TRACKING),
         "its part towards the vessel, over the one that the margin was planned for": _spread(trial),
         "error of the wind estimate": over.figure("wind_error_rms_mps", "Error of the wind estimate, rms [m/s]"),
         "error of the vessel's position, counted": vessel,

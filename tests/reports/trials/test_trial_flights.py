@@ -13,7 +13,7 @@ from trial_runs import with_values
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart, Line, Panel
 from reports.flights.flight_view import FlightView, flight_view
-from reports.flights.selection import PICKED_MAX, picked_flights
+from reports.flights.selection import PICKED_MAX, flight_section, picked_flights
 from reports.flights.single_flight import flight_charts
 from reports.flights.trials.charts import trial_charts
 from reports.flights.trials.panels_over import PanelsOver, by_violation
@@ -168,3 +168,11 @@ def test_tracking_errors_that_are_drawn_at_the_floor_of_their_axis_are_said(run)
     words = [flight_charts(FlightView(trial, row, of))[1].caption for of in (off, off.assign(reference_north_m=off["north_m"]))]
     said = " Tracking errors below 0.1 m are drawn at 0.1 m."
     assert [said in caption for caption in words] == [False, True]
+
+
+@pytest.mark.parametrize(("flown", "words"), [(True, "The only flight; Figure 1 shows its track."), (False, "The only flight.")])
+def test_of_an_only_flight_the_figure_of_its_track_is_named_where_it_has_one(run, flown, words):
+    rows = run.summary.iloc[:1]
+    rows = rows if flown else rows.assign(min_distance_m=np.nan, criteria_met=False, outcome="infeasible", message="too fast")
+    (trial,) = [trial for trial in read_trials(replace(run, summary=rows)) if len(trial.rows)]
+    assert flight_section([trial]).blocks[0].text == words
