@@ -25,8 +25,9 @@ def counted_as_violations(rows: pd.DataFrame) -> str:
     unknown = unknown[~kept_out(unknown) & ~violated(unknown)]
     unflown = len(unknown) - len(measured(unknown))
     kinds = {"not flown": unflown, "not observed to their end": len(unknown) - unflown}
-    told = " and ".join(f"{number:,} that {'were' if number > 1 else 'was'} {kind}" for kind, number in kinds.items() if number)
-    return f" As nobody knows of {told}, the bound counts {'them' if len(unknown) > 1 else 'it'} as violated." if told else ""
+    told = (f"{number:,} flight{'s' * (number > 1)} {kind}" for kind, number in kinds.items() if number)
+    each = "keep-out violations" if len(unknown) > 1 else "a keep-out violation"
+    return f" The bound counts {' and '.join(told)} as {each}." if len(unknown) else ""
 
 
 def trial_bound(trial: Trial) -> float | None:
