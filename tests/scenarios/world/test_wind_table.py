@@ -110,7 +110,7 @@ def test_a_table_is_relative_to_its_scenario_and_its_start_is_that_of_a_flight_w
     assert place_of(given, vessel_of(given)).utc == START
     study = FlightStudy(given, "mine", {"mine": given})
     assert list(study.initial_manifest()["plugins"]) == [str(tmp_path / "wind.csv")]
-    with pytest.raises(InputError, match="wind without a table"):
+    with pytest.raises(InputError, match="a wind that is not read from a table"):
         load_study(str(tmp_path / "mine.toml"), ["wind.speed_mps=5"])
     with pytest.raises(InputError, match=r"give a file \.csv or \.nc"):
         load_study(str(tmp_path / "mine.toml"), ["wind.table=hourly"])
