@@ -88,12 +88,13 @@ class WindField:
         Parameters
         ----------
         interval, duration : [s]
-        heights : at each of which it is looked at [m]
+        heights : at each of which it is looked at, and at those of the grid between the lowest and the highest [m]
         """
         if len(self._times) == 1:
             return 0.0
         times = _looked_at(self._times, 0.0, duration, interval)
-        return _largest_step(times, *self.at(times[:, None], np.array(heights)), interval)
+        inner = [math.exp(height) for height in self._heights if min(heights) < math.exp(height) < max(heights)]
+        return _largest_step(times, *self.at(times[:, None], np.array([*heights, *inner])), interval)
 
     def largest_shear(self, apart: float, lowest: float, highest: float, duration: float) -> float:
         """Return by how much the velocity of the air differs at most between two heights, at a time from 0 to a duration [m/s].

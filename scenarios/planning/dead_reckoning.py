@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import WindField
-from scenarios.planning.guidance import WIND_FOLLOWED, flown_heights
+from scenarios.planning.guidance import WIND_FOLLOWED, largest_wind_change, wind_followed
 from scenarios.schema.scenario import Scenario
 from scenarios.world.faults import SATELLITES
 
@@ -34,7 +34,7 @@ def drift_rate(scenario: Scenario, wind: WindField, turn: float) -> float:
         return 0.0
     outage, duration = scenario.fault.satellite_navigation_s, scenario.flight.duration_max_s
     # The wind may have changed before the loss, too, and its estimate not have followed.
-    changed = wind.largest_change(outage + WIND_FOLLOWED, duration, flown_heights(scenario))
+    changed = largest_wind_change(scenario, wind, outage + wind_followed(scenario))
     age = np.linspace(0.0, min(outage, duration), _AGES)
     covered = float(np.max((_by_gusts(scenario, age) + _by_turbulence(scenario, age)) / (age + turn)))
     return scenario.following.drift_rate_mps + changed + _gust_taken_for_wind(scenario) + covered

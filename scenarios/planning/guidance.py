@@ -46,6 +46,9 @@ _NOISE_DEVIATIONS = 3.0
 _NOISE_OF_WIND = 0.12
 """What the wind's filter leaves of the noise of a single measurement [-]: sqrt(k/2) of its gain k = 0.028 in still air."""
 
+_PLUME_RADII = 3.0
+"""Distance from the vessel up to which an inclined plume is climbed to, over the keep-out radius [-]: beyond any orbit's centre."""
+
 ROUND_BY = 0.8
 """By how many turn radii a way round the keep-out area stays farther off than what counts as blocked [-]."""
 
@@ -88,7 +91,7 @@ def guard_parameters(
     drift_rate : how fast dead reckoning may go wrong [m/s]
     """
     f, air = scenario.following, scenario.turbulence
-    speed_error = max(f.speed_error_mps, _noise(scenario)) + air.gust_speed_mps + wind_change
+    speed_error = max(f.speed_error_mps, _noise(scenario, drift_rate)) + air.gust_speed_mps + wind_change
     return GuardParameters(
         radius=radius + turbulence,
         deviation=max(setup.response_error, f.turn_deviation_m if scenario.follows else 0.0),
@@ -105,33 +108,47 @@ def guard_parameters(
     )
 
 
-def _noise(scenario: Scenario) -> float:
+def _noise(scenario: Scenario, drift_rate: float) -> float:
     """Return by how much the noise of its sensors may make the vehicle's own velocity wrong at a step [m/s].
 
-    The guard is asked at each step, and goes by the one at which the noise makes a command look safe.
+    The guard is asked at each step, and goes by the one at which the noise makes a command look safe. Dead reckoning goes by
+    airspeed and heading as they are read; the guard reckons with its drift beside.
     """
     sensors = scenario.sensors
     by_wind = math.hypot(sensors.airspeed_sigma_mps, scenario.guidance.airspeed_mps * math.radians(sensors.heading_sigma_deg))
-    return _NOISE_DEVIATIONS * math.hypot(sensors.velocity_sigma_mps, _NOISE_OF_WIND * by_wind)
+    noise = _NOISE_DEVIATIONS * math.hypot(sensors.velocity_sigma_mps, _NOISE_OF_WIND * by_wind)
+    return max(noise, _NOISE_DEVIATIONS * by_wind - drift_rate) if drift_rate else noise
 
 
 def wind_change(scenario: Scenario, wind: WindField) -> float:
     """Return by how much the wind that is flown in changes at most until its estimate has followed [m/s].
 
-    It changes with time, and with the height of a vehicle that climbs to that of rising exhaust.
+    It changes with time, and with the height of a vehicle that climbs to that of the plume.
     """
-    g, flight = scenario.guidance, scenario.flight
-    heights = flown_heights(scenario)
-    climbed = scenario.following.climb_gradient * g.airspeed_mps * WIND_FOLLOWED
-    shear = wind.largest_shear(climbed, min(heights), max(heights), flight.duration_max_s)
-    return wind.largest_change(WIND_FOLLOWED, flight.duration_max_s, heights) + shear
+    return largest_wind_change(scenario, wind, wind_followed(scenario))
 
 
-def flown_heights(scenario: Scenario) -> list[float]:
-    """Return the heights that the flight is planned for; of rising exhaust the lowest and the highest, too [m]."""
-    if scenario.emission.ship is None:
-        return [scenario.altitude]
-    return [scenario.altitude, scenario.flight.altitude_min_m, scenario.flight.altitude_max_m]
+def largest_wind_change(scenario: Scenario, wind: WindField, interval: float) -> float:
+    """Return by how much the wind that is flown in changes at most within an interval [s], by time and by height [m/s]."""
+    heights, duration = _flown_heights(scenario), scenario.flight.duration_max_s
+    climbed = scenario.following.climb_gradient * scenario.guidance.airspeed_mps * interval
+    shear = wind.largest_shear(climbed, min(heights), max(heights), duration)
+    return wind.largest_change(interval, duration, heights) + shear
+
+
+def wind_followed(scenario: Scenario) -> float:
+    """Return the time within which the estimated wind follows a change [s]: where gusts hide it, the filter is slower."""
+    period = plan_interval(scenario) / scenario.guidance.rate_hz
+    return max(WIND_FOLLOWED, math.hypot(AIRSPEED_SIGMA, _gust_sigma(scenario)) * math.sqrt(period) / WIND_DRIFT)
+
+
+def _flown_heights(scenario: Scenario) -> list[float]:
+    """Return the height at the start and those of the plume that are climbed to, the lowest and the highest [m]."""
+    flight, plume = scenario.flight, scenario.plume
+    if scenario.emission.ship is not None:
+        return [scenario.altitude, flight.altitude_min_m, flight.altitude_max_m]
+    risen = _PLUME_RADII * scenario.keepout.radius_m * math.tan(math.radians(plume.elevation_deg))
+    return [scenario.altitude, plume.source_height_m, plume.source_height_m + risen]
 
 
 def turn_time(scenario: Scenario, reversal: TurnReversalResponse) -> float:
@@ -152,12 +169,7 @@ def speed_hold(scenario: Scenario, setup: VehicleSetup) -> SpeedHold:
 
 def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> NavigationParameters:
     """Return what the navigation knows beforehand: how much gusts scatter what it measures the wind by."""
-    g, time_step = scenario.guidance, 1.0 / scenario.guidance.rate_hz
-    gust = 0.0
-    if scenario.turbulence.level != "none":
-        height = scenario.plume.source_height_m
-        sigma = intensities(height, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
-        gust = sigma * math.sqrt(2.0 * scale_lengths(height)[0] / g.airspeed_mps * g.rate_hz / plan_interval(scenario))
+    g, time_step, gust = scenario.guidance, 1.0 / scenario.guidance.rate_hz, _gust_sigma(scenario)
     return NavigationParameters(
         crab_banks=setup.crab_banks,
         crab_offsets=setup.crab_offsets,
@@ -168,6 +180,15 @@ def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> Navigation
         wind_interval=plan_interval(scenario),
         time_step=time_step,
     )
+
+
+def _gust_sigma(scenario: Scenario) -> float:
+    """Return the deviation of single measurements of the wind by turbulence [m/s], more for being correlated in time."""
+    if scenario.turbulence.level == "none":
+        return 0.0
+    g, height = scenario.guidance, scenario.plume.source_height_m
+    sigma = intensities(height, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
+    return sigma * math.sqrt(2.0 * scale_lengths(height)[0] / g.airspeed_mps * g.rate_hz / plan_interval(scenario))
 
 
 def plan_interval(scenario: Scenario) -> int:

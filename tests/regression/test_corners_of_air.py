@@ -50,6 +50,35 @@ def test_the_wind_turns_round_between_two_heights_that_exhaust_is_followed_to(tm
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
 
 
+def test_satellites_are_lost_on_the_way_to_another_height_in_shear(tmp_path):
+    # 8 of 8 had come in, by up to 185 m.
+    rows = flown(
+        tmp_path, "flights=3", "flight.duration_max_s=300", "vessel.speed_mps=3", "plume.model=fluctuating",
+        "emission.ship=container", "plume.source_height_m=35", "fault.kind=satellite_navigation", "fault.at_s=[5,60]",
+        "fault.satellite_navigation_s=150", table="height_m,speed_mps,from_deg\n1,8,0\n36,8,0\n45,2,180\n90,2,180\n",
+    )  # fmt: skip
+    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+
+
+def test_a_flight_begins_lower_than_the_plume_and_shear_is_between(tmp_path):
+    # 6 of 12 had come in, by up to 11 m.
+    rows = flown(
+        tmp_path, "flights=12", "flight.duration_max_s=120", "vessel.speed_mps=3", "plume.source_height_m=55",
+        "flight.altitude_m=30", table=SHEARED,
+    )  # fmt: skip
+    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+
+
+def test_dead_reckoning_goes_by_a_compass_with_noise(tmp_path):
+    # 4 of 8 had come in, by up to 5.5 m.
+    rows = flown(
+        tmp_path, "flights=4", "flight.duration_max_s=300", "wind.speed_mps=4", "vessel.speed_mps=4", "guidance.mission=standoff",
+        "reference.standoff_radius_m=120", "guidance.law=park_l1", "sensors.heading_sigma_deg=10", "fault.at_s=[0,100]",
+        "fault.kind=satellite_navigation", "fault.satellite_navigation_s=150",
+    )  # fmt: skip
+    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+
+
 @pytest.mark.parametrize("noise", ["velocity_sigma_mps=1", "airspeed_sigma_mps=1"], ids=["velocity", "airspeed"])
 def test_noise_of_the_own_velocity_does_not_make_commands_look_safe(tmp_path, noise):
     # A law that circles within r_min: the guard decides at each step, and went by the lucky ones (185.8 and 198.8 m).

@@ -6,7 +6,10 @@ import pytest
 from flight_cases import SPEED, plan, scenario
 
 from gnc.errors import InfeasibleError
+from gnc.estimation.wind_filter import WindFilter
 from gnc.mission.plume_following import FollowingParameters
+from scenarios.planning.guidance import navigation_parameters, wind_followed
+from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 
 def test_such_a_flight_has_sensing_margin_and_health():
@@ -77,7 +80,7 @@ def test_a_start_is_judged_by_the_wind_at_its_own_height():
     # what is refused does not depend on the height of the funnel.
     given = {
         "start": {"place_m": [0.0, 235.0], "course_deg": -90.0}, "flight": {"altitude_m": 120.0}, "keepout": {"shape": "cylinder"},
-        "guidance": {"airspeed_mps": SPEED},
+        "guidance": {"airspeed_mps": SPEED}, "following": {"climb_gradient": 1e-9},
     }  # fmt: skip
     wind = {"speed_mps": 9.0, "from_deg": 90.0, "roughness_m": 0.01}
     words = set()
@@ -122,3 +125,17 @@ def test_the_plumes_elevation_makes_the_altitude_rise_with_distance():
 
 def test_following_can_do_without_the_keep_out_guard():
     assert plan(scenario(guidance={"keepout_guard": False})).guidance.guard is None
+
+
+@pytest.mark.parametrize("level", ["none", "light", "moderate"])
+def test_the_estimated_wind_follows_as_fast_as_the_guard_reckons_with(level):
+    # A wind that rises by 0.1 m/s each second, which gusts hide: the filter lags behind by no more than its time.
+    flown = scenario(fidelity="six_dof", turbulence={"level": level}, guidance={"airspeed_mps": SPEED})
+    p = navigation_parameters(flown, kinematic_setup(scenario()))
+    wind = WindFilter(airspeed_sigma=p.airspeed_sigma, course_sigma=p.course_sigma, drift=p.wind_drift, prior_sigma=p.wind_prior)
+    behind, period = 0.0, p.wind_interval * p.time_step
+    for n in range(2000):
+        blown, course = 0.1 * n * period, 0.02 * n
+        wind.update(SPEED, course, blown + SPEED * math.cos(course), SPEED * math.sin(course), period)
+        behind = max(behind, blown - wind.north)
+    assert 0.5 * wind_followed(flown) < behind / 0.1 <= wind_followed(flown)
