@@ -10,7 +10,7 @@ from reports.document.chart import Chart
 from reports.document.tables import vehicle_flown
 from reports.flights.names import flight_name
 from reports.flights.tracks import track_picture
-from reports.run.columns import Array, Mask, clearance, column, recorded_at, total
+from reports.run.columns import Array, Mask, clearance, column, completed, recorded_at, total
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
@@ -26,6 +26,8 @@ _CALM = 0.05
 
 def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     """Return what was flown: flights and hours, vehicle, vessel and air; without a full stop."""
+    # On a circle nothing is measured from a vessel.
+    flown = flown if len(flown) else run.summary[completed(run.summary)]
     if not len(flown):
         return "No flight was flown"
     flights = f"{len(flown):,} flight{'s' * (len(flown) > 1)} ({simulated(flown)}) of {vehicle_flown(run)}"

@@ -54,7 +54,7 @@ class FlightView:
         self.trial, self.row, self.whole = trial, row, history
         self.config = trial.flight_config(row)
         distance = self.distance_of(history)
-        self.vessel = bool(np.isfinite(distance).any())
+        self.vessel = not math.isnan(float(row["min_distance_m"]))
         nearest = int(np.nanargmin(distance)) if self.vessel else 0
         step = max(1, math.ceil(len(history) / POINTS_MAX))
         kept = np.union1d(np.arange(0, len(history), step), [nearest, len(history) - 1])

@@ -55,7 +55,8 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     """
     rows, flown = run.summary, measured(run.summary)
     planned = int(run.manifest["flights_planned"])
-    kept = len(flown) > 0 and total(flown, "keepout_violations") == 0 and not np.any(lost(rows) & ~passed(rows))
+    kept = total(flown, "keepout_violations") == 0 and not np.any(lost(rows) & ~passed(rows))
+    kept = kept and (len(flown) > 0 or _without_a_vessel(rows))
     headlines = [words for words in (sulphur_headline(run), _headline(run, trials, flown, planned)) if words]
     return Verdict(
         holds=kept and not sulphur_above(run),
@@ -68,7 +69,14 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     )
 
 
+def _without_a_vessel(rows: pd.DataFrame) -> bool:
+    """Return whether flights were completed that had none to keep out of: those on a circle."""
+    return not len(measured(rows)) and count(completed(rows)) > 0
+
+
 def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
+    if _without_a_vessel(run.summary):
+        return f"{count(completed(run.summary)):,} of {planned:,} flights completed, without a vessel to keep out of"
     if not len(flown):
         ends = run.summary["outcome"][~completed(run.summary)].astype(str).str.replace("_", " ")
         return f"Nothing was flown{f': of {planned:,}, {counted(ends)}' if len(ends) else ''}"
@@ -105,8 +113,8 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
     rows = run.summary
     several = f"Flights of {len(trials)} trials: " if len(trials) > 1 else ""
     sentences = [
-        f"{several or 'Flights: '}{planned:,} planned, {len(flown):,} flown, {count(completed(rows)):,} completed,"
-        f" {count(met(rows)):,} met every criterion.",
+        f"{several or 'Flights: '}{planned:,} planned, {len(flown) or count(completed(rows)):,} flown,"
+        f" {count(completed(rows)):,} completed, {count(met(rows)):,} met every criterion.",
         *([_closest(trials, flown)] if len(flown) else []),
     ]
     led, bound = _subset(run), violation_bound(run, trials)
@@ -179,6 +187,13 @@ def _bound_figure(run: RunData, trials: list[Trial]) -> list[Card]:
 
 
 def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Card]:
+    summary = trials[0].run.summary
+    if _without_a_vessel(summary):
+        done, passing = count(completed(summary)), count(met(summary))
+        return [
+            Card("Flights completed", f"{done:,} of {planned:,}", "all", done == planned),
+            Card("Flights that met every criterion", f"{passing:,} of {planned:,}", "all", passing == planned),
+        ]
     if not len(flown):
         return [
             Card("Keep-out violations", "none flown", "not judged"),

@@ -212,3 +212,13 @@ def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run)
     # Beside the funnel, far above it: a sphere is narrower there.
     rising = content(with_values(run, 0, min_distance_m=200.5, horizontal_distance_min_m=80.2)).verdict.detail
     assert "200.5 m from the keep-out sphere's centre, in steady_00000; 80.2 m horizontally from the funnel" in rising
+
+
+def test_flights_on_a_circle_are_completed_and_have_nothing_to_keep_out_of(run):
+    circles = run
+    for i in range(4):
+        circles = with_values(circles, i, min_distance_m=float("nan"), keepout_violations=float("nan"))
+    verdict = content(circles).verdict
+    assert verdict.headline == "4 of 4 flights completed, without a vessel to keep out of"
+    assert verdict.holds
+    assert ("Flights completed", "4 of 4", "all", True) in verdict.figures
