@@ -7,7 +7,7 @@ from dataclasses import fields
 from importlib.resources import files
 from typing import Any
 
-from measurement.errors import MeasurementError
+from measurement.errors import MeasurementError, guess
 from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.spec import SnifferSpec
@@ -52,8 +52,8 @@ def sensor_preset(name: str) -> SnifferSpec:
     ------
     MeasurementError : there is none of that name
     """
-    if name not in sensor_presets():
-        raise MeasurementError(f"instrument is {name!r}; there are {', '.join(sensor_presets())}")
+    if name not in (known := sensor_presets()):
+        raise MeasurementError(f"instrument is {name!r}{guess(name, known)} there are {', '.join(known)}")
     text = (files("measurement.sniffer") / _FOLDER / f"{name}.toml").read_text(encoding="utf-8")
     return read_spec(tomllib.loads(text), name)
 

@@ -173,10 +173,7 @@ def _first_reports(vessel: VesselTruth, received: list[tuple[float, VesselReport
 def _following(
     scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, vessel: VesselTruth, further: float, drifting: float
 ) -> tuple[tuple[float, ...], FollowingParameters]:
-    """Return the periods of the orbit over nu [s], and how the plume is followed, farther off than need be by a distance [m].
-
-    Dead reckoning may be ``drifting`` [m/s].
-    """
+    """Return the periods of the orbit over nu [s], and how the plume is followed, ``further`` off [m] and ``drifting`` [m/s]."""
     # Before its orbits: a shape that cannot be steered says so, whatever else it cannot do beside a fast vessel.
     swing = swing_of(scenario.guidance, scenario.reference)
     periods, widths = orbits(scenario.guidance, scenario.reference, scenario.following.speed_ratio_max)

@@ -68,8 +68,9 @@ def documented_keys() -> list[DocumentedKey]:
 
 def similar_key(name: str) -> str | None:
     """Return the key or section that an unknown name stands for: one with a similar spelling, or with a similar last word."""
-    keys = [documented.key for documented in documented_keys()]
-    of_flights = [documented.key for documented in documented_keys() if documented.studies != ("convergence",)]
+    documented = documented_keys()
+    keys = [each.key for each in documented]
+    of_flights = [each.key for each in documented if each.studies != ("convergence",)]
     for known in ([*(section.name for section in documented_sections()), *of_flights], keys):
         if close := nearest(name, known):
             return close

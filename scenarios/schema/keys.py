@@ -98,11 +98,7 @@ def _explained(key: str, entry: ErrorDetails, kind: type[BaseModel]) -> str:
     text = entry["msg"].removeprefix("Value error, ")
     where = f"{key}: " if key else ""
     if error_type == "value_error":
-        return (
-            text
-            if text.startswith("unknown key")
-            else f"{where.replace(': ', '.') if _begins_with_key(text, value) else where}{text}"
-        )
+        return _own_words(key, text, value)
     if demanded := must_be(entry, key=key, **_of_field(kind, key)):
         return f"{key} is {value!r}; {demanded}"
     remedy = f"; {text[0].lower()}{text[1:]}"
@@ -118,10 +114,13 @@ def _explained(key: str, entry: ErrorDetails, kind: type[BaseModel]) -> str:
     return f"{where}value is {value!r}{remedy}"
 
 
-def _begins_with_key(text: str, section: object) -> bool:
-    """Return whether a text about a section says what one of its keys is."""
+def _own_words(key: str, text: str, section: object) -> str:
+    """Return what the project's own checks say of a section, after its key; that of a key in it if the text begins with one."""
+    if not key or text.startswith("unknown key"):
+        return text
     word, found, _ = text.partition(" is ")
-    return bool(found) and isinstance(section, Mapping) and word in section
+    within = bool(found) and isinstance(section, Mapping) and word in section
+    return f"{key}.{text}" if within else f"{key}: {text}"
 
 
 def _of_field(kind: type[BaseModel], key: str) -> dict[str, Any]:

@@ -1,18 +1,17 @@
 """How a logged flight is to be read: its instrument, its columns, its limits."""
 
-import difflib
 import math
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from measurement.errors import MeasurementError
+from measurement.errors import MeasurementError, guess
 from measurement.estimate.result import Method
 from measurement.estimate.verdict import LIMITS_PERCENT
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
-from measurement.sniffer.presets import read_spec, sensor_preset, sensor_presets
+from measurement.sniffer.presets import read_spec, sensor_preset
 from measurement.sniffer.spec import SnifferSpec
 
 COLUMNS = {
@@ -71,7 +70,7 @@ def read_config(path: Path) -> LogConfig:
         raise MeasurementError(f"'{path}' is not TOML: {error}; correct it") from None
     if unknown := sorted(set(table) - _KEYS):
         raise MeasurementError(
-            f"'{path}' has the key '{unknown[0]}'{_guess(unknown[0], _KEYS)} it may have {', '.join(sorted(_KEYS))}"
+            f"'{path}' has the key '{unknown[0]}'{guess(unknown[0], _KEYS)} it may have {', '.join(sorted(_KEYS))}"
         )
     columns, scale = _table(table, "columns", str, COLUMNS, path), _table(table, "scale", (int, float), GASES, path)
     for gas, factor in scale.items():
@@ -102,9 +101,10 @@ def read_config(path: Path) -> LogConfig:
 
 def _instrument(value: Any, path: Path) -> SnifferSpec:
     if isinstance(value, str):
-        if value not in (known := sensor_presets()):
-            raise MeasurementError(f"'{path}': instrument is {value!r}{_guess(value, known)} there are {', '.join(known)}")
-        return sensor_preset(value)
+        try:
+            return sensor_preset(value)
+        except MeasurementError as error:
+            raise MeasurementError(f"'{path}': {error}") from None
     if isinstance(value, dict):
         return read_spec(value, path.stem)
     raise MeasurementError(
@@ -118,16 +118,10 @@ def _table(table: Mapping[str, Any], key: str, kind: Any, names: Any, path: Path
         raise MeasurementError(f"'{path}': {key} is {found!r}; give a table [{key}]")
     for name, value in found.items():
         if name not in names:
-            raise MeasurementError(f"'{path}': [{key}] has the key '{name}'{_guess(name, names)} it may have {', '.join(names)}")
+            raise MeasurementError(f"'{path}': [{key}] has the key '{name}'{guess(name, names)} it may have {', '.join(names)}")
         if not isinstance(value, kind) or isinstance(value, bool):
             raise MeasurementError(f"'{path}': {key}.{name} is {value!r}; give a {'name' if kind is str else 'number'}")
     return dict(found)
-
-
-def _guess(name: str, known: Iterable[str]) -> str:
-    """Return what stands between an unknown name and the known ones: the nearest of these, if any is similar."""
-    close = difflib.get_close_matches(name.lower(), known, n=1)
-    return f"; did you mean '{close[0]}'?" if close else ";"
 
 
 def _is_number(value: Any) -> bool:
