@@ -3,7 +3,6 @@
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
@@ -23,30 +22,8 @@ ASTERN = (-1.0, 0.0)
 _ALIGNED = 1e-9
 """Part to the right up to which a direction counts as along the vessel's course: then half an orbit tells it all [-]."""
 
-_HALVINGS = 6
-"""Of the deviation that is too much for an orbit [-]: to 1/64 of it."""
-
 _FAR = 3.0
 """Distance at which clearances are found first, over the radius to be kept [-]."""
-
-
-def tolerable(
-    guard: GuardParameters, vessel: Tube, orbit: Orbit, distance: float, direction: tuple[float, float] = ASTERN
-) -> GuardParameters:
-    """Return a guard with as much of its deviation as leaves an orbit alone that lies at a given distance [m].
-
-    Parameters are those of ``orbit_distance``.
-    """
-    if orbit_distance(guard, vessel, orbit, direction) <= distance:
-        return guard
-    low, high = 0.0, guard.deviation
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if orbit_distance(replace(guard, deviation=middle), vessel, orbit, direction) <= distance:
-            low = middle
-        else:
-            high = middle
-    return replace(guard, deviation=low)
 
 
 def orbit_distance(guard: GuardParameters, vessel: Tube, orbit: Orbit, direction: tuple[float, float] = ASTERN) -> float:

@@ -7,7 +7,7 @@ from gnc.estimation.reachable_set import Tube
 from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
 from gnc.parameters import GuardParameters, GuidanceParameters
 from gnc.reference.placement import PlumeAxis, centre_of_oscillation
-from scenarios.margin.orbit_room import orbit_distance, tolerable
+from scenarios.margin.orbit_room import orbit_distance
 from scenarios.planning.bounded_steering import Steering, plan_steering
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.guidance import approach_parameters, guard_parameters, plan_interval, tracking_parameters
@@ -66,17 +66,11 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
     if g.keepout_guard and disc > 0.0:
         guard = guard_parameters(scenario, setup, disc)
         known = Tube(0.0, 0.0, 0.0, v_north, v_east)
-        # The guard must leave the orbit alone, and what the UAV may stray from it.
+        # The guard must leave the orbit alone, and what the UAV may stray from it: an orbit that lies nearer moves off.
         nearest = math.hypot(ahead, right) - oscillation.half_widths()[0] - g.tracking_allowance_m
-        direction = math.cos(axis.heading), math.sin(axis.heading)
-        by_paper = oscillation.symmetric and g.placement == "paper"
-        if by_paper:
-            # It stays where the paper's rule places it, if it can.
-            guard = tolerable(guard, known, oscillation, nearest, direction)
-        if not by_paper or guard.deviation == 0.0:
-            # One that lies nearer, or goes round at the largest bank, moves off by what the guard needs.
-            distance += max(0.0, orbit_distance(guard, known, oscillation, direction) - nearest) / math.cos(axis.elevation)
-            ahead, right, above = centre_of_oscillation(distance, axis)
+        needed = orbit_distance(guard, known, oscillation, (math.cos(axis.heading), math.sin(axis.heading)))
+        distance += max(0.0, needed - nearest) / math.cos(axis.elevation)
+        ahead, right, above = centre_of_oscillation(distance, axis)
         check_start(start, guard, (known,), wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius)
     orbit = joined_orbit(scenario, oscillation, course)
     joining = None

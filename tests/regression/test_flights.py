@@ -71,8 +71,9 @@ def test_the_law_alone_flies_into_the_keep_out_area_where_the_guard_does_not(fly
     assert history["time_s"][shown].max() < guarded["settling_time_s"]
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.95])
+@pytest.mark.parametrize("nu", [0.0, 0.8])
 def test_a_flight_that_needs_no_guard_flies_the_same_without_one_to_the_last_bit(fly, nu):
+    # Beside a faster ship the orbit lies farther out for a guard.
     row, guarded = fly("flight.duration_max_s=90", nu=nu)
     assert row["guard_interventions"] == 0
     _, alone = fly("flight.duration_max_s=90", "guidance.keepout_guard=false", nu=nu)

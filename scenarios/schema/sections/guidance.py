@@ -63,9 +63,9 @@ class GuidanceConfig(Section):
     phase_deg: Angle = 0.0
     """Oscillation phase phi_0 [deg]."""
     placement: Literal["paper", "exact"] = "paper"
-    """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside."""
+    """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside; farther where the guard would act on it."""
     tracking_allowance_m: Annotated[float, Field(ge=0.0, le=10_000.0)] = 1.0
-    """Allowance for tracking errors, added to r_min in the placement; the guard adds three quarters of it [m]."""
+    """Allowance for tracking errors, added to r_min in the placement [m]."""
     tuning: Literal["given", "bounded"] = "given"
     """Look-ahead and steering_max: given, or bounded, those that converge fastest while no state demands more than omega_max."""
     bound_speed_margin_mps: NonNegative = 0.5
