@@ -49,8 +49,8 @@ class GuardedCommands:
         if time < self._steady_until and not leaving:
             pace, held = self._speed, True
         speed, fastest = own.speed, reckoning.fastest(pace)
-        # Against a disc that closes in a slower vehicle may come nearer; so it must be safe as slow as it is, too.
-        slowest = speed if speed < self._speed else self._speed
+        # Against a disc that closes in a slower vehicle may come nearer; so it must be safe as slow as it is or may become, too.
+        slowest = min(speed, pace, self._speed)
         faster = pace > reckoning.highest + _UNASKED and not leaving
         if faster and not guard.allows(command, time, own, speed if speed > fastest else fastest, slowest):
             pace, held = reckoning.highest, True

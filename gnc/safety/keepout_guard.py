@@ -21,8 +21,8 @@ from gnc.safety.turn_prediction import Motion, Start, TurnPrediction, nearer_sid
 
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
-_SAME_SPEED = 0.5
-"""Speeds that differ by no more are predicted as one: a turn away keeps off by the same to 0.2 m [m/s]."""
+_SAME_SPEED = 0.05
+"""Speeds that differ by no more are predicted as one: a turn away keeps off by the same to 2 cm [m/s]."""
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away, which is found to 1/32."""
 
