@@ -76,8 +76,8 @@ def test_a_vehicle_that_takes_on_any_airspeed_at_once_keeps_out(tmp_path, nu, fl
     # by 9 cm, since the slower pace commanded for a step was not predicted.
     words = ["fidelity=kinematic", "keepout.radius_m=50", "start.distance_m=[70,300]", "start.spread_deg=180", f"sweep.nu=[{nu}]"]
     flight = ["flights=1", f"flight_seed={flight_seed}", "flight.duration_max_s=200", "flight.crossings=0"]
-    law = [f"guidance.{key}={value}" for key, value in keys.items()]
-    run_study(load_study("sweep_nu", [*words, *flight, "comparison.variants=[]", "guidance.approach=false", *law]), "sweep_nu", tmp_path / "run")
+    law = ["comparison.variants=[]", "guidance.approach=false", *(f"guidance.{key}={value}" for key, value in keys.items())]
+    run_study(load_study("sweep_nu", [*words, *flight, *law]), "sweep_nu", tmp_path / "run")
     rows = pd.read_csv(tmp_path / "run" / "summary.csv")
     assert rows["guard_interventions"].sum() > 0
     assert (rows["min_distance_m"] > rows["keepout_radius_m"]).all()
