@@ -9,7 +9,7 @@ from reports.document.blocks import Block, Card, Findings, Heading, Section, Tex
 from reports.document.tables import outcome, parameter_table
 from reports.flights.content import flights_content
 from reports.flights.first_page import flights_in_words
-from reports.run.columns import count, lost, measured, total, violated
+from reports.run.columns import count, flights_flown, lost, total, violated
 from reports.run.run_data import RunData
 
 _BOLD = (
@@ -80,7 +80,8 @@ def arena_content(run: RunData) -> Findings:
     laws = f"{len(arena.entrants) - both} steering laws" + f", {both} of them in both tasks" * (both > 0)
     often = {1: "once", 2: "twice"}.get(arena.flights, f"{arena.flights} times")
     flown = (
-        f"{laws}, each flown {often} in each of {len(arena.conditions)} conditions: {flights_in_words(run, measured(run.summary))}."
+        f"{laws}, each flown {often} in each of {len(arena.conditions)} conditions:"
+        f" {flights_in_words(run, flights_flown(run.summary))}."
     )
     pictures = effort_charts(arena) if arena.in_task(tracking=True) else [crossing_chart(arena)]
     return Findings(flown=flown, verdict=_verdict(arena), picture=pictures[0], sections=sections)
@@ -140,7 +141,7 @@ def _refused(arena: Arena) -> list[Block]:
 
 
 def _verdict(arena: Arena) -> Verdict:
-    rows, flown = arena.run.summary, measured(arena.run.summary)
+    rows, flown = arena.run.summary, flights_flown(arena.run.summary)
     planned = int(arena.run.manifest["flights_planned"])
     violations, gone = count(violated(flown)), count(lost(rows))
     best = [(task, first) for task in (True, False) if (first := arena.best(ERROR, arena.in_task(tracking=task)))]

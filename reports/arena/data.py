@@ -11,6 +11,7 @@ import pandas as pd
 from common.files import is_file
 from common.run_layout import ARENA
 from reports.arena.figures import Figure
+from reports.run.columns import was_flown
 from reports.run.run_data import RunData
 
 ALL = "all"
@@ -79,7 +80,7 @@ class Entrant:
     @property
     def unflown(self) -> pd.DataFrame:
         """Return its flights that could not be flown."""
-        return self.rows[self.rows["min_distance_m"].isna()]
+        return self.rows[~was_flown(self.rows)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,7 +9,7 @@ from reports.arena.data import ALL, Arena, Entrant, Estimate
 from reports.arena.figures import CROSSINGS, ERROR, MEASURING_FIGURES, SULPHUR, TRACKING_FIGURES, Figure
 from reports.document.blocks import Table
 from reports.document.tables import number, parameter_value
-from reports.run.columns import column, total
+from reports.run.columns import column, least, total
 
 
 def condition_table(arena: Arena) -> Table:
@@ -60,8 +60,7 @@ def plume_table(arena: Arena) -> Table:
 
 
 def _closest(entrant: Entrant) -> str:
-    distances = column(entrant.rows, "min_distance_m")
-    return number(float(np.nanmin(distances)) if np.isfinite(distances).any() else None, "{:.1f}")
+    return number(least(column(entrant.rows, "min_distance_m")), "{:.1f}")
 
 
 def _table(

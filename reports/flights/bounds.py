@@ -3,7 +3,7 @@
 import pandas as pd
 
 from common.intervals import CONFIDENCE, TELLING, upper_bound
-from reports.run.columns import completed, count, kept_out, measured, violated
+from reports.run.columns import beside_vessel, count, kept_out, violated, was_flown
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
@@ -23,7 +23,7 @@ def counted_as_violations(rows: pd.DataFrame) -> str:
     """Return, in a sentence, which flights the bound counts as violations though none is known of them; no word without such."""
     unknown = _beside(rows)
     unknown = unknown[~kept_out(unknown) & ~violated(unknown)]
-    unflown = len(unknown) - len(measured(unknown))
+    unflown = count(~was_flown(unknown))
     kinds = {"not flown": unflown, "not observed to their end": len(unknown) - unflown}
     told = (f"{number:,} flight{'s' * (number > 1)} {kind}" for kind, number in kinds.items() if number)
     each = "keep-out violations" if len(unknown) > 1 else "a keep-out violation"
@@ -43,12 +43,12 @@ def sampled(trials: list[Trial]) -> bool:
 
 def _bound(rows: pd.DataFrame) -> tuple[float, float] | None:
     beside = _beside(rows)
-    return _telling(upper_bound(count(~kept_out(beside)), len(beside)), CONFIDENCE) if len(measured(rows)) else None
+    return _telling(upper_bound(count(~kept_out(beside)), len(beside)), CONFIDENCE) if len(beside_vessel(rows)) else None
 
 
 def _beside(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the flights beside a vessel: one about a point has nothing to keep out of."""
-    return rows[~completed(rows) | rows["min_distance_m"].notna()]
+    """Return the flights beside a vessel, also those that were not flown: one about a circle has nothing to keep out of."""
+    return rows[~was_flown(rows) | rows["min_distance_m"].notna()]
 
 
 def _telling(bound: float, confidence: float) -> tuple[float, float] | None:

@@ -13,7 +13,7 @@ from reports.document.palette import VARIANTS, Meaning
 from reports.document.tables import number
 from reports.flights.names import flight_name
 from reports.flights.trials.tables import flight_table
-from reports.run.columns import clearance, column, largest, measured, met, study_flight, total
+from reports.run.columns import clearance, column, flights_flown, largest, least, met, study_flight, total
 from reports.run.run_data import RunData
 from reports.run.time_history import tracking_error
 from reports.run.trials import AS_IN_THE_STUDY, Trial
@@ -138,12 +138,12 @@ def _table(trial: Trial, pairs: pd.DataFrame) -> Table:
         )
     rows = []
     for variant, flights in pairs.groupby("variant", sort=False):
-        flown = measured(flights)
+        flown = flights_flown(flights)
         rows.append([
             str(variant),
             f"{len(flights)}",
             f"{total(flown, 'keepout_violations')}",
-            number(np.min(clearance(flown)) if len(flown) else None, "{:+.1f}"),
+            number(least(clearance(flown)), "{:+.1f}"),
             number(flown["tracking_error_rms_m"].median(), "{:.2f}"),
             number(largest(column(flown, "tracking_error_rms_m")), "{:.2f}"),
             f"{int(np.count_nonzero(met(flights)))}",

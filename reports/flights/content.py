@@ -17,7 +17,7 @@ from reports.flights.verdict import flight_verdict
 from reports.measurement.flights import sulphur_sections
 from reports.monte_carlo.content import monte_carlo_sections
 from reports.monte_carlo.falsification import falsification_sections
-from reports.run.columns import measured
+from reports.run.columns import flights_flown
 from reports.run.run_data import RunData
 from reports.run.trials import Kind, Trial, read_trials
 
@@ -41,7 +41,7 @@ def flights_content(run: RunData) -> Findings:
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
     ]
-    flown = measured(run.summary)
+    flown = flights_flown(run.summary)
     return Findings(
         flown=f"{flights_in_words(run, flown)}.",
         verdict=flight_verdict(run, trials),

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from reports.document.tables import limit, parameter_value, span
-from reports.run.columns import Array, Mask, column, completed, count, interval_error
+from reports.run.columns import Array, Mask, column, completed, count, interval_error, was_flown
 from reports.run.trials import Trial
 
 
@@ -100,6 +100,11 @@ _DEMAND = {"law_within_heading_rate_max": "≤ ω_max", "law_beyond_heading_rate
 _ROUNDING = 1e-12
 """By what a demand may exceed ω_max where it has to lie within: rounding alone [-]."""
 
+_BESIDE_VESSEL = (
+    "crossing_interval_error", *_BETWEEN, "resumes_within_periods", "time_to_find_s", "within_altitudes", "modes_at_end",
+)  # fmt: skip
+"""Criteria that a flight about a circle is not judged by: it has no vessel."""
+
 _OUTSIDE = _Measure(what="Time outside the altitudes of the scenario", values=_column("altitude_outside_s"), unit="s")
 """Of the criterion that altitudes are kept: it has no limit of its own."""
 
@@ -108,6 +113,7 @@ def criteria_of(trial: Trial) -> list[Criterion]:
     """Return the criteria of a trial beside the keep-out area: to complete its mission, and those of its configuration."""
     listed = {key: value for key, value in trial.criteria.items() if value not in (None, False, [])}
     others = {"required", "settles", *(() if trial.criteria.get("settles", True) else _AFTER_SETTLING)}
+    others |= set(_BESIDE_VESSEL if _circles(trial) else ())
     return [_mission(trial), *(_criterion(trial, key, value) for key, value in listed.items() if key not in others)]
 
 
@@ -177,14 +183,15 @@ def _figure(rows: pd.DataFrame, key: str, value: float, measure: _Measure) -> Cr
 
 def _failed(failed: Mask, rows: pd.DataFrame) -> _Failed:
     """Return how many flights failed a criterion, and how many of those that were flown."""
-    return {"failed": count(failed), "flown_failed": count(failed & rows["min_distance_m"].notna().to_numpy())}
+    return {"failed": count(failed), "flown_failed": count(failed & was_flown(rows))}
 
 
 def _without(rows: pd.DataFrame) -> str:
     """Return how many flights have no figure, and how they ended; an empty text if every flight has one."""
     if not len(rows):
         return ""
-    ends = ["not flown" if pd.isna(row["min_distance_m"]) else str(row["outcome"]).replace("_", " ") for _, row in rows.iterrows()]
+    ended = zip(rows["outcome"], was_flown(rows), strict=True)
+    ends = [str(outcome).replace("_", " ") if flown else "not flown" for outcome, flown in ended]
     why = ends[0] if len(set(ends)) == 1 else counted(pd.Series(ends))
     return f"{len(rows):,} {'flight has' if len(rows) == 1 else 'flights have'} no figure: {why}"
 
@@ -197,7 +204,6 @@ def _rounded(value: float, most: float) -> float:
 def _mission(trial: Trial) -> Criterion:
     settled, done = column(trial.rows, "settling_time_s"), completed(trial.rows)
     crossings = int(trial.setting("flight.crossings", 0))
-    circles = trial.setting("reference.path") == "circle"
     ends = [str(outcome).replace("_", " ") for outcome in trial.rows["outcome"][~done]]
     slowest = np.max(settled[done & np.isfinite(settled)], initial=-np.inf)
     words = [f"settled after {slowest:.0f} s at the latest"] if np.isfinite(slowest) else []
@@ -205,12 +211,17 @@ def _mission(trial: Trial) -> Criterion:
     return Criterion(
         key="mission",
         what="Keeps its aircraft"
-        if circles
+        if _circles(trial)
         else f"Completes its mission: settles, and flies {f'{crossings} crossings' if crossings else 'a crossing at least'}",
         limit="each flight",
-        worst="; ".join(words) or "none flown",
+        worst="; ".join(words) or ("every flight did" if len(trial.rows) else "none flown"),
         **_failed(~done, trial.rows),
     )
+
+
+def _circles(trial: Trial) -> bool:
+    """Return whether its flights are about a circle, without a vessel."""
+    return bool(trial.setting("reference.path") == "circle")
 
 
 def _modes(trial: Trial, modes: list[str]) -> Criterion:

@@ -10,7 +10,7 @@ from reports.document.chart import Chart
 from reports.document.tables import vehicle_flown
 from reports.flights.names import flight_name
 from reports.flights.tracks import track_picture
-from reports.run.columns import Array, Mask, clearance, column, completed, recorded_at, total
+from reports.run.columns import Array, Mask, beside_vessel, clearance, column, recorded_at, total
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
@@ -26,8 +26,6 @@ _CALM = 0.05
 
 def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     """Return what was flown: flights and hours, vehicle, vessel and air; without a full stop."""
-    # On a circle nothing is measured from a vessel.
-    flown = flown if len(flown) else run.summary[completed(run.summary)]
     if not len(flown):
         return "No flight was flown"
     flights = f"{len(flown):,} flight{'s' * (len(flown) > 1)} ({simulated(flown)}) of {vehicle_flown(run)}"
@@ -61,12 +59,13 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
     """Return the tracks of the flight that came closest and of the one with the median closest approach, if any has a record.
 
     The median is that of all flights that were flown: of those with a record, among which is every flight that failed, it would be
-    another. Where the flight at the median has none, the one nearest to it takes its place.
+    another. Where the flight at the median has none, the one nearest to it takes its place. Without a vessel there is no approach:
+    shown is the first flight.
     """
-    flown = [(trial, trial.flown) for trial in trials]
+    flown = [(trial, beside_vessel(trial.rows)) for trial in trials]
     recorded = np.concatenate([trial.run.with_history(rows) for trial, rows in flown])
     if not recorded.any():
-        return None
+        return _first_recorded(trials)
     distances = np.concatenate([clearance(rows) for _, rows in flown])
     closest = int(np.argmin(np.where(recorded, distances, np.inf)))
     typical, median = recorded_at(distances, recorded, len(distances) // 2)
@@ -85,6 +84,16 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
     ]
     told = _told(recorded, names if long else dict.fromkeys(names, ""), median=median)
     return track_picture(shown, told=told * (len(flights) > 1))
+
+
+def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
+    """Return the track of the first flight that has a time history, or None."""
+    found = ((trial, row) for trial in trials for _, row in trial.flown.iterrows() if trial.run.has_history(str(row["flight_id"])))
+    trial, row = next(found, (None, None))
+    if trial is None or row is None:
+        return None
+    several = sum(len(of.flown) for of in trials) > 1
+    return track_picture([(trial, row, "")], told=f" {flight_name(trial, row)}, the first with a time history." * several)
 
 
 def _told(recorded: Mask, names: Mapping[str, str], *, median: bool) -> str:

@@ -13,7 +13,7 @@ from reports.flights.flight_view import flight_view
 from reports.flights.names import flight_name, flown_elsewhere
 from reports.flights.single_flight import flight_charts
 from reports.replay.flight_scene import flight_scene
-from reports.run.columns import clearance, column, met, recorded_at, violated
+from reports.run.columns import beside_vessel, clearance, column, met, recorded_at, violated
 from reports.run.trials import Trial
 
 PICKED_MAX = 12
@@ -25,6 +25,8 @@ SWEPT_MAX = 24
 _VIOLATION, _FAILED = "deepest keep-out violation", "did not meet every criterion"
 
 _MEDIAN = "median of closest approaches"
+
+_ALONE = "without a vessel"
 
 
 def flight_section(trials: list[Trial]) -> Section:
@@ -73,7 +75,7 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
     given = {key.replace("wind.speed_mps", "wind_speed_mps") for key in trial.swept}
     if flown_elsewhere(trial):
         known[1], given = ("flown at ν = ", "nu", "{:.2f}"), given - {"nu"}
-    flown = not pd.isna(row["min_distance_m"])
+    flown = not pd.isna(row.get("duration_s"))
     shown = [item for item in known if flown and item[1] not in given and not pd.isna(row.get(item[1]))]
     # A name, its figure and its unit stay on one line.
     world = ", ".join(f"{words}{number(row[key], pattern)}".replace(" ", "\N{NO-BREAK SPACE}") for words, key, pattern in shown)
@@ -84,7 +86,7 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
         flight_id=str(row["flight_id"]),
         label=f"{name} · {state.split(':', maxsplit=1)[0]}",
         # What to do about a flight that could not be flown the verdict says.
-        title=f"{name}: {state} ({world})" if flown else f"{name}: not flown, {ending(row)}",
+        title=f"{name}: {state}{f' ({world})' if world else ''}" if flown else f"{name}: not flown, {ending(row)}",
         charts=flight_charts(view)[int(alone) :],
         scene=flight_scene(trial, row, view.whole) if view else None,
     )
@@ -108,10 +110,10 @@ def picked_flights(trials: list[Trial]) -> list[tuple[Trial, "pd.Series[Any]", s
 
 def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     """Yield a trial's flights to look at, the most important first: one of each sort, none twice."""
-    rows, flown = trial.rows, trial.flown
+    rows, near = trial.rows, beside_vessel(trial.rows)
     inside, failed = rows[violated(rows)], rows[~met(rows) & ~violated(rows)]
     # Of the others, those that have a time history: they are chosen for their figures.
-    recorded, distances = trial.run.with_history(flown), clearance(flown)
+    recorded, distances = trial.run.with_history(near), clearance(near)
     chosen = []
     if len(inside):
         chosen.append((inside.iloc[int(np.argmax(column(inside, "keepout_depth_m")))], _VIOLATION))
@@ -120,9 +122,11 @@ def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
         shown = failed[trial.run.with_history(failed)]
         chosen.append(((shown if len(shown) else failed).iloc[0], _FAILED))
     if recorded.any():
-        chosen.append((flown.iloc[int(np.argmin(np.where(recorded, distances, np.inf)))], "closest approach"))
+        chosen.append((near.iloc[int(np.argmin(np.where(recorded, distances, np.inf)))], "closest approach"))
         typical, median = recorded_at(distances, recorded, len(distances) // 2)
-        chosen.append((flown.iloc[typical], _MEDIAN if median else f"nearest to the {_MEDIAN}"))
+        chosen.append((near.iloc[typical], _MEDIAN if median else f"nearest to the {_MEDIAN}"))
+    elif len(alone := trial.flown[trial.run.with_history(trial.flown)]):
+        chosen.append((alone.iloc[0], _ALONE))
     seen = set()
     for row, why in chosen:
         if row["flight_id"] not in seen:

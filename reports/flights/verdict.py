@@ -16,14 +16,15 @@ from reports.flights.trials.failures import failure_lines
 from reports.measurement.flights import sulphur_above, sulphur_below, sulphur_cards, sulphur_headline
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
 from reports.run.columns import (
+    beside_vessel,
     clearance,
     column,
     completed,
     count,
+    flights_flown,
     kept_out,
     largest,
     lost,
-    measured,
     met,
     passed,
     total,
@@ -53,10 +54,9 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     or if the fuel of an only flight is called above its limit.
     It is complete if every planned flight met every criterion, and the fuel of an only flight is called below its limit.
     """
-    rows, flown = run.summary, measured(run.summary)
+    rows, flown = run.summary, flights_flown(run.summary)
     planned = int(run.manifest["flights_planned"])
-    kept = total(flown, "keepout_violations") == 0 and not np.any(lost(rows) & ~passed(rows))
-    kept = kept and (len(flown) > 0 or _without_a_vessel(rows))
+    kept = len(flown) > 0 and total(flown, "keepout_violations") == 0 and not np.any(lost(rows) & ~passed(rows))
     headlines = [words for words in (sulphur_headline(run), _headline(run, trials, flown, planned)) if words]
     return Verdict(
         holds=kept and not sulphur_above(run),
@@ -69,23 +69,13 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     )
 
 
-def _without_a_vessel(rows: pd.DataFrame) -> bool:
-    """Return whether flights were completed that had none to keep out of: those on a circle."""
-    return not len(measured(rows)) and count(completed(rows)) > 0
-
-
 def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
-    if _without_a_vessel(run.summary):
-        return f"{count(completed(run.summary)):,} of {planned:,} flights completed, without a vessel to keep out of"
     if not len(flown):
         ends = run.summary["outcome"][~completed(run.summary)].astype(str).str.replace("_", " ")
         return f"Nothing was flown{f': of {planned:,}, {counted(ends)}' if len(ends) else ''}"
-    rows, flights = run.summary, f"{len(flown):,} flight{'s' if len(flown) > 1 else ''}"
-    led, bound = _subset(run), violation_bound(run, trials)
-    violations, inside = total(flown, "keepout_violations"), count(violated(flown))
-    if violations and led is None:
-        return f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
-    shown = f": at most {percent(bound[0])} of such flights violate the area, at {percent(bound[1])} confidence" if bound else ""
+    rows, kept = run.summary, _keeping_out(run, trials, flown)
+    if _subset(run) is None and np.any(violated(flown)):
+        return kept
     counts = {
         "lost the aircraft": count(lost(rows)),
         "did not complete the mission": count(~completed(flown) & ~lost(flown)),
@@ -94,14 +84,28 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
         "not flown yet": planned - len(rows),
     }
     others = [f"{number_of:,} {what}" for what, number_of in counts.items() if number_of]
-    kept = f"No keep-out violation in {flights} ({simulated(flown)}){shown}"
-    if led is not None and bound:
-        kept = f"{subset_headline(led)}; {inside:,} of its {flights} ({simulated(flown)}) violated the keep-out area"
-    elif violations:
-        kept = f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
     if np.any(lost(rows) & ~passed(rows)):
         return f"{others[0].capitalize()}, of {planned:,} flights{''.join(f', {other}' for other in others[1:])}. {kept}"
     return f"{kept}; of {planned:,}, {', '.join(others)}" if others else f"{kept}; every flight met its criteria"
+
+
+def _keeping_out(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> str:
+    """Return how the flights kept out of the keep-out area, and what bound follows; a flight about a circle has none."""
+    beside = beside_vessel(flown)
+    flights, alone = _flights(beside), len(flown) - len(beside)
+    if not len(beside):
+        return f"{_flights(flown)} ({simulated(flown)}) without a vessel to keep out of"
+    led, bound, inside = _subset(run), violation_bound(run, trials), count(violated(flown))
+    if led is not None and bound:
+        return f"{subset_headline(led)}; {inside:,} of its {flights} ({simulated(beside)}) violated the keep-out area"
+    if violations := total(flown, "keepout_violations"):
+        return f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
+    shown = f": at most {percent(bound[0])} of such flights violate the area, at {percent(bound[1])} confidence" if bound else ""
+    return f"No keep-out violation in {flights} ({simulated(beside)}){shown}{f', and {alone:,} without a vessel' if alone else ''}"
+
+
+def _flights(rows: pd.DataFrame) -> str:
+    return f"{len(rows):,} flight{'s' * (len(rows) != 1)}"
 
 
 def _subset(run: RunData) -> "dict[str, Any] | None":
@@ -110,12 +114,12 @@ def _subset(run: RunData) -> "dict[str, Any] | None":
 
 
 def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
-    rows = run.summary
+    rows, beside = run.summary, beside_vessel(flown)
     several = f"Flights of {len(trials)} trials: " if len(trials) > 1 else ""
     sentences = [
-        f"{several or 'Flights: '}{planned:,} planned, {len(flown) or count(completed(rows)):,} flown,"
+        f"{several or 'Flights: '}{planned:,} planned, {len(flown):,} flown,"
         f" {count(completed(rows)):,} completed, {count(met(rows)):,} met every criterion.",
-        *([_closest(trials, flown)] if len(flown) else []),
+        *([_closest(trials, beside)] if len(beside) else []),
     ]
     led, bound = _subset(run), violation_bound(run, trials)
     if bound and led is not None:
@@ -129,10 +133,10 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
             f"With {percent(bound[1])} confidence a flight sampled as these were violates the keep-out area with a probability of"
             f" at most {percent(bound[0])}, on average and in this simulation.{counted_as_violations(rows)}"
         )
-    elif len(flown) and (run.statistics is not None or sampled(trials)):
-        few = "A single flight sets" if len(flown) == 1 else "So few flights set"
+    elif len(beside) and (run.statistics is not None or sampled(trials)):
+        few = "A single flight sets" if len(beside) == 1 else "So few flights set"
         sentences.append(f"{few} no bound on the probability of a keep-out violation that is worth stating.")
-    elif len(flown):
+    elif len(beside):
         sentences.append("No bound on a probability follows from these flights: they are no random sample.")
     if "required" in rows and (rows["required"] == "keep_out").any():
         alone = rows[rows["required"] == "keep_out"]
@@ -146,9 +150,9 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
     return " ".join(sentences)
 
 
-def _closest(trials: list[Trial], flown: pd.DataFrame) -> str:
+def _closest(trials: list[Trial], beside: pd.DataFrame) -> str:
     """Return how close the closest flight came, and to what: the shape of the keep-out area decides what a distance is."""
-    closest = flown.iloc[int(np.argmin(clearance(flown)))]
+    closest = _nearest(beside)
     (trial,) = [trial for trial in trials if trial.key == closest["trial"]]
     name, shape = told_name(trial, closest), keepout_shape(trial.flight_config(closest))
     where = f" ({name})" if trial.swept else f", in {name}"
@@ -157,10 +161,15 @@ def _closest(trials: list[Trial], flown: pd.DataFrame) -> str:
         f" {_distance(float(closest['min_distance_m']), float(closest['keepout_radius_m']))}"
         f" {measured_from(shape)}{where}"
     )
-    beside = closest.get("horizontal_distance_min_m", math.nan)
-    if shape == "sphere" and beside < float(closest["min_distance_m"]) - 1.0:
-        words += f"; {float(beside):.1f} m horizontally from the funnel"
+    horizontal = closest.get("horizontal_distance_min_m", math.nan)
+    if shape == "sphere" and horizontal < float(closest["min_distance_m"]) - 1.0:
+        words += f"; {float(horizontal):.1f} m horizontally from the funnel"
     return f"{words}."
+
+
+def _nearest(beside: pd.DataFrame) -> "pd.Series[Any]":
+    """Return the row of the flight that stayed the least off its keep-out area."""
+    return beside.iloc[int(np.argmin(clearance(beside)))]
 
 
 def _noteworthy(flown: pd.DataFrame) -> list[str]:
@@ -187,19 +196,12 @@ def _bound_figure(run: RunData, trials: list[Trial]) -> list[Card]:
 
 
 def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Card]:
-    summary = trials[0].run.summary
-    if _without_a_vessel(summary):
-        done, passing = count(completed(summary)), count(met(summary))
-        return [
-            Card("Flights completed", f"{done:,} of {planned:,}", "all", done == planned),
-            Card("Flights that met every criterion", f"{passing:,} of {planned:,}", "all", passing == planned),
-        ]
     if not len(flown):
         return [
             Card("Keep-out violations", "none flown", "not judged"),
             Card("Flights flown", f"0 of {planned:,}", "all", met=False),
         ]
-    nearest = flown.iloc[int(np.argmin(clearance(flown)))]
+    beside = beside_vessel(flown)
     limits = column(flown, "heading_rate_limit_rad_s")
     command = largest(column(flown, "heading_rate_command_max_rad_s") / limits)
     guarded, unable = count(column(flown, "guard_interventions") > 0.0), count(column(flown, "guard_lost_s") > 0.0)
@@ -209,12 +211,12 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
     allowed = (_ALLOWED,) if np.any(passed(flown) & ~met(flown)) else ()
     worst = [_worst([criterion for trial in trials for criterion in criteria_of(trial)], key) for key in MEASURED]
     figures = [
-        Card("Keep-out violations", f"{violations:,}", "0", violations == 0),
-        _closest_figure(trials, nearest),
+        *([Card("Keep-out violations", f"{violations:,}", "0", violations == 0)] if len(beside) else []),
+        *([_closest_figure(trials, _nearest(beside))] if len(beside) else []),
         Card("Missions completed", f"{done:,} of {planned:,}", *(allowed or ("all", done == planned))),
         *(figure for figure in worst if figure),
         Card(f"Flights flown, {simulated(flown)}", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
-        Card("Flights that kept out", f"{kept:,} of {len(flown):,}", "all", kept == len(flown)),
+        *([Card("Flights that kept out", f"{kept:,} of {len(beside):,}", "all", kept == len(beside))] if len(beside) else []),
         Card("Aircraft lost", f"{gone:,}", *(allowed or ("0", gone == 0))),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
         *_tracking(flown),

@@ -16,7 +16,7 @@ from reports.measurement.flight_charts import error_chart, operating_curve, sulp
 from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table, interval_words
 from reports.measurement.tables import over_time_table, result_table
 from reports.measurement.verdict import CONTENT_NAME, INTERVAL_NAME, fuel_card
-from reports.run.columns import column
+from reports.run.columns import column, flights_flown
 from reports.run.flight_config import flight_config
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
@@ -78,7 +78,7 @@ def sulphur_below(run: RunData) -> bool:
 
 def sulphur_headline(run: RunData) -> str:
     """Return what was measured of the fuel, with interval and verdict, in a sentence; no word of a run without a sniffer."""
-    measured, sniffed = _measured(run), run.summary[run.summary["min_distance_m"].notna()]
+    measured, sniffed = _measured(run), flights_flown(run.summary)
     if "fsc_percent" not in run.summary:
         return ""
     if not len(measured):

@@ -11,7 +11,7 @@ from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.document.panels import Group, beyond_label, capped, level, strips
 from reports.monte_carlo.names import CLEARANCE, FIGURES, Units, documented_units, input_label, input_name
-from reports.run.columns import Array, clearance, violated
+from reports.run.columns import Array, beside_vessel, clearance, violated
 from reports.run.run_data import RunData
 
 SCATTER_MAX = 2000
@@ -88,7 +88,7 @@ def bar_line(values: Array, places: Array, label: str, colour: str) -> Line:
 def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     """Return the clearance over the inputs that drive it the most, words apart from figures; none if no input is known to."""
     keys = [index["key"] for index in statistics["sensitivity"]["clearance_m"]["inputs"][:SCATTERED]]
-    measured = run.summary[run.summary["min_distance_m"].notna()]
+    measured = beside_vessel(run.summary)
     shown = measured.iloc[thinned(clearance(measured))]
     sampled = run.draws.set_index("flight_id").reindex(shown["flight_id"])
     near, inside = clearance(shown), violated(shown)

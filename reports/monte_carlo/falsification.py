@@ -8,7 +8,7 @@ import pandas as pd
 from reports.document.blocks import Block, Heading, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
-from reports.run.columns import clearance, violated
+from reports.run.columns import beside_vessel, clearance, violated
 from reports.run.run_data import RunData
 
 _POINTS_MAX = 4000
@@ -52,7 +52,7 @@ def falsification_sections(run: RunData) -> list[Section]:
 
 def _searched(run: RunData) -> pd.DataFrame:
     """Return the flights that have a closest approach, each with the method that proposed it."""
-    flown = run.summary[run.summary["min_distance_m"].notna()]
+    flown = beside_vessel(run.summary)
     if "search_method" not in run.draws:
         return flown.assign(search_method="", confirms="")
     labels = run.draws[["flight_id", "search_method", "confirms"]]

@@ -29,14 +29,32 @@ def largest(values: Array) -> float | None:
     return float(np.nanmax(values)) if np.isfinite(values).any() else None
 
 
+def least(values: Array) -> float | None:
+    """Return the least known value, or None."""
+    return float(np.nanmin(values)) if np.isfinite(values).any() else None
+
+
 def study_flight(rows: pd.DataFrame) -> "pd.Series[str]":
     """Return the name of the study's flight of each row: of a comparison's flight the one that it is beside, else its own."""
     own = rows["flight_id"].astype(str)
     return rows["beside"].where(rows["beside"].notna(), own).astype(str) if "beside" in rows else own
 
 
-def measured(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the flights that were flown, of which the closest approach is known."""
+def was_flown(rows: pd.DataFrame) -> Mask:
+    """Return which flights were flown, with a vessel or without: those that lasted for any time, as the console counts them.
+
+    The outcome does not tell: a flight is ``failed`` as well where it was flown and an instrument could not be evaluated.
+    """
+    return np.isfinite(column(rows, "duration_s"))
+
+
+def flights_flown(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the flights that were flown."""
+    return rows[was_flown(rows)]
+
+
+def beside_vessel(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the flights whose closest approach is known: those that were flown beside a vessel, and not about a circle."""
     return rows[rows["min_distance_m"].notna()]
 
 

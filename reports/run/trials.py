@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from common.dotted_keys import at_or_below
-from reports.run.columns import Array, column, measured
+from reports.run.columns import Array, column, flights_flown
 from reports.run.flight_config import Config, flight_config, keepout_shape
 from reports.run.run_data import RunData
 
@@ -72,8 +72,8 @@ class Trial:
 
     @property
     def flown(self) -> pd.DataFrame:
-        """Flights of which anything was measured."""
-        return measured(self.rows)
+        """Flights that were flown, however they ended."""
+        return flights_flown(self.rows)
 
     @property
     def radius(self) -> float:

@@ -147,7 +147,7 @@ def of_a_few_flights(run, path, missing):
     """Return the report of a copy of an arena of which the flights that are named by what they contain could not be flown."""
     rows, record = run.summary.copy(), json.loads((run.path / "arena.json").read_text(encoding="utf-8"))
     gone = rows["flight_id"].str.contains(missing)
-    rows.loc[gone, ["min_distance_m", "criteria_met", "kept_out"]] = [math.nan, False, False]
+    rows.loc[gone, ["duration_s", "min_distance_m", "criteria_met", "kept_out"]] = [math.nan, math.nan, False, False]
     rows.loc[gone, ["outcome", "message"]] = ["infeasible", "too near"]
     windows = pd.read_csv(run.path / "window.csv").set_index("flight_id")
     figures = {

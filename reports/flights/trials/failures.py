@@ -8,7 +8,7 @@ import pandas as pd
 from reports.document.tables import ending, in_symbols, number
 from reports.flights.criteria import criteria_of
 from reports.flights.names import told_name
-from reports.run.columns import column, count, largest, measured, met, violated
+from reports.run.columns import column, count, largest, met, violated, was_flown
 from reports.run.trials import Trial
 
 _NAMED_MAX = 3
@@ -22,7 +22,8 @@ def failure_lines(trial: Trial) -> list[str]:
     """Return which flights of a trial failed a criterion, each of a few, else by criterion; and which were not flown."""
     rows = trial.rows
     failed = rows[~met(rows)]
-    flown, unflown = measured(failed), failed[failed["min_distance_m"].isna()]
+    begun = was_flown(failed)
+    flown, unflown = failed[begun], failed[~begun]
     lines = [*_named(trial, flown)] if len(flown) <= _NAMED_MAX else [_by_criterion(trial, len(flown))]
     lines += [*_named(trial, unflown)] if len(unflown) <= _NAMED_MAX else [_not_flown(trial, unflown)]
     missing = trial.planned - len(rows)

@@ -13,7 +13,7 @@ from reports.document.tables import ending, number, outcome, span
 from reports.flights.bounds import trial_bound
 from reports.flights.criteria import counted, criteria_of
 from reports.flights.names import fault_name, told_name
-from reports.run.columns import clearance, column, completed, count, kept_out, lost, met, total, violated
+from reports.run.columns import clearance, column, completed, count, kept_out, least, lost, met, total, violated, was_flown
 from reports.run.time_history import keepout_distance
 from reports.run.trials import Trial
 
@@ -68,7 +68,7 @@ def flight_table(
     flown_ratio : whether a column says the speed ratio that was flown, where that is not the one that was swept
     """
     if flown_ratio:
-        rows = rows.assign(flown_ratio=rows["nu"].where(rows["min_distance_m"].notna()))
+        rows = rows.assign(flown_ratio=rows["nu"].where(was_flown(rows)))
         columns = (("ν flown [-]", "flown_ratio", "{:.2f}"), *columns)
         caption += " ν is swept as the ratio of the speeds over the ground; as flown, in wind, it is that through the air."
     cells = [
@@ -102,8 +102,8 @@ def trial_table(trials: list[Trial]) -> Table:
             f"{count(kept_out(flown))}",
             _NOTHING if (bound := trial_bound(trial)) is None else percent(bound),
             f"{total(flown, 'keepout_violations')}",
-            number(np.min(column(flown, "min_distance_m"), initial=np.inf) if len(flown) else None, "{:.1f}"),
-            number(np.min(clearance(flown)) if len(flown) else None, "{:+.1f}"),
+            number(least(column(flown, "min_distance_m")), "{:.1f}"),
+            number(least(clearance(flown)), "{:+.1f}"),
             f"{count(column(flown, 'guard_interventions') > 0.0)}",
             counted(flown["mode_at_end"]) if "mode_at_end" in flown else _NOTHING,
         ])  # fmt: skip
@@ -164,7 +164,7 @@ def fault_table(trial: Trial) -> Table:
             f"{count(completed(members))}",
             f"{count(lost(members))}",
             f"{total(members, 'keepout_violations')}",
-            number(float(column(members, "min_distance_m").min()), "{:.1f}"),
+            number(least(column(members, "min_distance_m")), "{:.1f}"),
             number(min(known, default=None), "{:.1f}") + (f" (of {len(known)})" if known and len(known) < len(closest) else ""),
             span(column(members, "end_distance_m"), "{:.0f}"),
             counted(members["mode_at_end"]),
@@ -200,7 +200,7 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     rows = [
         [
             told_name(by_key[row["trial"]], row),
-            number(row["nu"] if pd.notna(row["min_distance_m"]) else None, "{:.2f}"),
+            number(row["nu"] if pd.notna(row.get("duration_s")) else None, "{:.2f}"),
             number(row["keepout_violations"], "{:.0f}"),
             number(row["min_distance_m"], "{:.1f}"),
             ending(row),

@@ -116,7 +116,7 @@ def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_are
 ROW = {
     "fsc_percent": 0.5, "fsc_low_percent": 0.461, "fsc_high_percent": 0.539, "sulphur_limit_percent": 0.1, "probability_above": 1.0,
     "sulphur_verdict": "above", "sulphur_quality": "A", "sulphur_reason": "", "fsc_fuel_percent": 0.5, "fsc_expected_percent": 0.49,
-    "min_distance_m": 250.0,
+    "duration_s": 600.0,
 }  # fmt: skip
 """Of a flight that measured the fuel, in the summary."""
 
@@ -141,7 +141,7 @@ def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(c
 
 
 def test_a_sniffer_without_a_result_is_said_on_page_1():
-    run = SimpleNamespace(summary=pd.DataFrame([{"fsc_percent": float("nan"), "min_distance_m": 250.0}]))
+    run = SimpleNamespace(summary=pd.DataFrame([{"fsc_percent": float("nan"), "duration_s": 600.0}]))
     assert flights.sulphur_headline(run) == "No fuel sulphur content from 1 flight with a sniffer"
 
 

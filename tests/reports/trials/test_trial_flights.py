@@ -173,6 +173,7 @@ def test_tracking_errors_that_are_drawn_at_the_floor_of_their_axis_are_said(run)
 @pytest.mark.parametrize(("flown", "words"), [(True, "The only flight; Figure 1 shows its track."), (False, "The only flight.")])
 def test_of_an_only_flight_the_figure_of_its_track_is_named_where_it_has_one(run, flown, words):
     rows = run.summary.iloc[:1]
-    rows = rows if flown else rows.assign(min_distance_m=np.nan, criteria_met=False, outcome="infeasible", message="too fast")
+    unflown = {"duration_s": np.nan, "min_distance_m": np.nan, "criteria_met": False, "outcome": "infeasible", "message": "fast"}
+    rows = rows if flown else rows.assign(**unflown)
     (trial,) = [trial for trial in read_trials(replace(run, summary=rows)) if len(trial.rows)]
     assert flight_section([trial]).blocks[0].text == words

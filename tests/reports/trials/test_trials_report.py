@@ -57,7 +57,8 @@ def test_every_axis_of_trials_reads_quantity_and_unit_and_every_chart_shows_some
 
 @BRIEF
 def test_of_nothing_flown_nothing_is_claimed(run):
-    empty = replace(run, summary=run.summary.assign(min_distance_m=math.nan, criteria_met=False, outcome="infeasible"))
+    unflown = run.summary.assign(duration_s=math.nan, min_distance_m=math.nan, criteria_met=False, outcome="infeasible")
+    empty = replace(run, summary=unflown)
     verdict = content(empty).verdict
     assert not verdict.holds
     assert verdict.headline.startswith("Nothing was flown: of 4, 4 infeasible")

@@ -1,0 +1,45 @@
+"""The report of flights about a circle: they were flown, have every figure that needs no vessel, and nothing to keep out of."""
+
+import pytest
+from report_parts import blocks_of, flown
+
+from reports.document.blocks import FlightPicker, Table
+from reports.registry import content
+from reports.run.run_data import read_run
+
+# The paper's circle on its own vehicle, long enough to settle from any start.
+CIRCLE = ("cases=[]", "study=flights", "reference.path=circle", "fidelity=kinematic", "flight.duration_max_s=300", "flights=2")
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    return content(read_run(flown(tmp_path_factory, "paper", CIRCLE)))
+
+
+def test_they_count_as_flown_and_have_no_area_to_keep_out_of(report):
+    verdict = report.verdict
+    # Two flights of 300 s.
+    assert verdict.headline == "2 flights (10 min simulated) without a vessel to keep out of; every flight met its criteria"
+    assert (verdict.holds, verdict.complete) == (True, True)
+    figures = {card.name: card for card in verdict.figures}
+    assert (figures["Missions completed"].value, figures["Flights flown, 10 min simulated"].value) == ("2 of 2", "2 of 2")
+    assert not [name for name in figures if "eep" in name or "approach" in name]
+    assert "bound" not in verdict.detail
+
+
+def test_their_tables_are_filled_and_judge_what_needs_no_vessel(report):
+    (criteria,) = blocks_of(report, Table, "trials")
+    worst = {row[0]: row[2] for row in criteria.rows}
+    assert worst["Tracking error, rms after settling"].endswith(" m")
+    assert worst["Keeps its aircraft"].startswith("settled after ")
+    assert "Mean crossing interval off π/ω₀" not in worst
+    (flights,) = blocks_of(report, Table, "trial1")
+    settled, error = (flights.head.index(title) for title in ("Settled [s]", "Tracking rms [m]"))
+    # Below the criterion's 1.5 m, since both flights are met.
+    assert all(0.0 < float(row[settled]) < 300.0 and 0.0 < float(row[error]) < 1.5 for row in flights.rows)
+
+
+def test_page_1_shows_the_track_of_the_first_and_the_section_of_flights_its_histories(report):
+    assert report.picture.caption.endswith("Flight 0, the first with a time history.")
+    (picker,) = blocks_of(report, FlightPicker)
+    assert [flight.title for flight in picker.flights] == ["Flight 0: without a vessel"]
