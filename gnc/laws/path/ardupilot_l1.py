@@ -74,7 +74,6 @@ def update_waypoint(
     *,
     time_step: float,
     state: L1State = FRESH,
-    distance_min: float = 0.0,
     parameters: L1Parameters | None = None,
 ) -> tuple[float, L1State]:
     """Return the lateral acceleration, positive to the right [m/s2], and the state for the next call. A pure function.
@@ -86,13 +85,12 @@ def update_waypoint(
     start, end : of the line [m]; with one place for both the line leads from the vehicle to it
     time_step : since the last call [s]
     state : from the last call
-    distance_min : smallest L1 distance [m]
     parameters : of the law, ArduPilot's defaults if not given
     """
     p = parameters or L1Parameters()
     velocity = course_velocity(velocity, yaw)
     speed = norm(velocity)
-    distance = max(ONE_OVER_PI * p.damping * p.period * speed, distance_min)
+    distance = ONE_OVER_PI * p.damping * p.period * speed
     line = minus(end, start)
     direction = unit(line) or unit(minus(end, position)) or along(yaw)
     from_start = minus(position, start)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
-from gnc.laws.path.ardupilot_l1 import ONE_OVER_PI, decided
+from gnc.laws.path.ardupilot_l1 import ONE_OVER_PI
 from gnc.laws.steering_law import CIRCLES_ALONE, ON_OSCILLATION, steering_law
-from gnc.vectors import Vector, along, clip, course_of, cross, dot, minus, norm, plus, scaled
+from gnc.vectors import Vector, along, clip, cross, dot, minus, norm, plus, scaled
 
 _QUARTER = 1.5708
 _CENTRE = 0.1
@@ -39,12 +39,10 @@ class Loiter:
     ----------
     lateral_acceleration : positive to the right [m/s2]
     circling : whether it is on the circle, not capturing it
-    last_angle : between course and bearing of the centre, for the next call [rad]
     """
 
     lateral_acceleration: float
     circling: bool
-    last_angle: float
 
 
 def update_loiter(
@@ -55,7 +53,6 @@ def update_loiter(
     radius: float,
     side: int,
     *,
-    last_angle: float = 0.0,
     parameters: LoiterParameters | None = None,
 ) -> Loiter:
     """Return what the loiter asks for. A pure function.
@@ -66,7 +63,6 @@ def update_loiter(
     yaw : heading [rad]
     centre, radius : of the circle [m]
     side : +1 clockwise, -1 anticlockwise
-    last_angle : from the last call [rad]
     parameters : of the law, ArduPilot's defaults if not given
     """
     p = parameters or LoiterParameters()
@@ -82,8 +78,7 @@ def update_loiter(
     else:
         outward = along(yaw)
     across, inbound = cross(outward, velocity), -dot(velocity, outward)
-    bearing = course_of(scaled(from_centre, -1.0))
-    angle = decided(math.atan2(across, inbound), last_angle, bearing=bearing, yaw=yaw)
+    angle = math.atan2(across, inbound)
     capture = 4.0 * p.damping**2 * speed * speed / distance * math.sin(clip(angle, -_QUARTER, _QUARTER))
     outside, around = range_ - radius, across * side
     correction = outside * rate * rate - inbound * 2.0 * p.damping * rate
@@ -91,8 +86,8 @@ def update_loiter(
         correction = max(correction, 0.0)
     circle = side * (correction + around * around / max(0.5 * radius, radius + outside))
     if outside > 0.0 and side * capture < side * circle:
-        return Loiter(capture, circling=False, last_angle=angle)
-    return Loiter(circle, circling=True, last_angle=angle)
+        return Loiter(capture, circling=False)
+    return Loiter(circle, circling=True)
 
 
 @steering_law("ardupilot_loiter")

@@ -1,14 +1,14 @@
 """NPFG, the fixed-wing path following of PX4: look-ahead by the track error, bearing feasibility in wind, adapted period.
 
 Source: T. Stastny, R. Siegwart, "On Flying Backwards: Preventing Run-away of Small, Low-speed, Fixed-wing UAVs in Strong Winds",
-IROS 2019, and the law as PX4 flies it, release 1.15 (BSD-3-Clause). Written from equations, not from code.
+IROS 2019, and the law as PX4 flies it, release 1.15 (BSD-3-Clause). Written from equations, not from code. Differs in that the
+airspeed is not raised to keep a ground speed or to come back to the track: here it is left to whoever flies the law.
 """
 
 import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from common.physics.units import STANDARD_GRAVITY
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
 from gnc.laws.steering_law import steering_law
 from gnc.vectors import Vector, clip, course_of, cross, dot, minus, norm, plus, right_of, scaled
@@ -18,47 +18,30 @@ _RADIUS_MIN = 0.5
 """Smallest turn radius that the feed-forward is formed for [m]."""
 _AIRSPEED_BUFFER = 1.5
 """Airspeed beyond what a bearing needs, from which the bearing counts as wholly feasible [m/s]."""
-_TRACK_KEEPING_SPEED = 5.0
-"""Ground speed that track keeping asks for far from the path [m/s]."""
-_TRACK_KEEPING_FROM = 0.5
-"""Share of the track error bound from which on it asks for all of it [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NpfgParameters:
-    """Parameters; defaults are those of PX4, without track keeping.
+    """Parameters; defaults are those of PX4.
 
     Attributes
     ----------
     period : T_0 [s]
     damping : zeta [-]
-    lower_bound, upper_bound : whether the period is kept above and below what the roll dynamics and the path need
-    minimum_ground_speed, track_keeping, wind_regulation : whether airspeed is raised to keep a ground speed, to come back to the
-        track, and at all
     roll_time_constant : T_phi; 0 for no bounds on the period [s]
     safety_factor : on the lower bound [-]
-    ground_speed_min : [m/s]
-    airspeed, airspeed_max : nominal and largest [m/s]
-    roll_limit : [rad]
+    airspeed : nominal [m/s]
     """
 
     period: float = 10.0
     damping: float = 0.7
-    lower_bound: bool = True
-    upper_bound: bool = True
-    minimum_ground_speed: bool = True
-    track_keeping: bool = False
-    wind_regulation: bool = True
     roll_time_constant: float = 0.5
     safety_factor: float = 1.5
-    ground_speed_min: float = 5.0
     airspeed: float = 15.0
-    airspeed_max: float = 20.0
-    roll_limit: float = math.radians(50.0)
 
 
 PX4_DEFAULTS = NpfgParameters()
-"""PX4's defaults, without track keeping."""
+"""PX4's defaults."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,8 +52,7 @@ class NpfgCommand:
     ----------
     lateral_acceleration : positive to the right [m/s2]
     feed_forward : its part for the path's curvature, before it fades with the track error [m/s2]
-    airspeed, heading : references [m/s, rad]
-    roll : reference, within the limit [rad]
+    heading : reference [rad]
     bearing : ground course that is asked for [rad]
     period : as adapted [s]
     error_bound : track error from which on the bearing is straight at the path [m]
@@ -78,9 +60,7 @@ class NpfgCommand:
 
     lateral_acceleration: float
     feed_forward: float
-    airspeed: float
     heading: float
-    roll: float
     bearing: float
     period: float
     error_bound: float
@@ -119,20 +99,14 @@ def npfg(
     towards = scaled(right_of(tangent), -math.copysign(1.0, error) if error != 0.0 else -1.0)
     bearing = plus(scaled(towards, math.cos(look_ahead)), tangent, math.sin(look_ahead))
     feasible = bearing_feasibility(bearing, wind, airspeed) * track_feasible
-    ground_speed_min = 0.0
-    if p.wind_regulation:
-        keeping = (1.0 - feasible) * _TRACK_KEEPING_SPEED * clip(off / _TRACK_KEEPING_FROM, 0.0, 1.0) if p.track_keeping else 0.0
-        ground_speed_min = max(keeping, p.ground_speed_min if p.minimum_ground_speed else 0.0)
-    reference = _air_velocity_reference(p, bearing, wind, wind_speed, ground_speed_min)
+    reference = _air_velocity_reference(bearing, wind, wind_speed, p.airspeed)
     feedback = _feedback(gain, air_velocity, airspeed, reference)
     feed_forward = _feed_forward(tangent, velocity, wind, airspeed, error, curvature)
     acceleration = feedback + feasible * proximity * feed_forward
     return NpfgCommand(
         lateral_acceleration=acceleration,
         feed_forward=feed_forward,
-        airspeed=norm(reference),
         heading=course_of(reference),
-        roll=clip(math.atan(acceleration / STANDARD_GRAVITY), -p.roll_limit, p.roll_limit),
         bearing=course_of(bearing),
         period=period,
         error_bound=bound,
@@ -163,7 +137,7 @@ def _adapted_period(
     p: NpfgParameters, error: float, ground_speed: float, airspeed: float, wind_speed: float, curvature: float, feasible: float
 ) -> float:
     """Return the period, kept to what the roll dynamics allow and the path's curvature in wind needs [s]."""
-    if not p.lower_bound or p.roll_time_constant <= _EPSILON:
+    if p.roll_time_constant <= _EPSILON:
         return p.period
     turn_rate = abs(curvature * airspeed)
     if wind_speed > airspeed or airspeed < _EPSILON:
@@ -180,39 +154,22 @@ def _adapted_period(
     lowest = proximity * lowest + (1.0 - proximity) * straight
     period = max(lowest, p.period)
     demand = turn_rate * wind_factor * feasible
-    if p.upper_bound and turn_rate * wind_factor > _EPSILON and demand > 0.0:
+    if turn_rate * wind_factor > _EPSILON and demand > 0.0:
         highest = 4.0 * math.pi * p.damping / demand
         if math.isfinite(highest) and period > highest:
             period = proximity * max(lowest, highest) + (1.0 - proximity) * period
     return period
 
 
-def _air_velocity_reference(p: NpfgParameters, bearing: Vector, wind: Vector, wind_speed: float, ground_speed_min: float) -> Vector:
+def _air_velocity_reference(bearing: Vector, wind: Vector, wind_speed: float, airspeed: float) -> Vector:
     """Return the velocity through the air that gives the demanded bearing over the ground, as far as the wind lets it [m/s]."""
     across, along = cross(wind, bearing), dot(wind, bearing)
-    to_the_right = right_of(bearing)
-
-    def triangle(airspeed: float) -> Vector:
-        return plus(scaled(bearing, math.sqrt(max(airspeed * airspeed - across * across, 0.0))), to_the_right, across)
-
-    def feasible(airspeed: float) -> bool:
-        return abs(across) < airspeed and (along > 0.0 or wind_speed < airspeed)
-
-    def against_wind(airspeed: float) -> Vector:
-        drift = minus(scaled(bearing, math.sqrt(max(wind_speed * wind_speed - airspeed * airspeed, 0.0))), wind)
-        length = norm(drift)
-        return scaled(drift, airspeed / length) if length > 0.0 else scaled(bearing, airspeed)
-
-    if ground_speed_min > along and p.wind_regulation and (p.minimum_ground_speed or p.track_keeping):
-        needed = math.hypot(ground_speed_min - along, across)
-        if needed > p.airspeed_max:
-            return triangle(p.airspeed_max) if feasible(p.airspeed_max) else against_wind(p.airspeed_max)
-        return triangle(max(needed, p.airspeed))
-    if feasible(p.airspeed):
-        return triangle(p.airspeed)
-    if feasible(p.airspeed_max) and p.wind_regulation:
-        return wind if along <= 0.0 else scaled(to_the_right, across)
-    return against_wind(p.airspeed_max if p.wind_regulation else p.airspeed)
+    if abs(across) < airspeed and (along > 0.0 or wind_speed < airspeed):
+        return plus(scaled(bearing, math.sqrt(max(airspeed * airspeed - across * across, 0.0))), right_of(bearing), across)
+    # No heading gives that bearing: it heads against the wind, turned towards the bearing.
+    drift = minus(scaled(bearing, math.sqrt(max(wind_speed * wind_speed - airspeed * airspeed, 0.0))), wind)
+    length = norm(drift)
+    return scaled(drift, airspeed / length) if length > 0.0 else scaled(bearing, airspeed)
 
 
 def _feedback(gain: float, air_velocity: Vector, airspeed: float, reference: Vector) -> float:
@@ -255,10 +212,7 @@ class NpfgLaw(PathLaw):
             period=self.npfg_period_s,
             damping=self.npfg_damping,
             roll_time_constant=self.npfg_roll_time_constant_s,
-            minimum_ground_speed=False,
-            wind_regulation=False,
             airspeed=motion.airspeed,
-            airspeed_max=motion.airspeed,
         )
         command = npfg(motion.position, motion.velocity, motion.wind, (0.0, 0.0), motion.tangent, motion.curvature, parameters)
         return turn_rate(command.lateral_acceleration, motion.airspeed)
