@@ -12,15 +12,10 @@ from gnc.mission.direct_tracking import DirectTracking
 from gnc.mission.mission import Mission
 from gnc.mission.plume_following import FollowingParameters, PlumeFollowing
 from gnc.mission.standoff import StandoffOrbit, StandoffParameters
-from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters, ReportedVessel
+from gnc.parameters import FilterParameters, GuidanceParameters, ReportedVessel
 from gnc.safety.guarded_commands import GuardedCommands
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.safety.speed_reckoning import SpeedReckoning
-
-
-def keepout_guard(parameters: GuardParameters) -> KeepoutGuard:
-    """Return a fresh keep-out guard."""
-    return KeepoutGuard(**asdict(parameters))
 
 
 def vessel_filter(parameters: FilterParameters) -> VesselFilter:
@@ -37,7 +32,7 @@ def compose(parameters: GuidanceParameters) -> Guidance:
         target = ReportedTarget(vessel_filter(p.vessel.filter), ReachableSet(p.vessel.limits), p.tracking.time_step)
     else:
         target = SteadyTarget(*p.vessel)
-    guard = keepout_guard(p.guard) if p.guard else None
+    guard = KeepoutGuard(p.guard) if p.guard else None
     mission: Mission
     if isinstance(p.mission, FollowingParameters):
         mission = PlumeFollowing(p.mission, p.tracking, own=own, target=target, guard=guard)

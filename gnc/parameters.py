@@ -1,6 +1,5 @@
 """What the guidance of a flight knows beforehand: frozen, and chosen in one place (``gnc.compose``)."""
 
-import math
 from dataclasses import dataclass
 
 from gnc.airspeed.airspeed_law import AirspeedLaw
@@ -10,24 +9,8 @@ from gnc.estimation.reachable_set import VesselLimits
 from gnc.mission.direct_tracking import DirectParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
+from gnc.safety.guard_parameters import GuardParameters
 from gnc.tracker import TrackingParameters
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GuardParameters:
-    """Parameters of ``gnc.safety.keepout_guard.KeepoutGuard``, which says what each is."""
-
-    radius: float
-    heading_rate_max: float
-    lag: float
-    delay: float
-    slow_lag: float
-    time_step: float
-    speed_error: float = 0.0
-    deviation: float = 0.0
-    drift_rate: float = 0.0
-    turbulence: float = 0.0
-    turn_speed: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from gnc.estimation.own_motion import AirMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.safety.given_commands import GivenCommands
+from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.turn_prediction import Motion, Start, TurnPrediction, nearer_side
 
 _RESOLUTION = 1e-3
@@ -35,17 +36,7 @@ class KeepoutGuard:
 
     Parameters
     ----------
-    radius : that the vehicle's path must keep from the vessel [m]
-    deviation : by how much nearer the vehicle may come in a full reversal of its turn than predicted [m]
-    heading_rate_max : omega_max, the largest command [rad/s]
-    lag : time constant of the vehicle's heading rate behind its command; 0 if it follows at once [s]
-    delay : dead time before that [s]
-    slow_lag : by which it is behind slow commands; None if that is ``delay`` + ``lag`` [s]
-    time_step : for which a command is held [s]
-    speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together [m/s]
-    drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
-    turbulence : of the radius, what is kept for turbulence, which takes the vehicle off any turn predicted [m]
-    turn_speed : up to which it can turn at ``heading_rate_max``; faster it turns at the same acceleration across [m/s]
+    parameters : of the vehicle, and what is to be kept
 
     Attributes
     ----------
@@ -62,38 +53,35 @@ class KeepoutGuard:
         "_until_acting", "intervening", "interventions", "lost", "tubes",
     )  # fmt: skip
 
-    def __init__(
-        self,
-        *,
-        radius: float,
-        deviation: float = 0.0,
-        heading_rate_max: float,
-        lag: float,
-        time_step: float,
-        delay: float = 0.0,
-        slow_lag: float | None = None,
-        speed_error: float = 0.0,
-        drift_rate: float = 0.0,
-        turbulence: float = 0.0,
-        turn_speed: float = math.inf,
-    ) -> None:
-        self._radius, self._turn_speed = radius, turn_speed
-        self._rate, self._time_step, self._quarter_turn = heading_rate_max, time_step, 0.5 * math.pi / heading_rate_max
-        self._lag, self._until_acting = lag, delay
-        slow = delay + lag if slow_lag is None else slow_lag
-        self._given = GivenCommands(lag=lag, delay=delay, slow_lag=slow, time_step=time_step, heading_rate_max=heading_rate_max)
+    def __init__(self, parameters: GuardParameters) -> None:
+        p = parameters
+        self._radius, self._turn_speed = p.radius, p.turn_speed
+        self._rate, self._time_step, self._quarter_turn = p.heading_rate_max, p.time_step, 0.5 * math.pi / p.heading_rate_max
+        self._lag, self._until_acting = p.lag, p.delay
+        self._given = GivenCommands(
+            lag=p.lag,
+            delay=p.delay,
+            slow_lag=p.delay + p.lag if p.slow_lag is None else p.slow_lag,
+            time_step=p.time_step,
+            heading_rate_max=p.heading_rate_max,
+        )
         self._note, self._note_rate = self._given.since.append, self._given.rates.append
         # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
-        self._speed_error, self._drift_rate = speed_error + drift_rate, drift_rate
+        self._speed_error, self._drift_rate = p.speed_error + p.drift_rate, p.drift_rate
         self._prediction = TurnPrediction(
-            heading_rate_max=heading_rate_max, lag=lag, delay=delay, time_step=time_step, deviation=deviation, turn_speed=turn_speed
+            heading_rate_max=p.heading_rate_max,
+            lag=p.lag,
+            delay=p.delay,
+            time_step=p.time_step,
+            deviation=p.deviation,
+            turn_speed=p.turn_speed,
         )
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
-        self._turn_time = 1.5 * math.pi / heading_rate_max + 2.0 * self._lag + self._until_acting + time_step
+        self._turn_time = 1.5 * math.pi / p.heading_rate_max + 2.0 * p.lag + p.delay + p.time_step
         # What the declared errors may take from the slack of a turn that was safe.
-        self._explained = deviation + self._speed_error * self._turn_time + turbulence
+        self._explained = p.deviation + self._speed_error * self._turn_time + p.turbulence
         # Within a step, too, the path bends: it is predicted to the step's end.
-        self._resolution = max(_RESOLUTION, 1.0 - math.cos(min(math.pi, 0.5 * heading_rate_max * time_step)))
+        self._resolution = max(_RESOLUTION, 1.0 - math.cos(min(math.pi, 0.5 * p.heading_rate_max * p.time_step)))
         self._side, self._free_steps = 0.0, 0
         self._kept_off: Tube | None = None
         self.tubes: Sequence[Tube] = ()

@@ -27,7 +27,7 @@ class TurnPrediction:
 
     Parameters
     ----------
-    heading_rate_max, lag, delay, time_step, deviation, turn_speed : as of ``KeepoutGuard``
+    heading_rate_max, lag, delay, time_step, deviation, turn_speed : as of ``GuardParameters``
     """
 
     __slots__ = (

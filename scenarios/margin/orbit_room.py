@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gnc.compose import keepout_guard
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.mission.standoff import CirclePoint
-from gnc.parameters import GuardParameters
 from gnc.reference.reference import Orbit
+from gnc.safety.guard_parameters import GuardParameters
+from gnc.safety.keepout_guard import KeepoutGuard
 
 _PHASES = 24
 """Points of half an orbit from which a turn away is predicted; the other half is its mirror image, or has as many [-]."""
@@ -91,7 +91,7 @@ def _distance(
     guard: GuardParameters, vessel: Tube, motions: Callable[[float], list[KnownMotion]], speed: float, drift: float
 ) -> float:
     """Return the distance at which the nearest of the motions that belong to it leaves the guard nothing to do [m]."""
-    keeping = keepout_guard(guard)
+    keeping = KeepoutGuard(guard)
     keeping.tubes = (vessel._replace(time=0.0, north=0.0, east=0.0, velocity_north=drift, velocity_east=0.0),)
     distance = _FAR * (guard.radius + vessel.radius)
     for _ in range(2):

@@ -11,8 +11,9 @@ from gnc.estimation.reachable_set import ReachableSet, VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
-from gnc.parameters import GuardParameters, GuidanceParameters, ReportedVessel
+from gnc.parameters import GuidanceParameters, ReportedVessel
 from gnc.reference.reference import PeriodicPath
+from gnc.safety.guard_parameters import GuardParameters
 from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
 from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable

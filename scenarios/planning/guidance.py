@@ -10,9 +10,9 @@ from gnc.estimation.navigation import NavigationParameters
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.plume_axis import AxisParameters
 from gnc.mission.plume_following import FollowingParameters
-from gnc.parameters import GuardParameters
 from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.reference import Swing
+from gnc.safety.guard_parameters import GuardParameters
 from gnc.tracker import TrackingParameters
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin

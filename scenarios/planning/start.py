@@ -5,11 +5,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gnc.compose import keepout_guard
 from gnc.errors import InfeasibleError
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
-from gnc.parameters import GuardParameters
+from gnc.safety.guard_parameters import GuardParameters
+from gnc.safety.keepout_guard import KeepoutGuard
 from scenarios.planning.flight_plan import Start
 from scenarios.schema.sections.flight import StartConfig
 
@@ -80,7 +80,7 @@ def check_start(
             f" only {away:.1f} of its {airspeed:.1f} m/s, beside a vessel with {fastest:.1f} m/s through the air: give it a shorter"
             " lag (kinematic.heading_rate_lag_s) or slower turns (guidance.bank_deg)"
         )
-    keeping = keepout_guard(guard)
+    keeping = KeepoutGuard(guard)
     keeping.tubes = vessel
     own = KnownMotion(ground_north=start.north, ground_east=start.east, course=start.course, wind_north=wind[0], wind_east=wind[1])
     clearance = keeping.clearance(0.0, own, airspeed)

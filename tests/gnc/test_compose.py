@@ -31,10 +31,11 @@ from gnc.mission.direct_tracking import DirectTracking
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import PredictedPlume
 from gnc.mission.plume_following import GLIDE_ALTITUDE, FollowingParameters, PlumeFollowing
-from gnc.parameters import FilterParameters, GuardParameters, GuidanceParameters, ReportedVessel
+from gnc.parameters import FilterParameters, GuidanceParameters, ReportedVessel
 from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.orbit import half_widths
 from gnc.reference.shapes.sinusoid import Sinusoid
+from gnc.safety.guard_parameters import GuardParameters
 
 GUARD = GuardParameters(radius=200.0, heading_rate_max=HEADING_RATE_MAX, lag=0.4, delay=0.0, slow_lag=0.4, time_step=TIME_STEP)
 APPROACH = ApproachParameters(blocked_radius=203.0, round_radius=230.0, join_distance=150.0, tracked=12.0, airspeed=SPEED + 2.0)

@@ -10,8 +10,8 @@ from gnc.estimation.reachable_set import Tube
 from gnc.laws.cascade import CascadeLaw
 from gnc.laws.line_of_sight import LineOfSightLaw
 from gnc.laws.lyapunov import LyapunovLaw
-from gnc.parameters import GuardParameters
 from gnc.reference.placement import PlumeAxis, distance_by_paper
+from gnc.safety.guard_parameters import GuardParameters
 
 # 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py). These vehicles answer at once.
 GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, slow_lag=0.0, time_step=TIME_STEP)
@@ -55,7 +55,7 @@ def guarded_by(monkeypatch):
     """Return a function that makes the paper's guidance with another guard."""
 
     def guarded_by(guard, **how):
-        monkeypatch.setattr("gnc.compose.keepout_guard", lambda _: guard)
+        monkeypatch.setattr("gnc.compose.KeepoutGuard", lambda _: guard)
         return make_guidance(make_reference(paper_oscillation(0.5)), guard=GUARD, **how)
 
     return guarded_by

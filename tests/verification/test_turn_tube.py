@@ -12,6 +12,7 @@ from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.safety.given_commands import GivenCommands
+from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.reversal_search import _Flight
@@ -75,12 +76,14 @@ def lacking(flights, record, *, remembers):
     lacks = []
     for told, now, path in found:
         guard = KeepoutGuard(
-            radius=RADIUS,
-            heading_rate_max=rate,
-            lag=record["lag_s"],
-            delay=record["delay_s"],
-            slow_lag=record["slow_lag_s"],
-            time_step=STEP,
+            GuardParameters(
+                radius=RADIUS,
+                heading_rate_max=rate,
+                lag=record["lag_s"],
+                delay=record["delay_s"],
+                slow_lag=record["slow_lag_s"],
+                time_step=STEP,
+            )
         )
         # Far off, so that every command passes.
         guard.tubes = (Tube(0.0, 1e5, 0.0, 0.0, 0.0),)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.numeric import wrap
+from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.unicycle import lagged_move, unicycle_move
 
@@ -26,7 +27,7 @@ class DiscGuard:
     """A keep-out guard asked about one disc, whose velocity it is told anew at each step; it may accelerate from then on."""
 
     def __init__(self, acceleration=0.0, **parameters):
-        self.guard = KeepoutGuard(time_step=TIME_STEP, **parameters)
+        self.guard = KeepoutGuard(GuardParameters(time_step=TIME_STEP, **parameters))
         self._acceleration, self._time, self._north, self._east = acceleration, 0.0, 0.0, 0.0
 
     @property

@@ -13,6 +13,7 @@ from vessel_cases import LIMITS, Mailbox, Vessel, radio, report_of
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import ReachableSet, Tube
 from gnc.numeric import wrap
+from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 
 PLAN_PERIOD = 0.5
@@ -95,7 +96,9 @@ def hunted(seed, hunter, *, lag=0.4, delay=0.0, time_step=0.05, silence=0.0, spe
     bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(450.0, 700.0)
     start = (distance * math.cos(bearing), distance * math.sin(bearing), generator.uniform(-math.pi, math.pi), 0.0)
     sent = radio(generator, interval=(2.0, 10.0), latency=3.0, missing=0.2, silences=[(40.0, 40.0 + silence)], duration=duration)
-    guard = KeepoutGuard(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=lag, delay=delay, time_step=time_step)
+    guard = KeepoutGuard(
+        GuardParameters(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=lag, delay=delay, time_step=time_step)
+    )
     return hunt(
         made(guard) if made else guard, start, Vessel(0.0, 0.0, *velocity, limits), hunter, sent, generator,
         lag=lag, delay=delay, duration=duration, known=known, time_step=time_step,

@@ -20,10 +20,10 @@ from gnc.estimation.target_motion import SteadyTarget
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.direct_tracking import DirectParameters, DirectTracking, Joining, SteadyCentre
 from gnc.mission.mode import Mode
-from gnc.parameters import GuardParameters
 from gnc.reference.joining import JoinedOrbit
 from gnc.reference.placement import PlumeAxis, distance_by_paper
 from gnc.reference.shapes.sinusoid import Sinusoid
+from gnc.safety.guard_parameters import GuardParameters
 
 NU = 0.1
 GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, slow_lag=0.0, time_step=TIME_STEP)

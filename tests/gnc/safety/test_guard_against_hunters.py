@@ -11,6 +11,7 @@ from hunt_cases import HUNTERS, ahead_of, as_it_was_known, braking, forgetful, h
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.numeric import wrap
+from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 
 HUNTED = pytest.mark.parametrize("hunter", HUNTERS, ids=lambda hunter: hunter.__name__)
@@ -61,7 +62,7 @@ def test_a_report_that_widens_the_disc_does_not_take_the_way_out():
     known, wider = Tube(0.0, 0.0, 0.0, 0.0, 0.0), Tube(0.0, 0.0, 0.0, 0.0, 0.0, 60.0)
     lost = {}
     for made in (lambda guard: guard, forgetful):
-        guard = made(KeepoutGuard(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=0.4, time_step=TIME_STEP))
+        guard = made(KeepoutGuard(GuardParameters(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=0.4, time_step=TIME_STEP)))
         state, lost[made], closest = (-400.0, 3.0, 0.0, 0.0), 0, math.inf
         for step in range(400):
             guard.tubes = (known if step < 160 else wider,)
@@ -92,7 +93,7 @@ def test_dead_reckoning_that_goes_wrong_as_fast_as_declared_does_not_lead_in(rat
         closest, lost = math.inf, 0
         for _ in range(2):
             guard = KeepoutGuard(
-                radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=0.4, time_step=TIME_STEP, drift_rate=declared
+                GuardParameters(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=0.4, time_step=TIME_STEP, drift_rate=declared)
             )
             guard.tubes = (Tube(0.0, 0.0, 0.0, 4.0, 0.0),)
             bearing = generator.uniform(-math.pi, math.pi)

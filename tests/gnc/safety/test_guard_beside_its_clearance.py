@@ -7,11 +7,14 @@ from guard_cases import RADIUS, TIME_STEP, TURN_RADIUS, random_start, random_vel
 
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
+from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 
 
 def a_guard(tube, *, delay=0.0):
-    guard = KeepoutGuard(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=delay, time_step=TIME_STEP)
+    guard = KeepoutGuard(
+        GuardParameters(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=delay, time_step=TIME_STEP)
+    )
     guard.tubes = (tube,)
     return guard
 

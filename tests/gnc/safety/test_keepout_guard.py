@@ -26,8 +26,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gnc.numeric import wrap
-from gnc.parameters import GuardParameters
 from gnc.reference.placement import PlumeAxis, distance_by_paper
+from gnc.safety.guard_parameters import GuardParameters
 
 
 @LAGS

@@ -10,6 +10,7 @@ from guard_cases import RADIUS, TIME_STEP
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.numeric import limited, wrap
+from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.unicycle import lagged_move
 
@@ -33,7 +34,9 @@ class Gust:
 
 def closest(gust: Gust, *, vessel: float, bearing: float, distance: float, course: float, weave: float) -> tuple[float, int]:
     """Return how near a vehicle comes that aims at a vessel, weaving by some angle [rad], and how often the guard acts [m, -]."""
-    guard = KeepoutGuard(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=LAG, time_step=TIME_STEP, speed_error=gust.speed)
+    guard = KeepoutGuard(
+        GuardParameters(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=LAG, time_step=TIME_STEP, speed_error=gust.speed)
+    )
     guard.tubes = (Tube(0.0, 0.0, 0.0, vessel, 0.0),)
     x, y, heading, rate, nearest = distance * math.cos(bearing), distance * math.sin(bearing), course, 0.0, math.inf
     for step in range(1200):

@@ -6,12 +6,12 @@ from collections import deque
 import numpy as np
 import pytest
 
-from gnc.compose import keepout_guard
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube, VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
-from gnc.parameters import GuardParameters
 from gnc.reference.oscillation import design_oscillation
+from gnc.safety.guard_parameters import GuardParameters
+from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.unicycle import lagged_move
 from scenarios.margin.orbit_room import orbit_distance
 
@@ -38,7 +38,7 @@ def interventions(nu, distance, vessel):
 
     The vehicle has a dead time and a lag; commands are what the orbit needs when they act, so that only the guard disturbs it.
     """
-    orbit, guard = oscillation(nu), keepout_guard(GUARD)
+    orbit, guard = oscillation(nu), KeepoutGuard(GUARD)
     along, _ = orbit.half_widths()
     mean, late = nu * SPEED, round(DELAY / TIME_STEP)
     before = TIME_STEP * np.arange(-200, round(3.0 * orbit.period / TIME_STEP) + late + 2)

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from gnc.compose import keepout_guard
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.reference.placement import PlumeAxis, distance_by_paper
+from gnc.safety.keepout_guard import KeepoutGuard
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.planning.planner import plan_flight
 from scenarios.schema.load import load_study, with_values
@@ -34,7 +34,7 @@ def planned(nu, *overrides):
 
 def least_clearance(plan):
     """Return what the guard has left at the worst point of the orbit where it is placed [m]."""
-    guard, orbit, centre = keepout_guard(plan.guidance.guard), plan.oscillation, plan.guidance.mission.centre
+    guard, orbit, centre = KeepoutGuard(plan.guidance.guard), plan.oscillation, plan.guidance.mission.centre
     guard.tubes = (Tube(0.0, 0.0, 0.0, orbit.nu * orbit.speed, 0.0),)
     times, piece = np.linspace(0.0, orbit.period, 240, endpoint=False), 1e-3 * orbit.period
     (x, y), (ahead, right), (farther, more) = (orbit.offset(times + i * piece) for i in range(3))

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from gnc.compose import keepout_guard
 from gnc.errors import InfeasibleError
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
+from gnc.safety.keepout_guard import KeepoutGuard
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.errors import InputError
 from scenarios.planning.planner import plan_flight
@@ -96,7 +96,7 @@ def test_a_start_from_which_no_command_keeps_out_is_refused():
 
 def test_the_guard_keeps_the_keep_out_radius_and_no_more_where_everything_is_known():
     # The tracking allowance is the orbit's. The clearance of a vehicle that recedes is its distance less the radius.
-    guard = keepout_guard(plan(nu=0.0).guidance.guard)
+    guard = KeepoutGuard(plan(nu=0.0).guidance.guard)
     guard.tubes = (Tube(0.0, 0.0, 0.0, 0.0, 0.0),)
     own = KnownMotion(ground_north=0.0, ground_east=300.0, course=math.pi / 2.0)
     assert guard.clearance(0.0, own, 19.42) == pytest.approx(300.0 - 200.0, abs=1e-9)
