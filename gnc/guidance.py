@@ -8,6 +8,7 @@ from gnc.estimation.health_monitor import HealthMonitor
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
 from gnc.mission.mission import Mission
+from gnc.numeric import limited
 from gnc.safety.guarded_commands import GuardedCommands
 
 
@@ -98,9 +99,9 @@ class Guidance:
             self.guarding = keep_out.guard.intervening
         tracker.heading_rate_command = command
         command /= own.air_ratio
-        limit = self._limit
-        if not -limit <= command <= limit:
-            command = math.copysign(limit, command)
+        bounded = limited(command, self._limit)
+        if bounded != command:
+            command = bounded
             tracker.heading_rate_command = turning = command * own.air_ratio
             if keep_out is not None:
                 keep_out.overruled(turning)

@@ -32,3 +32,8 @@ def limited(value: float, limit: float) -> float:
     if value > limit:
         return limit
     return -limit if value < -limit else value
+
+
+def clip(value: float, low: float, high: float) -> float:
+    """Return ``value`` kept within ``low`` and ``high``; what is not a number stays so."""
+    return low if value < low else high if value > high else value

@@ -49,8 +49,3 @@ def along(course: float) -> Vector:
 def course_of(a: Vector) -> float:
     """Return the course of a vector [rad]."""
     return math.atan2(a[1], a[0])
-
-
-def clip(value: float, low: float, high: float) -> float:
-    """Return ``value`` kept within ``low`` and ``high``."""
-    return low if value < low else high if value > high else value

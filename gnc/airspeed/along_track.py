@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, field
 
 from gnc.estimation.own_motion import OwnMotion
-from gnc.vectors import clip
+from gnc.numeric import clip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

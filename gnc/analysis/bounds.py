@@ -16,6 +16,7 @@ from scipy.optimize import Bounds, minimize
 from gnc.analysis.worst_position import worst_case_over_positions
 from gnc.errors import InfeasibleError
 from gnc.laws.delta import LookAhead, look_ahead
+from gnc.numeric import clip
 
 _Array = npt.NDArray[np.float64]
 
@@ -129,7 +130,7 @@ def convergence_time(
     """
     _check_positive(speed=(speed, "m/s"), gain=(gain, "1/s"), steering_max=(steering_max, "rad/s"))
     _check_distances(distance_from, distance_to)
-    linear_below = min(max(steering_max / gain, _SETTLED), math.pi)
+    linear_below = clip(steering_max / gain, _SETTLED, math.pi)
     turning = (math.pi - linear_below) / steering_max + math.log(linear_below / _SETTLED) / gain
     by_radius = 2.0 * parameters.radius * math.log(distance_from / distance_to)
     return turning + (by_radius + parameters.epsilon * (distance_from**2 - distance_to**2)) / speed

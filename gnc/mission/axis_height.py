@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from gnc.estimation.plume.prior import downwash, rise
+from gnc.numeric import clip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,4 +33,4 @@ class AxisHeight:
         """Return the height above the sea [m] at a distance behind the funnel [m] in an apparent wind [m/s]."""
         mouth = max(0.0, self.source - downwash(self.stack_diameter, self.exhaust_speed, speed))
         climbed = rise(self.momentum_flux, self.buoyancy_flux, distance, speed)
-        return min(max(mouth + self.climb * distance + climbed, self.lowest), self.highest)
+        return clip(mouth + self.climb * distance + climbed, self.lowest, self.highest)

@@ -8,7 +8,7 @@ from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
-from gnc.numeric import limited, wrap
+from gnc.numeric import clip, limited, wrap
 from gnc.reference.moving_centre import MovingCentre
 
 
@@ -134,7 +134,7 @@ class PredictedAxis:
             self.demanded = height.at(centre.distance, centre.speed_ratio * situation.speed)
             return
         height_there, course = self._true_axis
-        self.demanded = min(max(height_there, height.lowest), height.highest)
+        self.demanded = clip(height_there, height.lowest, height.highest)
         self.bearing = wrap(course - trail(situation.own, situation.target))
 
 

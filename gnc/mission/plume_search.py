@@ -8,6 +8,7 @@ import numpy.typing as npt
 from scipy.special import ndtr
 
 from gnc.estimation.plume.estimator import HIT, PlumeEstimator, PlumeState
+from gnc.numeric import clip
 
 Array = npt.NDArray[np.float64]
 
@@ -74,8 +75,8 @@ class HeightSearch:
         height, deviation = estimator.height, estimator.height_deviation
         spread, meander = estimator.sigma_z, estimator.meander_z
         if deviation < _KNOWN * math.hypot(spread, meander):
-            return min(max(height, self._lowest), self._highest)
-        low, high = (min(max(height + side * _REACH * deviation, self._lowest), self._highest) for side in (-1.0, 1.0))
+            return clip(height, self._lowest, self._highest)
+        low, high = (clip(height + side * _REACH * deviation, self._lowest, self._highest) for side in (-1.0, 1.0))
         altitudes = low + (high - low) * _PROBES
         off = np.hypot(estimator.expected_deviation(altitudes), meander)
         later = 2.0 * ndtr(math.sqrt(-2.0 * math.log(HIT)) * spread / off) - 1.0
@@ -118,4 +119,4 @@ class LadderSearch:
             if not self._lowest < altitude + (_RUNG if self._up else -_RUNG) < self._highest:
                 self._up = not self._up
             height = altitude + (_RUNG if self._up else -_RUNG)
-        return min(max(height, self._lowest), self._highest)
+        return clip(height, self._lowest, self._highest)

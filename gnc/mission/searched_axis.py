@@ -11,6 +11,7 @@ from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb, Situation, apparent_wind
 from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
+from gnc.numeric import clip
 
 _MODES = {PlumeState.SEARCHING: Mode.SEARCHING, PlumeState.FOUND: Mode.FOUND, PlumeState.LOST: Mode.LOST_AGAIN}
 
@@ -214,6 +215,6 @@ def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float
     while later > 0 and places[later - 1][0] >= time:
         later -= 1
     then, before = places[later], places[max(0, later - 1)]
-    share = min(max((time - before[0]) / (then[0] - before[0]), 0.0), 1.0) if then[0] > before[0] else 1.0
+    share = clip((time - before[0]) / (then[0] - before[0]), 0.0, 1.0) if then[0] > before[0] else 1.0
     _, north, east, altitude = before
     return north + share * (then[1] - north), east + share * (then[2] - east), altitude + share * (then[3] - altitude)

@@ -6,7 +6,7 @@ side that is shorter. The vehicle heads so that its velocity relative to the dis
 
 import math
 
-from gnc.numeric import wrap
+from gnc.numeric import limited, wrap
 
 _OUTWARD = 0.6
 """How far the way leans outwards for a vehicle a turn radius or more inside of the circle by which to go round [rad].
@@ -72,7 +72,7 @@ class Transit:
                 self.side = self._shorter_side(bearing, lean, math.atan2(target_y, target_x), course, round_radius)
             way = bearing + math.pi - self.side * lean
         across = velocity_east * math.cos(way) - velocity_north * math.sin(way)
-        return way + math.asin(min(max(across / speed, -1.0), 1.0))
+        return way + math.asin(limited(across / speed, 1.0))
 
     def _shorter_side(self, bearing: float, lean: float, target_bearing: float, course: float, radius: float) -> int:
         clockwise = (target_bearing - bearing) % (2.0 * math.pi)

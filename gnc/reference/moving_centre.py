@@ -8,7 +8,7 @@ Everything is in the frame of the air mass.
 import math
 from dataclasses import dataclass
 
-from gnc.numeric import limited, wrap
+from gnc.numeric import clip, limited, wrap
 
 _AXIS_GAIN = 0.1
 """Rate of the axis per difference from where it should be, in units of omega_max [-].
@@ -167,7 +167,7 @@ class MovingCentre:
         self.x, self.y = self.distance * cos_a, self.distance * sin_a
         self.swing = turn * self.distance
         self._mean_swing += (self.swing - self._mean_swing) * time_step / (time_step + _SWING_MEMORY)
-        self.steady_swing = min(max(self._mean_swing, min(self.swing, 0.0)), max(self.swing, 0.0))
+        self.steady_swing = clip(self._mean_swing, min(self.swing, 0.0), max(self.swing, 0.0))
         self.velocity_north = air_north + recede * cos_a - turn * self.y
         self.velocity_east = air_east + recede * sin_a + turn * self.x
 

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from gnc.numeric import clip
 from gnc.reference.reference import Array
 
 SPEED_RATIO_MIN = -0.2
@@ -57,7 +58,7 @@ class OrbitTables:
         -------
         along, right : in units of V_r/omega_0
         """
-        row = min(max(eta, 0.0), self._eta_last) / ETA_STEP
+        row = clip(eta, 0.0, self._eta_last) / ETA_STEP
         i = int(row)
         fraction = row - i
         low, high = self._rows[i], self._rows[i + 1]

@@ -12,7 +12,7 @@ change of eta. Both therefore move mostly while the reference passes the centre.
 
 import math
 
-from gnc.numeric import wrap
+from gnc.numeric import limited, wrap
 from gnc.reference.reference import Swing
 
 _GATE = 0.2
@@ -102,13 +102,9 @@ class SteeredReference:
         swing = self._swing
         phase, eta, mean_course, cos_phase = self.phase, self.eta, self.mean_course, self._cos_phase
         gate = _GATE + (1.0 - _GATE) * cos_phase * cos_phase
-        turn = self._rate_gain * wrap(self._mean_demand - mean_course)
-        if not -rate_max < turn < rate_max:
-            turn = math.copysign(rate_max, turn)
+        turn = limited(self._rate_gain * wrap(self._mean_demand - mean_course), rate_max)
         self._mean_rate = mean_rate = self._mean_rate + smoothing * (gate * turn - self._mean_rate)
-        grow = self._rate_gain * (self._eta_demand - eta)
-        if not -rate_max < grow < rate_max:
-            grow = math.copysign(rate_max, grow)
+        grow = limited(self._rate_gain * (self._eta_demand - eta), rate_max)
         self._eta_rate = eta_rate = self._eta_rate + smoothing * (gate * grow - self._eta_rate)
         half = 0.5 * dt
         middle_eta, middle_mean = eta + half * eta_rate, mean_course + half * mean_rate

@@ -7,6 +7,7 @@ import math
 from collections import deque
 
 from common.physics.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
+from gnc.numeric import limited
 
 _WHOLE = 1e-6
 """Of a step, by which a delay may exceed a whole number of them without counting as one more [-]."""
@@ -86,8 +87,7 @@ class GivenCommands:
             if under_way:
                 turned += self._changing * (under_way[0] - acting)
             lack = self._lack * self._kept ** len(since) + acted - turned - self._slow * changed
-            most = self._lack_max
-            self._lack = lack if -most <= lack <= most else math.copysign(most, lack)
+            self._lack = limited(lack, self._lack_max)
             # What changed little by little between two looks counts as if it had changed at once.
             since.append(self._given)
             changed = (max(since) - min(since)) / self._reversal

@@ -16,6 +16,7 @@ from collections.abc import Sequence
 
 from gnc.estimation.own_motion import AirMotion
 from gnc.estimation.reachable_set import Tube
+from gnc.numeric import limited
 from gnc.safety.given_commands import GivenCommands
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.turn_prediction import Motion, Start, TurnPrediction, nearer_side
@@ -119,8 +120,7 @@ class KeepoutGuard:
 
     def _turned(self, command: float, speed: float) -> float:
         """Return what of a command comes at such a speed, at the largest bank [rad/s]."""
-        most = self._rate * self._turn_speed / speed
-        return command if -most <= command <= most else math.copysign(most, command)
+        return limited(command, self._rate * self._turn_speed / speed)
 
     def allows(self, command: float, time: float, own: AirMotion, speed: float, slowest: float = math.inf) -> bool:
         """Return whether ``limit``, which is to be called next, lets the command pass if it is given the same parameters."""
@@ -264,7 +264,7 @@ class KeepoutGuard:
         # From less than a right angle beyond it turns back: going on would lead once round, towards the disc.
         if side * left >= self._rate * self._time_step or abs(left) >= 0.5 * math.pi:
             return side * self._rate
-        return math.copysign(min(abs(left) / self._time_step, self._rate), left)
+        return limited(left / self._time_step, self._rate)
 
     def _best_turn(self, situations: Sequence[Situation]) -> tuple[float, float, tuple[Motion, ...], Tube]:
         """Return slack [m], side, motions and disc of the turn away to fly: one that keeps off, or that to the side that was safe.

@@ -6,7 +6,7 @@ from gnc_cases import examples
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from gnc.numeric import limited, wrap, wrapped
+from gnc.numeric import clip, limited, wrap, wrapped
 
 # The last floating-point number below pi, and the first beyond -pi: where wrap functions go wrong.
 BELOW_HALF_TURN = math.nextafter(math.pi, 0.0)
@@ -82,6 +82,13 @@ def test_a_limited_value_is_what_min_and_max_make_of_it(value, limit):
 def test_what_is_not_a_number_is_not_made_one(limit):
     # A command that were cut to its limit would hide that the guidance has lost count.
     assert math.isnan(limited(math.nan, limit))
+    assert math.isnan(clip(math.nan, -limit, limit))
+
+
+@examples(500)
+@given(value=st.floats(allow_nan=False), low=st.floats(-1e300, 1e300), width=st.floats(0.0, 1e300))
+def test_a_clipped_value_is_what_min_and_max_make_of_it(value, low, width):
+    assert clip(value, low, low + width) == min(max(value, low), low + width)
 
 
 @examples(200)

@@ -12,6 +12,7 @@ from gnc.estimation.plume.pass_reader import Evidence, PassReader
 from gnc.estimation.plume.passes import PassCollector, Path
 from gnc.estimation.plume.prior import SPEED_MIN, GasSensor, PlumePrior
 from gnc.estimation.plume.sensor_watch import SensorState, SensorWatch
+from gnc.numeric import clip
 
 __all__ = ["GasSensor", "PlumeEstimator", "PlumePrior", "PlumeState", "SensorState"]
 
@@ -249,7 +250,7 @@ class PlumeEstimator:
 
     def _judge(self, evidence: Evidence, chance: float) -> None:
         """Compare what a pass showed with the chance of a hit that was expected of it: innovations, found, lost again."""
-        chance = min(max(chance, _CHANCE), 1.0 - _CHANCE)
+        chance = clip(chance, _CHANCE, 1.0 - _CHANCE)
         signal_to_noise = evidence.peak / self.prior.sensor.noise
         hit = signal_to_noise > SIGNAL_TO_NOISE and evidence.significance > SIGNAL_TO_NOISE
         squared = (hit - chance) ** 2 / (chance * (1.0 - chance))

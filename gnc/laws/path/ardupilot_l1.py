@@ -9,9 +9,9 @@ from typing import ClassVar
 
 from gnc.laws.path.adapter import PathLaw, PathMotion, path_motion, turn_rate
 from gnc.laws.steering_law import NO_CIRCLE, ON_CIRCLE, Surroundings, steering_law
-from gnc.numeric import wrap
+from gnc.numeric import clip, wrap
 from gnc.reference.reference import Reference
-from gnc.vectors import Vector, along, clip, course_of, cross, dot, minus, norm, scaled
+from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, scaled
 
 ONE_OVER_PI = 0.3183099
 """As ArduPilot has it."""

@@ -10,7 +10,8 @@ from typing import ClassVar
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
 from gnc.laws.path.ardupilot_l1 import ONE_OVER_PI
 from gnc.laws.steering_law import CIRCLES_ALONE, ON_OSCILLATION, steering_law
-from gnc.vectors import Vector, along, clip, cross, dot, minus, norm, plus, scaled
+from gnc.numeric import clip
+from gnc.vectors import Vector, along, cross, dot, minus, norm, plus, scaled
 
 _QUARTER = 1.5708
 _CENTRE = 0.1

@@ -11,7 +11,8 @@ from typing import ClassVar
 
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
 from gnc.laws.steering_law import steering_law
-from gnc.vectors import Vector, clip, course_of, cross, dot, minus, norm, plus, right_of, scaled
+from gnc.numeric import clip
+from gnc.vectors import Vector, course_of, cross, dot, minus, norm, plus, right_of, scaled
 
 _EPSILON = 1e-6
 _RADIUS_MIN = 0.5

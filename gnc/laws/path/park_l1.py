@@ -10,8 +10,8 @@ from typing import ClassVar
 
 from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
 from gnc.laws.steering_law import CIRCLES_ALONE, NO_CIRCLE, ON_CIRCLE, ON_OSCILLATION, steering_law
-from gnc.numeric import wrap
-from gnc.vectors import Vector, along, clip, course_of, cross, dot, minus, norm, plus, scaled
+from gnc.numeric import clip, wrap
+from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
 
 
 def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: float = 0.0) -> float:
