@@ -17,22 +17,20 @@ from gnc.safety.guard_parameters import GuardParameters
 from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
 from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
+from scenarios.planning.air.dead_reckoning import drift_rate
+from scenarios.planning.air.estimated_wind import navigation_parameters, wind_change
 from scenarios.planning.bounded_steering import given_steering
-from scenarios.planning.dead_reckoning import drift_rate
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
     THRUST_LOST_FRACTION,
     following_parameters,
     guard_parameters,
     guidance_lag,
-    navigation_parameters,
-    plan_interval,
     speed_hold,
     tracking_parameters,
     turn_time,
-    wind_change,
 )
-from scenarios.planning.limits import omega_max
+from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.plume.axis import axis_height, plume_axis
 from scenarios.planning.plume.distance import additional_distance
 from scenarios.planning.reference import orbits, oscillation_at, swing_of
@@ -96,7 +94,7 @@ def following_flight(
         wind_change=wind_change(scenario, air),
         drift_rate=drift_rate(scenario, air, turn_time(scenario, setup.reversal)),
     )
-    widest = widest_tube(limits, scenario.reports, plan_period=plan_interval(scenario) / g.rate_hz)
+    widest = widest_tube(limits, scenario.reports, plan_period=plan_interval(g) / g.rate_hz)
     oscillation = oscillation_at(g, scenario.reference, nu)
     if scenario.stands_off:
         nearest = circle_distance(guarded, widest, g.airspeed_mps, nu * g.airspeed_mps)

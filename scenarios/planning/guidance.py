@@ -3,10 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
-from aircraft.atmosphere.wind import WindField
 from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
-from gnc.estimation.navigation import NavigationParameters
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.plume_axis import AxisParameters
 from gnc.mission.plume_following import FollowingParameters
@@ -16,8 +13,9 @@ from gnc.safety.guard_parameters import GuardParameters
 from gnc.tracker import TrackingParameters
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin
+from scenarios.planning.air.dead_reckoning import velocity_noise
 from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
-from scenarios.planning.limits import PLAN_PERIOD, omega_max
+from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.reference import shape_of
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -30,24 +28,6 @@ TRANSIT_FRACTION = 0.5
 
 THRUST_LOST_FRACTION = 0.55
 """Mean lack of airspeed at which thrust counts as lost, over what V_r lies above the slowest airspeed [-]."""
-
-AIRSPEED_SIGMA, COURSE_SIGMA = 0.5, 0.03
-"""Deviations of airspeed and course that the wind's filter takes for noise in still air [m/s, rad]."""
-
-WIND_DRIFT, WIND_PRIOR = 0.02, 10.0
-"""By how much the wind may change in the root of a second, and how large it may be before any measurement [m/s]."""
-
-WIND_FOLLOWED = 20.0
-"""Time within which the estimated wind follows a change [s]: of a wind that turns steadily it is behind by less."""
-
-_NOISE_DEVIATIONS = 3.0
-"""Standard deviations of the noise of velocities that are allowed for [-]."""
-
-_NOISE_OF_WIND = 0.12
-"""What the wind's filter leaves of the noise of a single measurement [-]: sqrt(k/2) of its gain k = 0.028 in still air."""
-
-_PLUME_RADII = 3.0
-"""Distance from the vessel up to which an inclined plume is climbed to, over the keep-out radius [-]: beyond any orbit's centre."""
 
 ROUND_BY = 0.8
 """By how many turn radii a way round the keep-out area stays farther off than what counts as blocked [-]."""
@@ -91,7 +71,7 @@ def guard_parameters(
     drift_rate : how fast dead reckoning may go wrong [m/s]
     """
     f, air = scenario.following, scenario.turbulence
-    speed_error = max(f.speed_error_mps, _noise(scenario, drift_rate)) + air.gust_speed_mps + wind_change
+    speed_error = max(f.speed_error_mps, velocity_noise(scenario, drift_rate)) + air.gust_speed_mps + wind_change
     return GuardParameters(
         radius=radius + turbulence,
         deviation=max(setup.response_error, f.turn_deviation_m if scenario.follows else 0.0),
@@ -108,49 +88,6 @@ def guard_parameters(
     )
 
 
-def _noise(scenario: Scenario, drift_rate: float) -> float:
-    """Return by how much the noise of its sensors may make the vehicle's own velocity wrong at a step [m/s].
-
-    The guard is asked at each step, and goes by the one at which the noise makes a command look safe. Dead reckoning goes by
-    airspeed and heading as they are read; the guard reckons with its drift beside.
-    """
-    sensors = scenario.sensors
-    by_wind = math.hypot(sensors.airspeed_sigma_mps, scenario.guidance.airspeed_mps * math.radians(sensors.heading_sigma_deg))
-    noise = _NOISE_DEVIATIONS * math.hypot(sensors.velocity_sigma_mps, _NOISE_OF_WIND * by_wind)
-    return max(noise, _NOISE_DEVIATIONS * by_wind - drift_rate) if drift_rate else noise
-
-
-def wind_change(scenario: Scenario, wind: WindField) -> float:
-    """Return by how much the wind that is flown in changes at most until its estimate has followed [m/s].
-
-    It changes with time, and with the height of a vehicle that climbs to that of the plume.
-    """
-    return largest_wind_change(scenario, wind, wind_followed(scenario))
-
-
-def largest_wind_change(scenario: Scenario, wind: WindField, interval: float) -> float:
-    """Return by how much the wind that is flown in changes at most within an interval [s], by time and by height [m/s]."""
-    heights, duration = _flown_heights(scenario), scenario.flight.duration_max_s
-    climbed = scenario.following.climb_gradient * scenario.guidance.airspeed_mps * interval
-    shear = wind.largest_shear(climbed, min(heights), max(heights), duration)
-    return wind.largest_change(interval, duration, heights) + shear
-
-
-def wind_followed(scenario: Scenario) -> float:
-    """Return the time within which the estimated wind follows a change [s]: where gusts hide it, the filter is slower."""
-    period = plan_interval(scenario) / scenario.guidance.rate_hz
-    return max(WIND_FOLLOWED, math.hypot(AIRSPEED_SIGMA, _gust_sigma(scenario)) * math.sqrt(period) / WIND_DRIFT)
-
-
-def _flown_heights(scenario: Scenario) -> list[float]:
-    """Return the height at the start and those of the plume that are climbed to, the lowest and the highest [m]."""
-    flight, plume = scenario.flight, scenario.plume
-    if scenario.emission.ship is not None:
-        return [scenario.altitude, flight.altitude_min_m, flight.altitude_max_m]
-    risen = _PLUME_RADII * scenario.keepout.radius_m * math.tan(math.radians(plume.elevation_deg))
-    return [scenario.altitude, plume.source_height_m, plume.source_height_m + risen]
-
-
 def turn_time(scenario: Scenario, reversal: TurnReversalResponse) -> float:
     """Return how long half a turn takes, with what it takes to begin [s]: that of a turn away."""
     return math.pi / omega_max(scenario.guidance) + reversal.delay + reversal.lag
@@ -165,35 +102,6 @@ def speed_hold(scenario: Scenario, setup: VehicleSetup) -> SpeedHold:
         airspeed_min=setup.airspeed_min,
         airspeed_max=setup.airspeed_max,
     )
-
-
-def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> NavigationParameters:
-    """Return what the navigation knows beforehand: how much gusts scatter what it measures the wind by."""
-    g, time_step, gust = scenario.guidance, 1.0 / scenario.guidance.rate_hz, _gust_sigma(scenario)
-    return NavigationParameters(
-        crab_banks=setup.crab_banks,
-        crab_offsets=setup.crab_offsets,
-        airspeed_sigma=math.hypot(AIRSPEED_SIGMA, gust),
-        course_sigma=math.hypot(COURSE_SIGMA, gust / g.airspeed_mps),
-        wind_drift=WIND_DRIFT,
-        wind_prior=WIND_PRIOR,
-        wind_interval=plan_interval(scenario),
-        time_step=time_step,
-    )
-
-
-def _gust_sigma(scenario: Scenario) -> float:
-    """Return the deviation of single measurements of the wind by turbulence [m/s], more for being correlated in time."""
-    if scenario.turbulence.level == "none":
-        return 0.0
-    g, height = scenario.guidance, scenario.plume.source_height_m
-    sigma = intensities(height, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
-    return sigma * math.sqrt(2.0 * scale_lengths(height)[0] / g.airspeed_mps * g.rate_hz / plan_interval(scenario))
-
-
-def plan_interval(scenario: Scenario) -> int:
-    """Return the guidance steps between plans."""
-    return max(1, round(PLAN_PERIOD * scenario.guidance.rate_hz))
 
 
 def approach_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) -> ApproachParameters:
@@ -261,6 +169,6 @@ def following_parameters(
         reach=margin.reach,
         reach_time=turn_time(scenario, setup.reversal),
         drift_rate=drift_rate,
-        plan_interval=plan_interval(scenario),
+        plan_interval=plan_interval(g),
         axis=axis,
     )

@@ -1,4 +1,4 @@
-"""Whether an aircraft can fly what the guidance may ask of it."""
+"""What the guidance may ask of an aircraft, whether that can be flown, and how often it plans."""
 
 import math
 
@@ -7,10 +7,18 @@ from common.physics.coordinated_turn import bank_for_heading_rate, heading_rate_
 from scenarios.errors import InputError
 from scenarios.schema.sections.guidance import GuidanceConfig
 
+PLAN_PERIOD = 0.5
+"""Time between plans, and between measurements of the wind [s]."""
+
 
 def omega_max(guidance: GuidanceConfig) -> float:
     """Return omega_max, the largest heading rate that the guidance may command [rad/s]."""
     return guidance.heading_rate_max_rad_s or heading_rate_for_bank(math.radians(guidance.bank_deg), guidance.airspeed_mps)
+
+
+def plan_interval(guidance: GuidanceConfig) -> int:
+    """Return the guidance steps between plans."""
+    return max(1, round(PLAN_PERIOD * guidance.rate_hz))
 
 
 def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> None:
@@ -27,7 +35,3 @@ def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> N
             f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {title} stops at"
             f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or guidance.heading_rate_max_rad_s"
         )
-
-
-PLAN_PERIOD = 0.5
-"""Time between plans, and between measurements of the wind [s]."""

@@ -11,8 +11,8 @@ from gnc.errors import InfeasibleError
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.plume_axis import Climb
 from gnc.mission.standoff import StandoffParameters
-from scenarios.planning.guidance import plan_interval, speed_hold
-from scenarios.planning.limits import omega_max
+from scenarios.planning.guidance import speed_hold
+from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.plume.axis import PREDICTED_TIME
 from scenarios.planning.reference import RATIO_STEPS
 from scenarios.schema.scenario import Scenario
@@ -109,7 +109,7 @@ def standoff_parameters(scenario: Scenario, setup: VehicleSetup, radius: float, 
         speed=g.airspeed_mps,
         speed_ratio_max=scenario.following.speed_ratio_max,
         glide_airspeed=0.5 * (g.airspeed_mps + speed_hold(scenario, setup).airspeed_min),
-        plan_interval=plan_interval(scenario),
+        plan_interval=plan_interval(scenario.guidance),
         height=height,
         climb=Climb(time=PREDICTED_TIME, gradient=scenario.following.climb_gradient),
     )

@@ -11,8 +11,8 @@ from gnc.safety.guard_parameters import GuardParameters
 from scenarios.margin.orbit_room import orbit_distance
 from scenarios.planning.bounded_steering import Steering, plan_steering
 from scenarios.planning.flight_plan import FlightPlan
-from scenarios.planning.guidance import approach_parameters, guard_parameters, plan_interval, tracking_parameters
-from scenarios.planning.limits import omega_max
+from scenarios.planning.guidance import approach_parameters, guard_parameters, tracking_parameters
+from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.reference import circle, joined_orbit, oscillation_at, placed_distance
 from scenarios.planning.start import check_start, placed, sampled_start
 from scenarios.schema.scenario import Scenario
@@ -77,7 +77,7 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
     joining = None
     if g.approach:
         approach = approach_parameters(scenario, setup, disc)
-        joining = Joining(approach=approach, orbit=orbit, plan_interval=plan_interval(scenario))
+        joining = Joining(approach=approach, orbit=orbit, plan_interval=plan_interval(scenario.guidance))
     mission = DirectParameters(
         reference=orbit.reference(math.radians(g.phase_deg), *placed(ahead, right, course)),
         centre=SteadyCentre(*placed(ahead, right, course), nu),

@@ -8,7 +8,7 @@ from flight_cases import SPEED, plan, scenario
 from gnc.errors import InfeasibleError
 from gnc.estimation.wind_filter import WindFilter
 from gnc.mission.plume_following import FollowingParameters
-from scenarios.planning.guidance import navigation_parameters, wind_followed
+from scenarios.planning.air.estimated_wind import navigation_parameters, wind_followed
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 

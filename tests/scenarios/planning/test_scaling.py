@@ -182,7 +182,7 @@ def kinematic_flight(monkeypatch):
 
     def kinematic_flight(time, *args, **how):
         with monkeypatch.context() as patched:
-            patched.setattr("scenarios.planning.guidance.PLAN_PERIOD", 0.5 * time)
+            patched.setattr("scenarios.planning.limits.PLAN_PERIOD", 0.5 * time)
             return in_own_units(time, *args, **how)
 
     return kinematic_flight

@@ -8,7 +8,7 @@ from flight_cases import plan, scenario
 
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import CALM, WindField
-from scenarios.planning.dead_reckoning import drift_rate
+from scenarios.planning.air.dead_reckoning import drift_rate
 
 TURN, OUTAGE = 7.0, 60.0
 FAULT = {"kind": "satellite_navigation", "at_s": (80.0, 80.0), "satellite_navigation_s": OUTAGE}

@@ -1,19 +1,27 @@
 """How far dead reckoning goes wrong in air that changes: while satellites are lost, the wind is taken to be as it was before.
 
 By how much it may go wrong in steady air, by errors of sensors and of the estimated wind, is declared. Here is what the scenario's
-own air adds: of its mean wind, of its gusts, and of its turbulence.
+own air adds: of its mean wind, of its gusts, and of its turbulence. Noise, which is another at each step, counts beside.
 """
+
+import math
 
 import numpy as np
 import numpy.typing as npt
 
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import WindField
-from scenarios.planning.guidance import WIND_FOLLOWED, largest_wind_change, wind_followed
+from scenarios.planning.air.estimated_wind import WIND_FOLLOWED, largest_wind_change, wind_followed
 from scenarios.schema.scenario import Scenario
 from scenarios.world.faults import SATELLITES
 
 Array = npt.NDArray[np.float64]
+
+_NOISE_DEVIATIONS = 3.0
+"""Standard deviations of the noise of velocities that are allowed for [-]."""
+
+_NOISE_OF_WIND = 0.12
+"""What the wind's filter leaves of the noise of a single measurement [-]: sqrt(k/2) of its gain k = 0.028 in still air."""
 
 _DEVIATIONS = 3.0
 """Standard deviations of what turbulence displaces that are allowed for [-]."""
@@ -38,6 +46,22 @@ def drift_rate(scenario: Scenario, wind: WindField, turn: float) -> float:
     age = np.linspace(0.0, min(outage, duration), _AGES)
     covered = float(np.max((_by_gusts(scenario, age) + _by_turbulence(scenario, age)) / (age + turn)))
     return scenario.following.drift_rate_mps + changed + _gust_taken_for_wind(scenario) + covered
+
+
+def velocity_noise(scenario: Scenario, drift: float) -> float:
+    """Return by how much the noise of its sensors may make the vehicle's own velocity wrong at a step [m/s].
+
+    The guard is asked at each step, and goes by the one at which the noise makes a command look safe. Dead reckoning goes by
+    airspeed and heading as they are read; the guard reckons with its drift beside.
+
+    Parameters
+    ----------
+    drift : how fast dead reckoning may go wrong, by ``drift_rate`` [m/s]
+    """
+    sensors = scenario.sensors
+    by_wind = math.hypot(sensors.airspeed_sigma_mps, scenario.guidance.airspeed_mps * math.radians(sensors.heading_sigma_deg))
+    noise = _NOISE_DEVIATIONS * math.hypot(sensors.velocity_sigma_mps, _NOISE_OF_WIND * by_wind)
+    return max(noise, _NOISE_DEVIATIONS * by_wind - drift) if drift else noise
 
 
 def _gust_taken_for_wind(scenario: Scenario) -> float:
