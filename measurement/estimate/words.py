@@ -10,7 +10,7 @@ from measurement.gases import limit_words
 _WITHOUT = "C"
 """Quality of records that are given no verdict."""
 
-_COUNTED = {ABOVE: "above the limit", BELOW: "below it", OPEN: "left open", _WITHOUT: "without a verdict (quality C)"}
+_COUNTED = {ABOVE: "above the limit", BELOW: "below it", OPEN: "undecided", _WITHOUT: "without a verdict (quality C)"}
 """What is said of several records, by their verdict, or by the quality that gives none."""
 
 
@@ -48,7 +48,7 @@ def verdict_words(verdict: str, limit_percent: float, probability_above: float, 
     limit = limit_words(limit_percent)
     if quality == _WITHOUT:
         return f"no verdict on the limit of {limit}: quality {_WITHOUT} gives none"
-    side = "open for" if verdict == OPEN else verdict
+    side = "not shown to be above or below" if verdict == OPEN else verdict
     return f"{side} the limit of {limit}; probability above it: {probability(probability_above)}"
 
 

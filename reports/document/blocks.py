@@ -155,8 +155,8 @@ class UndecidedCard(Card):
 
     @property
     def judgement(self) -> str:
-        """Return that it is open for which limit."""
-        return f"? open for the limit of {self.limit}"
+        """Return that it is not decided, and for which limit."""
+        return f"? not shown to be above or below the limit of {self.limit}"
 
     @property
     def tone(self) -> str:

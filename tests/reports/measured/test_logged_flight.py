@@ -85,7 +85,7 @@ def test_an_estimate_below_0_is_not_told_outside_of_its_own_interval_without_a_w
     [
         ("above", 0.97, False, False, "Above the limit of 0.10 %; probability above it: 97.0 %"),
         ("below", 0.0001, True, True, "Below the limit of 0.10 %; probability above it: less than 0.1 %"),
-        ("open", 0.4, True, False, "Open for the limit of 0.10 %; probability above it: 40.0 %"),
+        ("open", 0.4, True, False, "Not shown to be above or below the limit of 0.10 %; probability above it: 40.0 %"),
     ],
 )
 def test_a_verdict_says_probability_and_limit(record, verdict, chance, holds, complete, words):

@@ -126,7 +126,7 @@ ROW = {
     [
         ("above", "✗ above the limit of 0.10 %", "missed"),
         ("below", "✓ below the limit of 0.10 %", "met"),
-        ("open", "? open for the limit of 0.10 %", "open"),
+        ("open", "? not shown to be above or below the limit of 0.10 %", "open"),
     ],
 )
 def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(called, judgement, tone):
@@ -137,7 +137,7 @@ def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(c
     assert flights.sulphur_below(run) == (called == "below")
     # Red, as the verdict of an estimate of the same fuel is.
     assert flights.sulphur_above(run) == (called == "above")
-    assert ("open for the limit" in flights.sulphur_headline(run)) == (called == "open")
+    assert ("not shown to be above or below the limit" in flights.sulphur_headline(run)) == (called == "open")
 
 
 def test_a_sniffer_without_a_result_is_said_on_page_1():
@@ -183,7 +183,7 @@ def test_quality_c_gives_no_verdict_in_words_either():
     told = flights._told(pd.Series(row))
     assert "95 % interval 0.461 to 0.539 %: no verdict on the limit of 0.10 %: quality C" in told
     assert "Quality C: SO2 is saturated." in told
-    assert "open for" not in told
+    assert "not shown" not in told
     card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([row])))[2]
     assert card[1] == "no verdict: quality C"
 
