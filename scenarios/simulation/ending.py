@@ -108,8 +108,9 @@ class Ending:
         settling, plan, mode = self._settling, self._plan, self._guidance.mission.mode
         if self._judge is not None and self._judge.enough is not None:
             return self._judge.words
+        caveat = ""
         if math.isnan(settling.at):
-            flown = "did not settle"
+            flown, caveat = "did not settle", ", though a longer flight may not settle either"
             if settling.tracked >= plan.settling_period:
                 flown = f"tracked its reference for {settling.tracked:.0f} s, but {self._orbit()}, so it did not settle"
         elif self._missing:
@@ -121,7 +122,7 @@ class Ending:
         ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""
         guard = ", start closer, or see whether the guard holds it off (guidance.keepout_guard)"
         return (
-            f"{flown} within {plan.duration_max:g} s{ended}: allow more time (flight.duration_max_s)"
+            f"{flown} within {plan.duration_max:g} s{ended}: allow more time (flight.duration_max_s){caveat}"
             f"{guard if self.guarded else ', or start closer'}"
         )
 

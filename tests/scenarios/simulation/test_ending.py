@@ -71,7 +71,11 @@ def ended(
             Outcome.NOT_SETTLED,
             "but its orbit was not in its place for a whole period, so it did not settle",
         ),
-        ({"settled": math.nan}, Outcome.NOT_SETTLED, "(flight.duration_max_s), or start closer"),
+        (
+            {"settled": math.nan},
+            Outcome.NOT_SETTLED,
+            "(flight.duration_max_s), though a longer flight may not settle either, or start closer",
+        ),
         ({"settled": math.nan, "guarded": True}, Outcome.NOT_SETTLED, "start closer, or see whether the guard holds it off"),
         ({"settled": math.nan, "mode": Mode.OUTRUN}, Outcome.NOT_SETTLED, "did not settle within 300 s, and ended outrun"),
         ({"flown": 0}, Outcome.INCOMPLETE, "flew 0 crossings after settling within 300 s"),
@@ -102,5 +106,6 @@ def test_a_flight_completes_only_with_its_aircraft_and_its_mission(flight, outco
     assert ending.outcome is outcome
     assert words in ending.message
     assert bool(ending.message) == (outcome is not Outcome.COMPLETED)
+    assert ("may not settle either" in ending.message) == (outcome is Outcome.NOT_SETTLED)
     # A cause that does not apply is not named.
     assert ("the guard" in ending.message) <= bool(flight.get("guarded"))
