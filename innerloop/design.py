@@ -95,9 +95,9 @@ def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
     except KeyboardInterrupt:
         print("interrupted; finished designs are cached, and the next --list continues from there", file=sys.stderr)
         raise typer.Exit(INTERRUPTED) from None
-    before = f"{waiting} {'was' if waiting == 1 else 'were'} not designed before for {altitude:g} m"
+    before = f"{waiting} {'was' if waiting == 1 else 'were'} not designed for it before"
     more = f"; {before}: --list --check does so, which takes minutes, and says which can be flown" if waiting else ""
-    print(f"{flying} can be flown{more}", file=sys.stderr)
+    print(f"{flying} can be flown at {altitude:g} m, the one altitude of this list (--altitude for another){more}", file=sys.stderr)
 
 
 def _design(
